@@ -1,0 +1,1 @@
+//! Materials whose energy depends on the volume ratio alone.

@@ -1,0 +1,5 @@
+//! Shapes, lattices and files turned into particles.
+
+mod particles;
+
+pub use particles::Particles;

@@ -1,0 +1,49 @@
+//! The particles that geometry makes and schemes are bound to.
+
+use crate::Vector;
+
+/// Reference state of the particles of a run, as a struct of arrays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Particles<const D: usize> {
+    /// Reference positions X in m.
+    pub position: Vec<Vector<D>>,
+    /// Quadrature volumes V in m^D: what carries mass and energy. On a lattice with particles on
+    /// the boundary a particle on an edge has half a cell, in a corner a quarter.
+    pub volume: Vec<f64>,
+    /// Kernel weights w in m^D: what multiplies a kernel inside a sum. On a lattice this is the
+    /// whole cell for every particle, also at the boundary.
+    pub weight: Vec<f64>,
+    /// Local particle spacing in m: the largest edge of the particle's lattice cell.
+    pub spacing: Vec<f64>,
+    /// Number of the body each particle belongs to.
+    pub body: Vec<u32>,
+    /// Number of each particle in the order of creation, kept when particles are reordered.
+    pub id: Vec<u32>,
+}
+
+impl<const D: usize> Particles<D> {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// Reorders all arrays: particle `order[i]` becomes particle `i`.
+    ///
+    /// `order` is a permutation of `0..len`.
+    pub fn reorder(&mut self, order: &[u32]) {
+        fn apply<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
+            *values = order.iter().map(|&old| values[old as usize]).collect();
+        }
+        apply(&mut self.position, order);
+        apply(&mut self.volume, order);
+        apply(&mut self.weight, order);
+        apply(&mut self.spacing, order);
+        apply(&mut self.body, order);
+        apply(&mut self.id, order);
+    }
+}

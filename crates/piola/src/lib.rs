@@ -1,0 +1,22 @@
+//! piola: solid and fluid mechanics with smoothed particle hydrodynamics.
+//!
+//! The rooms of the library, each of which uses only those further down in this list:
+//! [`case`], [`schemes`], [`time`], [`observe`] and [`output`], [`boundaries`] and
+//! [`operators`], [`geometry`] and [`neighbors`], [`fields`] and [`parallel`].
+
+pub mod boundaries;
+pub mod case;
+pub mod fields;
+pub mod geometry;
+pub mod neighbors;
+pub mod observe;
+pub mod operators;
+pub mod output;
+pub mod parallel;
+pub mod schemes;
+pub mod time;
+
+/// A point or vector in `D` dimensions.
+pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
+/// A second-order tensor in `D` dimensions.
+pub type Tensor<const D: usize> = nalgebra::SMatrix<f64, D, D>;

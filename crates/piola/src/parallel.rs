@@ -1,0 +1,31 @@
+//! Loops over particles on all threads, with results that do not depend on their number.
+//!
+//! A loop is cut into chunks of a fixed length. Each chunk writes its own rows; sums are taken
+//! chunk by chunk and then over the chunks in order. Neither depends on the number of threads,
+//! so results are the same to the bit.
+
+use rayon::prelude::*;
+
+/// Particles a chunk. Long enough that handing it to a thread costs nothing, short enough that
+/// many threads share small problems.
+pub const CHUNK: usize = 1024;
+
+/// Calls `body(first, rows)` for chunks of `rows`, where `first` is the number of the first row.
+pub fn for_each_chunk<T: Send>(rows: &mut [T], body: impl Fn(usize, &mut [T]) + Sync) {
+    if rows.len() <= CHUNK {
+        return body(0, rows);
+    }
+    rows.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, rows)| body(chunk * CHUNK, rows));
+}
+
+/// Sums `term(i)` over `0..count` in an order that does not depend on the number of threads.
+pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let partial = |chunk: usize| -> f64 {
+        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(&term).sum()
+    };
+    if count <= CHUNK {
+        return partial(0);
+    }
+    let partials: Vec<f64> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
+    partials.iter().sum()
+}
