@@ -29,7 +29,7 @@ pub fn determinant<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> T {
 /// Cofactor `cof a`, which is `det(a) a^-T` where `a` has an inverse.
 ///
 /// It is a polynomial of the entries and so defined for singular matrices too. Of a deformation
-/// gradient it is `H` of Upwind (3.4), which maps reference to current areas.
+/// gradient it is `H` of Upwind (3.2), which maps reference to current areas.
 #[inline]
 pub fn cofactor<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
     const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
