@@ -9,15 +9,26 @@
 //! - [`Kernel`] is the registry, by which a case file names a kernel.
 //! - [`ScaledKernel`] is a shape with its dimension and `h`, whose factors are computed once.
 
+mod gaussian;
+mod mollifier;
+mod polynomial;
 mod registry;
 mod scaled;
 mod splines;
+mod wendland;
 
+pub use gaussian::Gaussian;
+pub use mollifier::{ModifiedMollifier, Mollifier};
+pub use polynomial::{Linear, Lucy, Quadratic};
 pub use registry::{Kernel, KernelVisitor};
 pub use scaled::ScaledKernel;
-pub use splines::CubicSpline;
+pub use splines::{CubicSpline, QuinticSpline};
+pub use wendland::{WendlandC2, WendlandC4, WendlandC6};
 
 use crate::Scalar;
+
+/// Below this `q` a particle counts as at the kernel's centre: `1 / q` must not overflow.
+const COINCIDENT: f64 = 1e-100;
 
 /// The shape `f(q)` of a kernel and its normalisation; `q = r / h >= 0`.
 ///

@@ -1,6 +1,9 @@
 //! The registry of kernels, and the one place that turns a kernel's name into its type.
 
-use super::{CubicSpline, KernelShape, ScaledKernel};
+use super::{
+    CubicSpline, Gaussian, KernelShape, Linear, Lucy, ModifiedMollifier, Mollifier, Quadratic,
+    QuinticSpline, ScaledKernel, WendlandC2, WendlandC4, WendlandC6,
+};
 use crate::Scalar;
 
 /// A computation that is generic over the kernel's shape, for [`Kernel::visit`].
@@ -60,7 +63,19 @@ macro_rules! registry {
     };
 }
 
-registry!(CubicSpline);
+registry!(
+    CubicSpline,
+    QuinticSpline,
+    Lucy,
+    Gaussian,
+    Mollifier,
+    ModifiedMollifier,
+    Linear,
+    Quadratic,
+    WendlandC2,
+    WendlandC4,
+    WendlandC6,
+);
 
 impl Kernel {
     /// The kernel of a name, or `None`.

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::KernelShape;
-use crate::Scalar;
+use crate::{Scalar, power::integer_power};
 
 /// Kernel `K` in `D` dimensions with a smoothing length, whose factors are computed once.
 ///
@@ -21,7 +21,7 @@ impl<K: KernelShape, const D: usize> ScaledKernel<K, D> {
     pub fn new(smoothing_length: f64) -> Self {
         const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
         let inverse_length = 1.0 / smoothing_length;
-        let value_factor = K::normalisation(D) * integer_power(inverse_length, D);
+        let value_factor = K::normalisation(D) * integer_power(inverse_length, D as u32);
         Self { inverse_length, value_factor, shape: PhantomData }
     }
 
@@ -53,9 +53,4 @@ impl<K: KernelShape, const D: usize> ScaledKernel<K, D> {
         let factor = self.value_factor * self.inverse_length * self.inverse_length;
         K::second_derivative(D, r * self.inverse_length) * factor
     }
-}
-
-#[inline]
-fn integer_power(base: f64, exponent: usize) -> f64 {
-    (0..exponent).fold(1.0, |product, _| product * base)
 }

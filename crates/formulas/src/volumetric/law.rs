@@ -1,7 +1,7 @@
 //! The registry of volumetric materials.
 
 use super::{Prestressed, VolumetricResponse};
-use crate::Scalar;
+use crate::{Scalar, power::integer_power};
 
 /// A material whose energy depends on the volume ratio alone.
 ///
@@ -55,6 +55,17 @@ pub enum MaterialError {
     GammaBelowOne {
         /// What was given.
         value: f64,
+    },
+    /// Poisson's ratio has no finite and positive modulus of volume.
+    #[error(
+        "`poisson_ratio` must be above -1 and {} 0.5, got {value}",
+        if *.incompressible_allowed { "at most" } else { "below" }
+    )]
+    PoissonRatio {
+        /// What was given.
+        value: f64,
+        /// Whether 0.5 itself would have been possible.
+        incompressible_allowed: bool,
     },
 }
 
@@ -120,7 +131,7 @@ impl VolumetricLaw {
     }
 }
 
-fn positive(parameter: &'static str, value: f64) -> Result<f64, MaterialError> {
+pub(super) fn positive(parameter: &'static str, value: f64) -> Result<f64, MaterialError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
@@ -204,23 +215,13 @@ const SERIES_BELOW: f64 = 0.1;
 /// Order of the last term, whose neglected successors are below a rounding of the sum.
 const SERIES_ORDER: u32 = 18;
 
-/// `base^exponent`, by repeated squaring for the small integers that gamma mostly is.
+/// `base^exponent`, by products for the small integers that gamma mostly is.
 ///
 /// That is several times as fast as the general power, and the same on every machine.
 #[inline]
 fn power<T: Scalar>(base: T, exponent: f64) -> T {
     if exponent.fract() == 0.0 && (0.0..=64.0).contains(&exponent) {
-        let mut remaining = exponent as u32;
-        let mut square = base;
-        let mut product = T::one();
-        while remaining > 0 {
-            if remaining & 1 == 1 {
-                product *= square;
-            }
-            square *= square;
-            remaining >>= 1;
-        }
-        product
+        integer_power(base, exponent as u32)
     } else {
         base.powf(exponent)
     }

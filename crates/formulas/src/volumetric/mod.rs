@@ -6,9 +6,11 @@
 //! `p` contradicts its own text, and (6.30).
 
 mod law;
+mod moduli;
 mod prestressed;
 
 pub use law::{MaterialError, VolumetricLaw};
+pub use moduli::{StressState, bulk_modulus};
 pub use prestressed::Prestressed;
 
 use crate::Scalar;
