@@ -10,6 +10,7 @@ mod dual;
 mod error;
 mod grid;
 mod list;
+mod retain;
 mod search;
 
 pub use domain::Domain;
