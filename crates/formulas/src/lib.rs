@@ -6,6 +6,7 @@
 
 pub mod kernels;
 mod power;
+pub mod riemann;
 mod scalar;
 pub mod tensor;
 pub mod volumetric;
