@@ -1,1 +1,3 @@
-//! (filled in by its first commit)
+//! What is recorded of a run while it goes, and what becomes of it.
+
+pub mod reduce;
