@@ -41,18 +41,28 @@ pub fn cofactor<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> SMatrix<T, D
     })
 }
 
-/// Inverse of `a`, or `None` where `a` is singular or the inverse is not finite.
+/// Inverse of `a`, or `None` where `a` is singular or its entries or the inverse's not finite.
 ///
 /// Only an exactly vanishing determinant counts as singular: how ill-conditioned a matrix may be
 /// is for the caller to judge.
 #[inline]
 pub fn inverse<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> Option<SMatrix<T, D, D>> {
     let det = determinant(a);
-    if det.re() == 0.0 {
+    let inverse =
+        if det.re().is_normal() { cofactor(a).transpose() / det } else { inverse_of_scaled(a)? };
+    inverse.iter().all(|entry| entry.re().is_finite()).then_some(inverse)
+}
+
+/// Inverse of a matrix whose entries are too small or too large for their determinant.
+#[cold]
+fn inverse_of_scaled<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> Option<SMatrix<T, D, D>> {
+    let scale = a.iter().fold(0.0_f64, |largest, entry| largest.max(entry.re().abs()));
+    if !(scale > 0.0 && scale.is_finite()) {
         return None;
     }
-    let inverse = cofactor(a).transpose() / det;
-    inverse.iter().all(|entry| entry.re().is_finite()).then_some(inverse)
+    let scaled = a.map(|entry| entry / scale);
+    let det = determinant(&scaled);
+    (det.re() != 0.0).then(|| (cofactor(&scaled).transpose() / det).map(|entry| entry / scale))
 }
 
 /// Right Cauchy-Green tensor `C = F^T F`, Upwind (3.55).
@@ -98,31 +108,37 @@ enum Extreme {
     Largest,
 }
 
-/// Entries within these bounds can be squared and summed without overflow or loss.
-const SAFE_ENTRIES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
-
-/// Brings entries beyond [`SAFE_ENTRIES`] into the range of safe squares, exactly: 2^700.
-const RESCALING: f64 = f64::from_bits((1023 + 700) << 52);
-
 #[inline]
 fn extreme_eigenvalue<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
     const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
-    if D == 1 {
-        return a[(0, 0)];
-    }
-    let largest_entry = a.iter().fold(0.0_f64, |largest, entry| largest.max(entry.re().abs()));
-    if SAFE_ENTRIES.contains(&largest_entry) {
-        extreme_of_moderate(a, extreme)
-    } else if largest_entry > *SAFE_ENTRIES.end() {
-        extreme_of_moderate(&a.map(|entry| entry / RESCALING), extreme) * RESCALING
-    } else {
-        extreme_of_moderate(&a.map(|entry| entry * RESCALING), extreme) / RESCALING
+    match D {
+        1 => a[(0, 0)],
+        2 => extreme_in_2d(a, extreme),
+        _ => extreme_in_3d(a, extreme),
     }
 }
 
-#[inline]
-fn extreme_of_moderate<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
-    if D == 2 { extreme_in_2d(a, extreme) } else { extreme_in_3d(a, extreme) }
+/// Squares in these bounds are the sum of squares that have not overflowed or lost digits.
+const SAFE_SQUARES: std::ops::RangeInclusive<f64> = 1e-240..=1e240;
+
+/// The eigenvalue of a matrix whose entries are too large or small to be squared, and `None` where
+/// they are not, or not finite. Scaling by a power of two is exact.
+#[cold]
+fn rescaled<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> Option<T> {
+    let two_to_700 = f64::from_bits((1023 + 700) << 52);
+    let mut largest = 0.0_f64;
+    for column in 0..D {
+        for row in 0..=column {
+            largest = largest.max(a[(row, column)].re().abs());
+        }
+    }
+    if largest > 1e120 && largest.is_finite() {
+        Some(extreme_eigenvalue(&a.map(|entry| entry / two_to_700), extreme) * two_to_700)
+    } else if largest < 1e-120 && largest > 0.0 {
+        Some(extreme_eigenvalue(&a.map(|entry| entry * two_to_700), extreme) / two_to_700)
+    } else {
+        None
+    }
 }
 
 /// Mean of the eigenvalues, less or plus half their difference.
@@ -131,8 +147,13 @@ fn extreme_in_2d<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extre
     let mean = (a[(0, 0)] + a[(1, 1)]) * 0.5;
     let half_difference = (a[(0, 0)] - a[(1, 1)]) * 0.5;
     let radius_squared = half_difference * half_difference + a[(0, 1)] * a[(0, 1)];
-    if radius_squared.re() == 0.0 {
-        return mean;
+    if !SAFE_SQUARES.contains(&radius_squared.re()) {
+        if let Some(eigenvalue) = rescaled(a, extreme) {
+            return eigenvalue;
+        }
+        if radius_squared.re() == 0.0 {
+            return mean;
+        }
     }
     match extreme {
         Extreme::Smallest => mean - radius_squared.sqrt(),
@@ -143,7 +164,8 @@ fn extreme_in_2d<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extre
 /// Below this, the sine of three times the angle is rounding: two eigenvalues coincide.
 const COINCIDENT: f64 = 16.0 * f64::EPSILON;
 
-/// The trigonometric form, `lambda_k = mean + 2 p cos(phi + 2 pi k / 3)`.
+/// The trigonometric form: `mean + 2 p cos phi` is the largest eigenvalue and
+/// `mean - 2 p cos(pi/3 - phi)` the smallest, with `0 <= phi <= pi/3`.
 ///
 /// With `B = (a - mean I) / p` scaled to `B : B = 6`, and `Q = B^2 - 2 I` its deviatoric square,
 /// `cos 3 phi = B : Q / 6` and `sin 3 phi = |Q - cos(3 phi) B| / sqrt 6`. Taking the angle from
@@ -154,8 +176,13 @@ fn extreme_in_3d<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extre
     let deviator =
         [a[(0, 0)] - mean, a[(1, 1)] - mean, a[(2, 2)] - mean, a[(1, 2)], a[(0, 2)], a[(0, 1)]];
     let p_squared = contract(&deviator, &deviator) * (1.0 / 6.0);
-    if p_squared.re() == 0.0 {
-        return mean;
+    if !SAFE_SQUARES.contains(&p_squared.re()) {
+        if let Some(eigenvalue) = rescaled(a, extreme) {
+            return eigenvalue;
+        }
+        if p_squared.re() == 0.0 {
+            return mean;
+        }
     }
     let p = p_squared.sqrt();
     let p_inverse = p.recip();
@@ -176,7 +203,7 @@ fn extreme_in_3d<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extre
         if sine_squared.re() > COINCIDENT * COINCIDENT { sine_squared.sqrt() } else { T::zero() };
     let phi = sine.atan2(cosine) * (1.0 / 3.0);
     let cosine_of_extreme = match extreme {
-        Extreme::Smallest => (phi + 2.0 / 3.0 * std::f64::consts::PI).cos(),
+        Extreme::Smallest => -(-phi + std::f64::consts::FRAC_PI_3).cos(),
         Extreme::Largest => phi.cos(),
     };
     mean + p * cosine_of_extreme * 2.0

@@ -301,3 +301,17 @@ fn inspection_finds_the_broken_particle() {
     let health = inspect(&state);
     assert_eq!((health.smallest_ratio, health.smallest_ratio_particle), (-0.25, 23));
 }
+
+/// Every field that is described can be sampled, with as many finite components as described.
+#[test]
+fn every_described_field_has_values() {
+    let mut scheme =
+        Choice::new(lattice([3.0, 5.0], [6, 8]), gamma()).build(|_| Vector::<2>::zeros());
+    let state = disturbed(&scheme, 0.01);
+    for field in scheme.fields() {
+        let mut values = Vec::new();
+        scheme.sample(0.0, &state, field.name, &[3, 11], &mut values);
+        assert_eq!(values.len(), 2 * field.kind.components(2), "{}", field.name);
+        assert!(values.iter().all(|value| value.is_finite()), "{}", field.name);
+    }
+}

@@ -45,6 +45,10 @@ impl KernelShape for Gaussian {
 
     #[inline]
     fn second_derivative<T: Scalar>(dimension: usize, q: T) -> T {
-        Self::value(dimension, q) * (q * q * 4.0 - 2.0)
+        if q.re() < Self::SUPPORT {
+            Self::value(dimension, q) * (q * q * 4.0 - 2.0)
+        } else {
+            T::zero()
+        }
     }
 }

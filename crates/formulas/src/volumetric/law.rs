@@ -209,11 +209,11 @@ fn gamma_energy<T: Scalar>(strain: T, gamma: f64) -> T {
     }
 }
 
-/// Bound of `|J - 1| (gamma + 1)` for the series, where term k + 1 is at most a tenth of term k.
+/// Bound of `|J - 1| (gamma + 1)` for the series: each term is below a twentieth of the one before.
 const SERIES_BELOW: f64 = 0.1;
 
-/// Order of the last term, whose neglected successors are below a rounding of the sum.
-const SERIES_ORDER: u32 = 18;
+/// Order of the last term; the first one left out is below 1e-18 of the sum.
+const SERIES_ORDER: u32 = 16;
 
 /// `base^exponent`, by products for the small integers that gamma mostly is.
 ///

@@ -3,4 +3,4 @@
 mod scheme;
 pub mod upwind;
 
-pub use scheme::{Health, Particle, Scheme, StepLimit};
+pub use scheme::{Health, Particle, Scheme, StepLimit, snapshot};

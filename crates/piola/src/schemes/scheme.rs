@@ -1,6 +1,6 @@
 //! What a formulation offers to integrators, clock, observers and output.
 
-use crate::fields::{FieldDescription, Snapshot};
+use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
 ///
@@ -47,9 +47,22 @@ pub trait Scheme: Send {
     /// The energies of `state` in J, in the order of [`Scheme::energy_names`].
     fn energies(&self, state: &[f64], energies: &mut [f64]);
 
-    /// Positions and the named fields at `state`; names that the scheme does not have are left
-    /// out. May use the scratch of the last [`Scheme::rates`], which it calls itself if needed.
-    fn snapshot(&mut self, time: f64, step: u64, state: &[f64], fields: &[&str]) -> Snapshot;
+    /// Appends the components of one of [`Scheme::fields`] at `state` for each of `particles`
+    /// (indices in memory) to `values`. A field of another name appends nothing.
+    fn sample(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    );
+
+    /// Number of the body of each particle.
+    fn bodies(&self) -> &[u32];
+
+    /// Number of each particle in the order of creation.
+    fn ids(&self) -> &[u32];
 
     /// Reference position in m and number in the order of creation of each particle.
     fn particle(&self, index: usize) -> Particle;
@@ -125,4 +138,37 @@ pub struct StepLimit {
     pub particle: usize,
     /// Whether the CFL number scales this bound, or it is a bound by itself.
     pub scaled: bool,
+}
+
+/// Positions and the named fields of all particles at `state`; names that the scheme does not
+/// have are left out.
+pub fn snapshot(
+    scheme: &mut dyn Scheme,
+    time: f64,
+    step: u64,
+    state: &[f64],
+    names: &[&str],
+) -> Snapshot {
+    let particles: Vec<u32> = (0..scheme.particle_count() as u32).collect();
+    let fields = scheme.fields().iter().filter(|field| names.contains(&field.name));
+    let described: Vec<FieldDescription> = fields.copied().collect();
+    let mut all = |name: &str| {
+        let mut values = Vec::new();
+        scheme.sample(time, state, name, &particles, &mut values);
+        values
+    };
+    let positions = all("position");
+    let fields = described
+        .into_iter()
+        .map(|description| FieldValues { description, values: all(description.name) })
+        .collect();
+    Snapshot {
+        dimension: scheme.dimension(),
+        time,
+        step,
+        positions,
+        ids: scheme.ids().to_vec(),
+        bodies: scheme.bodies().to_vec(),
+        fields,
+    }
 }
