@@ -1,8 +1,10 @@
-//! What is recorded of a run while it goes: probes, energies, steps, particle files, pictures.
+//! What is recorded of a run while it goes (probes, energies, steps, particle files, pictures),
+//! and how histories become single numbers.
 
 mod frames;
 mod probe;
 mod recorder;
+pub mod reduce;
 mod tables;
 
 pub use frames::FrameWriter;
