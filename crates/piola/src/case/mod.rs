@@ -6,3 +6,4 @@ pub mod model;
 mod render;
 pub mod source;
 mod suggest;
+pub mod verify;
