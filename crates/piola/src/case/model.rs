@@ -20,6 +20,7 @@ pub use checks::{Check, Expectation, Quantity, Reduction, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use observers::{
     Component, Compression, Extremum, FieldSelector, Output, Picture, Plot, Probe, ProbeKind,
+    component_name,
 };
 pub use physics::{
     Boundary, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Scheme,
