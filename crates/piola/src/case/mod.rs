@@ -25,6 +25,7 @@ pub mod spec;
 mod suggest;
 pub mod tables;
 pub mod template;
+pub mod verify;
 
 use std::path::Path;
 use std::sync::Arc;
