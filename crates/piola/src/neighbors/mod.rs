@@ -24,6 +24,8 @@ pub use search::{refuse_coincident, search};
 const LEAST_SUPPORT: f64 = 1e-150;
 /// Largest support radius in m: its square must be finite.
 const MOST_SUPPORT: f64 = 1e150;
+/// Most entries of a list: they are numbered with 32 bits where they refer to each other.
+const MOST_ENTRIES: usize = u32::MAX as usize;
 /// Most cells along an axis.
 const MOST_CELLS: f64 = 4e9;
 

@@ -1,10 +1,13 @@
 //! Neighbour search with cell grids.
 
+use std::borrow::Cow;
 use std::ops::Range;
+
+use rayon::prelude::*;
 
 use super::error::axis_name;
 use super::grid::CellGrid;
-use super::{Domain, LEAST_SUPPORT, MOST_SUPPORT, NeighborError, NeighborList};
+use super::{Domain, LEAST_SUPPORT, MOST_ENTRIES, MOST_SUPPORT, NeighborError, NeighborList};
 use crate::Vector;
 
 /// Most grids of one search, see [`search`].
@@ -20,21 +23,15 @@ const GRIDS: u32 = 8;
 /// of the group's largest support. Memory is linear in particles and entries wherever points are.
 ///
 /// # Errors
-/// Non-finite points, unusable supports, a different number of both, too many points, and a period
-/// shorter than twice the largest support or too long for its cells to be numbered.
+/// Non-finite points, unusable supports, a different number of both, too many points or neighbours,
+/// and a period shorter than twice the largest support or too long for its cells to be numbered.
 pub fn search<const D: usize>(
     points: &[Vector<D>],
     support: &[f64],
     domain: &Domain<D>,
 ) -> Result<NeighborList, NeighborError> {
     check(points, support, domain)?;
-    let wrapped: Vec<Vector<D>>;
-    let points = if domain.is_open() {
-        points
-    } else {
-        wrapped = points.iter().map(|point| domain.wrap(point)).collect();
-        &wrapped
-    };
+    let points = &*wrap(points, domain);
     let grids = Grids::new(points, support, domain)?;
     let row = |state: &mut Candidates<D>, a: usize, rows: &mut Vec<u32>| {
         let (group, grid) = grids.of(support[a]);
@@ -47,7 +44,9 @@ pub fn search<const D: usize>(
             state.append_near(grid, a, |b| square(b) < limit, rows);
         }
     };
-    Ok(NeighborList::from_rows(points.len(), Candidates::default, row))
+    let (particles, most) = (points.len(), MOST_ENTRIES);
+    NeighborList::from_rows(particles, most, Candidates::default, row)
+        .ok_or(NeighborError::TooManyEntries { particles, most })
 }
 
 /// Refuses particles closer to each other than `tolerance` m.
@@ -60,14 +59,35 @@ pub fn refuse_coincident<const D: usize>(
     tolerance: f64,
     domain: &Domain<D>,
 ) -> Result<(), NeighborError> {
-    let close = search(points, &vec![tolerance; points.len()], domain)?;
-    let Some(first) = (0..close.len()).find(|&a| !close.row(a).is_empty()) else {
+    check(points, &vec![tolerance; points.len()], domain)?;
+    let wrapped = wrap(points, domain);
+    let grid = CellGrid::new(&wrapped, tolerance, domain)?;
+    let limit = tolerance * tolerance;
+    // Only the first pair is looked for: a list of a million points at one place would not fit.
+    let pair = (0..points.len()).into_par_iter().find_map_first(|a| {
+        let mut ranges = Vec::new();
+        grid.around(&grid.cell(&wrapped[a]), &mut ranges);
+        let near = |&b: &u32| {
+            let separation = domain.separation(&wrapped[a], &wrapped[b as usize]);
+            b as usize != a && separation.norm_squared() < limit
+        };
+        let candidates = ranges.into_iter().flat_map(|range| &grid.ids()[range]);
+        candidates.copied().filter(near).min().map(|b| (a, b as usize))
+    });
+    let Some((first, second)) = pair else {
         return Ok(());
     };
-    let second = close.row(first)[0] as usize;
     let distance = domain.separation(&points[first], &points[second]).norm();
     let position = points[first].iter().copied().collect();
     Err(NeighborError::Coincident { first, second, distance, tolerance, position })
+}
+
+/// The images of all points inside the bounds of the domain.
+fn wrap<'a, const D: usize>(points: &'a [Vector<D>], domain: &Domain<D>) -> Cow<'a, [Vector<D>]> {
+    if domain.is_open() {
+        return Cow::Borrowed(points);
+    }
+    Cow::Owned(points.iter().map(|point| domain.wrap(point)).collect())
 }
 
 fn check<const D: usize>(

@@ -216,6 +216,9 @@ fn coincident_particles_are_named() {
         }
         other => panic!("{other}"),
     }
+    let heap = vec![Vector::<2>::new(0.5, 0.5); 200_000];
+    let error = refuse_coincident(&heap, 1e-9, &Domain::open()).unwrap_err();
+    assert!(error.to_string().starts_with("particles 0 and 1 are 0e0 m apart"), "{error}");
     let ends = [Vector::<1>::new(0.0), Vector::<1>::new(1.0)];
     assert_eq!(refuse_coincident(&ends, 1e-9, &Domain::open()), Ok(()));
     assert!(refuse_coincident(&ends, 1e-9, &Domain::new([Some([0.0, 1.0])]).unwrap()).is_err());
