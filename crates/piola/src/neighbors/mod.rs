@@ -10,12 +10,14 @@ mod dual;
 mod error;
 mod grid;
 mod list;
+mod order;
 mod retain;
 mod search;
 
 pub use domain::Domain;
 pub use error::NeighborError;
 pub use list::{NeighborList, NeighborStatistics};
+pub use order::spatial_order;
 pub use search::{refuse_coincident, search};
 
 /// Least support radius in m: its square must be a normal number.

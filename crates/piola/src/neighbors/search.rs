@@ -38,13 +38,12 @@ pub fn search<const D: usize>(
     let grids = Grids::new(points, support, domain)?;
     let row = |state: &mut Candidates<D>, a: usize, rows: &mut Vec<u32>| {
         let (group, grid) = grids.of(support[a]);
-        state.collect(group, grid, &points[a]);
-        let limit = support[a] * support[a];
+        let (center, limit) = (points[a], support[a] * support[a]);
+        state.collect(group, grid, &center);
         if domain.is_open() {
-            let square = |b: &Vector<D>| (b - points[a]).norm_squared();
-            state.append_near(grid, a, |b| square(b) < limit, rows);
+            state.append_near(grid, a, |b| (b - center).norm_squared() < limit, rows);
         } else {
-            let square = |b: &Vector<D>| domain.separation(&points[a], b).norm_squared();
+            let square = |b: &Vector<D>| domain.separation(&center, b).norm_squared();
             state.append_near(grid, a, |b| square(b) < limit, rows);
         }
     };
@@ -80,17 +79,8 @@ fn check<const D: usize>(
         let (points, supports) = (points.len(), support.len());
         return Err(NeighborError::SupportCount { points, supports });
     }
-    if points.len() > u32::MAX as usize {
-        return Err(NeighborError::TooManyParticles { count: points.len() });
-    }
-    if let Some(particle) = points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
-        let position = points[particle].iter().copied().collect();
-        return Err(NeighborError::NonFinite { particle, position });
-    }
-    let usable = LEAST_SUPPORT..=MOST_SUPPORT;
-    if let Some(particle) = support.iter().position(|support| !usable.contains(support)) {
-        return Err(NeighborError::Support { particle, support: support[particle] });
-    }
+    check_points(points)?;
+    support.iter().enumerate().try_for_each(|(particle, &s)| check_support(particle, s))?;
     let Some(particle) = (0..support.len()).max_by(|&a, &b| support[a].total_cmp(&support[b]))
     else {
         return Ok(());
@@ -104,6 +94,27 @@ fn check<const D: usize>(
         }
     }
     Ok(())
+}
+
+/// Refuses points that cannot be put into cells.
+pub(super) fn check_points<const D: usize>(points: &[Vector<D>]) -> Result<(), NeighborError> {
+    if points.len() > u32::MAX as usize {
+        return Err(NeighborError::TooManyParticles { count: points.len() });
+    }
+    if let Some(particle) = points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
+        let position = points[particle].iter().copied().collect();
+        return Err(NeighborError::NonFinite { particle, position });
+    }
+    Ok(())
+}
+
+/// Refuses lengths that cannot be squared.
+pub(super) fn check_support(particle: usize, support: f64) -> Result<(), NeighborError> {
+    if (LEAST_SUPPORT..=MOST_SUPPORT).contains(&support) {
+        Ok(())
+    } else {
+        Err(NeighborError::Support { particle, support })
+    }
 }
 
 /// One grid for each group of similar supports.
@@ -175,6 +186,9 @@ impl<const D: usize> Candidates<D> {
         }
         self.cell = Some((group, cell));
         grid.around(&cell, &mut self.ranges);
+        // Particles ordered along space have consecutive numbers in a cell. Cells in the order of
+        // their first ones then give ascending rows, which cost next to nothing to sort.
+        self.ranges.sort_unstable_by_key(|range| grid.ids()[range.start]);
         let candidates = self.ranges.iter().map(Range::len).sum();
         if self.near.len() < candidates {
             self.near.resize(candidates, 0);
@@ -190,17 +204,21 @@ impl<const D: usize> Candidates<D> {
         near: impl Fn(&Vector<D>) -> bool,
         rows: &mut Vec<u32>,
     ) {
+        let found = self.near.as_mut_slice();
         let mut count = 0;
         for range in &self.ranges {
             let candidates = grid.points()[range.clone()].iter().zip(&grid.ids()[range.clone()]);
             // Every candidate is written and kept by the step of the counter, as a branch would
             // be guessed wrong every third time.
             for (point, &b) in candidates {
-                self.near[count] = b;
-                count += usize::from(near(point) & (b as usize != a));
+                found[count] = b;
+                count += usize::from(near(point));
             }
         }
-        self.near[..count].sort_unstable();
-        rows.extend_from_slice(&self.near[..count]);
+        let found = &mut found[..count];
+        found.sort_unstable();
+        let own = found.binary_search(&(a as u32)).expect("a particle is near to itself");
+        rows.extend_from_slice(&found[..own]);
+        rows.extend_from_slice(&found[own + 1..]);
     }
 }

@@ -163,7 +163,8 @@ fn threads_do_not_change_a_bit() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let list = search(&points, &support, &domain).unwrap();
-            (list.dual(), list.clone().symmetric_closure(), list)
+            let order = spatial_order(&points, 0.02).unwrap();
+            (list.dual(), list.clone().symmetric_closure(), list, order)
         })
     };
     let one = run(1);

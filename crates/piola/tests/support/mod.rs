@@ -137,3 +137,19 @@ pub fn disturbed<S: piola::schemes::Scheme>(scheme: &S, size: f64) -> Vec<f64> {
     }
     state
 }
+
+/// A box lattice whose particles are displaced by up to `jitter` spacings along each axis.
+pub fn jittered<const D: usize>(
+    lengths: [f64; D],
+    intervals: [usize; D],
+    jitter: f64,
+) -> Particles<D> {
+    let mut particles = lattice(lengths, intervals);
+    for (a, position) in particles.position.iter_mut().enumerate() {
+        for axis in 0..D {
+            let spacing = lengths[axis] / intervals[axis] as f64;
+            position[axis] += jitter * spacing * noise(a * D + axis);
+        }
+    }
+    particles
+}

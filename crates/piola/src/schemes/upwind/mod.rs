@@ -21,6 +21,7 @@ mod initial;
 mod inspect;
 mod local;
 mod pairs;
+mod passes;
 mod reconstruction;
 mod scheme;
 mod settings;
@@ -34,6 +35,7 @@ use crate::operators::{GradientOperator, LeastSquares, Support};
 
 pub use build::{UpwindError, UpwindInput};
 pub use initial::Initial;
+pub use passes::PASSES;
 pub use scheme::FIELDS;
 pub use settings::{BodyForce, Material, Settings, WaveSpeed};
 

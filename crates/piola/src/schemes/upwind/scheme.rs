@@ -79,13 +79,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        if !self.steady_body_force {
-            self.update_body_acceleration(time);
-        }
-        self.local_pass(state);
-        self.slope_pass();
-        self.pair_pass(rate);
-        self.boundary_pass(time, rate);
+        self.rates_by_pass(time, state, rate, |_| {});
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
