@@ -1,12 +1,11 @@
 //! The observer that fills the tables.
 
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::files::WrittenFiles;
 use super::probe::Probe;
 use super::tables::Tables;
-use crate::output::OutputError;
-use crate::output::{Column, Table};
+use crate::output::{Column, OutputError, ResultsFolder, Table};
 use crate::schemes::Scheme;
 use crate::time::{Moment, ObserveError, Observer, Schedule};
 
@@ -27,7 +26,7 @@ pub struct Recorder {
     /// Times at which the CSV files are written anew.
     save: Schedule,
     next_save: Option<f64>,
-    files: Option<[PathBuf; 3]>,
+    folder: Option<(ResultsFolder, WrittenFiles)>,
     probes: Vec<Probe>,
     tables: SharedTables,
     start: Option<f64>,
@@ -37,14 +36,14 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder of `probes` and of what `scheme` reports, with rows at `schedule`. With `files`
-    /// for probes, energies and steps it writes them at `save` and at the end.
+    /// A recorder of `probes` and of what `scheme` reports, with rows at `schedule`. With a
+    /// folder it writes the CSV files at `save` and at the end, and notes them.
     pub fn new(
         scheme: &dyn Scheme,
         probes: Vec<Probe>,
         schedule: Schedule,
         save: Schedule,
-        files: Option<[PathBuf; 3]>,
+        folder: Option<(ResultsFolder, WrittenFiles)>,
     ) -> Self {
         let time = || Column::new("time", "s");
         let mut probe_columns = vec![time()];
@@ -71,7 +70,7 @@ impl Recorder {
             next_save: save.next_after(0.0),
             schedule,
             save,
-            files,
+            folder,
             probes,
             tables: SharedTables(Arc::new(Mutex::new(tables))),
             start: None,
@@ -125,13 +124,16 @@ impl Recorder {
     }
 
     fn write(&self) -> Result<(), OutputError> {
-        let Some([probes, energy, steps]) = &self.files else { return Ok(()) };
+        let Some((folder, written)) = &self.folder else { return Ok(()) };
         let tables = self.tables.lock();
+        let mut files = vec![(&tables.energy, folder.energy()), (&tables.steps, folder.steps())];
         if !self.probes.is_empty() {
-            tables.probes.write_csv(probes)?;
+            files.insert(0, (&tables.probes, folder.probes()));
         }
-        tables.energy.write_csv(energy)?;
-        tables.steps.write_csv(steps)?;
+        for (table, file) in files {
+            table.write_csv(&file)?;
+            written.push(file);
+        }
         Ok(())
     }
 }
