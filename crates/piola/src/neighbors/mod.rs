@@ -11,6 +11,7 @@ mod error;
 mod grid;
 mod list;
 mod order;
+mod retain;
 mod search;
 
 pub use domain::Domain;

@@ -1,0 +1,194 @@
+//! Evaluation by `exmex`, once with plain numbers and once with dual numbers for the rate.
+
+use std::fmt::Debug;
+use std::str::FromStr;
+
+use exmex::{Express, FlatEx, MatchLiteral};
+
+use super::functions::Operators;
+use super::syntax::Tree;
+use super::{ExpressionError, Variable};
+
+/// What an expression computes with.
+pub(super) trait Number: Copy + Debug + Default + FromStr<Err: Debug> {
+    fn from_number(value: f64) -> Self;
+    fn value(self) -> f64;
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    fn div(self, other: Self) -> Self;
+    fn pow(self, exponent: Self) -> Self;
+    fn arc_tangent(y: Self, x: Self) -> Self;
+    /// A function and its derivative.
+    fn chain(self, function: fn(f64) -> f64, derivative: fn(f64) -> f64) -> Self;
+}
+
+impl Number for f64 {
+    fn from_number(value: f64) -> Self {
+        value
+    }
+    fn value(self) -> f64 {
+        self
+    }
+    fn add(self, other: Self) -> Self {
+        self + other
+    }
+    fn sub(self, other: Self) -> Self {
+        self - other
+    }
+    fn mul(self, other: Self) -> Self {
+        self * other
+    }
+    fn div(self, other: Self) -> Self {
+        self / other
+    }
+    fn pow(self, exponent: Self) -> Self {
+        self.powf(exponent)
+    }
+    fn arc_tangent(y: Self, x: Self) -> Self {
+        y.atan2(x)
+    }
+    fn chain(self, function: fn(f64) -> f64, _: fn(f64) -> f64) -> Self {
+        function(self)
+    }
+}
+
+/// A number and its rate: `a + b eps` with `eps^2 = 0`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Dual {
+    value: f64,
+    rate: f64,
+}
+
+impl FromStr for Dual {
+    type Err = std::num::ParseFloatError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        text.parse().map(Self::from_number)
+    }
+}
+
+/// `factor * rate`, and 0 where the rate is 0: a constant under a root has rate 0 even at 0,
+/// where the derivative of the root is infinite.
+fn scaled(factor: f64, rate: f64) -> f64 {
+    if rate == 0.0 { 0.0 } else { factor * rate }
+}
+
+impl Number for Dual {
+    fn from_number(value: f64) -> Self {
+        Self { value, rate: 0.0 }
+    }
+    fn value(self) -> f64 {
+        self.value
+    }
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, rate: self.rate + other.rate }
+    }
+    fn sub(self, other: Self) -> Self {
+        Self { value: self.value - other.value, rate: self.rate - other.rate }
+    }
+    fn mul(self, other: Self) -> Self {
+        let rate = scaled(other.value, self.rate) + scaled(self.value, other.rate);
+        Self { value: self.value * other.value, rate }
+    }
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let rate = scaled(1.0 / other.value, self.rate) - scaled(value / other.value, other.rate);
+        Self { value, rate }
+    }
+    fn pow(self, exponent: Self) -> Self {
+        let value = self.value.powf(exponent.value);
+        let by_base = exponent.value * self.value.powf(exponent.value - 1.0);
+        let by_exponent = value * self.value.ln();
+        Self { value, rate: scaled(by_base, self.rate) + scaled(by_exponent, exponent.rate) }
+    }
+    fn arc_tangent(y: Self, x: Self) -> Self {
+        let square = x.value * x.value + y.value * y.value;
+        let rate = scaled(x.value / square, y.rate) - scaled(y.value / square, x.rate);
+        Self { value: y.value.atan2(x.value), rate }
+    }
+    fn chain(self, function: fn(f64) -> f64, derivative: fn(f64) -> f64) -> Self {
+        Self { value: function(self.value), rate: scaled(derivative(self.value), self.rate) }
+    }
+}
+
+/// Numbers as Rust prints them: `0.1`, `1e-7`, `2.5e300`.
+#[derive(Clone, Debug)]
+struct Literals;
+
+impl MatchLiteral for Literals {
+    fn is_literal(text: &str) -> Option<&str> {
+        let bytes = text.as_bytes();
+        if !bytes.first()?.is_ascii_digit() {
+            return None;
+        }
+        let part = |c: u8, before: u8| {
+            c.is_ascii_digit() || c == b'.' || c == b'e' || (c == b'-' && before == b'e')
+        };
+        let length = (1..bytes.len()).find(|i| !part(bytes[*i], bytes[*i - 1]));
+        Some(&text[..length.unwrap_or(bytes.len())])
+    }
+}
+
+type Evaluator<T> = FlatEx<T, Operators, Literals>;
+
+/// An expression, ready to be evaluated.
+#[derive(Clone, Debug)]
+pub(super) struct Program {
+    plain: Evaluator<f64>,
+    dual: Evaluator<Dual>,
+    /// The variables that occur, in the order in which `exmex` wants them.
+    variables: Vec<Variable>,
+}
+
+impl Program {
+    /// Makes a program of the tree of the expression `text`.
+    pub(super) fn new(text: &str, tree: &Tree) -> Result<Self, ExpressionError> {
+        let bracketed = tree.bracketed();
+        let refused = || {
+            let message = format!("`{text}` cannot be evaluated");
+            ExpressionError::new(0..text.len(), message, "cannot be evaluated")
+        };
+        let plain = Evaluator::<f64>::parse(&bracketed).map_err(|_| refused())?;
+        let dual = Evaluator::<Dual>::parse(&bracketed).map_err(|_| refused())?;
+        let variables: Option<Vec<Variable>> = (plain.var_names().iter())
+            .map(|name| match name.as_str() {
+                "x" => Some(Variable::X),
+                "y" => Some(Variable::Y),
+                "z" => Some(Variable::Z),
+                "t" => Some(Variable::T),
+                _ => None,
+            })
+            .collect();
+        Ok(Self { plain, dual, variables: variables.ok_or_else(refused)? })
+    }
+
+    /// The value where there are no variables.
+    pub(super) fn constant(&self) -> Option<f64> {
+        self.variables.is_empty().then(|| self.plain.eval(&[]).unwrap_or(f64::NAN))
+    }
+
+    pub(super) fn depends_on(&self, variable: Variable) -> bool {
+        self.variables.contains(&variable)
+    }
+
+    pub(super) fn eval(&self, position: [f64; 3], time: f64) -> f64 {
+        let [x, y, z] = position;
+        let all = [x, y, z, time];
+        let mut values = [0.0; 4];
+        for (value, variable) in values.iter_mut().zip(&self.variables) {
+            *value = all[*variable as usize];
+        }
+        self.plain.eval(&values[..self.variables.len()]).unwrap_or(f64::NAN)
+    }
+
+    pub(super) fn rate(&self, position: [f64; 3], time: f64) -> f64 {
+        let [x, y, z] = position.map(Dual::from_number);
+        let all = [x, y, z, Dual { value: time, rate: 1.0 }];
+        let mut values = [Dual::default(); 4];
+        for (value, variable) in values.iter_mut().zip(&self.variables) {
+            *value = all[*variable as usize];
+        }
+        self.dual.eval(&values[..self.variables.len()]).map_or(f64::NAN, |result| result.rate)
+    }
+}

@@ -1,0 +1,201 @@
+//! Expressions of position, time and named parameters.
+//!
+//! The text is read here, with positions for every message, and evaluated by the crate `exmex`.
+//! That crate gets a rewritten, fully bracketed text, because three of its habits would surprise
+//! an engineer: it reads `-2^2` as 4, knows no `1e3`, and refuses `min(1, max(2, 3))`.
+//!
+//! Grammar, from weakest to strongest: `+ -`, then `* /`, then a sign, then `^` (from the right),
+//! then numbers, names, brackets and calls `f(a)`, `f(a, b)`. So `-2^2` is -4 and `2^-1` is 0.5.
+
+mod engine;
+mod functions;
+mod syntax;
+mod token;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+pub use functions::{Function, constants, functions};
+
+use engine::Program;
+
+/// The longest expression in bytes.
+pub const MAX_LENGTH: usize = 4096;
+/// How deep brackets and calls, or signs, may be nested.
+pub const MAX_NESTING: usize = 64;
+
+/// What an expression may use besides numbers, constants and functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Scope<'a> {
+    /// How many of x, y and z are known: the dimension of the case, 0 for none.
+    pub axes: usize,
+    /// Whether t is known.
+    pub time: bool,
+    /// Named numbers.
+    pub parameters: &'a [(String, f64)],
+}
+
+impl Scope<'_> {
+    fn variable(&self, name: &str) -> Option<Variable> {
+        let variable = match name {
+            "x" => Variable::X,
+            "y" => Variable::Y,
+            "z" => Variable::Z,
+            "t" => Variable::T,
+            _ => return None,
+        };
+        let known = match variable {
+            Variable::T => self.time,
+            axis => (axis as usize) < self.axes,
+        };
+        known.then_some(variable)
+    }
+
+    fn parameter(&self, name: &str) -> Option<f64> {
+        self.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
+    }
+
+    /// Every name that may be written, for suggestions.
+    fn names(&self) -> Vec<&str> {
+        let axes = ["x", "y", "z"].into_iter().take(self.axes);
+        let time = self.time.then_some("t");
+        let parameters = self.parameters.iter().map(|(name, _)| name.as_str());
+        let known = functions().iter().map(|function| function.name);
+        let constants = constants().iter().map(|(name, _)| *name);
+        axes.chain(time).chain(parameters).chain(constants).chain(known).collect()
+    }
+}
+
+/// A variable of an expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variable {
+    /// First coordinate in m.
+    X = 0,
+    /// Second coordinate in m.
+    Y = 1,
+    /// Third coordinate in m.
+    Z = 2,
+    /// Time in s.
+    T = 3,
+}
+
+/// What is wrong with the text of an expression.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct ExpressionError {
+    /// A sentence about it.
+    pub message: String,
+    /// A few words for the underlined text.
+    pub label: String,
+    /// The bytes of the expression that are meant.
+    pub span: Range<usize>,
+    /// What the user can do.
+    pub help: Option<String>,
+}
+
+impl ExpressionError {
+    fn new(span: Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
+        Self { message: message.into(), label: label.into(), span, help: None }
+    }
+
+    fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// An expression that can be evaluated from many threads at once.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    text: Arc<str>,
+    form: Form,
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Constant(f64),
+    Variable(Arc<Program>),
+}
+
+impl Expression {
+    /// An expression without variables.
+    pub fn constant(value: f64) -> Self {
+        Self { text: value.to_string().into(), form: Form::Constant(value) }
+    }
+
+    /// Reads an expression.
+    ///
+    /// # Errors
+    /// If the text is too long or too deeply nested, is not an expression, or uses a name that
+    /// `scope` does not know; and if it has no variables and its value is not a finite number.
+    pub fn parse(text: &str, scope: &Scope<'_>) -> Result<Self, ExpressionError> {
+        let tree = syntax::parse(text, scope)?;
+        let program = Program::new(text, &tree)?;
+        let form = match program.constant() {
+            None => Form::Variable(Arc::new(program)),
+            Some(value) if value.is_finite() => Form::Constant(value),
+            Some(value) => {
+                let message =
+                    format!("the value of `{text}` is {value}, which is no finite number");
+                return Err(ExpressionError::new(0..text.len(), message, "not finite"));
+            }
+        };
+        Ok(Self { text: text.into(), form })
+    }
+
+    /// The text as the user wrote it.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Its value where it depends neither on position nor on time.
+    pub fn as_constant(&self) -> Option<f64> {
+        match self.form {
+            Form::Constant(value) => Some(value),
+            Form::Variable(_) => None,
+        }
+    }
+
+    /// Whether the text uses `variable`.
+    pub fn depends_on(&self, variable: Variable) -> bool {
+        match &self.form {
+            Form::Constant(_) => false,
+            Form::Variable(program) => program.depends_on(variable),
+        }
+    }
+
+    /// Whether the text uses any coordinate.
+    pub fn depends_on_position(&self) -> bool {
+        [Variable::X, Variable::Y, Variable::Z].into_iter().any(|axis| self.depends_on(axis))
+    }
+
+    /// Its value at a position in m and a time in s.
+    ///
+    /// Not a number outside of its domain, like `sqrt(x)` at `x = -1`: who uses it checks.
+    pub fn eval(&self, position: [f64; 3], time: f64) -> f64 {
+        match &self.form {
+            Form::Constant(value) => *value,
+            Form::Variable(program) => program.eval(position, time),
+        }
+    }
+
+    /// Its rate, the exact derivative by time at a fixed position, computed with dual numbers.
+    ///
+    /// At a kink or jump (`abs`, `sign`, `min`, `max`, `floor`, `step`, `mod`) it is the rate of
+    /// the branch that [`eval`](Self::eval) takes there; a jump contributes none.
+    pub fn rate(&self, position: [f64; 3], time: f64) -> f64 {
+        match &self.form {
+            Form::Constant(_) => 0.0,
+            Form::Variable(program) => program.rate(position, time),
+        }
+    }
+}
+
+impl PartialEq for Expression {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text && self.as_constant() == other.as_constant()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,145 @@
+//! The case as types: what a case file says once every name is known and every number checked.
+//!
+//! Vectors have as many components as the case has dimensions. Lengths are in m, SI throughout.
+//! Values that only the builder can judge (a selection that may select nothing, a body that may
+//! be empty) are [`Located`], so that it can point at them with [`Case::problem_at`].
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::diagnostics::{Problem, Problems};
+use super::expression::Expression;
+use super::source::{Located, Place, SourceText};
+
+mod checks;
+mod geometry;
+mod observers;
+mod physics;
+
+pub use checks::{Check, Expectation, Quantity, Reduction, When};
+pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
+pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
+pub use physics::{
+    Boundary, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Scheme,
+    StepControl, Stiffness, Time, Upwind, Weights,
+};
+
+/// One case: everything that a run needs to know.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Row of the reproduction list, for example `U10`.
+    pub id: Option<String>,
+    /// What the case shows, in one line.
+    pub title: String,
+    /// 1, 2 or 3.
+    pub dimension: usize,
+    /// Named numbers in the order of the file.
+    pub parameters: Vec<Parameter>,
+    /// The space that the particles live in.
+    pub domain: Domain,
+    /// At least one.
+    pub bodies: Vec<Body>,
+    /// The formulation with its settings.
+    pub scheme: Located<Scheme>,
+    /// Clock and integrator.
+    pub time: Time,
+    /// Body forces and tractions.
+    pub loads: Vec<Load>,
+    /// Prescribed velocities.
+    pub boundaries: Vec<Boundary>,
+    /// Quantities that are recorded against time.
+    pub probes: Vec<Probe>,
+    /// What is written and when.
+    pub output: Output,
+    /// Pictures of the particles.
+    pub pictures: Vec<Picture>,
+    /// Curves against time.
+    pub plots: Vec<Plot>,
+    /// Overrides of the coarse setting.
+    pub coarse: Vec<String>,
+    /// The same case with other settings.
+    pub variants: Vec<Variant>,
+    /// What `piola verify` evaluates.
+    pub checks: Vec<Check>,
+    /// The variant that this is, `None` for the base case.
+    pub variant: Option<String>,
+    /// Whether the coarse overrides are applied.
+    pub is_coarse: bool,
+    /// The case after all overrides, as TOML without comments, for the record of the run.
+    pub as_run: String,
+    /// The case file first, then one text for each override of the command line.
+    pub(super) sources: Arc<[SourceText]>,
+}
+
+/// A named number, usable in every expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+}
+
+/// The same case with some keys set otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// Name on the command line and in checks.
+    pub name: Located<String>,
+    /// What it shows, in one line.
+    pub title: Option<String>,
+    /// Overrides, each `path.to.key=value`.
+    pub set: Vec<String>,
+    /// Overrides that come on top in the coarse setting.
+    pub coarse: Vec<String>,
+}
+
+impl Case {
+    /// The case file and the overrides of the command line, as [`Place::source`] numbers them.
+    pub fn sources(&self) -> &[SourceText] {
+        &self.sources
+    }
+
+    /// A problem with the value at `place`: a sentence, a few words for the underlined text, and
+    /// what the user can do about it.
+    pub fn problem_at(
+        &self,
+        place: Place,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: Option<String>,
+    ) -> Problem {
+        Problem { message: message.into(), label: label.into(), place: Some(place), help }
+    }
+
+    /// Problems that were found after reading, as an error that shows them in the case file.
+    pub fn refuse(&self, problems: Vec<Problem>) -> Problems {
+        Problems::new(self.sources.clone(), problems)
+    }
+
+    /// The number of the body called `name`.
+    pub fn body_index(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| *body.name == name)
+    }
+
+    /// The value of the parameter called `name`.
+    pub fn parameter(&self, name: &str) -> Option<f64> {
+        self.parameters.iter().find(|parameter| parameter.name == name).map(|found| found.value)
+    }
+
+    /// All files that the case reads besides itself: point clouds and reference curves.
+    pub fn files(&self) -> Vec<Located<PathBuf>> {
+        let shapes = self.bodies.iter().flat_map(|body| body.shape.files());
+        let curves = self.checks.iter().filter_map(Check::file);
+        shapes.chain(curves).cloned().collect()
+    }
+
+    /// All expressions of initial fields, loads and boundaries, for checks over the whole case.
+    pub fn expressions(&self) -> impl Iterator<Item = &Expression> {
+        let initial = self.bodies.iter().flat_map(|body| {
+            body.initial.velocity.iter().chain(std::iter::once(&body.initial.pressure))
+        });
+        let loads = self.loads.iter().flat_map(|load| load.kind.components());
+        let boundaries = self.boundaries.iter().flat_map(|wall| wall.velocity.iter().flatten());
+        initial.chain(loads).chain(boundaries)
+    }
+}

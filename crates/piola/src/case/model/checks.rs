@@ -1,0 +1,100 @@
+//! Checks: quantities of a run and what is expected of them.
+
+use std::path::PathBuf;
+
+use crate::case::source::Located;
+
+/// One line of the table that `piola verify` prints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// The variant that is run, `None` for the base case.
+    pub variant: Option<Located<String>>,
+    /// What is looked at.
+    pub quantity: Located<Quantity>,
+    /// How its history becomes one number.
+    pub reduce: Reduction,
+    /// What the number should be.
+    pub expectation: Expectation,
+    /// Where the expected value comes from.
+    pub source: String,
+    /// At which setting it is evaluated.
+    pub when: When,
+}
+
+impl Check {
+    /// The file with the reference curve.
+    pub fn file(&self) -> Option<&Located<PathBuf>> {
+        self.reduce.reference()
+    }
+}
+
+/// A column of the tables, or a number of the run as a whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A column of a probe: `PROBE.FIELD` or `PROBE.FIELD.COMPONENT`.
+    Probe {
+        /// Name of the probe.
+        probe: String,
+        /// The rest of the column's name.
+        column: String,
+    },
+    /// A column of the energy table: `energy.NAME`.
+    Energy(String),
+    /// A column of the table of steps: `step.NAME`.
+    Step(String),
+    /// A number of the run as a whole, without history: `run.NAME`.
+    Run(String),
+}
+
+impl Quantity {
+    /// As the case file writes it, which is also the column's name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Probe { probe, column } => format!("{probe}.{column}"),
+            Self::Energy(name) => format!("energy.{name}"),
+            Self::Step(name) => format!("step.{name}"),
+            Self::Run(name) => format!("run.{name}"),
+        }
+    }
+}
+
+/// How the history of a quantity becomes one number; a reference curve is named by its file.
+pub type Reduction = crate::observe::reduce::Reduction<Located<PathBuf>>;
+
+/// What a number should be.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expectation {
+    /// A value and how far off the result may be.
+    Value {
+        /// The value.
+        expected: f64,
+        /// Largest difference, as a share of `expected` unless `absolute`.
+        tolerance: f64,
+        /// Whether the tolerance has the unit of the quantity.
+        absolute: bool,
+    },
+    /// Bounds, at least one of them.
+    Bounds {
+        /// Smallest value that passes.
+        at_least: Option<f64>,
+        /// Largest value that passes.
+        at_most: Option<f64>,
+    },
+    /// Less than the same quantity of another variant (`None`: of the base case).
+    LessThan(Option<Located<String>>),
+    /// More than the same quantity of another variant (`None`: of the base case).
+    MoreThan(Option<Located<String>>),
+    /// The text of `run.outcome`.
+    Outcome(String),
+}
+
+/// At which setting a check is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// At both.
+    Always,
+    /// At the coarse setting only.
+    Coarse,
+    /// At the setting of the paper only.
+    Full,
+}

@@ -1,0 +1,177 @@
+//! Domain, bodies and regions of space.
+
+use std::path::PathBuf;
+
+use super::Material;
+use crate::case::expression::Expression;
+use crate::case::source::Located;
+
+/// The space that the particles live in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Domain {
+    /// Per axis, the ends in m between which space repeats itself, or `None`.
+    pub periodic: Vec<Option<Located<[f64; 2]>>>,
+}
+
+/// A connected piece of one material.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Unique name.
+    pub name: Located<String>,
+    /// The space that it fills in the reference state.
+    pub shape: Located<Shape>,
+    /// Distance between particles in m, one number per axis.
+    pub spacing: Located<Vec<f64>>,
+    /// How the particles are laid out. Not used by [`Shape::Points`].
+    pub lattice: Lattice,
+    /// What it is made of.
+    pub material: Located<Material>,
+    /// Its state at the start.
+    pub initial: Initial,
+}
+
+/// A region that particles fill.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// The box between two corners, in m.
+    Box {
+        /// Lower corner.
+        min: Vec<f64>,
+        /// Upper corner, larger in every component.
+        max: Vec<f64>,
+    },
+    /// A ball, in 2D a disc.
+    Ball {
+        /// Centre in m.
+        center: Vec<f64>,
+        /// Radius in m.
+        radius: f64,
+    },
+    /// What lies between two radii: a ring in 2D, a hollow ball in 3D.
+    Annulus {
+        /// Centre in m.
+        center: Vec<f64>,
+        /// Inner radius in m.
+        inner: f64,
+        /// Outer radius in m, the larger one.
+        outer: f64,
+    },
+    /// A straight cylinder in 3D.
+    Cylinder {
+        /// Centre of one end, in m.
+        start: Vec<f64>,
+        /// Centre of the other end, in m.
+        end: Vec<f64>,
+        /// Radius in m.
+        radius: f64,
+    },
+    /// What lies in any of the shapes. Not empty.
+    Union(Vec<Located<Shape>>),
+    /// What lies in all of the shapes. Not empty.
+    Intersection(Vec<Located<Shape>>),
+    /// What lies in one shape and in none of the others.
+    Difference {
+        /// The shape to cut from.
+        from: Box<Located<Shape>>,
+        /// What is cut away.
+        remove: Vec<Located<Shape>>,
+    },
+    /// The points of a CSV file, with their volumes.
+    Points {
+        /// The file, relative paths resolved against the folder of the case file.
+        file: Located<PathBuf>,
+    },
+}
+
+impl Shape {
+    /// The files that the shape reads.
+    pub fn files(&self) -> Vec<&Located<PathBuf>> {
+        match self {
+            Self::Points { file } => vec![file],
+            Self::Union(shapes) | Self::Intersection(shapes) => {
+                shapes.iter().flat_map(|shape| shape.files()).collect()
+            }
+            Self::Difference { from, remove } => {
+                from.files().into_iter().chain(remove.iter().flat_map(|cut| cut.files())).collect()
+            }
+            Self::Box { .. } | Self::Ball { .. } | Self::Annulus { .. } | Self::Cylinder { .. } => {
+                Vec::new()
+            }
+        }
+    }
+}
+
+/// How particles are laid out in a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lattice {
+    /// Arrangement.
+    pub kind: LatticeKind,
+    /// Where the first particle lies.
+    pub on: LatticeOrigin,
+    /// Largest displacement of a particle at random, in spacings.
+    pub jitter: f64,
+    /// Seed of the random displacements.
+    pub seed: u64,
+}
+
+/// Arrangement of particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LatticeKind {
+    /// Square in 2D, cubic in 3D.
+    Square,
+    /// Hexagonal in 2D, hexagonal close packing in 3D.
+    Hexagonal,
+}
+
+/// Where the first particle of a lattice lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LatticeOrigin {
+    /// Particles on the faces of the body's bounding box.
+    Boundary,
+    /// Particles half a spacing inside of the faces.
+    Cells,
+}
+
+/// State of a body at the start, as expressions of the reference position.
+#[derive(Clone, Debug)]
+pub struct Initial {
+    /// Velocity in m/s.
+    pub velocity: Vec<Expression>,
+    /// Pressure in Pa, positive in compression.
+    pub pressure: Expression,
+}
+
+/// A region that selects particles by their reference position.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Region {
+    /// Every particle.
+    All,
+    /// Within half a local spacing of a plane (in 2D a line, in 1D a point).
+    Plane {
+        /// A point of the plane, in m.
+        point: Vec<f64>,
+        /// Unit normal, outward of the body.
+        normal: Vec<f64>,
+    },
+    /// In the box between two corners, in m.
+    Box {
+        /// Lower corner.
+        min: Vec<f64>,
+        /// Upper corner.
+        max: Vec<f64>,
+    },
+    /// Within a distance of a point.
+    Ball {
+        /// Centre in m.
+        center: Vec<f64>,
+        /// Radius in m.
+        radius: f64,
+    },
+    /// On the side of a plane that its normal points to.
+    HalfSpace {
+        /// A point of the plane, in m.
+        point: Vec<f64>,
+        /// Unit normal.
+        normal: Vec<f64>,
+    },
+}

@@ -1,0 +1,245 @@
+//! Materials, schemes, time, loads and boundaries.
+
+use super::Region;
+use crate::case::expression::Expression;
+use crate::case::source::Located;
+
+/// What a body is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// Pressure linear in the volume ratio, `p = -kappa (J - 1)`, Upwind (3.11) and (3.12) corrected.
+    Linear {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// How its bulk modulus is given.
+        stiffness: Stiffness,
+    },
+    /// `p = kappa (J^-gamma - 1)`, Upwind (6.30).
+    GammaLaw {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// Exponent, at least 1.
+        gamma: f64,
+        /// How its bulk modulus is given, never by Young's modulus.
+        stiffness: Stiffness,
+    },
+}
+
+impl Material {
+    /// Reference density in kg/m^3.
+    pub fn density(&self) -> f64 {
+        match *self {
+            Self::Linear { density, .. } | Self::GammaLaw { density, .. } => density,
+        }
+    }
+
+    /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions.
+    ///
+    /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
+    /// Upwind (6.31) solved for kappa, with gamma = 1 for the linear law.
+    pub fn bulk_modulus(&self, dimension: usize) -> f64 {
+        let (density, gamma, stiffness) = match *self {
+            Self::Linear { density, stiffness } => (density, 1.0, stiffness),
+            Self::GammaLaw { density, gamma, stiffness } => (density, gamma, stiffness),
+        };
+        match stiffness {
+            Stiffness::BulkModulus(modulus) => modulus,
+            Stiffness::WaveSpeed(speed) => density * speed * speed / gamma,
+            Stiffness::Young { modulus, poisson_ratio, plane } => {
+                plane.bulk_modulus(modulus, poisson_ratio, dimension)
+            }
+        }
+    }
+}
+
+/// The ways to give a bulk modulus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stiffness {
+    /// The modulus kappa itself, in Pa.
+    BulkModulus(f64),
+    /// The wave speed in the reference state, in m/s.
+    WaveSpeed(f64),
+    /// Young's modulus and Poisson's ratio.
+    Young {
+        /// Young's modulus in Pa.
+        modulus: f64,
+        /// Poisson's ratio.
+        poisson_ratio: f64,
+        /// What the directions that the case does not have do. Without meaning in 3D.
+        plane: PlaneState,
+    },
+}
+
+/// What happens in the directions that a case of one or two dimensions does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneState {
+    /// No stress there.
+    Stress,
+    /// No strain there.
+    Strain,
+}
+
+impl PlaneState {
+    /// Ratio of pressure to relative change of length, area or volume for an isotropic elastic body.
+    ///
+    /// | dimensions | no stress across | no strain across |
+    /// |---|---|---|
+    /// | 1 | `E` | `E (1 - nu) / ((1 + nu)(1 - 2 nu))` |
+    /// | 2 | `E / (2 (1 - nu))` | `E / (2 (1 + nu)(1 - 2 nu))` |
+    /// | 3 | `E / (3 (1 - 2 nu))` | the same |
+    ///
+    /// The entry of 2D without stress is the one that Upwind uses.
+    pub fn bulk_modulus(self, young_modulus: f64, poisson_ratio: f64, dimension: usize) -> f64 {
+        let (e, nu) = (young_modulus, poisson_ratio);
+        match (dimension, self) {
+            (1, Self::Stress) => e,
+            (1, Self::Strain) => e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            (2, Self::Stress) => e / (2.0 * (1.0 - nu)),
+            (2, Self::Strain) => e / (2.0 * (1.0 + nu) * (1.0 - 2.0 * nu)),
+            _ => e / (3.0 * (1.0 - 2.0 * nu)),
+        }
+    }
+}
+
+/// The formulation with its settings.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Scheme {
+    /// Total Lagrangian mixed formulation with Riemann upwinding.
+    Upwind(Upwind),
+}
+
+impl Scheme {
+    /// Its name in a case file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Upwind(_) => "upwind",
+        }
+    }
+}
+
+/// Settings of the scheme `upwind`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Upwind {
+    /// Name in the kernel registry.
+    pub kernel: Located<String>,
+    /// Smoothing length in particle spacings.
+    pub smoothing_length: Located<f64>,
+    /// Correction of the kernel.
+    pub correction: Located<Correction>,
+    /// What is summed under the kernel.
+    pub weights: Weights,
+    /// Share of the upwinding of velocity, 0 for none.
+    pub tau_velocity: f64,
+    /// Share of the upwinding of pressure, 0 for none.
+    pub tau_pressure: f64,
+    /// Whether the states at the mid-edge are reconstructed, Upwind (3.53).
+    pub reconstruction: bool,
+    /// The wave speed of the upwinding.
+    pub wave_speed: ReferenceWaveSpeed,
+}
+
+/// Correction of kernel and gradient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Correction {
+    /// The kernel as it is.
+    None,
+    /// Gradients exact for linear fields.
+    Gradient,
+    /// Kernel exact for constants and gradients exact for linear fields.
+    KernelAndGradient,
+}
+
+/// What is summed under a kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weights {
+    /// The volume of a cell of the lattice for every particle, also at a face.
+    Lattice,
+    /// The quadrature volume of the particle.
+    Volume,
+}
+
+/// The wave speed that the upwinding of the scheme `upwind` uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReferenceWaveSpeed {
+    /// That of the reference state.
+    Constant,
+    /// Divided by the stretch, Upwind (3.57).
+    Stretch,
+}
+
+/// Clock and integrator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Time {
+    /// Time at which the run ends, in s. It starts at 0.
+    pub end: Located<f64>,
+    /// Name of the integrator.
+    pub integrator: Located<String>,
+    /// How long a step is.
+    pub step: Located<StepControl>,
+    /// The run fails after so many steps.
+    pub max_steps: Option<u64>,
+    /// The run fails when the stable step falls below, in s.
+    pub min_step: Option<f64>,
+}
+
+/// How long a time step is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepControl {
+    /// This share of the stable step.
+    Cfl(f64),
+    /// This many seconds, checked against the stable step.
+    Fixed(f64),
+}
+
+/// A force on particles.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// Name for overrides and messages.
+    pub name: Option<Located<String>>,
+    /// Number of the body that it acts on, `None` for all.
+    pub body: Option<Located<usize>>,
+    /// What acts.
+    pub kind: LoadKind,
+}
+
+/// The kinds of load.
+#[derive(Clone, Debug)]
+pub enum LoadKind {
+    /// Acceleration in m/s^2, as expressions of the reference position and time.
+    BodyForce {
+        /// One expression a component.
+        acceleration: Vec<Expression>,
+    },
+    /// Force per reference area in Pa that keeps its direction, on a part of a body's surface.
+    Traction {
+        /// The particles that carry it.
+        region: Located<Region>,
+        /// One expression of the reference position and time a component.
+        traction: Vec<Expression>,
+    },
+}
+
+impl LoadKind {
+    /// The expressions of the load, one a component.
+    pub fn components(&self) -> &[Expression] {
+        match self {
+            Self::BodyForce { acceleration } => acceleration,
+            Self::Traction { traction, .. } => traction,
+        }
+    }
+}
+
+/// Prescribed velocity components on a selection of particles.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    /// Unique name.
+    pub name: Located<String>,
+    /// Number of the body, `None` for all.
+    pub body: Option<Located<usize>>,
+    /// The particles.
+    pub region: Located<Region>,
+    /// Per component, the velocity in m/s as an expression of the reference position and time, or
+    /// `None` where the particle is free.
+    pub velocity: Vec<Option<Expression>>,
+}
