@@ -20,8 +20,8 @@ pub(super) struct Context<'a> {
     pub sources: &'a [SourceText],
     /// 1, 2 or 3, or `None` where the file does not say it rightly.
     pub dimension: Option<usize>,
-    /// Named numbers. Not a number where the value was refused.
-    pub parameters: Vec<(String, f64)>,
+    /// Named numbers, without a value where it was refused.
+    pub parameters: Vec<(String, Option<f64>)>,
     /// What was found so far.
     pub problems: Vec<Problem>,
 }
@@ -38,16 +38,16 @@ impl Context<'_> {
         table: &Table,
         place: Place,
     ) -> Record {
-        self.unknown_keys(spec.title, &[spec.keys], None, table);
-        self.record(spec.title, "", &[spec.keys], table, place)
+        let slips = self.unknown_keys(spec.title, &[spec.keys], None, table);
+        self.record(spec.title, "", &[spec.keys], &slips, table, place)
     }
 
     /// Checks a table with a `kind`.
     fn tagged(&mut self, spec: &'static TaggedSpec, table: &Table, place: Place) -> Option<Record> {
         let kind = self.kind(spec, table, place)?;
         let keys = [spec.common, kind.keys];
-        self.unknown_keys(spec.title, &keys, Some((spec, kind)), table);
-        Some(self.record(spec.title, kind.name, &keys, table, place))
+        let slips = self.unknown_keys(spec.title, &keys, Some((spec, kind)), table);
+        Some(self.record(spec.title, kind.name, &keys, &slips, table, place))
     }
 
     fn kind(
@@ -58,7 +58,7 @@ impl Context<'_> {
     ) -> Option<&'static KindSpec> {
         let names = spec.kinds.iter().map(|kind| kind.name);
         let Some(node) = table.get("kind") else {
-            let message = format!("{} needs the key `kind`", spec.title);
+            let message = format!("{} needs the key `kind`", quoted(spec.title));
             self.report(
                 Problem::new(place, message, "`kind` is missing")
                     .help(format!("expected {}", one_of(names))),
@@ -72,7 +72,7 @@ impl Context<'_> {
             return None;
         };
         let Some(kind) = spec.kinds.iter().find(|kind| kind.name == name) else {
-            let message = format!("{} has no kind `{name}`", spec.title);
+            let message = format!("{} has no kind `{name}`", quoted(spec.title));
             self.report(
                 Problem::new(node.place, message, "unknown kind").help(suggestion(name, names)),
             );
@@ -82,7 +82,7 @@ impl Context<'_> {
             let known: Vec<String> = kind.dimensions.iter().map(|d| format!("{d}D")).collect();
             let message = format!(
                 "{} `{name}` exists in {} only, and the case has {dimension} dimension(s)",
-                spec.title,
+                quoted(spec.title),
                 known.join(" and ")
             );
             let label = format!("not in {dimension}D");
@@ -92,13 +92,15 @@ impl Context<'_> {
         Some(kind)
     }
 
+    /// Reports the keys that the table should not have, and returns what they seem to mean.
     fn unknown_keys(
         &mut self,
         title: &str,
         groups: &[&'static [KeySpec]],
         tagged: Option<(&TaggedSpec, &KindSpec)>,
         table: &Table,
-    ) {
+    ) -> Vec<&'static str> {
+        let mut slips = Vec::new();
         let known = || groups.iter().flat_map(|keys| keys.iter()).map(|key| key.name);
         for entry in &table.entries {
             let is_kind = tagged.is_some() && entry.key == "kind";
@@ -106,11 +108,13 @@ impl Context<'_> {
                 continue;
             }
             let of_kind = tagged.map_or(String::new(), |(_, kind)| format!(" `{}`", kind.name));
-            let message = format!("`{}` is no key of {title}{of_kind}", entry.key);
+            let message = format!("`{}` is no key of {}{of_kind}", entry.key, quoted(title));
             let mut problem = Problem::new(entry.key_place, message, "unknown key");
             if self.problems.len() < PATIENCE {
                 let elsewhere = tagged.and_then(|(spec, _)| owner(spec, &entry.key));
-                problem = problem.help(match (nearest(&entry.key, known()), elsewhere) {
+                let near = nearest(&entry.key, known());
+                slips.extend(near);
+                problem = problem.help(match (near, elsewhere) {
                     (Some(near), _) => format!("did you mean `{near}`?"),
                     (None, Some(kind)) => format!("it is a key of `{kind}`"),
                     (None, None) => format!("there are {}", one_of(known())),
@@ -118,13 +122,16 @@ impl Context<'_> {
             }
             self.report(problem);
         }
+        slips
     }
 
+    /// Checks the keys one by one. `slips` are keys that seem to be there, misspelt.
     fn record(
         &mut self,
         title: &str,
         kind: &'static str,
         groups: &[&'static [KeySpec]],
+        slips: &[&str],
         table: &Table,
         place: Place,
     ) -> Record {
@@ -134,10 +141,13 @@ impl Context<'_> {
             let value = match (entry, key.presence) {
                 (Some(entry), _) => {
                     record.written.push((key.name, entry.key_place));
+                    self.not_empty(key, &entry.node);
                     self.value(key.name, &key.kind, &entry.node)
                 }
                 (None, Presence::Required) => {
-                    self.missing(title, key, place);
+                    if !slips.contains(&key.name) {
+                        self.missing(title, key, place);
+                    }
                     None
                 }
                 (None, Presence::Default(text)) => self.default(key, text, place),
@@ -148,7 +158,17 @@ impl Context<'_> {
         record
     }
 
+    /// A list that has to be there has to have entries.
+    fn not_empty(&mut self, key: &KeySpec, node: &Node) {
+        let is_empty = matches!(&node.value, Value::List(list) if list.is_empty());
+        if is_empty && matches!((key.kind, key.presence), (Kind::List(_), Presence::Required)) {
+            let message = format!("`{}` must have at least one entry", key.name);
+            self.report(Problem::new(node.place, message, "empty"));
+        }
+    }
+
     fn missing(&mut self, title: &str, key: &KeySpec, place: Place) {
+        let title = quoted(title);
         let message = format!("{title} needs the key `{}`: {}", key.name, key.meaning);
         let label = format!("`{}` is missing", key.name);
         let mut problem = Problem::new(place, message, label);
@@ -199,6 +219,11 @@ impl Context<'_> {
             _ => problem,
         });
     }
+}
+
+/// The title of a table in a sentence: `shape` in quotes, `[time]` as it is.
+fn quoted(title: &str) -> String {
+    if title.contains([' ', '[']) { title.to_owned() } else { format!("`{title}`") }
 }
 
 /// The kind of a tagged table that has the key.

@@ -40,7 +40,6 @@ pub(super) fn case(
     reader.names.scheme = scheme.as_ref().map_or("upwind", |scheme| scheme.value.name());
     let domain = reader.domain(record.record("domain"));
     let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
-    reader.at_least_one(record, "body", "a body");
     let time = record.record("time").and_then(|time| reader.time(time));
     let end = time.as_ref().map(|time| *time.end);
     let loads: Vec<_> = record.records("load").map(|load| reader.load(load)).collect();
@@ -63,8 +62,8 @@ pub(super) fn case(
         title: record.text("title")?.value,
         dimension,
         parameters: parameters
-            .map(|(name, value)| Parameter { name: name.clone(), value: *value })
-            .collect(),
+            .map(|(name, value)| Some(Parameter { name: name.clone(), value: (*value)? }))
+            .collect::<Option<_>>()?,
         domain: domain?,
         bodies: bodies.into_iter().collect::<Option<_>>()?,
         scheme: scheme?,
@@ -145,14 +144,6 @@ impl Reader<'_, '_> {
             names.push(name);
         }
         names
-    }
-
-    fn at_least_one(&mut self, record: &Record, key: &str, what: &str) {
-        if record.has(key) && record.list(key).is_empty() {
-            let place = record.value_place(key);
-            let message = format!("there must be {what} at least");
-            self.report(Problem::new(place, message, "empty"));
-        }
     }
 
     /// The body that the key `body` names. Reports an unknown one.

@@ -13,11 +13,15 @@ mod document;
 pub mod expression;
 mod interpret;
 pub mod model;
+
+mod outline;
 mod outputs;
 mod overrides;
 mod plan;
 mod record;
+pub mod reference;
 mod render;
+pub mod schema;
 mod settings;
 mod simulation;
 pub mod source;

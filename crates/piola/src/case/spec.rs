@@ -193,6 +193,12 @@ impl Interval {
 
     /// In words: `above 0`, `at least 1`, `from 0 to 1`. `None` for any number.
     pub fn describe(&self) -> Option<String> {
+        if self.lower == self.upper {
+            return Some(self.lower.to_string());
+        }
+        if self.has_lower && self.has_upper {
+            return Some(format!("from {} to {}", self.lower, self.upper));
+        }
         let lower = match (self.lower.is_finite(), self.has_lower) {
             (false, _) => None,
             (true, true) => Some(format!("at least {}", self.lower)),

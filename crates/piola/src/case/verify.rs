@@ -16,7 +16,7 @@ mod format;
 mod tests;
 
 /// A run that is over, as checks see it.
-pub trait Finished {
+pub trait RunResults {
     /// How it ended.
     fn outcome(&self) -> &Outcome;
 
@@ -100,7 +100,7 @@ pub fn needed_variants(case: &Case) -> Vec<Option<String>> {
 ///
 /// Of a run that failed only `run.outcome` is looked at, unless the case says that it fails: then
 /// the rest of its checks are evaluated on what it recorded. Of an interrupted one nothing is.
-pub fn verify<Run: Finished>(
+pub fn verify<Run: RunResults>(
     base: &Case,
     run: &mut dyn FnMut(Option<&str>) -> Result<VariantRun<Run>, String>,
 ) -> Vec<CheckRow> {
@@ -127,7 +127,7 @@ type NamedRun<Run> = (Option<String>, Result<VariantRun<Run>, String>);
 
 struct Runs<Run>(Vec<NamedRun<Run>>);
 
-impl<Run: Finished> Runs<Run> {
+impl<Run: RunResults> Runs<Run> {
     fn find(&self, variant: Option<&str>) -> Result<&VariantRun<Run>, String> {
         match self.0.iter().find(|(name, _)| name.as_deref() == variant) {
             Some((_, Ok(run))) => Ok(run),
@@ -243,7 +243,7 @@ impl<Run: Finished> Runs<Run> {
 }
 
 /// What the run gives for `check`.
-fn measure<Run: Finished>(run: &VariantRun<Run>, check: &Check) -> Result<Got, String> {
+fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got, String> {
     let name = check.quantity.name();
     let outcome = run.run.outcome();
     let about_outcome = matches!(&check.quantity.value, Quantity::Run(name) if name == "outcome");
@@ -269,7 +269,7 @@ fn measure<Run: Finished>(run: &VariantRun<Run>, check: &Check) -> Result<Got, S
 }
 
 /// Whether the run is complete, or failed in the way that a check of the same variant expects.
-fn is_as_announced<Run: Finished>(run: &VariantRun<Run>) -> bool {
+fn is_as_announced<Run: RunResults>(run: &VariantRun<Run>) -> bool {
     let summary = match run.run.outcome() {
         Outcome::Completed => return true,
         Outcome::Interrupted => return false,

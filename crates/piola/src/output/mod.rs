@@ -6,12 +6,22 @@
 
 pub mod atomic;
 mod csv_reader;
+mod drawing;
 mod error;
+mod folder;
+mod head;
+mod picture;
+mod plot;
 pub mod pvd;
+mod record;
 mod table;
 pub mod vtp;
 
 pub use csv_reader::{Curve, TableError};
 pub use error::OutputError;
+pub use folder::ResultsFolder;
+pub use picture::{Bounds, Picture};
+pub use plot::{Plot, Series, Style};
+pub use record::{BodyRecord, RecordError, RunRecord, StageRecord, timestamp};
 pub use table::{Column, Table};
 pub use vtp::Compression;

@@ -6,6 +6,9 @@ use crate::case::overrides::start_of_content;
 use crate::case::source::Place;
 use crate::case::spec::{Interval, Kind, Length, Variables};
 
+/// Every expression looks through the parameters one by one.
+const MAX_PARAMETERS: usize = 1000;
+
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Context<'_> {
@@ -137,10 +140,7 @@ impl Context<'_> {
         match Expression::parse(text, &scope) {
             Ok(expression) => Some(expression),
             Err(error) => {
-                // With a parameter that was refused, an impossible value is no news.
-                let is_news = error.label != "not finite"
-                    || !self.parameters.iter().any(|(_, value)| value.is_nan());
-                if is_news {
+                if !error.is_consequence {
                     let problem = self.in_text(text, place, error);
                     self.report(problem);
                 }
@@ -270,7 +270,7 @@ impl Context<'_> {
                 bounded(&format!("a list of {}numbers", count(length)), interval)
             }
             Kind::NumberOrPerAxis(interval) => {
-                bounded("a number or a list with one for each axis", interval)
+                format!("{}, or a list with one for each axis", bounded("a number", interval))
             }
             Kind::Expressions(_) => {
                 format!("a list of {}expressions", count(&Length::Dimension))
@@ -288,6 +288,11 @@ impl Context<'_> {
 /// Evaluates the table of parameters, each an expression of those above it.
 pub(in crate::case) fn evaluate_parameters(context: &mut Context<'_>, root: &Table) {
     let Some(Value::Table(table)) = root.get("parameters").map(|node| &node.value) else { return };
+    if table.entries.len() > MAX_PARAMETERS {
+        let place = table.entries[MAX_PARAMETERS].key_place;
+        let message = format!("there are more than {MAX_PARAMETERS} parameters");
+        return context.report(Problem::new(place, message, "one too many"));
+    }
     for (index, entry) in table.entries.iter().enumerate() {
         let key = entry.key.as_str();
         if let Some(problem) = bad_name(key, entry.key_place) {
@@ -304,7 +309,7 @@ pub(in crate::case) fn evaluate_parameters(context: &mut Context<'_>, root: &Tab
             }
             _ => context.number(key, &Interval::ANY, &entry.node),
         };
-        context.parameters.push((key.to_owned(), value.unwrap_or(f64::NAN)));
+        context.parameters.push((key.to_owned(), value));
     }
 }
 

@@ -69,7 +69,6 @@ impl Reader<'_, '_> {
     }
 
     fn shapes(&mut self, record: &Record, key: &str) -> Option<Vec<Located<Shape>>> {
-        self.at_least_one(record, key, "one shape");
         let shapes: Vec<_> = record.records(key).map(|shape| self.shape(shape)).collect();
         shapes.into_iter().collect()
     }
@@ -160,7 +159,8 @@ impl Reader<'_, '_> {
     fn stiffness(&mut self, record: &Record) -> Option<Stiffness> {
         let is_linear = record.kind == "linear";
         let names = if is_linear { &STIFFNESSES[..] } else { &STIFFNESSES[..2] };
-        let given: Vec<&str> = names.iter().copied().filter(|name| record.has(name)).collect();
+        let mut given: Vec<&str> = names.iter().copied().filter(|name| record.has(name)).collect();
+        given.sort_by_key(|name| record.key_place(name));
         if let [_, second, ..] = given[..] {
             let place = record.key_place(second).unwrap_or(record.place);
             let message = format!("`{}` and `{second}` both give the stiffness", given[0]);

@@ -14,7 +14,6 @@ impl Reader<'_, '_> {
         let body = self.body_of(record);
         let kind = match record.kind {
             "particle" => {
-                self.at_least_one(record, "fields", "one field");
                 let fields: Vec<_> = record
                     .texts("fields")
                     .iter()
@@ -99,7 +98,6 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn plot(&mut self, record: &Record, probes: Option<&[Probe]>) -> Option<Plot> {
-        self.at_least_one(record, "curves", "one curve");
         let names = record.texts("curves");
         let curves: Vec<_> = names.iter().map(|name| self.quantity(name, probes)).collect();
         let curves = curves.into_iter().collect::<Option<_>>()?;
