@@ -110,6 +110,20 @@ impl Simulation {
     }
 }
 
+/// The names behind `run.`, numbers and texts of a run as a whole.
+pub(super) const RUN_QUANTITIES: [&str; 10] = [
+    "first_step",
+    "smallest_step",
+    "largest_step",
+    "steps",
+    "particles",
+    "time",
+    "smallest_ratio",
+    "ratio_mismatch",
+    "largest_speed",
+    "outcome",
+];
+
 impl Finished {
     /// What a check calls `name`: a column of a table, or `run.NAME`.
     pub fn quantity(&self, name: &str) -> Option<Series> {

@@ -13,5 +13,5 @@ pub use files::WrittenFiles;
 pub use frames::FrameWriter;
 pub use pictures::{PictureRequest, PictureWriter};
 pub use probe::{Probe, ProbeKind};
-pub use recorder::{Recorder, SharedTables};
+pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns};
 pub use tables::{Series, Tables};

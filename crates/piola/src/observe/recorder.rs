@@ -20,6 +20,21 @@ impl SharedTables {
     }
 }
 
+/// Names and units of the columns of the table of steps, after the time.
+pub const STEP_COLUMNS: [(&str, &str); 5] = [
+    ("count", "1"),
+    ("size", "s"),
+    ("smallest_ratio", "1"),
+    ("ratio_mismatch", "1"),
+    ("largest_speed", "m/s"),
+];
+
+/// Names of the columns of the energy table, after the time: the energies of a scheme and their
+/// sum, the work of its mechanisms so far, and what the sum has gained beyond that work.
+pub fn energy_columns(energies: &[&'static str], mechanisms: &[&'static str]) -> Vec<&'static str> {
+    [energies, &["total"], mechanisms, &["balance"]].concat()
+}
+
 /// Records probes, energies and steps at every due time, and keeps the CSV files up to date.
 pub struct Recorder {
     schedule: Schedule,
@@ -48,19 +63,11 @@ impl Recorder {
         let time = || Column::new("time", "s");
         let mut probe_columns = vec![time()];
         probe_columns.extend(probes.iter().flat_map(|probe| probe.columns(scheme.dimension())));
-        let energy_names = scheme.energy_names().iter().chain(&["total"]);
-        let energy_names = energy_names.chain(scheme.mechanisms()).chain(&["balance"]);
-        let energy = std::iter::once(time())
-            .chain(energy_names.map(|&name| Column::new(name, "J")))
-            .collect();
-        let steps = vec![
-            time(),
-            Column::new("count", "1"),
-            Column::new("size", "s"),
-            Column::new("smallest_ratio", "1"),
-            Column::new("ratio_mismatch", "1"),
-            Column::new("largest_speed", "m/s"),
-        ];
+        let energy_names = energy_columns(scheme.energy_names(), scheme.mechanisms());
+        let energy_columns = energy_names.into_iter().map(|name| Column::new(name, "J"));
+        let energy = std::iter::once(time()).chain(energy_columns).collect();
+        let step_columns = STEP_COLUMNS.iter().map(|&(name, unit)| Column::new(name, unit));
+        let steps = std::iter::once(time()).chain(step_columns).collect();
         let tables = Tables {
             probes: Table::new(probe_columns),
             energy: Table::new(energy),
