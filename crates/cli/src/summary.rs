@@ -1,10 +1,10 @@
 //! What `piola run` says at the end.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use piola::case::Finished;
-use piola::observe::{FrameWriter, Series};
+use piola::observe::Series;
 use piola::time::Outcome;
 
 use crate::text::{count, duration, large, significant};
@@ -98,8 +98,10 @@ fn energies(finished: &Finished, line: &mut impl FnMut(&str, &str)) {
 
 /// Where to look.
 fn files(finished: &Finished, folder: &Path, text: &mut String) {
-    let series = folder.join(FrameWriter::SERIES);
-    let _ = writeln!(text, "\nopen {} in ParaView", series.display());
+    let is_series = |path: &&PathBuf| path.extension().is_some_and(|end| end == "pvd");
+    if let Some(series) = finished.files.iter().find(is_series) {
+        let _ = writeln!(text, "\nopen {} in ParaView", series.display());
+    }
     let others: Vec<String> = finished
         .files
         .iter()
