@@ -38,7 +38,9 @@ impl Exit {
             Self::BadCase => (2, "bad command line, or bad case"),
             Self::FailedRun => (3, "the run failed; its last good state is on disk"),
             Self::Io => (4, "a file or folder cannot be read or written"),
-            Self::Interrupted => (130, "interrupted; the state after the last whole step is on disk"),
+            Self::Interrupted => {
+                (130, "interrupted; the state after the last whole step is on disk")
+            }
         }
     }
 

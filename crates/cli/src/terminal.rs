@@ -58,10 +58,13 @@ pub fn coloured(report: &str) -> String {
             _ => line.to_owned(),
         }
     };
-    report.split_inclusive('\n').map(|line| match line.strip_suffix('\n') {
-        Some(line) => format!("{}\n", paint(line)),
-        None => paint(line),
-    }).collect()
+    report
+        .split_inclusive('\n')
+        .map(|line| match line.strip_suffix('\n') {
+            Some(line) => format!("{}\n", paint(line)),
+            None => paint(line),
+        })
+        .collect()
 }
 
 /// `word` in green or red on stdout, if it is a terminal that wants colours.

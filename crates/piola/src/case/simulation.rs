@@ -76,17 +76,17 @@ impl Simulation {
     ) -> Result<Finished, RunError> {
         let Self { case, built, build_seconds } = self;
         let particles = built.scheme.particle_count();
-        let mut outputs = folder.map(|folder| Outputs::new(&case, folder)).transpose()?;
+        let outputs = folder.map(|folder| Outputs::new(&case, &built, folder)).transpose()?;
         let recorder = Recorder::new(
             built.scheme.as_ref(),
             built.probes,
             Schedule::Every(*case.output.table_every),
             Schedule::Every(*case.output.every),
-            outputs.as_ref().map(Outputs::tables),
+            outputs.as_ref().map(Outputs::for_tables),
         );
         let tables = recorder.tables();
         let mut observers: Vec<Box<dyn crate::time::Observer>> = vec![Box::new(recorder)];
-        if let Some(outputs) = &mut outputs {
+        if let Some(outputs) = &outputs {
             observers.extend(outputs.observers(&case, &built.bodies));
         }
         let length = built.scheme.initial_state().len();
@@ -104,11 +104,25 @@ impl Simulation {
         let mut finished =
             Finished { summary, tables, files: Vec::new(), warnings: built.warnings, particles };
         if let Some(outputs) = outputs {
-            finished.files = outputs.finish(&case, &finished, &built.bodies, build_seconds)?;
+            finished.files = outputs.finish(&case, &finished, build_seconds)?;
         }
         Ok(finished)
     }
 }
+
+/// The names behind `run.`, numbers and texts of a run as a whole.
+pub(super) const RUN_QUANTITIES: [&str; 10] = [
+    "first_step",
+    "smallest_step",
+    "largest_step",
+    "steps",
+    "particles",
+    "time",
+    "smallest_ratio",
+    "ratio_mismatch",
+    "largest_speed",
+    "outcome",
+];
 
 impl Finished {
     /// What a check calls `name`: a column of a table, or `run.NAME`.

@@ -6,6 +6,7 @@
 use std::fmt;
 
 use super::model::{Case, Check, Expectation, Quantity, Reduction, When};
+use super::simulation::Finished;
 use crate::observe::Series;
 use crate::output::Curve;
 use crate::time::Outcome;
@@ -24,6 +25,16 @@ pub trait RunResults {
     fn quantity(&self, name: &str) -> Option<Series>;
 }
 
+impl RunResults for Finished {
+    fn outcome(&self) -> &Outcome {
+        &self.summary.outcome
+    }
+
+    fn quantity(&self, name: &str) -> Option<Series> {
+        Finished::quantity(self, name)
+    }
+}
+
 /// A run with the case that was run: the variant has parameters and checks of its own.
 pub struct VariantRun<Run> {
     /// The case with the overrides of the variant and of the setting.
@@ -31,6 +42,9 @@ pub struct VariantRun<Run> {
     /// What came of it.
     pub run: Run,
 }
+
+/// Runs the variant of this name (`None`: the case itself), or says why it cannot.
+pub type RunVariant<'a, Run> = dyn FnMut(Option<&str>) -> Result<VariantRun<Run>, String> + 'a;
 
 /// One line of the table of `piola verify`.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,10 +114,7 @@ pub fn needed_variants(case: &Case) -> Vec<Option<String>> {
 ///
 /// Of a run that failed only `run.outcome` is looked at, unless the case says that it fails: then
 /// the rest of its checks are evaluated on what it recorded. Of an interrupted one nothing is.
-pub fn verify<Run: RunResults>(
-    base: &Case,
-    run: &mut dyn FnMut(Option<&str>) -> Result<VariantRun<Run>, String>,
-) -> Vec<CheckRow> {
+pub fn verify<Run: RunResults>(base: &Case, run: &mut RunVariant<'_, Run>) -> Vec<CheckRow> {
     let variants = needed_variants(base);
     let runs = variants.into_iter().map(|variant| {
         let result = run(variant.as_deref());

@@ -172,7 +172,7 @@ fn contradictions_are_refused() {
 
 #[test]
 fn sizes_stay_sensible() {
-    let long = "A very long title ".repeat(200);
+    let long = "A very long title ".repeat(2000);
     let slender = [0.0, 0.0, 1e6, 1e-6, 5e5, 0.0];
     let tall = [0.0, 0.0, 1e-6, 1e6, 0.0, 5e5];
     let far = [1e9, 1e9, 1e9 + 1.0, 1e9, 1e9, 1e9 + 1.0];
@@ -184,7 +184,7 @@ fn sizes_stay_sensible() {
         ("far", &far),
         ("blown up", &blown_up),
     ] {
-        let image = draw(&Picture { title, positions, ..PLAIN });
+        let image = draw(&Picture { title, label: title, positions, ..PLAIN });
         let (width, height) = (image.width, image.height);
         assert!((400..1600).contains(&width) && (300..1600).contains(&height), "{width}x{height}");
         assert_eq!((width % 2, height % 2), (0, 0));

@@ -90,6 +90,20 @@ fn a_series_comes_from_a_table() {
     assert_eq!(Series::of_table(&table, "b"), None);
 }
 
+/// Values that were met in tests to make the drawing library panic, and names longer than a
+/// picture.
+#[test]
+fn extremes_are_drawn() {
+    let huge = f64::from_bits(12036566759015290355);
+    let larger = f64::from_bits(6224961975343810402);
+    let points = [[-1e240, huge], [huge, larger], [f64::MAX, f64::MIN], [0.0, 0.0]];
+    let name = "pressure.".repeat(3000);
+    draw(vec![
+        series(&name, &name, Style::Line, &points),
+        series(&name, &name, Style::Marks, &points),
+    ]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
     #[test]

