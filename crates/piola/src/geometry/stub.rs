@@ -1,45 +1,6 @@
 #![allow(missing_docs)]
 use super::Particles;
 use crate::Vector;
-#[derive(Debug, thiserror::Error)]
-#[error("geometry")]
-pub struct GeometryError;
-pub enum Region<const D: usize> {
-    All,
-    Plane(Vector<D>, Vector<D>),
-    Box(Vector<D>, Vector<D>),
-    Ball(Vector<D>, f64),
-    HalfSpace(Vector<D>, Vector<D>),
-}
-impl<const D: usize> Region<D> {
-    pub fn plane(p: Vector<D>, n: Vector<D>) -> Result<Self, GeometryError> {
-        Ok(Self::Plane(p, n.normalize()))
-    }
-    pub fn cuboid(p: Vector<D>, n: Vector<D>) -> Result<Self, GeometryError> {
-        Ok(Self::Box(p, n))
-    }
-    pub fn ball(p: Vector<D>, r: f64) -> Result<Self, GeometryError> {
-        Ok(Self::Ball(p, r))
-    }
-    pub fn half_space(p: Vector<D>, n: Vector<D>) -> Result<Self, GeometryError> {
-        Ok(Self::HalfSpace(p, n.normalize()))
-    }
-    pub fn select(&self, p: &Particles<D>) -> Vec<u32> {
-        (0..p.len())
-            .filter(|&a| {
-                let x = p.position[a];
-                match self {
-                    Self::All => true,
-                    Self::Plane(q, n) => (x - q).dot(n).abs() < 0.5 * p.spacing[a].min(1e9),
-                    Self::HalfSpace(q, n) => (x - q).dot(n) >= 0.0,
-                    Self::Ball(q, r) => (x - q).norm() <= *r,
-                    Self::Box(l, u) => (0..D).all(|k| x[k] >= l[k] && x[k] <= u[k]),
-                }
-            })
-            .map(|a| a as u32)
-            .collect()
-    }
-}
 pub fn lattice<const D: usize>(min: Vector<D>, max: Vector<D>, dx: Vector<D>) -> Particles<D> {
     let n: [usize; D] =
         std::array::from_fn(|k| (((max[k] - min[k]) / dx[k]).round() as usize).max(1));
