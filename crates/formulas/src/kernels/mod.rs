@@ -8,6 +8,9 @@
 //! - [`KernelShape`] is `f` and its derivatives, on unit structs: what a loop is generic over.
 //! - [`Kernel`] is the registry, by which a case file names a kernel.
 //! - [`ScaledKernel`] is a shape with its dimension and `h`, whose factors are computed once.
+//!
+//! To add a kernel, implement [`KernelShape`] for a unit struct, list it in `registry.rs`, and add
+//! its row to the references in `tests/kernels.rs`; all other tests run over the registry.
 
 mod gaussian;
 mod mollifier;

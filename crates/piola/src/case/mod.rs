@@ -1,8 +1,169 @@
 //! Case files: what a user writes, checked and turned into types.
+//!
+//! The way of a case: text, tree of values ([`document`]), overrides ([`overrides`]), check
+//! against the descriptions of the tables ([`spec`], [`tables`], `decode`), agreement of values
+//! with each other (`interpret`), and the typed [`Case`]. Every step keeps the places of its
+//! values, so that each problem points at the text that causes it, and all are reported at once.
 
+pub mod build;
+pub mod catalogue;
+mod decode;
 pub mod diagnostics;
+mod document;
 pub mod expression;
+mod interpret;
 pub mod model;
+
+mod outline;
+mod outputs;
+mod overrides;
+mod plan;
+mod record;
+pub mod reference;
 mod render;
+pub mod schema;
+mod settings;
+mod simulation;
 pub mod source;
+pub mod spec;
 mod suggest;
+pub mod tables;
+pub mod template;
+pub mod verify;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub use build::build;
+use decode::{Context, evaluate_parameters};
+pub use diagnostics::{Problem, Problems};
+use document::{Node, Table, Value};
+pub use expression::Expression;
+use interpret::Setting;
+pub use model::Case;
+use overrides::Override;
+pub use plan::{Plan, PlannedLimit};
+pub use simulation::{Finished, RunError, Simulation};
+pub use source::{Located, Place, SourceText};
+
+/// What is said on the command line in front of an override.
+const FLAG: &str = "--set ";
+
+/// What to read of a case file, beside the file itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Overrides `path.to.key=value`, applied last, in this order.
+    pub overrides: Vec<String>,
+    /// The variant, `None` for the base case.
+    pub variant: Option<String>,
+    /// Whether the coarse setting is read. Its overrides come first, those of a variant next, the
+    /// variant's own coarse ones after them.
+    pub coarse: bool,
+}
+
+/// Reads the case file at `path`.
+///
+/// # Errors
+/// All problems at once; [`Problems::is_io`] where the file cannot be read. The settings that the
+/// options do not ask for (variants, coarse) are checked too.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Case, Problems> {
+    let source = document::read(path)?;
+    // A bare file name has the empty path as its folder, to which names can be joined.
+    assemble(source, path.parent().or(Some(Path::new(""))), options)
+}
+
+/// Reads a case from its text. Files that it mentions are not looked for.
+///
+/// # Errors
+/// As [`load`], with `name` in place of the path.
+pub fn parse(text: &str, name: &str, options: &LoadOptions) -> Result<Case, Problems> {
+    assemble(SourceText { name: name.to_owned(), text: text.to_owned() }, None, options)
+}
+
+fn assemble(
+    file: SourceText,
+    folder: Option<&Path>,
+    options: &LoadOptions,
+) -> Result<Case, Problems> {
+    let parsed = document::parse(&file.text);
+    let flags = options
+        .overrides
+        .iter()
+        .map(|text| SourceText { name: "command line".to_owned(), text: format!("{FLAG}{text}") });
+    let sources: Arc<[SourceText]> = std::iter::once(file).chain(flags).collect();
+    let tree = parsed.map_err(|problems| Problems::new(sources.clone(), problems))?;
+    let wanted = Setting { variant: options.variant.as_deref(), coarse: options.coarse, folder };
+    let case = read(&tree, &sources, options, wanted)
+        .and_then(|case| others(&tree, &sources, options, wanted, &case).map(|()| case));
+    case.map_err(|problems| Problems::new(sources, problems))
+}
+
+/// Reads one setting of the case.
+fn read(
+    tree: &Table,
+    sources: &[SourceText],
+    options: &LoadOptions,
+    setting: Setting<'_>,
+) -> Result<Case, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let mut tree = tree.clone();
+    settings::apply(&mut tree, sources, setting, &mut problems);
+    for (text, source) in options.overrides.iter().zip(1..) {
+        Override::of_command_line(text, source, FLAG.len()).apply(&mut tree, &mut problems);
+    }
+    let dimension = match tree.get("dimension") {
+        Some(Node { value: Value::Integer(dimension @ 1..=3), .. }) => {
+            usize::try_from(*dimension).ok()
+        }
+        _ => None,
+    };
+    let mut context = Context { sources, dimension, parameters: Vec::new(), problems };
+    evaluate_parameters(&mut context, &tree);
+    let record = context.table(&tables::CASE, &tree, Place::new(0, 0..0));
+    let case = interpret::case(&record, &mut context, setting);
+    match case {
+        Some(case) if context.problems.is_empty() => {
+            Ok(Case { as_run: document::write(&tree), ..case })
+        }
+        _ if context.problems.is_empty() => {
+            Err(vec![Problem::whole("the case could not be read, without a known reason")])
+        }
+        _ => Err(context.problems),
+    }
+}
+
+/// Checks the settings of the case that were not asked for.
+fn others(
+    tree: &Table,
+    sources: &[SourceText],
+    options: &LoadOptions,
+    wanted: Setting<'_>,
+    case: &Case,
+) -> Result<(), Vec<Problem>> {
+    let mut problems: Vec<Problem> = Vec::new();
+    let names = case.variants.iter().map(|variant| Some(variant.name.as_str()));
+    for variant in std::iter::once(None).chain(names) {
+        for coarse in [false, true] {
+            let setting = Setting { variant, coarse, ..wanted };
+            if variant == wanted.variant && coarse == wanted.coarse {
+                continue;
+            }
+            let found = read(tree, sources, options, setting).err().unwrap_or_default();
+            let is_new = |problem: &Problem, known: &[Problem]| {
+                !known.iter().any(|other| {
+                    other.place == problem.place && other.message.starts_with(&problem.message)
+                })
+            };
+            for mut problem in found {
+                if is_new(&problem, &problems) {
+                    problem.message.push_str(&settings::remark(setting));
+                    problems.push(problem);
+                }
+            }
+        }
+    }
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@ const LONGEST: usize = 64;
 /// The candidate nearest to `word`, if any is near enough to be meant.
 ///
 /// Near enough is a third of the longer word in single edits and swaps, and at least one edit;
-/// a candidate that differs in case or in `-` and `_` only is always near.
+/// a candidate that differs in case or in `-` and `_` only, or that one starts with, is near too.
 pub(super) fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -18,13 +18,22 @@ pub(super) fn nearest<'a>(
     candidates
         .into_iter()
         .map(|candidate| {
-            let distance = strsim::damerau_levenshtein(&folded, &fold(candidate));
+            let other = fold(candidate);
+            let distance = match is_part(&folded, &other) || is_part(&other, &folded) {
+                true => 1,
+                false => strsim::damerau_levenshtein(&folded, &other),
+            };
             let length = word.chars().count().max(candidate.chars().count());
             (distance, (length / 3).max(1), candidate)
         })
         .filter(|(distance, allowed, _)| distance <= allowed)
         .min_by_key(|(distance, ..)| *distance)
         .map(|(.., candidate)| candidate)
+}
+
+/// Whether `word` starts with `part`, which is long enough to mean something.
+fn is_part(part: &str, word: &str) -> bool {
+    part.len() >= 3 && word.starts_with(part)
 }
 
 fn fold(word: &str) -> String {
@@ -62,6 +71,7 @@ mod tests {
         assert_eq!(nearest("spacng", names), Some("spacing"));
         assert_eq!(nearest("Shape", names), Some("shape"));
         assert_eq!(nearest("intial", names), Some("initial"));
+        assert_eq!(nearest("init", names), Some("initial"));
         assert_eq!(nearest("velocity", names), None);
         assert_eq!(nearest(&"a".repeat(1000), names), None);
     }

@@ -82,7 +82,7 @@ impl<const D: usize> Domain<D> {
 
 /// The shortest of `distance + n * period` over whole `n`.
 #[inline]
-fn shortest(distance: f64, period: f64) -> f64 {
+pub(super) fn shortest(distance: f64, period: f64) -> f64 {
     let half = 0.5 * period;
     if distance.abs() <= half {
         return distance;

@@ -1,6 +1,6 @@
 //! Dual and symmetric lists.
 
-use super::{NeighborError, NeighborList};
+use super::{MOST_ENTRIES, NeighborError, NeighborList};
 
 impl NeighborList {
     /// The dual list: row `a` holds all particles whose rows hold `a`, that is, whose supports
@@ -31,17 +31,19 @@ impl NeighborList {
             return self;
         }
         let dual = self.dual();
-        Self::from_rows(self.len(), || (), |_, a, rows| merge(self.row(a), dual.row(a), rows))
+        let append = |_: &mut (), a, rows: &mut Vec<u32>| merge(self.row(a), dual.row(a), rows);
+        Self::from_rows(self.len(), usize::MAX, || (), append).expect("there is no limit")
     }
 
     /// For entry `k` of the list, neighbour `b` of `a`, the entry of `a` in the row of `b`.
     ///
     /// # Errors
-    /// [`NeighborError::NotSymmetric`] where there is none, [`NeighborError::TooManyEntries`] above
-    /// `u32::MAX` entries.
+    /// [`NeighborError::NotSymmetric`] where there is none, [`NeighborError::TooManyEntries`] where
+    /// entries cannot be numbered with 32 bits.
     pub fn reverse_entries(&self) -> Result<Vec<u32>, NeighborError> {
-        if self.pairs() > u32::MAX as usize {
-            return Err(NeighborError::TooManyEntries { count: self.pairs() });
+        if self.pairs() > MOST_ENTRIES {
+            let (particles, most) = (self.len(), MOST_ENTRIES);
+            return Err(NeighborError::TooManyEntries { particles, most });
         }
         let mut reverse = Vec::with_capacity(self.pairs());
         self.visit_reverse(|entry| reverse.push(entry as u32))?;

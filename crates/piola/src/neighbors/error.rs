@@ -41,11 +41,16 @@ pub enum NeighborError {
         /// Number of particles.
         count: usize,
     },
-    /// Entries of a list are numbered with 32 bits where they refer to each other.
-    #[error("{count} neighbour entries are too many, expected at most {}", u32::MAX)]
+    /// A list would not fit into memory, or its entries could not be numbered with 32 bits.
+    #[error(
+        "{particles} particles have more than {most} neighbours in all; make the smoothing length \
+         smaller in units of the spacing, or use fewer particles"
+    )]
     TooManyEntries {
-        /// Number of entries.
-        count: usize,
+        /// Number of particles.
+        particles: usize,
+        /// Most entries of a list.
+        most: usize,
     },
     /// The bounds of a periodic axis are not an interval.
     #[error(

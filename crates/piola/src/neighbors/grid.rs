@@ -130,16 +130,16 @@ impl<const D: usize> CellGrid<D> {
         let line = &self.axes[axis];
         for (first, last) in line.around(cell[axis]) {
             let extended = |cell: u64| key * u128::from(line.cells()) + u128::from(cell);
-            if axis > 0 {
-                for next in first..=last {
+            for next in first..=last {
+                if axis > 0 {
                     self.visit(cell, axis - 1, extended(next), ranges);
+                    continue;
                 }
-                continue;
-            }
-            let start = self.starts[self.slots.at_or_after(extended(first))] as usize;
-            let end = self.starts[self.slots.at_or_after(extended(last) + 1)] as usize;
-            if start < end {
-                ranges.push(start..end);
+                let start = self.starts[self.slots.at_or_after(extended(next))];
+                let end = self.starts[self.slots.at_or_after(extended(next) + 1)];
+                if start < end {
+                    ranges.push(start as usize..end as usize);
+                }
             }
         }
     }

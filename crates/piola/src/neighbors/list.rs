@@ -1,10 +1,14 @@
 //! Flat neighbour lists.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
 use crate::parallel::CHUNK;
+
+/// Entries that a chunk of rows makes before it compares the sum of all chunks with the limit.
+const REPORT: usize = 1 << 16;
 
 /// For each particle the numbers of its neighbours, all rows in one array.
 ///
@@ -83,31 +87,46 @@ impl NeighborList {
 
     /// A list of `count` rows, each appended to the vector by `append(state, row, vector)` in
     /// ascending order. Every chunk of rows starts with a state of its own from `start`.
+    ///
+    /// `None` where there are more than `limit` entries in all; memory stays within reach of it.
     pub(super) fn from_rows<S>(
         count: usize,
+        limit: usize,
         start: impl Fn() -> S + Sync,
         append: impl Fn(&mut S, usize, &mut Vec<u32>) + Sync,
-    ) -> Self {
+    ) -> Option<Self> {
+        let made = AtomicUsize::new(0);
         let mut offsets = vec![0; count + 1];
-        let chunks: Vec<Vec<u32>> = offsets[1..]
+        let chunks: Option<Vec<Vec<u32>>> = offsets[1..]
             .par_chunks_mut(CHUNK)
             .enumerate()
             .map(|(chunk, ends)| {
                 let mut state = start();
-                let mut rows = Vec::new();
+                let (mut rows, mut before) = (Vec::new(), 0);
+                let last = ends.len() - 1;
                 for (row, end) in ends.iter_mut().enumerate() {
                     append(&mut state, chunk * CHUNK + row, &mut rows);
                     *end = rows.len();
+                    // Whether the sum over all threads passes the limit does not depend on the
+                    // order in which they report.
+                    if row == last || rows.len() - before > REPORT {
+                        let more = rows.len() - before;
+                        before = rows.len();
+                        if made.fetch_add(more, Ordering::Relaxed) + more > limit {
+                            return None;
+                        }
+                    }
                 }
-                rows
+                Some(rows)
             })
             .collect();
+        let chunks = chunks?;
         let mut first = 0;
         for (ends, rows) in offsets[1..].chunks_mut(CHUNK).zip(&chunks) {
             ends.iter_mut().for_each(|end| *end += first);
             first += rows.len();
         }
-        Self::from_arrays(offsets, concatenate(chunks, first))
+        Some(Self::from_arrays(offsets, concatenate(chunks, first)))
     }
 }
 
@@ -123,4 +142,21 @@ fn concatenate(chunks: Vec<Vec<u32>>, length: usize) -> Vec<u32> {
     }
     parts.into_par_iter().for_each(|(part, chunk)| part.copy_from_slice(&chunk));
     joined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_is_on_the_entries_of_all_rows() {
+        let rows = |limit| {
+            NeighborList::from_rows(3000, limit, || (), |(), a, rows| rows.extend([1, 2, a as u32]))
+        };
+        assert_eq!(rows(9000).map(|list| list.pairs()), Some(9000));
+        assert_eq!(rows(8999), None);
+        // A few rows without end: stopped long before all are made.
+        let long = |(): &mut (), _, rows: &mut Vec<u32>| rows.extend(0..1 << 20);
+        assert_eq!(NeighborList::from_rows(1 << 30, 1 << 21, || (), long), None);
+    }
 }

@@ -1,10 +1,13 @@
 //! Neighbour search with cell grids.
 
+use std::borrow::Cow;
 use std::ops::Range;
+
+use rayon::prelude::*;
 
 use super::error::axis_name;
 use super::grid::CellGrid;
-use super::{Domain, LEAST_SUPPORT, MOST_SUPPORT, NeighborError, NeighborList};
+use super::{Domain, LEAST_SUPPORT, MOST_ENTRIES, MOST_SUPPORT, NeighborError, NeighborList};
 use crate::Vector;
 
 /// Most grids of one search, see [`search`].
@@ -20,35 +23,30 @@ const GRIDS: u32 = 8;
 /// of the group's largest support. Memory is linear in particles and entries wherever points are.
 ///
 /// # Errors
-/// Non-finite points, unusable supports, a different number of both, too many points, and a period
-/// shorter than twice the largest support or too long for its cells to be numbered.
+/// Non-finite points, unusable supports, a different number of both, too many points or neighbours,
+/// and a period shorter than twice the largest support or too long for its cells to be numbered.
 pub fn search<const D: usize>(
     points: &[Vector<D>],
     support: &[f64],
     domain: &Domain<D>,
 ) -> Result<NeighborList, NeighborError> {
     check(points, support, domain)?;
-    let wrapped: Vec<Vector<D>>;
-    let points = if domain.is_open() {
-        points
-    } else {
-        wrapped = points.iter().map(|point| domain.wrap(point)).collect();
-        &wrapped
-    };
+    let points = &*wrap(points, domain);
     let grids = Grids::new(points, support, domain)?;
     let row = |state: &mut Candidates<D>, a: usize, rows: &mut Vec<u32>| {
         let (group, grid) = grids.of(support[a]);
-        state.collect(group, grid, &points[a]);
-        let limit = support[a] * support[a];
+        let (center, limit) = (points[a], support[a] * support[a]);
+        state.collect(group, grid, &center);
         if domain.is_open() {
-            let square = |b: &Vector<D>| (b - points[a]).norm_squared();
-            state.append_near(grid, a, |b| square(b) < limit, rows);
+            state.append_near(grid, a, |b| (b - center).norm_squared() < limit, rows);
         } else {
-            let square = |b: &Vector<D>| domain.separation(&points[a], b).norm_squared();
+            let square = |b: &Vector<D>| domain.separation(&center, b).norm_squared();
             state.append_near(grid, a, |b| square(b) < limit, rows);
         }
     };
-    Ok(NeighborList::from_rows(points.len(), Candidates::default, row))
+    let (particles, most) = (points.len(), MOST_ENTRIES);
+    NeighborList::from_rows(particles, most, Candidates::default, row)
+        .ok_or(NeighborError::TooManyEntries { particles, most })
 }
 
 /// Refuses particles closer to each other than `tolerance` m.
@@ -61,14 +59,35 @@ pub fn refuse_coincident<const D: usize>(
     tolerance: f64,
     domain: &Domain<D>,
 ) -> Result<(), NeighborError> {
-    let close = search(points, &vec![tolerance; points.len()], domain)?;
-    let Some(first) = (0..close.len()).find(|&a| !close.row(a).is_empty()) else {
+    check(points, &vec![tolerance; points.len()], domain)?;
+    let wrapped = wrap(points, domain);
+    let grid = CellGrid::new(&wrapped, tolerance, domain)?;
+    let limit = tolerance * tolerance;
+    // Only the first pair is looked for: a list of a million points at one place would not fit.
+    let pair = (0..points.len()).into_par_iter().find_map_first(|a| {
+        let mut ranges = Vec::new();
+        grid.around(&grid.cell(&wrapped[a]), &mut ranges);
+        let near = |&b: &u32| {
+            let separation = domain.separation(&wrapped[a], &wrapped[b as usize]);
+            b as usize != a && separation.norm_squared() < limit
+        };
+        let candidates = ranges.into_iter().flat_map(|range| &grid.ids()[range]);
+        candidates.copied().filter(near).min().map(|b| (a, b as usize))
+    });
+    let Some((first, second)) = pair else {
         return Ok(());
     };
-    let second = close.row(first)[0] as usize;
     let distance = domain.separation(&points[first], &points[second]).norm();
     let position = points[first].iter().copied().collect();
     Err(NeighborError::Coincident { first, second, distance, tolerance, position })
+}
+
+/// The images of all points inside the bounds of the domain.
+fn wrap<'a, const D: usize>(points: &'a [Vector<D>], domain: &Domain<D>) -> Cow<'a, [Vector<D>]> {
+    if domain.is_open() {
+        return Cow::Borrowed(points);
+    }
+    Cow::Owned(points.iter().map(|point| domain.wrap(point)).collect())
 }
 
 fn check<const D: usize>(
@@ -80,17 +99,8 @@ fn check<const D: usize>(
         let (points, supports) = (points.len(), support.len());
         return Err(NeighborError::SupportCount { points, supports });
     }
-    if points.len() > u32::MAX as usize {
-        return Err(NeighborError::TooManyParticles { count: points.len() });
-    }
-    if let Some(particle) = points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
-        let position = points[particle].iter().copied().collect();
-        return Err(NeighborError::NonFinite { particle, position });
-    }
-    let usable = LEAST_SUPPORT..=MOST_SUPPORT;
-    if let Some(particle) = support.iter().position(|support| !usable.contains(support)) {
-        return Err(NeighborError::Support { particle, support: support[particle] });
-    }
+    check_points(points)?;
+    support.iter().enumerate().try_for_each(|(particle, &s)| check_support(particle, s))?;
     let Some(particle) = (0..support.len()).max_by(|&a, &b| support[a].total_cmp(&support[b]))
     else {
         return Ok(());
@@ -104,6 +114,27 @@ fn check<const D: usize>(
         }
     }
     Ok(())
+}
+
+/// Refuses points that cannot be put into cells.
+pub(super) fn check_points<const D: usize>(points: &[Vector<D>]) -> Result<(), NeighborError> {
+    if points.len() > u32::MAX as usize {
+        return Err(NeighborError::TooManyParticles { count: points.len() });
+    }
+    if let Some(particle) = points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
+        let position = points[particle].iter().copied().collect();
+        return Err(NeighborError::NonFinite { particle, position });
+    }
+    Ok(())
+}
+
+/// Refuses lengths that cannot be squared.
+pub(super) fn check_support(particle: usize, support: f64) -> Result<(), NeighborError> {
+    if (LEAST_SUPPORT..=MOST_SUPPORT).contains(&support) {
+        Ok(())
+    } else {
+        Err(NeighborError::Support { particle, support })
+    }
 }
 
 /// One grid for each group of similar supports.
@@ -175,6 +206,9 @@ impl<const D: usize> Candidates<D> {
         }
         self.cell = Some((group, cell));
         grid.around(&cell, &mut self.ranges);
+        // Particles ordered along space have consecutive numbers in a cell. Cells in the order of
+        // their first ones then give ascending rows, which cost next to nothing to sort.
+        self.ranges.sort_unstable_by_key(|range| grid.ids()[range.start]);
         let candidates = self.ranges.iter().map(Range::len).sum();
         if self.near.len() < candidates {
             self.near.resize(candidates, 0);
@@ -190,17 +224,21 @@ impl<const D: usize> Candidates<D> {
         near: impl Fn(&Vector<D>) -> bool,
         rows: &mut Vec<u32>,
     ) {
+        let found = self.near.as_mut_slice();
         let mut count = 0;
         for range in &self.ranges {
             let candidates = grid.points()[range.clone()].iter().zip(&grid.ids()[range.clone()]);
             // Every candidate is written and kept by the step of the counter, as a branch would
             // be guessed wrong every third time.
             for (point, &b) in candidates {
-                self.near[count] = b;
-                count += usize::from(near(point) & (b as usize != a));
+                found[count] = b;
+                count += usize::from(near(point));
             }
         }
-        self.near[..count].sort_unstable();
-        rows.extend_from_slice(&self.near[..count]);
+        let found = &mut found[..count];
+        found.sort_unstable();
+        let own = found.binary_search(&(a as u32)).expect("a particle is near to itself");
+        rows.extend_from_slice(&found[..own]);
+        rows.extend_from_slice(&found[own + 1..]);
     }
 }

@@ -142,7 +142,7 @@ fn a_far_away_point_does_not_merge_the_others_into_one_cell() {
     let mut points = random::<2>(100_000, 3);
     points[17] = Vector::<2>::new(-1e300, 1e300);
     let list = search(&points, &vec![0.005; points.len()], &Domain::open()).unwrap();
-    assert_eq!(list.row(17), []);
+    assert!(list.row(17).is_empty());
     assert!((6.0..9.0).contains(&list.statistics().mean), "{:?}", list.statistics());
 }
 
@@ -163,7 +163,8 @@ fn threads_do_not_change_a_bit() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let list = search(&points, &support, &domain).unwrap();
-            (list.dual(), list.clone().symmetric_closure(), list)
+            let order = spatial_order(&points, 0.02).unwrap();
+            (list.dual(), list.clone().symmetric_closure(), list, order)
         })
     };
     let one = run(1);
@@ -215,6 +216,9 @@ fn coincident_particles_are_named() {
         }
         other => panic!("{other}"),
     }
+    let heap = vec![Vector::<2>::new(0.5, 0.5); 200_000];
+    let error = refuse_coincident(&heap, 1e-9, &Domain::open()).unwrap_err();
+    assert!(error.to_string().starts_with("particles 0 and 1 are 0e0 m apart"), "{error}");
     let ends = [Vector::<1>::new(0.0), Vector::<1>::new(1.0)];
     assert_eq!(refuse_coincident(&ends, 1e-9, &Domain::open()), Ok(()));
     assert!(refuse_coincident(&ends, 1e-9, &Domain::new([Some([0.0, 1.0])]).unwrap()).is_err());

@@ -1,44 +1,43 @@
 //! The observer that writes particle files.
 
-use std::path::PathBuf;
-
-use crate::output::{OutputError, pvd, vtp};
+use super::files::WrittenFiles;
+use crate::output::{Compression, OutputError, ResultsFolder, pvd, vtp};
 use crate::schemes::snapshot;
 use crate::time::{Moment, ObserveError, Observer, Schedule};
 
 /// Writes a particle file at each due time and keeps the time series that names them.
 pub struct FrameWriter {
     schedule: Schedule,
-    folder: PathBuf,
+    folder: ResultsFolder,
     fields: Vec<&'static str>,
-    compression: vtp::Compression,
+    compression: Compression,
+    written: WrittenFiles,
     frames: Vec<pvd::Frame>,
     last_time: Option<f64>,
 }
 
 impl FrameWriter {
-    /// The folder of the particle files inside the results folder.
-    pub const PARTICLES: &'static str = "particles";
-    /// The file of the time series inside the results folder.
-    pub const SERIES: &'static str = "particles.pvd";
-
-    /// Writes `fields` into the results folder `folder` at `schedule`.
+    /// Writes `fields` into `folder` at `schedule`, and notes the files in `written`.
     pub fn new(
-        folder: PathBuf,
+        folder: ResultsFolder,
         schedule: Schedule,
         fields: Vec<&'static str>,
-        compression: vtp::Compression,
+        compression: Compression,
+        written: WrittenFiles,
     ) -> Self {
-        Self { schedule, folder, fields, compression, frames: Vec::new(), last_time: None }
+        Self { schedule, folder, fields, compression, written, frames: Vec::new(), last_time: None }
     }
 
     fn write(&mut self, moment: &mut Moment) -> Result<(), OutputError> {
         let shot = snapshot(moment.scheme, moment.time, moment.step, moment.state, &self.fields);
-        let file = format!("{}/frame_{:06}.vtp", Self::PARTICLES, self.frames.len());
-        vtp::write(&self.folder.join(&file), &shot, self.compression)?;
+        let path = self.folder.particles(self.frames.len() as u64)?;
+        vtp::write(&path, &shot, self.compression)?;
+        let file = self.folder.relative(&path);
         self.frames.push(pvd::Frame { time: moment.time, file });
         // The series is written after its newest file, so that it never names a missing one.
-        pvd::write(&self.folder.join(Self::SERIES), &self.frames)?;
+        pvd::write(&self.folder.series(), &self.frames)?;
+        self.written.push(self.folder.series());
+        self.written.push(path);
         Ok(())
     }
 }

@@ -1,12 +1,11 @@
 //! The observer that fills the tables.
 
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::files::WrittenFiles;
 use super::probe::Probe;
 use super::tables::Tables;
-use crate::output::OutputError;
-use crate::output::{Column, Table};
+use crate::output::{Column, OutputError, ResultsFolder, Table};
 use crate::schemes::Scheme;
 use crate::time::{Moment, ObserveError, Observer, Schedule};
 
@@ -21,13 +20,28 @@ impl SharedTables {
     }
 }
 
+/// Names and units of the columns of the table of steps, after the time.
+pub const STEP_COLUMNS: [(&str, &str); 5] = [
+    ("count", "1"),
+    ("size", "s"),
+    ("smallest_ratio", "1"),
+    ("ratio_mismatch", "1"),
+    ("largest_speed", "m/s"),
+];
+
+/// Names of the columns of the energy table, after the time: the energies of a scheme and their
+/// sum, the work of its mechanisms so far, and what the sum has gained beyond that work.
+pub fn energy_columns(energies: &[&'static str], mechanisms: &[&'static str]) -> Vec<&'static str> {
+    [energies, &["total"], mechanisms, &["balance"]].concat()
+}
+
 /// Records probes, energies and steps at every due time, and keeps the CSV files up to date.
 pub struct Recorder {
     schedule: Schedule,
     /// Times at which the CSV files are written anew.
     save: Schedule,
     next_save: Option<f64>,
-    files: Option<[PathBuf; 3]>,
+    folder: Option<(ResultsFolder, WrittenFiles)>,
     probes: Vec<Probe>,
     tables: SharedTables,
     start: Option<f64>,
@@ -37,31 +51,23 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder of `probes` and of what `scheme` reports, with rows at `schedule`. With `files`
-    /// for probes, energies and steps it writes them at `save` and at the end.
+    /// A recorder of `probes` and of what `scheme` reports, with rows at `schedule`. With a
+    /// folder it writes the CSV files at `save` and at the end, and notes them.
     pub fn new(
         scheme: &dyn Scheme,
         probes: Vec<Probe>,
         schedule: Schedule,
         save: Schedule,
-        files: Option<[PathBuf; 3]>,
+        folder: Option<(ResultsFolder, WrittenFiles)>,
     ) -> Self {
         let time = || Column::new("time", "s");
         let mut probe_columns = vec![time()];
         probe_columns.extend(probes.iter().flat_map(|probe| probe.columns(scheme.dimension())));
-        let energy_names = scheme.energy_names().iter().chain(&["total"]);
-        let energy_names = energy_names.chain(scheme.mechanisms()).chain(&["balance"]);
-        let energy = std::iter::once(time())
-            .chain(energy_names.map(|&name| Column::new(name, "J")))
-            .collect();
-        let steps = vec![
-            time(),
-            Column::new("count", "1"),
-            Column::new("size", "s"),
-            Column::new("smallest_ratio", "1"),
-            Column::new("ratio_mismatch", "1"),
-            Column::new("largest_speed", "m/s"),
-        ];
+        let energy_names = energy_columns(scheme.energy_names(), scheme.mechanisms());
+        let energy_columns = energy_names.into_iter().map(|name| Column::new(name, "J"));
+        let energy = std::iter::once(time()).chain(energy_columns).collect();
+        let step_columns = STEP_COLUMNS.iter().map(|&(name, unit)| Column::new(name, unit));
+        let steps = std::iter::once(time()).chain(step_columns).collect();
         let tables = Tables {
             probes: Table::new(probe_columns),
             energy: Table::new(energy),
@@ -71,7 +77,7 @@ impl Recorder {
             next_save: save.next_after(0.0),
             schedule,
             save,
-            files,
+            folder,
             probes,
             tables: SharedTables(Arc::new(Mutex::new(tables))),
             start: None,
@@ -125,13 +131,16 @@ impl Recorder {
     }
 
     fn write(&self) -> Result<(), OutputError> {
-        let Some([probes, energy, steps]) = &self.files else { return Ok(()) };
+        let Some((folder, written)) = &self.folder else { return Ok(()) };
         let tables = self.tables.lock();
+        let mut files = vec![(&tables.energy, folder.energy()), (&tables.steps, folder.steps())];
         if !self.probes.is_empty() {
-            tables.probes.write_csv(probes)?;
+            files.insert(0, (&tables.probes, folder.probes()));
         }
-        tables.energy.write_csv(energy)?;
-        tables.steps.write_csv(steps)?;
+        for (table, file) in files {
+            table.write_csv(&file)?;
+            written.push(file);
+        }
         Ok(())
     }
 }

@@ -62,6 +62,19 @@ pub enum OutputError {
         /// The folder that is needed.
         path: PathBuf,
     },
+    /// A folder for results holds files but no record of a run of piola's, so that they are
+    /// somebody else's.
+    #[error(
+        "will not write results into {}: it holds {entry} and no record of an earlier run. Choose \
+         another folder with --out, or empty this one",
+        path.display()
+    )]
+    ForeignFolder {
+        /// The folder.
+        path: PathBuf,
+        /// Name of something in it.
+        entry: String,
+    },
     /// Anything else that the operating system refuses.
     #[error("cannot write {}: {source}", path.display())]
     Io {
@@ -105,9 +118,7 @@ impl OutputError {
             ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
                 Self::NotWritable { path, source }
             }
-            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-                Self::DiskFull { path, source }
-            }
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::DiskFull { path, source },
             ErrorKind::IsADirectory => Self::NotAFile { path, kind: "a folder" },
             _ => Self::Io { path, source },
         }

@@ -6,7 +6,7 @@ mod integrator;
 mod observer;
 mod schedule;
 mod step;
-mod tvd_rk2;
+pub mod tvd_rk2;
 
 pub use executor::{Executor, Outcome, Progress, Summary, Timing};
 pub use failure::Failure;

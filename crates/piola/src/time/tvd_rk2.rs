@@ -19,6 +19,26 @@ impl TvdRk2 {
     }
 }
 
+/// The first stage, `new = old + step rate`.
+pub fn predict(step: f64, old: &[f64], rate: &[f64], new: &mut [f64]) {
+    parallel::for_each_chunk(new, |first, new| {
+        let parts = old[first..].iter().zip(&rate[first..]);
+        for (new, (old, rate)) in new.iter_mut().zip(parts) {
+            *new = old + step * rate;
+        }
+    });
+}
+
+/// The second stage, `new = (old + new + step rate) / 2`.
+pub fn correct(step: f64, old: &[f64], rate: &[f64], new: &mut [f64]) {
+    parallel::for_each_chunk(new, |first, new| {
+        let parts = old[first..].iter().zip(&rate[first..]);
+        for (new, (old, rate)) in new.iter_mut().zip(parts) {
+            *new = 0.5 * (old + *new + step * rate);
+        }
+    });
+}
+
 impl Integrator for TvdRk2 {
     fn name(&self) -> &'static str {
         "tvd_rk2"
@@ -37,22 +57,10 @@ impl Integrator for TvdRk2 {
         new: &mut [f64],
     ) {
         scheme.rates(time, old, &mut self.rate);
-        let rate = &self.rate;
-        parallel::for_each_chunk(new, |first, new| {
-            let parts = old[first..].iter().zip(&rate[first..]);
-            for (new, (old, rate)) in new.iter_mut().zip(parts) {
-                *new = old + step * rate;
-            }
-        });
+        predict(step, old, &self.rate, new);
         scheme.constrain(time + step, new);
         scheme.rates(time + step, new, &mut self.rate);
-        let rate = &self.rate;
-        parallel::for_each_chunk(new, |first, new| {
-            let parts = old[first..].iter().zip(&rate[first..]);
-            for (new, (old, rate)) in new.iter_mut().zip(parts) {
-                *new = 0.5 * (old + *new + step * rate);
-            }
-        });
+        correct(step, old, &self.rate, new);
         scheme.constrain(time + step, new);
     }
 }

@@ -31,8 +31,8 @@ pub struct Scope<'a> {
     pub axes: usize,
     /// Whether t is known.
     pub time: bool,
-    /// Named numbers.
-    pub parameters: &'a [(String, f64)],
+    /// Named numbers, without a value where it was refused.
+    pub parameters: &'a [(String, Option<f64>)],
 }
 
 impl Scope<'_> {
@@ -51,7 +51,8 @@ impl Scope<'_> {
         known.then_some(variable)
     }
 
-    fn parameter(&self, name: &str) -> Option<f64> {
+    /// The value of a parameter; the inner `None` where it was refused.
+    fn parameter(&self, name: &str) -> Option<Option<f64>> {
         self.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
     }
 
@@ -91,11 +92,19 @@ pub struct ExpressionError {
     pub span: Range<usize>,
     /// What the user can do.
     pub help: Option<String>,
+    /// Whether the only fault is a parameter that was refused before, which is no news.
+    pub is_consequence: bool,
 }
 
 impl ExpressionError {
     fn new(span: Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
-        Self { message: message.into(), label: label.into(), span, help: None }
+        Self {
+            message: message.into(),
+            label: label.into(),
+            span,
+            help: None,
+            is_consequence: false,
+        }
     }
 
     fn help(mut self, help: impl Into<String>) -> Self {

@@ -222,8 +222,14 @@ impl<'a> Parser<'a> {
             let known = ["x", "y", "z", "t"].into_iter().find(|variable| *variable == name);
             return known.map(Tree::Variable).ok_or_else(|| self.no_name(name, span));
         }
-        if let Some(value) = self.scope.parameter(name) {
-            return Ok(Tree::Number(value));
+        match self.scope.parameter(name) {
+            None => {}
+            Some(Some(value)) => return Ok(Tree::Number(value)),
+            Some(None) => {
+                let message = format!("the parameter `{name}` has no value");
+                let error = ExpressionError::new(span.clone(), message, "no value");
+                return Err(ExpressionError { is_consequence: true, ..error });
+            }
         }
         let constant = constants().iter().find(|(known, _)| *known == name);
         constant.map(|(_, value)| Tree::Number(*value)).ok_or_else(|| self.no_name(name, span))
@@ -239,7 +245,7 @@ impl<'a> Parser<'a> {
                     .help("only parameters, numbers and functions are known here")
             }
             "y" | "z" => error(format!("there is no `{name}` in {axes} dimension(s)")),
-            "t" => error("`t` cannot be used here: the value is taken at one time".to_owned()),
+            "t" => error("`t` cannot be used here: the value does not change with time".to_owned()),
             "e" => error("`e` is not known".to_owned()).help("write `exp(1)`"),
             _ if functions().iter().any(|function| function.name == name) => {
                 let message = format!("the function `{name}` needs its argument in brackets");

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 const PARAMETERS: &[(&str, f64)] = &[("speed", -2.5), ("length", 0.5)];
 
 fn with<T>(use_scope: impl FnOnce(&Scope<'_>) -> T) -> T {
-    let parameters: Vec<_> = PARAMETERS.iter().map(|(name, v)| ((*name).to_owned(), *v)).collect();
+    let parameters: Vec<_> =
+        PARAMETERS.iter().map(|(name, v)| ((*name).to_owned(), Some(*v))).collect();
     use_scope(&Scope { axes: 3, time: true, parameters: &parameters })
 }
 
@@ -128,7 +129,7 @@ fn knows_only_the_variables_of_its_scope() {
     assert!(Expression::parse("x + y", &flat).is_ok());
     let error = Expression::parse("z", &flat).unwrap_err();
     assert_eq!(error.message, "there is no `z` in 2 dimension(s)");
-    assert!(Expression::parse("t", &flat).unwrap_err().message.contains("at one time"));
+    assert!(Expression::parse("t", &flat).unwrap_err().message.contains("with time"));
     let none = Scope { axes: 0, ..flat };
     assert!(Expression::parse("x", &none).unwrap_err().message.contains("one number"));
 }

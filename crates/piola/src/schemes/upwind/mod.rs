@@ -22,6 +22,7 @@ mod initial;
 mod inspect;
 mod local;
 mod pairs;
+mod passes;
 mod reconstruction;
 mod scheme;
 mod settings;
@@ -35,6 +36,7 @@ use crate::operators::{GradientOperator, LeastSquares, Support};
 
 pub use build::{UpwindError, UpwindInput};
 pub use initial::Initial;
+pub use passes::PASSES;
 pub use scheme::FIELDS;
 pub use settings::{BodyForce, Material, Settings, WaveSpeed};
 
@@ -91,8 +93,11 @@ struct Loaded<const D: usize> {
     value: [std::sync::Arc<dyn SpaceTime>; D],
 }
 
-/// Names of the ledger, in the order of [`Powers`].
-const MECHANISMS: [&str; 5] =
+/// The energies of the formulation.
+pub const ENERGIES: [&str; 2] = ["kinetic", "strain"];
+
+/// The mechanisms of its ledger, in the order of [`Powers`].
+pub const MECHANISMS: [&str; 5] =
     ["body_force", "traction", "boundary_motion", "upwind_velocity", "upwind_pressure"];
 
 /// Power of each mechanism in W.

@@ -4,7 +4,7 @@ use piola_formulas::tensor;
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::local::deformation;
-use super::{MECHANISMS, Row, Upwind};
+use super::{ENERGIES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::parallel;
 use crate::schemes::{Health, Particle, Scheme, StepLimit};
@@ -61,7 +61,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn energy_names(&self) -> &'static [&'static str] {
-        &["kinetic", "strain"]
+        &ENERGIES
     }
 
     fn initial_state(&self) -> Vec<f64> {
@@ -79,13 +79,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        if !self.steady_body_force {
-            self.update_body_acceleration(time);
-        }
-        self.local_pass(state);
-        self.slope_pass();
-        self.pair_pass(rate);
-        self.boundary_pass(time, rate);
+        self.rates_by_pass(time, state, rate, |_| {});
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {

@@ -1,0 +1,58 @@
+//! The names that a case file can use: kernels, integrators, fields and columns of tables.
+//!
+//! They come from the registries themselves, so that a new entry there is known here.
+
+use piola_formulas::kernels::Kernel;
+
+use super::simulation;
+use super::spec::Choice;
+use crate::fields::FieldDescription;
+use crate::observe;
+use crate::schemes::upwind;
+use crate::time::IntegratorKind;
+
+/// The kernels.
+pub fn kernels() -> Vec<Choice> {
+    let meaning = |kernel: &Kernel| match kernel.support_over_h() {
+        1.0 => "support radius h",
+        2.0 => "support radius 2 h",
+        3.0 => "support radius 3 h",
+        _ => "support radius of its own",
+    };
+    Kernel::ALL
+        .iter()
+        .map(|kernel| Choice { name: kernel.name(), meaning: meaning(kernel) })
+        .collect()
+}
+
+/// The time integrators.
+pub fn integrators() -> Vec<Choice> {
+    let meaning = |kind: IntegratorKind| match kind {
+        IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
+    };
+    IntegratorKind::ALL.map(|kind| Choice { name: kind.name(), meaning: meaning(kind) }).to_vec()
+}
+
+/// The fields of the scheme called `scheme`.
+pub fn fields(scheme: &str) -> &'static [FieldDescription] {
+    match scheme {
+        "upwind" => &upwind::FIELDS,
+        _ => &[],
+    }
+}
+
+/// Columns of the energy table, after `energy.`.
+pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
+    match scheme {
+        "upwind" => observe::energy_columns(&upwind::ENERGIES, &upwind::MECHANISMS),
+        _ => Vec::new(),
+    }
+}
+
+/// Columns of the table of steps, after `step.`.
+pub fn step_columns() -> Vec<&'static str> {
+    observe::STEP_COLUMNS.iter().map(|(name, _)| *name).collect()
+}
+
+/// Numbers of the run as a whole, after `run.`.
+pub const RUN_COLUMNS: &[&str] = &simulation::RUN_QUANTITIES;

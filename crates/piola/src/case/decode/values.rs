@@ -1,0 +1,352 @@
+//! Numbers, names, expressions and lists of them.
+
+use super::{Context, Datum, Located, Node, Problem, Table, Value, one_of, suggestion};
+use crate::case::expression::{Expression, ExpressionError, Scope, constants, functions};
+use crate::case::overrides::start_of_content;
+use crate::case::source::Place;
+use crate::case::spec::{Interval, Kind, Length, Variables};
+
+/// Every expression looks through the parameters one by one.
+const MAX_PARAMETERS: usize = 1000;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Context<'_> {
+    /// Checks a value that is no table.
+    pub(super) fn simple(&mut self, name: &str, kind: &Kind, node: &Node) -> Option<Datum> {
+        match (kind, &node.value) {
+            (Kind::Text | Kind::File, Value::Text(text)) => self.text(name, text, node.place),
+            (Kind::Boolean, Value::Boolean(value)) => Some(Datum::Boolean(*value)),
+            (Kind::Integer(interval), Value::Integer(_) | Value::Float(_) | Value::Text(_)) => {
+                self.integer(name, interval, node)
+            }
+            (Kind::Number(interval), Value::Integer(_) | Value::Float(_) | Value::Text(_)) => {
+                self.number(name, interval, node).map(Datum::Number)
+            }
+            (Kind::NumberOrText, Value::Text(text)) => self.text(name, text, node.place),
+            (Kind::NumberOrText, Value::Integer(_) | Value::Float(_)) => {
+                self.number(name, &Interval::ANY, node).map(Datum::Number)
+            }
+            (Kind::Expression(variables), Value::Integer(_) | Value::Float(_) | Value::Text(_)) => {
+                self.expression(name, *variables, node).map(Datum::Expression)
+            }
+            (Kind::Name(choices), Value::Text(text)) => {
+                let list = choices.list();
+                if list.iter().any(|choice| choice.name == text) {
+                    return Some(Datum::Text(text.clone()));
+                }
+                let message = format!("`{name}` cannot be `{text}`");
+                let help = suggestion(text, list.iter().map(|choice| choice.name));
+                self.report(Problem::new(node.place, message, "unknown name").help(help));
+                None
+            }
+            (Kind::Numbers(length, interval), Value::List(list)) => {
+                self.numbers(name, *length, interval, list, node.place)
+            }
+            (Kind::NumberOrPerAxis(interval), Value::List(list)) => {
+                self.numbers(name, Length::Dimension, interval, list, node.place)
+            }
+            (
+                Kind::NumberOrPerAxis(interval),
+                Value::Integer(_) | Value::Float(_) | Value::Text(_),
+            ) => {
+                let number = Datum::Number(self.number(name, interval, node)?);
+                let axes = self.dimension.unwrap_or(1);
+                Some(Datum::List(vec![Located::new(number, node.place); axes]))
+            }
+            (Kind::Expressions(variables), Value::List(list)) => {
+                self.length(name, Length::Dimension, list.len(), node.place)?;
+                let each = list.iter().map(|item| {
+                    let expression = self.expression(name, *variables, item)?;
+                    Some(Located::new(Datum::Expression(expression), item.place))
+                });
+                // All are read before one that fails ends it, so that every problem is found.
+                let each: Vec<_> = each.collect();
+                each.into_iter().collect::<Option<_>>().map(Datum::List)
+            }
+            (Kind::PerAxis(inner), Value::Table(table)) => {
+                self.axes(name, inner, table, node.place)
+            }
+            _ => {
+                self.wrong_type(name, kind, node);
+                None
+            }
+        }
+    }
+
+    fn text(&mut self, name: &str, text: &str, place: Place) -> Option<Datum> {
+        if text.trim().is_empty() {
+            let message = format!("`{name}` must not be empty");
+            self.report(Problem::new(place, message, "empty"));
+            return None;
+        }
+        Some(Datum::Text(text.to_owned()))
+    }
+
+    fn integer(&mut self, name: &str, interval: &Interval, node: &Node) -> Option<Datum> {
+        if let Value::Integer(number) = node.value {
+            self.within(name, interval, number as f64, node.place)?;
+            return Some(Datum::Integer(number));
+        }
+        let number = self.number(name, interval, node)?;
+        // Whole numbers up to here are exact as floating-point numbers.
+        if number.fract() == 0.0 && number.abs() <= 9e15 {
+            return Some(Datum::Integer(number as i64));
+        }
+        let message = format!("`{name}` must be a whole number, got {number}");
+        self.report(Problem::new(node.place, message, "not a whole number"));
+        None
+    }
+
+    fn number(&mut self, name: &str, interval: &Interval, node: &Node) -> Option<f64> {
+        let number = match &node.value {
+            Value::Float(number) => *number,
+            Value::Integer(number) => *number as f64,
+            Value::Text(text) => self.constant(text, node.place)?,
+            _ => {
+                self.wrong_type(name, &Kind::Number(*interval), node);
+                return None;
+            }
+        };
+        self.within(name, interval, number, node.place)?;
+        Some(number)
+    }
+
+    /// The value of an expression of the parameters.
+    pub(in crate::case) fn constant(&mut self, text: &str, place: Place) -> Option<f64> {
+        let expression = self.parse(text, place, 0, false)?;
+        expression.as_constant()
+    }
+
+    fn expression(&mut self, name: &str, variables: Variables, node: &Node) -> Option<Expression> {
+        match &node.value {
+            Value::Text(text) => {
+                let time = variables == Variables::PositionAndTime;
+                self.parse(text, node.place, self.dimension.unwrap_or(3), time)
+            }
+            Value::Integer(_) | Value::Float(_) => {
+                self.number(name, &Interval::ANY, node).map(Expression::constant)
+            }
+            Value::Broken => None,
+            _ => {
+                self.wrong_type(name, &Kind::Expression(variables), node);
+                None
+            }
+        }
+    }
+
+    fn parse(&mut self, text: &str, place: Place, axes: usize, time: bool) -> Option<Expression> {
+        let scope = Scope { axes, time, parameters: &self.parameters };
+        match Expression::parse(text, &scope) {
+            Ok(expression) => Some(expression),
+            Err(error) => {
+                if !error.is_consequence {
+                    let problem = self.in_text(text, place, error);
+                    self.report(problem);
+                }
+                None
+            }
+        }
+    }
+
+    /// A problem inside of the text of a value.
+    fn in_text(&self, text: &str, place: Place, error: ExpressionError) -> Problem {
+        let start = start_of_content(self.sources, place, text);
+        let inner = start.map(|start| {
+            Place::new(place.source, start + error.span.start..start + error.span.end)
+        });
+        let problem = Problem::new(inner.unwrap_or(place), error.message, error.label);
+        match error.help {
+            Some(help) => problem.help(help),
+            None => problem,
+        }
+    }
+
+    fn within(&mut self, name: &str, interval: &Interval, value: f64, place: Place) -> Option<()> {
+        if interval.contains(value) {
+            return Some(());
+        }
+        let bounds = interval.describe().unwrap_or_else(|| "a finite number".to_owned());
+        let message = format!("`{name}` must be {bounds}, got {value}");
+        self.report(Problem::new(place, message, format!("must be {bounds}")));
+        None
+    }
+
+    fn length(&mut self, name: &str, length: Length, got: usize, place: Place) -> Option<()> {
+        let (needed, reason) = match length {
+            Length::Dimension => match self.dimension {
+                None => return Some(()),
+                Some(dimension) => (dimension, format!(" in {dimension}D")),
+            },
+            Length::Ends => (2, ": the ends of an interval".to_owned()),
+            Length::Any if got == 0 => {
+                let message = format!("`{name}` must have at least one entry");
+                self.report(Problem::new(place, message, "empty"));
+                return None;
+            }
+            Length::Any => return Some(()),
+        };
+        if got == needed {
+            return Some(());
+        }
+        let entries = if needed == 1 { "entry" } else { "entries" };
+        let message = format!("`{name}` must have {needed} {entries}{reason}, got {got}");
+        self.report(Problem::new(place, message, format!("expected {needed} {entries}")));
+        None
+    }
+
+    fn numbers(
+        &mut self,
+        name: &str,
+        length: Length,
+        interval: &Interval,
+        list: &[Node],
+        place: Place,
+    ) -> Option<Datum> {
+        self.length(name, length, list.len(), place)?;
+        let each: Vec<_> = list
+            .iter()
+            .map(|item| {
+                let number = self.number(name, interval, item)?;
+                Some(Located::new(Datum::Number(number), item.place))
+            })
+            .collect();
+        let numbers: Vec<_> = each.into_iter().collect::<Option<_>>()?;
+        if length == Length::Ends
+            && let [first, second] = &numbers[..]
+            && let (Datum::Number(lower), Datum::Number(upper)) = (&first.value, &second.value)
+            && lower >= upper
+        {
+            let message = format!("`{name}` must go from a smaller to a larger number");
+            let label = format!("{lower} is not below {upper}");
+            self.report(Problem::new(place, message, label));
+            return None;
+        }
+        Some(Datum::List(numbers))
+    }
+
+    fn axes(&mut self, name: &str, inner: &Kind, table: &Table, place: Place) -> Option<Datum> {
+        let known = &AXES[..self.dimension.unwrap_or(3)];
+        for entry in &table.entries {
+            if !known.contains(&entry.key.as_str()) {
+                let message = format!("`{name}` has no component `{}`", entry.key);
+                let help = format!("expected {}", one_of(known.iter().copied()));
+                self.report(Problem::new(entry.key_place, message, "unknown key").help(help));
+            }
+        }
+        if table.entries.is_empty() {
+            let message = format!("`{name}` needs at least one component");
+            let help = format!("expected {}", one_of(known.iter().copied()));
+            self.report(Problem::new(place, message, "empty").help(help));
+        }
+        let each = known.iter().map(|axis| {
+            let node = table.get(axis)?;
+            self.value(&format!("{name}.{axis}"), inner, node)
+        });
+        Some(Datum::Axes(each.collect()))
+    }
+
+    /// What a value should be, with an article.
+    pub(super) fn expected(&self, kind: &Kind) -> String {
+        let bounded = |what: &str, interval: &Interval| match interval.describe() {
+            Some(bounds) => format!("{what} {bounds}"),
+            None => what.to_owned(),
+        };
+        let count = |length: &Length| match length {
+            Length::Dimension => self.dimension.map_or(String::new(), |count| format!("{count} ")),
+            Length::Ends => "2 ".to_owned(),
+            Length::Any => String::new(),
+        };
+        match kind {
+            Kind::Text => "text in quotes".to_owned(),
+            Kind::File => "a file name in quotes".to_owned(),
+            Kind::Boolean => "`true` or `false`".to_owned(),
+            Kind::Integer(interval) => bounded("a whole number", interval),
+            Kind::Number(interval) => bounded("a number", interval),
+            Kind::NumberOrText => "a number or text in quotes".to_owned(),
+            Kind::Expression(_) => "a number or an expression in quotes".to_owned(),
+            Kind::Name(choices) => one_of(choices.list().iter().map(|choice| choice.name)),
+            Kind::Numbers(length, interval) => {
+                bounded(&format!("a list of {}numbers", count(length)), interval)
+            }
+            Kind::NumberOrPerAxis(interval) => {
+                format!("{}, or a list with one for each axis", bounded("a number", interval))
+            }
+            Kind::Expressions(_) => {
+                format!("a list of {}expressions", count(&Length::Dimension))
+            }
+            Kind::PerAxis(_) => "a table with a key for each axis, like { x = ... }".to_owned(),
+            Kind::List(Kind::Table(_) | Kind::Tagged(_)) => "a list of tables".to_owned(),
+            Kind::List(_) => "a list".to_owned(),
+            Kind::Table(_) => "a table".to_owned(),
+            Kind::Tagged(_) => "a table with the key `kind`".to_owned(),
+            Kind::Parameters => "a table of numbers".to_owned(),
+        }
+    }
+}
+
+/// Evaluates the table of parameters, each an expression of those above it.
+pub(in crate::case) fn evaluate_parameters(context: &mut Context<'_>, root: &Table) {
+    let Some(Value::Table(table)) = root.get("parameters").map(|node| &node.value) else { return };
+    if table.entries.len() > MAX_PARAMETERS {
+        let place = table.entries[MAX_PARAMETERS].key_place;
+        let message = format!("there are more than {MAX_PARAMETERS} parameters");
+        return context.report(Problem::new(place, message, "one too many"));
+    }
+    for (index, entry) in table.entries.iter().enumerate() {
+        let key = entry.key.as_str();
+        if let Some(problem) = bad_name(key, entry.key_place) {
+            context.report(problem);
+            continue;
+        }
+        let value = match &entry.node.value {
+            Value::Text(text) => {
+                let before = context.problems.len();
+                let value = context.constant(text, entry.node.place);
+                let later = table.entries[index..].iter().map(|entry| entry.key.as_str());
+                explain_order(&mut context.problems[before..], key, later);
+                value
+            }
+            _ => context.number(key, &Interval::ANY, &entry.node),
+        };
+        context.parameters.push((key.to_owned(), value));
+    }
+}
+
+/// Says of an unknown name that it is defined too late, where that is so.
+fn explain_order<'a>(
+    problems: &mut [Problem],
+    own: &str,
+    later: impl Iterator<Item = &'a str> + Clone,
+) {
+    for problem in problems {
+        let unknown = |name: &&str| problem.message == format!("`{name}` is not known");
+        if let Some(name) = later.clone().find(unknown) {
+            let help = if name == own {
+                "a parameter cannot use itself"
+            } else {
+                "a parameter uses those above it only: change their order"
+            };
+            problem.help = Some(help.to_owned());
+        }
+    }
+}
+
+fn bad_name(name: &str, place: Place) -> Option<Problem> {
+    let mut characters = name.chars();
+    let starts_well = characters.next().is_some_and(|c| c.is_alphabetic() || c == '_');
+    if !starts_well || !characters.all(|c| c.is_alphanumeric() || c == '_') {
+        let message = format!("the parameter `{name}` cannot be used in expressions");
+        return Some(
+            Problem::new(place, message, "not a name").help("use letters, digits and `_` only"),
+        );
+    }
+    let is_taken = AXES.contains(&name)
+        || name == "t"
+        || constants().iter().any(|(known, _)| *known == name)
+        || functions().iter().any(|function| function.name == name);
+    is_taken.then(|| {
+        let message = format!("the name `{name}` has a meaning in expressions already");
+        Problem::new(place, message, "taken").help("choose another name for the parameter")
+    })
+}

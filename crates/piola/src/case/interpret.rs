@@ -1,0 +1,239 @@
+//! From checked tables to the typed case: names that refer to each other, values that must agree.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use super::decode::Context;
+use super::diagnostics::Problem;
+use super::model::{Case, Domain, Parameter, Scheme, StepControl, Time, Variant};
+use super::record::{Datum, Record};
+use super::source::{Located, Place};
+use super::suggest::suggestion;
+
+mod bodies;
+mod checks;
+mod fields;
+mod observers;
+mod physics;
+
+/// Which of the settings of a case file is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setting<'a> {
+    /// Name of the variant, `None` for the base case.
+    pub variant: Option<&'a str>,
+    /// Whether the coarse overrides are applied.
+    pub coarse: bool,
+    /// Folder of the case file. `None` where the text is from elsewhere: files are not looked for.
+    pub folder: Option<&'a Path>,
+}
+
+/// Reads the whole case. `None` where something is refused, which is reported in `context` then.
+pub(super) fn case(
+    record: &Record,
+    context: &mut Context<'_>,
+    setting: Setting<'_>,
+) -> Option<Case> {
+    let dimension = context.dimension?;
+    let mut reader = Reader { context, dimension, setting, names: Names::default() };
+    reader.collect_names(record);
+    let scheme = record.record("scheme").and_then(|scheme| reader.scheme(scheme));
+    reader.names.scheme = scheme.as_ref().map_or("upwind", |scheme| scheme.value.name());
+    let domain = reader.domain(record.record("domain"));
+    let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
+    let time = record.record("time").and_then(|time| reader.time(time));
+    let end = time.as_ref().map(|time| *time.end);
+    let loads: Vec<_> = record.records("load").map(|load| reader.load(load)).collect();
+    let boundaries: Vec<_> = record.records("boundary").map(|wall| reader.boundary(wall)).collect();
+    let probes: Vec<_> = record.records("probe").map(|probe| reader.probe(probe)).collect();
+    let probes: Option<Vec<_>> = probes.into_iter().collect();
+    let output = reader.output(record, end);
+    let pictures: Vec<_> =
+        record.records("picture").map(|picture| reader.picture(picture, end)).collect();
+    let known_probes = probes.as_deref();
+    let plots: Vec<_> =
+        record.records("plot").map(|plot| reader.plot(plot, known_probes)).collect();
+    let variants: Vec<_> = record.records("variant").map(|it| reader.variant(it)).collect();
+    let checks: Vec<_> =
+        record.records("check").map(|check| reader.check(check, known_probes, end)).collect();
+    let coarse = record.record("coarse").map(|coarse| strings(coarse, "set")).unwrap_or_default();
+    let parameters = reader.context.parameters.iter();
+    Some(Case {
+        id: record.text("id").map(|id| id.value),
+        title: record.text("title")?.value,
+        dimension,
+        parameters: parameters
+            .map(|(name, value)| Some(Parameter { name: name.clone(), value: (*value)? }))
+            .collect::<Option<_>>()?,
+        domain: domain?,
+        bodies: bodies.into_iter().collect::<Option<_>>()?,
+        scheme: scheme?,
+        time: time?,
+        loads: loads.into_iter().collect::<Option<_>>()?,
+        boundaries: boundaries.into_iter().collect::<Option<_>>()?,
+        probes: probes?,
+        output: output?,
+        pictures: pictures.into_iter().collect::<Option<_>>()?,
+        plots: plots.into_iter().collect::<Option<_>>()?,
+        coarse,
+        variants: variants.into_iter().collect::<Option<_>>()?,
+        checks: checks.into_iter().collect::<Option<_>>()?,
+        variant: setting.variant.map(str::to_owned),
+        is_coarse: setting.coarse,
+        as_run: String::new(),
+        sources: context.sources.into(),
+    })
+}
+
+/// Reads tables one after the other and reports what does not fit together.
+struct Reader<'r, 'c> {
+    context: &'r mut Context<'c>,
+    dimension: usize,
+    setting: Setting<'r>,
+    names: Names,
+}
+
+/// The names that other tables refer to.
+#[derive(Default)]
+struct Names {
+    bodies: Vec<String>,
+    variants: Vec<String>,
+    scheme: &'static str,
+}
+
+impl Reader<'_, '_> {
+    fn report(&mut self, problem: Problem) {
+        self.context.report(problem);
+    }
+
+    fn refuse<T>(&mut self, problem: Problem) -> Option<T> {
+        self.report(problem);
+        None
+    }
+
+    /// Collects the names of bodies and variants, and checks the names of all named tables.
+    fn collect_names(&mut self, record: &Record) {
+        self.names.bodies = self.unique_names(record, "body", &[]);
+        self.names.variants = self.unique_names(record, "variant", &["base"]);
+        self.unique_names(record, "probe", &["energy", "step", "run"]);
+        self.unique_names(record, "boundary", &[]);
+        self.unique_names(record, "plot", &[]);
+    }
+
+    fn unique_names(&mut self, record: &Record, key: &str, reserved: &[&str]) -> Vec<String> {
+        let mut seen = HashSet::new();
+        let mut names = Vec::new();
+        for name in record.records(key).map(|table| table.text("name")) {
+            let Some(Located { value: name, place }) = name else {
+                names.push(String::new());
+                continue;
+            };
+            let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+            if !name.chars().all(is_plain) {
+                let message = format!("the name `{name}` cannot be used in paths and columns");
+                self.report(
+                    Problem::new(place, message, "not a plain name")
+                        .help("use letters, digits, `-` and `_` only"),
+                );
+            } else if reserved.contains(&name.as_str()) {
+                let message = format!("the name `{name}` has a meaning already");
+                self.report(Problem::new(place, message, "taken").help("choose another name"));
+            } else if !seen.insert(name.clone()) {
+                let message = format!("two tables `[[{key}]]` have the name `{name}`");
+                self.report(Problem::new(place, message, "the second one"));
+            }
+            names.push(name);
+        }
+        names
+    }
+
+    /// The body that the key `body` names. Reports an unknown one.
+    fn body_of(&mut self, record: &Record) -> Option<Located<usize>> {
+        let name = record.text("body")?;
+        let index = self.names.bodies.iter().position(|known| *known == name.value);
+        if index.is_none() {
+            let message = format!("there is no body `{}`", name.value);
+            let help = suggestion(&name.value, self.names.bodies.iter().map(String::as_str));
+            self.report(Problem::new(name.place, message, "unknown body").help(help));
+        }
+        Some(Located::new(index?, name.place))
+    }
+
+    /// A file, relative to the folder of the case file.
+    fn file(&mut self, record: &Record, key: &str) -> Option<Located<PathBuf>> {
+        let name = record.text(key)?;
+        let Some(folder) = self.setting.folder else {
+            return Some(name.map(PathBuf::from));
+        };
+        let path = folder.join(&name.value);
+        if !path.is_file() {
+            let message = format!("there is no file {}", path.display());
+            let problem = Problem::new(name.place, message, "not found");
+            return self.refuse(problem.help("paths are relative to the folder of the case file"));
+        }
+        Some(Located::new(path, name.place))
+    }
+
+    fn domain(&mut self, record: Option<&Record>) -> Option<Domain> {
+        let mut periodic = vec![None; self.dimension];
+        let axes = record.map_or(&[][..], |record| record.axes("periodic"));
+        for (axis, ends) in periodic.iter_mut().zip(axes) {
+            let read = |item: &Located<Datum>| Some(Located::new(item.as_ends()?, item.place));
+            *axis = ends.as_ref().and_then(read);
+        }
+        Some(Domain { periodic })
+    }
+
+    fn time(&mut self, record: &Record) -> Option<Time> {
+        let (cfl, step) = (record.number("cfl"), record.number("step"));
+        if let (Some(_), Some(place)) = (record.key_place("cfl"), record.key_place("step")) {
+            let message = "`cfl` and `step` cannot be given both";
+            self.report(
+                Problem::new(place, message, "the second way to choose the step")
+                    .help("`cfl` follows the stable step, `step` is fixed: remove one of them"),
+            );
+        }
+        let step = match (cfl, step) {
+            (_, Some(step)) => step.map(StepControl::Fixed),
+            (Some(cfl), None) => cfl.map(StepControl::Cfl),
+            (None, None) => Located::new(StepControl::Cfl(0.3), record.place),
+        };
+        Some(Time {
+            end: record.number("end")?,
+            integrator: record.text("integrator")?,
+            step,
+            max_steps: record.whole("max_steps").map(|steps| steps.value),
+            min_step: record.number("min_step").map(|step| step.value),
+        })
+    }
+
+    fn variant(&mut self, record: &Record) -> Option<Variant> {
+        Some(Variant {
+            name: record.text("name")?,
+            title: record.text("title").map(|title| title.value),
+            set: strings(record, "set"),
+            coarse: strings(record, "coarse"),
+        })
+    }
+
+    fn scheme(&mut self, record: &Record) -> Option<Located<Scheme>> {
+        let upwind = physics::upwind(record)?;
+        Some(Located::new(Scheme::Upwind(upwind), record.place))
+    }
+
+    /// Reports that a key has no meaning beside others, if it is there.
+    fn meaningless(&mut self, record: &Record, key: &str, why: &str) {
+        if let Some(place) = record.key_place(key) {
+            let message = format!("`{key}` has no meaning {why}");
+            self.report(Problem::new(place, message, "no meaning here").help("remove it"));
+        }
+    }
+}
+
+fn strings(record: &Record, key: &str) -> Vec<String> {
+    record.texts(key).into_iter().map(|text| text.value).collect()
+}
+
+/// The place of the first of some keys that the file has.
+fn first_place(record: &Record, keys: &[&str]) -> Place {
+    keys.iter().find_map(|key| record.key_place(key)).unwrap_or(record.place)
+}

@@ -1,0 +1,255 @@
+//! Bodies: shapes, lattices, materials and initial state; and regions.
+
+use super::*;
+use crate::case::expression::Expression;
+use crate::case::model::{
+    Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Region, Shape,
+    Stiffness,
+};
+
+/// The keys that give the stiffness of a material, of which one is needed.
+const STIFFNESSES: [&str; 3] = ["bulk_modulus", "wave_speed", "young_modulus"];
+
+impl Reader<'_, '_> {
+    pub(super) fn body(&mut self, record: &Record) -> Option<Body> {
+        let shape = record.record("shape").and_then(|shape| self.shape(shape));
+        let material = record.record("material").and_then(|material| self.material(material));
+        let lattice = record.record("lattice").and_then(lattice);
+        let initial = record.record("initial").and_then(|initial| self.initial(initial));
+        Some(Body {
+            name: record.text("name")?,
+            shape: shape?,
+            spacing: record.numbers("spacing")?,
+            lattice: lattice?,
+            material: material?,
+            initial: initial?,
+        })
+    }
+
+    fn shape(&mut self, record: &Record) -> Option<Located<Shape>> {
+        let shape = match record.kind {
+            "box" => {
+                let (min, max) = self.corners(record)?;
+                Shape::Box { min, max }
+            }
+            "ball" => {
+                Shape::Ball { center: vector(record, "center")?, radius: number(record, "radius")? }
+            }
+            "annulus" => {
+                let (inner, outer) = (record.number("inner")?, record.number("outer")?);
+                if inner.value >= outer.value {
+                    let message = format!(
+                        "the outer radius {} must be larger than the inner radius {}",
+                        outer.value, inner.value
+                    );
+                    return self.refuse(Problem::new(outer.place, message, "too small"));
+                }
+                let center = vector(record, "center")?;
+                Shape::Annulus { center, inner: inner.value, outer: outer.value }
+            }
+            "cylinder" => {
+                let (start, end) = (vector(record, "start")?, record.numbers("end")?);
+                if start == end.value {
+                    let message = "`start` and `end` of a cylinder must differ";
+                    return self.refuse(Problem::new(end.place, message, "the same as `start`"));
+                }
+                Shape::Cylinder { start, end: end.value, radius: number(record, "radius")? }
+            }
+            "union" => Shape::Union(self.shapes(record, "of")?),
+            "intersection" => Shape::Intersection(self.shapes(record, "of")?),
+            "difference" => {
+                let from = record.record("from").and_then(|from| self.shape(from));
+                let remove = self.shapes(record, "remove");
+                Shape::Difference { from: Box::new(from?), remove: remove? }
+            }
+            "points" => Shape::Points { file: self.file(record, "file")? },
+            _ => return None,
+        };
+        Some(Located::new(shape, record.place))
+    }
+
+    fn shapes(&mut self, record: &Record, key: &str) -> Option<Vec<Located<Shape>>> {
+        let shapes: Vec<_> = record.records(key).map(|shape| self.shape(shape)).collect();
+        shapes.into_iter().collect()
+    }
+
+    fn corners(&mut self, record: &Record) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (min, max) = (record.numbers("min")?, record.numbers("max")?);
+        let axis = min.iter().zip(max.iter()).position(|(min, max)| min >= max);
+        if let Some(axis) = axis {
+            let message = format!(
+                "`max` must be above `min` in every component, but {} is not above {} in {}",
+                max[axis],
+                min[axis],
+                ["x", "y", "z"][axis.min(2)]
+            );
+            return self.refuse(Problem::new(max.place, message, "not above `min`"));
+        }
+        Some((min.value, max.value))
+    }
+
+    pub(super) fn region(&mut self, record: &Record) -> Option<Located<Region>> {
+        let region = match record.kind {
+            "all" => Region::All,
+            "plane" => {
+                let (point, normal) = (vector(record, "point"), self.unit(record, "normal"));
+                Region::Plane { point: point?, normal: normal? }
+            }
+            "half_space" => {
+                let (point, normal) = (vector(record, "point"), self.unit(record, "normal"));
+                Region::HalfSpace { point: point?, normal: normal? }
+            }
+            "box" => {
+                let (min, max) = self.corners(record)?;
+                Region::Box { min, max }
+            }
+            "ball" => Region::Ball {
+                center: vector(record, "center")?,
+                radius: number(record, "radius")?,
+            },
+            _ => return None,
+        };
+        Some(Located::new(region, record.place))
+    }
+
+    /// A direction, scaled to length 1.
+    fn unit(&mut self, record: &Record, key: &str) -> Option<Vec<f64>> {
+        let direction = record.numbers(key)?;
+        let largest = direction.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        if largest == 0.0 {
+            let message = format!("`{key}` must have a direction, got zeros only");
+            return self.refuse(Problem::new(direction.place, message, "no direction"));
+        }
+        // Scaled by the largest component first, so that no square overflows or vanishes.
+        let scaled: Vec<f64> = direction.iter().map(|value| value / largest).collect();
+        let length = scaled.iter().map(|value| value * value).sum::<f64>().sqrt();
+        Some(scaled.into_iter().map(|value| value / length).collect())
+    }
+
+    fn initial(&mut self, record: &Record) -> Option<Initial> {
+        let velocity = match record.has("velocity") {
+            true => record.expressions("velocity")?,
+            false => vec![Expression::constant(0.0); self.dimension],
+        };
+        Some(Initial { velocity, pressure: record.expression("pressure")? })
+    }
+
+    fn material(&mut self, record: &Record) -> Option<Located<Material>> {
+        let stiffness = self.stiffness(record);
+        let density = number(record, "density");
+        let material = match record.kind {
+            "linear" => Material::Linear { density: density?, stiffness: stiffness? },
+            "gamma_law" => Material::GammaLaw {
+                density: density?,
+                gamma: number(record, "gamma")?,
+                stiffness: stiffness?,
+            },
+            _ => return None,
+        };
+        let modulus = material.bulk_modulus(self.dimension);
+        if !(modulus > 0.0 && modulus.is_finite()) {
+            let message =
+                format!("these values make a modulus of {modulus} Pa, which is impossible");
+            let place = first_place(record, &STIFFNESSES);
+            return self.refuse(Problem::new(place, message, "out of range"));
+        }
+        Some(Located::new(material, record.place))
+    }
+
+    fn stiffness(&mut self, record: &Record) -> Option<Stiffness> {
+        let is_linear = record.kind == "linear";
+        let names = if is_linear { &STIFFNESSES[..] } else { &STIFFNESSES[..2] };
+        let mut given: Vec<&str> = names.iter().copied().filter(|name| record.has(name)).collect();
+        given.sort_by_key(|name| record.key_place(name));
+        if let [_, second, ..] = given[..] {
+            let place = record.key_place(second).unwrap_or(record.place);
+            let message = format!("`{}` and `{second}` both give the stiffness", given[0]);
+            return self.refuse(
+                Problem::new(place, message, "the second way to give it")
+                    .help("remove one of them"),
+            );
+        }
+        if !given.contains(&"young_modulus") {
+            for key in ["poisson_ratio", "plane"] {
+                self.meaningless(record, key, "without `young_modulus`");
+            }
+        }
+        match given.first() {
+            None => {
+                let message = "the material needs a stiffness";
+                let help = if is_linear {
+                    "give `bulk_modulus`, `wave_speed`, or `young_modulus` with `poisson_ratio`"
+                } else {
+                    "give `bulk_modulus` or `wave_speed`"
+                };
+                self.refuse(Problem::new(record.place, message, "no stiffness").help(help))
+            }
+            Some(&"bulk_modulus") => number(record, "bulk_modulus").map(Stiffness::BulkModulus),
+            Some(&"wave_speed") => number(record, "wave_speed").map(Stiffness::WaveSpeed),
+            Some(_) => self.young(record),
+        }
+    }
+
+    fn young(&mut self, record: &Record) -> Option<Stiffness> {
+        if self.dimension == 3 {
+            self.meaningless(record, "plane", "in 3D");
+        }
+        let plane = match record.text("plane").as_deref().map(String::as_str) {
+            Some("strain") => PlaneState::Strain,
+            _ => PlaneState::Stress,
+        };
+        let modulus = number(record, "young_modulus");
+        let is_free = plane == PlaneState::Stress && self.dimension < 3;
+        let poisson_ratio = match record.number("poisson_ratio") {
+            Some(ratio) => self.poisson_ratio(ratio, is_free)?,
+            None if record.has("poisson_ratio") => return None,
+            // A bar without stress across has the modulus E, whatever its Poisson's ratio.
+            None if is_free && self.dimension == 1 => 0.0,
+            None => {
+                let place = first_place(record, &["young_modulus"]);
+                let message = "`young_modulus` needs `poisson_ratio` beside it";
+                return self.refuse(Problem::new(place, message, "`poisson_ratio` is missing"));
+            }
+        };
+        Some(Stiffness::Young { modulus: modulus?, poisson_ratio, plane })
+    }
+
+    fn poisson_ratio(&mut self, ratio: Located<f64>, is_free: bool) -> Option<f64> {
+        let value = ratio.value;
+        if value > -1.0 && (value < 0.5 || value == 0.5 && is_free) {
+            return Some(value);
+        }
+        if value == 0.5 {
+            let message =
+                "with `poisson_ratio` 0.5 the material is incompressible and its modulus infinite";
+            let problem = Problem::new(ratio.place, message, "must be below 0.5");
+            return self.refuse(problem.help("take a value below, like 0.49, or `bulk_modulus`"));
+        }
+        let upper = if is_free { "at most" } else { "below" };
+        let message = format!("`poisson_ratio` must be above -1 and {upper} 0.5, got {value}");
+        self.refuse(Problem::new(ratio.place, message, format!("must be above -1 and {upper} 0.5")))
+    }
+}
+
+fn lattice(record: &Record) -> Option<Lattice> {
+    Some(Lattice {
+        kind: match record.text("kind")?.as_str() {
+            "hexagonal" => LatticeKind::Hexagonal,
+            _ => LatticeKind::Square,
+        },
+        on: match record.text("on")?.as_str() {
+            "cells" => LatticeOrigin::Cells,
+            _ => LatticeOrigin::Boundary,
+        },
+        jitter: number(record, "jitter")?,
+        seed: record.whole("seed")?.value,
+    })
+}
+
+fn number(record: &Record, key: &str) -> Option<f64> {
+    record.number(key).map(|number| number.value)
+}
+
+fn vector(record: &Record, key: &str) -> Option<Vec<f64>> {
+    record.numbers(key).map(|numbers| numbers.value)
+}

@@ -1,0 +1,162 @@
+//! Names of fields, their components, and columns of tables.
+
+use super::*;
+use crate::case::catalogue;
+use crate::case::model::{Probe, ProbeKind, Quantity};
+use crate::case::suggest::one_of;
+use crate::fields::{Component, FieldDescription, FieldKind, FieldSelector, component_name};
+
+impl Reader<'_, '_> {
+    /// The field called `name`, which stands at `place`.
+    pub(super) fn field(&mut self, name: &str, place: Place) -> Option<FieldDescription> {
+        let fields = catalogue::fields(self.names.scheme);
+        if let Some(field) = fields.iter().find(|field| field.name == name) {
+            return Some(*field);
+        }
+        let message = format!("the scheme `{}` has no field `{name}`", self.names.scheme);
+        let help = suggestion(name, fields.iter().map(|field| field.name));
+        self.refuse(Problem::new(place, message, "unknown field").help(help))
+    }
+
+    /// A field with one number a particle, a component, or a magnitude.
+    pub(super) fn selector(&mut self, text: &Located<String>) -> Option<Located<FieldSelector>> {
+        let (name, component) = match text.split_once('.') {
+            Some((name, component)) => (name, Some(component)),
+            None => (text.as_str(), None),
+        };
+        let field = self.field(name, text.place)?;
+        let component = match component {
+            None if field.kind == FieldKind::Scalar => Component::Whole,
+            Some("magnitude") if field.kind != FieldKind::Scalar => Component::Magnitude,
+            _ => Component::Entry(self.entry(&field, component, true, text.place)?),
+        };
+        Some(Located::new(FieldSelector { field, component }, text.place))
+    }
+
+    /// The number of the component of a field.
+    fn entry(
+        &mut self,
+        field: &FieldDescription,
+        component: Option<&str>,
+        has_magnitude: bool,
+        place: Place,
+    ) -> Option<usize> {
+        let names = component_names(field.kind, self.dimension);
+        if let Some(number) = names.iter().position(|name| Some(name.as_str()) == component) {
+            return Some(number);
+        }
+        let FieldDescription { name, kind, .. } = *field;
+        let (message, label) = match (component, kind) {
+            (Some(component), FieldKind::Scalar) => {
+                (format!("`{name}` is one number and has no component `{component}`"), "one number")
+            }
+            (Some(component), _) => {
+                (format!("`{name}` has no component `{component}`"), "unknown component")
+            }
+            (None, _) => (format!("`{name}` has several components"), "which one?"),
+        };
+        let all = names.iter().map(String::as_str).chain(has_magnitude.then_some("magnitude"));
+        let paths: Vec<String> = all.map(|component| format!("{name}.{component}")).collect();
+        let help = match kind {
+            FieldKind::Scalar => format!("write `{name}`"),
+            _ => format!("expected {}", one_of(paths.iter().map(String::as_str))),
+        };
+        self.refuse(Problem::new(place, message, label).help(help))
+    }
+
+    /// A column of a table. Without `probes` the columns of probes are not looked up, because a
+    /// probe was refused.
+    pub(super) fn quantity(
+        &mut self,
+        text: &Located<String>,
+        probes: Option<&[Probe]>,
+    ) -> Option<Located<Quantity>> {
+        let Some((table, column)) = text.split_once('.') else {
+            let message = format!("`{}` is no column of a table", text.value);
+            let help =
+                "expected PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, step.NAME or run.NAME";
+            return self.refuse(Problem::new(text.place, message, "no column").help(help));
+        };
+        let owned = column.to_owned();
+        let quantity = match table {
+            "energy" => {
+                self.known_column(text, column, &catalogue::energy_columns(self.names.scheme))?;
+                Quantity::Energy(owned)
+            }
+            "step" => {
+                self.known_column(text, column, &catalogue::step_columns())?;
+                Quantity::Step(owned)
+            }
+            "run" => {
+                self.known_column(text, column, catalogue::RUN_COLUMNS)?;
+                Quantity::Run(owned)
+            }
+            probe => {
+                self.probe_column(text, probe, column, probes?)?;
+                Quantity::Probe { probe: probe.to_owned(), column: owned }
+            }
+        };
+        Some(Located::new(quantity, text.place))
+    }
+
+    fn known_column(&mut self, text: &Located<String>, column: &str, known: &[&str]) -> Option<()> {
+        if known.is_empty() || known.contains(&column) {
+            return Some(());
+        }
+        let message = format!("there is no column `{}`", text.value);
+        let help = suggestion(column, known.iter().copied());
+        self.refuse(Problem::new(text.place, message, "unknown column").help(help))
+    }
+
+    fn probe_column(
+        &mut self,
+        text: &Located<String>,
+        name: &str,
+        column: &str,
+        probes: &[Probe],
+    ) -> Option<()> {
+        let Some(probe) = probes.iter().find(|probe| *probe.name == name) else {
+            let message = format!("there is no probe `{name}`");
+            let names = probes.iter().map(|probe| probe.name.as_str());
+            let help = suggestion(name, names.chain(["energy", "step", "run"]));
+            return self.refuse(Problem::new(text.place, message, "unknown probe").help(help));
+        };
+        match &probe.kind {
+            ProbeKind::Extremum { field, .. } => {
+                let own = field.name(self.dimension);
+                if own == column {
+                    return Some(());
+                }
+                let message = format!("the probe `{name}` does not record `{column}`");
+                let problem = Problem::new(text.place, message, "not recorded");
+                self.refuse(problem.help(format!("its column is `{name}.{own}`")))
+            }
+            ProbeKind::Particle { fields, .. } => {
+                let (field, component) = match column.split_once('.') {
+                    Some((field, component)) => (field, Some(component)),
+                    None => (column, None),
+                };
+                let Some(found) = fields.iter().find(|known| known.name == field) else {
+                    let message = format!("the probe `{name}` does not record `{field}`");
+                    let help = suggestion(field, fields.iter().map(|field| field.name));
+                    let problem = Problem::new(text.place, message, "not recorded");
+                    return self.refuse(problem.help(help));
+                };
+                if found.kind == FieldKind::Scalar && component.is_none() {
+                    return Some(());
+                }
+                self.entry(&found.value.clone(), component, false, text.place).map(|_| ())
+            }
+        }
+    }
+}
+
+/// The names of the components of a field: `x` to `z`, or `xx` to `zz`, none of a scalar.
+fn component_names(kind: FieldKind, dimension: usize) -> Vec<String> {
+    match kind {
+        FieldKind::Scalar => Vec::new(),
+        _ => (0..kind.components(dimension))
+            .map(|number| component_name(kind, number, dimension))
+            .collect(),
+    }
+}

@@ -1,0 +1,106 @@
+//! Probes, output, pictures and plots.
+
+use super::*;
+use crate::case::catalogue;
+use crate::case::model::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
+
+/// Particle files that a run may write at most.
+const MAX_FILES: f64 = 1e5;
+/// Rows that a table may have at most.
+const MAX_ROWS: f64 = 1e8;
+
+impl Reader<'_, '_> {
+    pub(super) fn probe(&mut self, record: &Record) -> Option<Probe> {
+        let body = self.body_of(record);
+        let kind = match record.kind {
+            "particle" => {
+                let fields: Vec<_> = record
+                    .texts("fields")
+                    .iter()
+                    .map(|name| Some(Located::new(self.field(name, name.place)?, name.place)))
+                    .collect();
+                let fields = fields.into_iter().collect::<Option<_>>()?;
+                ProbeKind::Particle { at: record.numbers("at")?, fields }
+            }
+            "extremum" => {
+                let field = record.text("field").and_then(|field| self.selector(&field));
+                let region = record.record("where").and_then(|region| self.region(region));
+                let of = match record.text("of")?.as_str() {
+                    "smallest" => Extremum::Smallest,
+                    _ => Extremum::Largest,
+                };
+                ProbeKind::Extremum { field: field?, of, region: region? }
+            }
+            _ => return None,
+        };
+        Some(Probe { name: record.text("name")?, body, kind })
+    }
+
+    /// `end` is the time at which the run ends, as far as it is known.
+    pub(super) fn output(&mut self, case: &Record, end: Option<f64>) -> Option<Output> {
+        let record = case.record("output");
+        let number = |key| record.and_then(|record| record.number(key));
+        let place = record.map_or(case.value_place("time"), |record| record.place);
+        let end = end?;
+        let every = number("every").unwrap_or(Located::new(end / 100.0, place));
+        let table_every = number("table_every").unwrap_or(every.clone());
+        self.not_too_often(&every, end, MAX_FILES, "particle files");
+        if table_every != every {
+            self.not_too_often(&table_every, end, MAX_ROWS, "rows");
+        }
+        let fields = match record.filter(|record| record.has("fields")) {
+            None => catalogue::fields(self.names.scheme).to_vec(),
+            Some(record) => {
+                let names = record.texts("fields");
+                let fields: Vec<_> =
+                    names.iter().map(|name| self.field(name, name.place)).collect();
+                fields.into_iter().collect::<Option<_>>()?
+            }
+        };
+        let compression = record.and_then(|record| record.text("compression"));
+        let compression = match compression.as_deref().map(String::as_str) {
+            Some("none") => Compression::None,
+            _ => Compression::Zlib,
+        };
+        Some(Output { every, table_every, fields, compression })
+    }
+
+    fn not_too_often(&mut self, every: &Located<f64>, end: f64, most: f64, what: &str) {
+        let count = end / every.value;
+        if count > most {
+            let message = format!("the run would write {count:.1e} {what}, at most {most:.0e}");
+            self.report(
+                Problem::new(every.place, message, "too often")
+                    .help(format!("with `time.end` {end} s, at least {:e} s", end / most)),
+            );
+        }
+    }
+
+    pub(super) fn picture(&mut self, record: &Record, end: Option<f64>) -> Option<Picture> {
+        let field = record.text("field").and_then(|field| self.selector(&field));
+        let end = end?;
+        let mut times = Vec::new();
+        for item in record.list("times") {
+            let Datum::Number(time) = item.value else { continue };
+            if time <= end {
+                times.push(Located::new(time, item.place));
+            } else if self.setting.variant.is_none() && !self.setting.coarse {
+                let message = format!("the run ends at {end} s, before the picture at {time} s");
+                self.report(Problem::new(item.place, message, "after the end"));
+            }
+            // A variant or the coarse setting may end earlier: it has fewer pictures then.
+        }
+        if !record.has("times") {
+            times.push(Located::new(end, record.place));
+        }
+        let range = record.ends("range").map(|range| range.value);
+        Some(Picture { field: field?, times, range })
+    }
+
+    pub(super) fn plot(&mut self, record: &Record, probes: Option<&[Probe]>) -> Option<Plot> {
+        let names = record.texts("curves");
+        let curves: Vec<_> = names.iter().map(|name| self.quantity(name, probes)).collect();
+        let curves = curves.into_iter().collect::<Option<_>>()?;
+        Some(Plot { name: record.text("name")?, curves })
+    }
+}

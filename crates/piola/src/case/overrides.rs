@@ -1,0 +1,273 @@
+//! Overrides: `path.to.key=value`, from the command line, a variant or the coarse setting.
+
+use std::ops::Range;
+
+use super::diagnostics::Problem;
+use super::document::{Entry, Node, Table, Value, parse_value};
+use super::source::{Place, SourceText};
+use super::suggest::{nearest, one_of};
+
+/// How deep a path may go. The deepest key of the case file is far above.
+const MAX_SEGMENTS: usize = 32;
+
+/// The text of an override and where it stands.
+pub(super) struct Override<'a> {
+    text: &'a str,
+    /// The place of the whole text.
+    place: Place,
+    /// The place of its first byte, if its bytes stand in the source one by one.
+    start: Option<usize>,
+}
+
+impl<'a> Override<'a> {
+    /// An override of the command line, which is text number `source`, after `prefix` bytes.
+    pub(super) fn of_command_line(text: &'a str, source: u32, prefix: usize) -> Self {
+        let place = Place::new(source, prefix..prefix + text.len());
+        Self { text, place, start: Some(prefix) }
+    }
+
+    /// An override that stands as a string in one of the texts.
+    pub(super) fn of_string(text: &'a str, place: Place, sources: &[SourceText]) -> Self {
+        Self { text, place, start: start_of_content(sources, place, text) }
+    }
+
+    fn place(&self, span: Range<usize>) -> Place {
+        match self.start {
+            Some(start) => Place::new(self.place.source, start + span.start..start + span.end),
+            None => self.place,
+        }
+    }
+
+    fn problem(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) -> Problem {
+        Problem::new(self.place(span), message, label)
+    }
+
+    /// Sets the key in `root`. An empty value removes it.
+    ///
+    /// Unknown keys are set too: who checks the tree afterwards finds them with their place here.
+    pub(super) fn apply(&self, root: &mut Table, problems: &mut Vec<Problem>) {
+        let applied = self.split().and_then(|(path, value)| {
+            let Some((last, parents)) = path.split_last() else {
+                return Err(self.problem(0..value, "the path of the key is empty", "no path"));
+            };
+            let new = self.value(value, problems);
+            self.set(root, parents, last, new)
+        });
+        if let Err(problem) = applied {
+            problems.push(problem);
+        }
+    }
+
+    /// The segments of the path, and where the value starts.
+    fn split(&self) -> Result<(Vec<Segment>, usize), Problem> {
+        let all = 0..self.text.len();
+        let mut path = Vec::new();
+        let mut offset = 0;
+        loop {
+            let (segment, end) = self.segment(offset)?;
+            path.push(segment);
+            if path.len() > MAX_SEGMENTS {
+                return Err(self.problem(all, "the path has too many parts", "too deep"));
+            }
+            match self.text[end..].chars().next() {
+                Some('.') => offset = end + 1,
+                Some('=') => return Ok((path, end + 1)),
+                _ => {
+                    return Err(self
+                        .problem(all, "an override has the form path.to.key=value", "no `=`")
+                        .help("for example `time.end=0.5` or `body.0.spacing=0.1`"));
+                }
+            }
+        }
+    }
+
+    /// One part of the path, plain or in quotes, and where it ends.
+    fn segment(&self, start: usize) -> Result<(Segment, usize), Problem> {
+        let rest = &self.text[start..];
+        let leading = rest.len() - rest.trim_start().len();
+        let quote = rest.trim_start().chars().next().filter(|c| matches!(c, '"' | '\''));
+        if let Some(quote) = quote {
+            let first = start + leading + 1;
+            let Some(length) = self.text[first..].find(quote) else {
+                let span = start + leading..self.text.len();
+                return Err(self.problem(span, "the quote is never closed", "not closed"));
+            };
+            let span = first..first + length;
+            let after = &self.text[span.end + 1..];
+            let end = self.text.len() - after.trim_start().len();
+            return Ok((Segment { name: self.text[span.clone()].to_owned(), span }, end));
+        }
+        let length = rest.find(['.', '=']).unwrap_or(rest.len());
+        let name = rest[..length].trim();
+        let span = start + leading..start + leading + name.len();
+        if name.is_empty() {
+            let span = start..(start + 1).min(self.text.len());
+            return Err(self
+                .problem(span, "a part of the path is empty", "a name is missing")
+                .help("an override has the form path.to.key=value"));
+        }
+        Ok((Segment { name: name.to_owned(), span }, start + length))
+    }
+
+    /// The value, `None` to remove the key. What is not TOML is text.
+    fn value(&self, start: usize, problems: &mut Vec<Problem>) -> Option<Node> {
+        let text = self.text[start..].trim();
+        if text.is_empty() {
+            return None;
+        }
+        let start = start + self.text[start..].find(text).unwrap_or(0);
+        let place = |span: Range<usize>| self.place(start + span.start..start + span.end);
+        let parsed = parse_value(text, &place, problems);
+        Some(parsed.unwrap_or_else(|| Node {
+            value: Value::Text(text.to_owned()),
+            place: place(0..text.len()),
+        }))
+    }
+
+    fn set(
+        &self,
+        root: &mut Table,
+        parents: &[Segment],
+        last: &Segment,
+        new: Option<Node>,
+    ) -> Result<(), Problem> {
+        let Some((first, parents)) = parents.split_first() else {
+            return self.set_key(root, last, new);
+        };
+        let mut node = self.entry(root, first);
+        for segment in parents {
+            node = self.child(node, segment)?;
+        }
+        match &mut node.value {
+            Value::Table(table) => self.set_key(table, last, new),
+            Value::List(list) => {
+                let index = self.index(list, last)?;
+                match new {
+                    Some(new) => list[index] = new,
+                    None => drop(list.remove(index)),
+                }
+                Ok(())
+            }
+            other => Err(self.no_children(other, last)),
+        }
+    }
+
+    fn set_key(
+        &self,
+        table: &mut Table,
+        segment: &Segment,
+        new: Option<Node>,
+    ) -> Result<(), Problem> {
+        let known = table.entries.iter().position(|entry| entry.key == segment.name);
+        match (known, new) {
+            (Some(index), Some(node)) => {
+                let entry = &mut table.entries[index];
+                entry.node = node;
+                entry.key_place = self.place(segment.span.clone());
+            }
+            (None, Some(node)) => table.entries.push(Entry {
+                key: segment.name.clone(),
+                key_place: self.place(segment.span.clone()),
+                node,
+            }),
+            (Some(index), None) => drop(table.entries.remove(index)),
+            (None, None) => {
+                let message = format!("there is no `{}` to remove", segment.name);
+                let keys = table.entries.iter().map(|entry| entry.key.as_str());
+                let problem = self.problem(segment.span.clone(), message, "not there");
+                return Err(match nearest(&segment.name, keys) {
+                    Some(near) => problem.help(format!("did you mean `{near}`?")),
+                    None => {
+                        problem.help("a value follows after `=`; without one the key is removed")
+                    }
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The value of a key, a new table if there is none.
+    fn entry<'t>(&self, table: &'t mut Table, segment: &Segment) -> &'t mut Node {
+        let known = table.entries.iter().position(|entry| entry.key == segment.name);
+        let index = known.unwrap_or_else(|| {
+            let place = self.place(segment.span.clone());
+            let node = Node { value: Value::Table(Table::default()), place };
+            table.entries.push(Entry { key: segment.name.clone(), key_place: place, node });
+            table.entries.len() - 1
+        });
+        &mut table.entries[index].node
+    }
+
+    fn child<'t>(&self, node: &'t mut Node, segment: &Segment) -> Result<&'t mut Node, Problem> {
+        match &mut node.value {
+            Value::Table(table) => Ok(self.entry(table, segment)),
+            Value::List(list) => {
+                let index = self.index(list, segment)?;
+                Ok(&mut list[index])
+            }
+            other => Err(self.no_children(other, segment)),
+        }
+    }
+
+    fn no_children(&self, value: &Value, segment: &Segment) -> Problem {
+        let message = format!("there is no `{}` in {}", segment.name, value.describe());
+        self.problem(segment.span.clone(), message, "not there")
+    }
+
+    /// The element of a list that a segment means, by number or by name.
+    fn index(&self, list: &[Node], segment: &Segment) -> Result<usize, Problem> {
+        let names: Vec<&str> = list.iter().filter_map(name).collect();
+        let by_name = list.iter().position(|item| name(item) == Some(&segment.name));
+        let by_number = segment.name.parse::<usize>().ok().filter(|index| *index < list.len());
+        by_name.or(by_number).ok_or_else(|| {
+            let message = format!("the list has no element `{}`", segment.name);
+            let problem = self.problem(segment.span.clone(), message, "not there");
+            match (nearest(&segment.name, names.iter().copied()), list.len()) {
+                (Some(near), _) => problem.help(format!("did you mean `{near}`?")),
+                (None, 0) => problem.help("the list is empty"),
+                (None, 1) if names.is_empty() => problem.help("its only element has the number 0"),
+                (None, count) if names.is_empty() => {
+                    problem.help(format!("its elements have the numbers 0 to {}", count - 1))
+                }
+                (None, _) => problem.help(format!(
+                    "its elements are {}, or numbers from 0",
+                    one_of(names.iter().copied())
+                )),
+            }
+        })
+    }
+}
+
+/// A part of a path and its bytes in the override.
+struct Segment {
+    name: String,
+    span: Range<usize>,
+}
+
+fn name(node: &Node) -> Option<&str> {
+    let Value::Table(table) = &node.value else { return None };
+    match &table.get("name")?.value {
+        Value::Text(name) => Some(name),
+        _ => None,
+    }
+}
+
+/// Where the content of the string at `place` starts in its source, if it stands there as it is,
+/// without escapes.
+pub(super) fn start_of_content(
+    sources: &[SourceText],
+    place: Place,
+    content: &str,
+) -> Option<usize> {
+    let source = sources.get(place.source as usize)?;
+    let written = source.text.get(place.span())?;
+    if content.is_empty() {
+        return None;
+    }
+    written.find(content).map(|offset| place.start as usize + offset)
+}

@@ -1,0 +1,217 @@
+//! How the tables of a case file are described: the one place that says which keys there are.
+//!
+//! Checking, defaults, the JSON schema and the reference all follow these descriptions; the
+//! descriptions themselves stand in [`tables`](super::tables).
+
+/// A table with a fixed set of keys.
+#[derive(Debug)]
+pub struct TableSpec {
+    /// How messages and the reference call it, for example `[time]` or `lattice`.
+    pub title: &'static str,
+    /// What it is for.
+    pub meaning: &'static str,
+    /// Its keys.
+    pub keys: &'static [KeySpec],
+}
+
+/// A table whose key `kind` decides which other keys there are.
+#[derive(Debug)]
+pub struct TaggedSpec {
+    /// How messages and the reference call it.
+    pub title: &'static str,
+    /// What it is for.
+    pub meaning: &'static str,
+    /// Keys of every kind.
+    pub common: &'static [KeySpec],
+    /// The kinds.
+    pub kinds: &'static [KindSpec],
+}
+
+/// One kind of a [`TaggedSpec`].
+#[derive(Debug)]
+pub struct KindSpec {
+    /// Value of the key `kind`.
+    pub name: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// The dimensions that it exists in.
+    pub dimensions: &'static [usize],
+    /// Keys that only this kind has.
+    pub keys: &'static [KeySpec],
+}
+
+/// One key.
+#[derive(Debug)]
+pub struct KeySpec {
+    /// Its name.
+    pub name: &'static str,
+    /// What its value looks like.
+    pub kind: Kind,
+    /// SI unit, `1` for a pure number, empty for what is no number.
+    pub unit: &'static str,
+    /// Whether it has to be there.
+    pub presence: Presence,
+    /// One line of explanation.
+    pub meaning: &'static str,
+}
+
+/// Whether a key has to be there.
+#[derive(Clone, Copy, Debug)]
+pub enum Presence {
+    /// It must.
+    Required,
+    /// It need not, and means nothing then.
+    Optional,
+    /// This TOML value is taken instead.
+    Default(&'static str),
+    /// Something that depends on other keys is taken instead, said in words.
+    Derived(&'static str),
+}
+
+/// What a value looks like.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// Any text.
+    Text,
+    /// A file, relative to the folder of the case file.
+    File,
+    /// `true` or `false`.
+    Boolean,
+    /// A whole number.
+    Integer(Interval),
+    /// A number, or text with an expression of the parameters.
+    Number(Interval),
+    /// A number as above or text with a meaning of its own.
+    NumberOrText,
+    /// A number or an expression of some variables and the parameters.
+    Expression(Variables),
+    /// One of some names.
+    Name(Choices),
+    /// Some numbers.
+    Numbers(Length, Interval),
+    /// One number for all axes, or a list with one for each.
+    NumberOrPerAxis(Interval),
+    /// A list of expressions, one for each axis.
+    Expressions(Variables),
+    /// A table with one of the keys `x`, `y`, `z` for each axis that is meant.
+    PerAxis(&'static Kind),
+    /// A list.
+    List(&'static Kind),
+    /// A table.
+    Table(&'static TableSpec),
+    /// A table with a `kind`.
+    Tagged(&'static TaggedSpec),
+    /// Names with numbers or expressions.
+    Parameters,
+}
+
+/// The variables that an expression may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variables {
+    /// `x`, `y`, `z` as far as the case has dimensions.
+    Position,
+    /// Those and `t`.
+    PositionAndTime,
+}
+
+/// How many numbers a list has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// As many as the case has dimensions.
+    Dimension,
+    /// Two, the first below the second.
+    Ends,
+    /// Any number, at least one.
+    Any,
+}
+
+/// The names that a value may have.
+#[derive(Clone, Copy, Debug)]
+pub enum Choices {
+    /// These.
+    Fixed(&'static [Choice]),
+    /// Those of a registry.
+    Registry(fn() -> Vec<Choice>),
+}
+
+impl Choices {
+    /// The names with their explanations.
+    pub fn list(&self) -> Vec<Choice> {
+        match self {
+            Self::Fixed(list) => list.to_vec(),
+            Self::Registry(list) => list(),
+        }
+    }
+}
+
+/// A name with its explanation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The name.
+    pub name: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+}
+
+/// Bounds of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+    /// Whether the lower end belongs to it.
+    pub has_lower: bool,
+    /// Whether the upper end belongs to it.
+    pub has_upper: bool,
+}
+
+impl Interval {
+    /// Any finite number.
+    pub const ANY: Self =
+        Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, has_lower: false, has_upper: false };
+    /// Above 0.
+    pub const POSITIVE: Self = Self { lower: 0.0, ..Self::ANY };
+    /// At least 0.
+    pub const NOT_NEGATIVE: Self = Self { has_lower: true, ..Self::POSITIVE };
+
+    /// At least `lower`.
+    pub const fn at_least(lower: f64) -> Self {
+        Self { lower, has_lower: true, ..Self::ANY }
+    }
+
+    /// From `lower` to `upper`, with both.
+    pub const fn between(lower: f64, upper: f64) -> Self {
+        Self { lower, upper, has_lower: true, has_upper: true }
+    }
+
+    /// Whether `value` lies in it. Not a number does not.
+    pub fn contains(&self, value: f64) -> bool {
+        (value > self.lower || self.has_lower && value == self.lower)
+            && (value < self.upper || self.has_upper && value == self.upper)
+    }
+
+    /// In words: `above 0`, `at least 1`, `from 0 to 1`. `None` for any number.
+    pub fn describe(&self) -> Option<String> {
+        if self.lower == self.upper {
+            return Some(self.lower.to_string());
+        }
+        if self.has_lower && self.has_upper {
+            return Some(format!("from {} to {}", self.lower, self.upper));
+        }
+        let lower = match (self.lower.is_finite(), self.has_lower) {
+            (false, _) => None,
+            (true, true) => Some(format!("at least {}", self.lower)),
+            (true, false) => Some(format!("above {}", self.lower)),
+        };
+        let upper = match (self.upper.is_finite(), self.has_upper) {
+            (false, _) => None,
+            (true, true) => Some(format!("at most {}", self.upper)),
+            (true, false) => Some(format!("below {}", self.upper)),
+        };
+        match (lower, upper) {
+            (Some(lower), Some(upper)) => Some(format!("{lower} and {upper}")),
+            (lower, upper) => lower.or(upper),
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! The tables of a case file, described once.
+
+use super::catalogue;
+use super::spec::Presence::{Default, Derived, Optional, Required};
+use super::spec::{
+    Choice, Choices, Interval, KeySpec, Kind, KindSpec, Length, Presence, TableSpec, TaggedSpec,
+    Variables,
+};
+
+mod geometry;
+mod observers;
+
+/// The case file as a whole.
+pub static CASE: TableSpec = TableSpec {
+    title: "the case file",
+    meaning: "A case in TOML. Lengths are in m, SI units throughout.",
+    keys: &[
+        key(
+            "version",
+            Kind::Integer(Interval::between(1.0, 1.0)),
+            "1",
+            Required,
+            "version of this format: 1",
+        ),
+        key("id", Kind::Text, "", Optional, "row of the reproduction list, for example `U10`"),
+        key("title", Kind::Text, "", Required, "what the case shows, in one line"),
+        key(
+            "dimension",
+            Kind::Integer(Interval::between(1.0, 3.0)),
+            "1",
+            Required,
+            "number of space dimensions: 1, 2 or 3",
+        ),
+        key(
+            "parameters",
+            Kind::Parameters,
+            "",
+            Optional,
+            "named numbers, or expressions of earlier ones, usable wherever a number or an expression is expected",
+        ),
+        key(
+            "domain",
+            Kind::Table(&geometry::DOMAIN),
+            "",
+            Optional,
+            "the space that the particles live in",
+        ),
+        key(
+            "body",
+            Kind::List(&Kind::Table(&geometry::BODY)),
+            "",
+            Required,
+            "the bodies, each a table `[[body]]`",
+        ),
+        key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),
+        key("time", Kind::Table(&TIME), "", Required, "clock and integrator"),
+        key(
+            "load",
+            Kind::List(&Kind::Tagged(&LOAD)),
+            "",
+            Optional,
+            "body forces and tractions, each a table `[[load]]`",
+        ),
+        key(
+            "boundary",
+            Kind::List(&Kind::Table(&BOUNDARY)),
+            "",
+            Optional,
+            "prescribed velocities, each a table `[[boundary]]`",
+        ),
+        key(
+            "probe",
+            Kind::List(&Kind::Tagged(&observers::PROBE)),
+            "",
+            Optional,
+            "quantities recorded against time, each a table `[[probe]]`",
+        ),
+        key("output", Kind::Table(&observers::OUTPUT), "", Optional, "what is written and when"),
+        key(
+            "picture",
+            Kind::List(&Kind::Table(&observers::PICTURE)),
+            "",
+            Optional,
+            "pictures of the particles, each a table `[[picture]]`",
+        ),
+        key(
+            "plot",
+            Kind::List(&Kind::Table(&observers::PLOT)),
+            "",
+            Optional,
+            "curves against time, each a table `[[plot]]`",
+        ),
+        key(
+            "coarse",
+            Kind::Table(&COARSE),
+            "",
+            Optional,
+            "the quick setting that `piola verify` uses without `--full`",
+        ),
+        key(
+            "variant",
+            Kind::List(&Kind::Table(&VARIANT)),
+            "",
+            Optional,
+            "the same case with other settings, each a table `[[variant]]`",
+        ),
+        key(
+            "check",
+            Kind::List(&Kind::Table(&observers::CHECK)),
+            "",
+            Optional,
+            "what `piola verify` evaluates, each a table `[[check]]`",
+        ),
+    ],
+};
+
+static SCHEME: TaggedSpec = TaggedSpec {
+    title: "[scheme]",
+    meaning: "The formulation and its settings.",
+    common: &[],
+    kinds: &[KindSpec {
+        name: "upwind",
+        meaning: "total Lagrangian mixed formulation with Riemann upwinding",
+        dimensions: &[1, 2, 3],
+        keys: &[
+            key(
+                "kernel",
+                Kind::Name(Choices::Registry(catalogue::kernels)),
+                "",
+                Default("\"cubic_spline\""),
+                "smoothing kernel",
+            ),
+            key(
+                "smoothing_length",
+                Kind::Number(Interval::POSITIVE),
+                "spacings",
+                Required,
+                "smoothing length h in units of the particle spacing; the support radius is the kernel's multiple of it",
+            ),
+            key(
+                "correction",
+                Kind::Name(CORRECTIONS),
+                "",
+                Default("\"gradient\""),
+                "correction of the kernel",
+            ),
+            key(
+                "weights",
+                Kind::Name(WEIGHTS),
+                "",
+                Default("\"lattice\""),
+                "what is summed under the kernel",
+            ),
+            key(
+                "tau_velocity",
+                Kind::Number(Interval::NOT_NEGATIVE),
+                "1",
+                Default("0.0"),
+                "share of the upwinding of velocity",
+            ),
+            key(
+                "tau_pressure",
+                Kind::Number(Interval::NOT_NEGATIVE),
+                "1",
+                Default("0.0"),
+                "share of the upwinding of pressure",
+            ),
+            key(
+                "reconstruction",
+                Kind::Boolean,
+                "",
+                Default("false"),
+                "whether states at mid-edges are reconstructed linearly, Upwind (3.53)",
+            ),
+            key(
+                "wave_speed",
+                Kind::Name(WAVE_SPEEDS),
+                "",
+                Default("\"constant\""),
+                "the wave speed of the upwinding",
+            ),
+        ],
+    }],
+};
+
+const CORRECTIONS: Choices = choices(&[
+    choice("none", "the kernel as it is"),
+    choice("gradient", "gradients exact for linear fields"),
+    choice("kernel_and_gradient", "kernel exact for constants, gradients exact for linear fields"),
+]);
+const WEIGHTS: Choices = choices(&[
+    choice("lattice", "the volume of a lattice cell for every particle, also at a face"),
+    choice("volume", "the volume of the particle"),
+]);
+const WAVE_SPEEDS: Choices = choices(&[
+    choice("constant", "that of the reference state"),
+    choice("stretch", "divided by the stretch, Upwind (3.57)"),
+]);
+
+static TIME: TableSpec = TableSpec {
+    title: "[time]",
+    meaning: "Clock and integrator. The time starts at 0.",
+    keys: &[
+        key("end", Kind::Number(Interval::POSITIVE), "s", Required, "time at which the run ends"),
+        key(
+            "integrator",
+            Kind::Name(Choices::Registry(catalogue::integrators)),
+            "",
+            Default("\"tvd_rk2\""),
+            "time integrator",
+        ),
+        key(
+            "cfl",
+            Kind::Number(Interval::POSITIVE),
+            "1",
+            Derived("0.3 unless `step` is given"),
+            "share of the time that a wave needs from particle to particle",
+        ),
+        key(
+            "step",
+            Kind::Number(Interval::POSITIVE),
+            "s",
+            Optional,
+            "fixed time step instead of `cfl`, checked against the stable step",
+        ),
+        key(
+            "max_steps",
+            Kind::Integer(Interval::at_least(1.0)),
+            "1",
+            Optional,
+            "the run fails after so many steps",
+        ),
+        key(
+            "min_step",
+            Kind::Number(Interval::POSITIVE),
+            "s",
+            Optional,
+            "the run fails when the stable step falls below",
+        ),
+    ],
+};
+
+static LOAD: TaggedSpec = TaggedSpec {
+    title: "[[load]]",
+    meaning: "A force on particles.",
+    common: &[
+        key("name", Kind::Text, "", Optional, "name for overrides and messages"),
+        key(
+            "body",
+            Kind::Text,
+            "",
+            Derived("all bodies; a traction needs it if there are several"),
+            "name of the body that it acts on",
+        ),
+    ],
+    kinds: &[
+        KindSpec {
+            name: "body_force",
+            meaning: "an acceleration of every particle",
+            dimensions: &[1, 2, 3],
+            keys: &[key(
+                "acceleration",
+                Kind::Expressions(Variables::PositionAndTime),
+                "m/s^2",
+                Required,
+                "one expression a component, of the reference position and time",
+            )],
+        },
+        KindSpec {
+            name: "traction",
+            meaning: "a force per reference area that keeps its direction",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "where",
+                    Kind::Tagged(&geometry::REGION),
+                    "",
+                    Required,
+                    "the particles of the surface that it acts on",
+                ),
+                key(
+                    "traction",
+                    Kind::Expressions(Variables::PositionAndTime),
+                    "Pa",
+                    Required,
+                    "one expression a component, of the reference position and time",
+                ),
+            ],
+        },
+    ],
+};
+
+static BOUNDARY: TableSpec = TableSpec {
+    title: "[[boundary]]",
+    meaning: "Prescribed velocity components on a selection of particles.",
+    keys: &[
+        key("name", Kind::Text, "", Required, "unique name"),
+        key("body", Kind::Text, "", Derived("all bodies"), "name of the body"),
+        key(
+            "where",
+            Kind::Tagged(&geometry::REGION),
+            "",
+            Required,
+            "the particles, selected in the reference state",
+        ),
+        key(
+            "velocity",
+            Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
+            "m/s",
+            Required,
+            "the components that are prescribed, as expressions of the reference position and time",
+        ),
+    ],
+};
+
+static COARSE: TableSpec = TableSpec {
+    title: "[coarse]",
+    meaning: "The quick setting that `piola verify` uses without `--full`.",
+    keys: &[key(
+        "set",
+        Kind::List(&Kind::Text),
+        "",
+        Required,
+        "overrides, each `path.to.key=value`; applied before those of a variant",
+    )],
+};
+
+static VARIANT: TableSpec = TableSpec {
+    title: "[[variant]]",
+    meaning: "The same case with other settings.",
+    keys: &[
+        key("name", Kind::Text, "", Required, "unique name; `base` is the case itself"),
+        key("title", Kind::Text, "", Optional, "what it shows, in one line"),
+        key(
+            "set",
+            Kind::List(&Kind::Text),
+            "",
+            Default("[]"),
+            "overrides, each `path.to.key=value`",
+        ),
+        key(
+            "coarse",
+            Kind::List(&Kind::Text),
+            "",
+            Default("[]"),
+            "overrides that come on top in the coarse setting",
+        ),
+    ],
+};
+
+const fn key(
+    name: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    presence: Presence,
+    meaning: &'static str,
+) -> KeySpec {
+    KeySpec { name, kind, unit, presence, meaning }
+}
+
+const fn choice(name: &'static str, meaning: &'static str) -> Choice {
+    Choice { name, meaning }
+}
+
+const fn choices(list: &'static [Choice]) -> Choices {
+    Choices::Fixed(list)
+}

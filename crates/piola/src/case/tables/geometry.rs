@@ -1,0 +1,287 @@
+//! Domain, bodies, shapes, materials and regions.
+
+use super::*;
+
+pub(super) static DOMAIN: TableSpec = TableSpec {
+    title: "[domain]",
+    meaning: "The space that the particles live in.",
+    keys: &[key(
+        "periodic",
+        Kind::PerAxis(&Kind::Numbers(Length::Ends, Interval::ANY)),
+        "m",
+        Optional,
+        "per axis, the ends between which space repeats itself",
+    )],
+};
+
+pub(super) static BODY: TableSpec = TableSpec {
+    title: "[[body]]",
+    meaning: "A piece of one material, filled with particles.",
+    keys: &[
+        key("name", Kind::Text, "", Required, "unique name"),
+        key(
+            "shape",
+            Kind::Tagged(&SHAPE),
+            "",
+            Required,
+            "the space that it fills in the reference state",
+        ),
+        key(
+            "spacing",
+            Kind::NumberOrPerAxis(Interval::POSITIVE),
+            "m",
+            Required,
+            "distance between particles, one number or one per axis",
+        ),
+        key("lattice", Kind::Table(&LATTICE), "", Default("{}"), "how the particles are laid out"),
+        key("material", Kind::Tagged(&MATERIAL), "", Required, "what it is made of"),
+        key("initial", Kind::Table(&INITIAL), "", Default("{}"), "its state at the start"),
+    ],
+};
+
+static LATTICE: TableSpec = TableSpec {
+    title: "lattice",
+    meaning: "How the particles of a body are laid out.",
+    keys: &[
+        key("kind", Kind::Name(LATTICES), "", Default("\"square\""), "arrangement"),
+        key(
+            "on",
+            Kind::Name(ORIGINS),
+            "",
+            Default("\"boundary\""),
+            "where the first particle lies",
+        ),
+        key(
+            "jitter",
+            Kind::Number(Interval::between(0.0, 0.5)),
+            "spacings",
+            Default("0.0"),
+            "largest displacement of a particle at random",
+        ),
+        key(
+            "seed",
+            Kind::Integer(Interval::NOT_NEGATIVE),
+            "1",
+            Default("1"),
+            "seed of the random displacements",
+        ),
+    ],
+};
+
+const LATTICES: Choices = choices(&[
+    choice("square", "square, in 3D cubic"),
+    choice("cubic", "the name of `square` in 3D"),
+    choice("hexagonal", "hexagonal"),
+]);
+const ORIGINS: Choices = choices(&[
+    choice("boundary", "particles on the faces of the shape's box"),
+    choice("cells", "particles half a spacing inside of them"),
+]);
+
+static SHAPE: TaggedSpec = TaggedSpec {
+    title: "shape",
+    meaning: "A region that particles fill.",
+    common: &[],
+    kinds: &[
+        KindSpec {
+            name: "box",
+            meaning: "the box between two corners",
+            dimensions: &[1, 2, 3],
+            keys: CORNERS,
+        },
+        KindSpec {
+            name: "ball",
+            meaning: "a ball, in 2D a disc",
+            dimensions: &[1, 2, 3],
+            keys: ROUND,
+        },
+        KindSpec {
+            name: "annulus",
+            meaning: "what lies between two radii: a ring in 2D, a hollow ball in 3D",
+            dimensions: &[2, 3],
+            keys: &[
+                key("center", POINT, "m", Required, "centre"),
+                key("inner", Kind::Number(Interval::POSITIVE), "m", Required, "inner radius"),
+                key("outer", Kind::Number(Interval::POSITIVE), "m", Required, "outer radius"),
+            ],
+        },
+        KindSpec {
+            name: "cylinder",
+            meaning: "a straight cylinder",
+            dimensions: &[3],
+            keys: &[
+                key("start", POINT, "m", Required, "centre of one end"),
+                key("end", POINT, "m", Required, "centre of the other end"),
+                key("radius", Kind::Number(Interval::POSITIVE), "m", Required, "radius"),
+            ],
+        },
+        KindSpec {
+            name: "union",
+            meaning: "what lies in any of some shapes",
+            dimensions: &[1, 2, 3],
+            keys: &[key("of", Kind::List(&Kind::Tagged(&SHAPE)), "", Required, "the shapes")],
+        },
+        KindSpec {
+            name: "intersection",
+            meaning: "what lies in all of some shapes",
+            dimensions: &[1, 2, 3],
+            keys: &[key("of", Kind::List(&Kind::Tagged(&SHAPE)), "", Required, "the shapes")],
+        },
+        KindSpec {
+            name: "difference",
+            meaning: "what lies in one shape and in none of some others",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key("from", Kind::Tagged(&SHAPE), "", Required, "the shape to cut from"),
+                key(
+                    "remove",
+                    Kind::List(&Kind::Tagged(&SHAPE)),
+                    "",
+                    Required,
+                    "the shapes to cut away",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "points",
+            meaning: "the points of a CSV file with the columns x, y, z (as many as there are dimensions) and volume",
+            dimensions: &[1, 2, 3],
+            keys: &[key(
+                "file",
+                Kind::File,
+                "",
+                Required,
+                "the file, relative to the folder of the case file",
+            )],
+        },
+    ],
+};
+
+const POINT: Kind = Kind::Numbers(Length::Dimension, Interval::ANY);
+const CORNERS: &[KeySpec] = &[
+    key("min", POINT, "m", Required, "lower corner"),
+    key("max", POINT, "m", Required, "upper corner"),
+];
+const ROUND: &[KeySpec] = &[
+    key("center", POINT, "m", Required, "centre"),
+    key("radius", Kind::Number(Interval::POSITIVE), "m", Required, "radius"),
+];
+const FLAT: &[KeySpec] = &[
+    key("point", POINT, "m", Required, "a point of the plane"),
+    key("normal", POINT, "1", Required, "its normal, of any length"),
+];
+
+pub(super) static REGION: TaggedSpec = TaggedSpec {
+    title: "where",
+    meaning: "A region that selects particles by their reference position.",
+    common: &[],
+    kinds: &[
+        KindSpec { name: "all", meaning: "every particle", dimensions: &[1, 2, 3], keys: &[] },
+        KindSpec {
+            name: "plane",
+            meaning: "within half a local spacing of a plane, whose normal points out of the body",
+            dimensions: &[1, 2, 3],
+            keys: FLAT,
+        },
+        KindSpec {
+            name: "box",
+            meaning: "in the box between two corners",
+            dimensions: &[1, 2, 3],
+            keys: CORNERS,
+        },
+        KindSpec {
+            name: "ball",
+            meaning: "within a distance of a point",
+            dimensions: &[1, 2, 3],
+            keys: ROUND,
+        },
+        KindSpec {
+            name: "half_space",
+            meaning: "on the side of a plane that its normal points to",
+            dimensions: &[1, 2, 3],
+            keys: FLAT,
+        },
+    ],
+};
+
+static MATERIAL: TaggedSpec = TaggedSpec {
+    title: "material",
+    meaning: "What a body is made of.",
+    common: &[
+        key("density", Kind::Number(Interval::POSITIVE), "kg/m^3", Required, "reference density"),
+        key(
+            "bulk_modulus",
+            Kind::Number(Interval::POSITIVE),
+            "Pa",
+            Optional,
+            "the modulus kappa of the pressure law",
+        ),
+        key(
+            "wave_speed",
+            Kind::Number(Interval::POSITIVE),
+            "m/s",
+            Optional,
+            "wave speed of the reference state, instead of `bulk_modulus`",
+        ),
+    ],
+    kinds: &[
+        KindSpec {
+            name: "linear",
+            meaning: "pressure linear in the volume ratio, p = -kappa (J - 1); give `bulk_modulus`, `wave_speed`, or `young_modulus` with `poisson_ratio`",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "young_modulus",
+                    Kind::Number(Interval::POSITIVE),
+                    "Pa",
+                    Optional,
+                    "Young's modulus, instead of `bulk_modulus`",
+                ),
+                key(
+                    "poisson_ratio",
+                    Kind::Number(Interval::ANY),
+                    "1",
+                    Optional,
+                    "Poisson's ratio, above -1 and below 0.5 (0.5 itself is possible without stress across)",
+                ),
+                key(
+                    "plane",
+                    Kind::Name(PLANES),
+                    "",
+                    Derived("`stress`; no meaning in 3D"),
+                    "what the directions do that the case does not have",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "gamma_law",
+            meaning: "p = kappa (J^-gamma - 1), Upwind (6.30); give `bulk_modulus` or `wave_speed`",
+            dimensions: &[1, 2, 3],
+            keys: &[key("gamma", Kind::Number(Interval::at_least(1.0)), "1", Required, "exponent")],
+        },
+    ],
+};
+
+const PLANES: Choices =
+    choices(&[choice("stress", "no stress there"), choice("strain", "no strain there")]);
+
+static INITIAL: TableSpec = TableSpec {
+    title: "initial",
+    meaning: "State of a body at the start, as expressions of the reference position.",
+    keys: &[
+        key(
+            "velocity",
+            Kind::Expressions(Variables::Position),
+            "m/s",
+            Derived("0"),
+            "one expression a component",
+        ),
+        key(
+            "pressure",
+            Kind::Expression(Variables::Position),
+            "Pa",
+            Default("0.0"),
+            "pressure that the body starts with, positive in compression",
+        ),
+    ],
+};

@@ -1,0 +1,218 @@
+//! Overrides, variants and the coarse setting.
+
+use super::*;
+
+#[test]
+fn overrides_set_keys_of_tables_and_elements_of_lists() {
+    let case = read_with(
+        FULL,
+        &[
+            "time.end=2.5",
+            "body.0.spacing=0.125",
+            "body.ring.material.poisson_ratio=0.25",
+            "body.1.shape.from.of.1.outer = 4",
+            "title=A new title, unquoted",
+            "parameters.speed=\"3 / 2\"",
+            "output.every=0.5",
+            "domain.periodic.x=[0, 40]",
+            "check.5=",
+            "time.cfl=",
+            "time.step=1e-3",
+            "body.\"cloud\".spacing=[0.1, 0.2]",
+            "scheme={kind=\"upwind\", smoothing_length=1.2}",
+        ],
+    )
+    .unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(case.time.end.value, 2.5);
+    assert_eq!(case.time.step.value, StepControl::Fixed(1e-3));
+    assert_eq!(case.bodies[0].spacing.value, [0.125, 0.125]);
+    assert_eq!(case.bodies[1].material.bulk_modulus(2), 1e6 / 1.5);
+    assert_eq!(case.bodies[2].spacing.value, [0.1, 0.2]);
+    assert_eq!(case.title, "A new title, unquoted");
+    assert_eq!(case.parameter("twice"), Some(3.0));
+    assert_eq!((case.output.every.value, case.checks.len()), (0.5, 5));
+    let Scheme::Upwind(upwind) = &case.scheme.value;
+    assert_eq!((upwind.smoothing_length.value, upwind.tau_velocity), (1.2, 0.0));
+}
+
+#[test]
+fn tables_that_the_file_lacks_are_made() {
+    let text = FULL.replace("[output]", "[parameters.unused]").replace("[domain]\nperiodic", "#");
+    let text = text.split("[parameters.unused]").next().unwrap();
+    let case = read_with(text, &["output.every=0.5", "domain.periodic.y=[0, 1]"]).unwrap();
+    assert_eq!(case.output.every.value, 0.5);
+    assert!(case.domain.periodic[0].is_none() && case.domain.periodic[1].is_some());
+}
+
+#[test]
+fn settings_are_applied_in_order() {
+    let text = FULL.replace(
+        "set = [\"scheme.tau_velocity=0\"]",
+        "set = [\"time.end=1\", \"scheme.kernel=lucy\"]\ncoarse = [\"body.0.spacing=1\"]",
+    );
+    let read = |variant: Option<&str>, coarse| {
+        let variant = variant.map(str::to_owned);
+        let overrides = vec!["body.ring.spacing=0.75".to_owned()];
+        let case = parse(&text, "case.toml", &LoadOptions { overrides, variant, coarse }).unwrap();
+        (case.time.end.value, case.bodies[0].spacing[0], case.bodies[1].spacing[0])
+    };
+    assert_eq!(read(None, false), (3.0, 0.25, 0.75));
+    assert_eq!(read(None, true), (0.5, 0.5, 0.75));
+    assert_eq!(read(Some("no-upwinding"), false), (1.0, 0.25, 0.75));
+    assert_eq!(read(Some("no-upwinding"), true), (1.0, 1.0, 0.75));
+}
+
+fn shown(overrides: &[&str]) -> String {
+    read_with(FULL, overrides).expect_err("a problem").to_string()
+}
+
+#[test]
+fn problems_of_overrides_underline_the_override() {
+    for (text, expected) in [
+        (
+            "time.end=-1",
+            "\
+error: `end` must be above 0, got -1
+  --> command line:1:16
+  |
+1 | --set time.end=-1
+  |                ^^ must be above 0
+",
+        ),
+        (
+            "time.ende=1",
+            "\
+error: `ende` is no key of [time]
+  --> command line:1:12
+  |
+1 | --set time.ende=1
+  |            ^^^^ unknown key
+  = help: did you mean `end`?
+",
+        ),
+        (
+            "body.colum.spacing=1",
+            "\
+error: the list has no element `colum`
+  --> command line:1:12
+  |
+1 | --set body.colum.spacing=1
+  |            ^^^^^ not there
+  = help: did you mean `column`?
+",
+        ),
+        (
+            "load.7.kind=1",
+            "\
+error: the list has no element `7`
+  --> command line:1:12
+  |
+1 | --set load.7.kind=1
+  |            ^ not there
+  = help: its elements are `lid`, or numbers from 0
+",
+        ),
+        (
+            "time.end.x=1",
+            "\
+error: there is no `x` in the number 3
+  --> command line:1:16
+  |
+1 | --set time.end.x=1
+  |                ^ not there
+",
+        ),
+        (
+            "time.end",
+            "\
+error: an override has the form path.to.key=value
+  --> command line:1:7
+  |
+1 | --set time.end
+  |       ^^^^^^^^ no `=`
+  = help: for example `time.end=0.5` or `body.0.spacing=0.1`
+",
+        ),
+        (
+            "time..end=1",
+            "\
+error: a part of the path is empty
+  --> command line:1:12
+  |
+1 | --set time..end=1
+  |            ^ a name is missing
+  = help: an override has the form path.to.key=value
+",
+        ),
+        (
+            "time.cflx=",
+            "\
+error: there is no `cflx` to remove
+  --> command line:1:12
+  |
+1 | --set time.cflx=
+  |            ^^^^ not there
+  = help: did you mean `cfl`?
+",
+        ),
+        (
+            "body.0.initial.velocity=[\"0\", \"2 * spede\"]",
+            "\
+error: `spede` is not known
+  --> command line:1:42
+  |
+1 | --set body.0.initial.velocity=[\"0\", \"2 * spede\"]
+  |                                          ^^^^^ not known here
+  = help: did you mean `speed`?
+",
+        ),
+        (
+            "time.end=2 * spede",
+            "\
+error: `spede` is not known
+  --> command line:1:20
+  |
+1 | --set time.end=2 * spede
+  |                    ^^^^^ not known here
+  = help: did you mean `speed`?
+",
+        ),
+    ] {
+        assert_eq!(shown(&[text]), expected);
+    }
+}
+
+#[test]
+fn problems_of_settings_underline_the_string_in_the_file() {
+    let text = FULL.replace("scheme.tau_velocity=0", "scheme.tau_velocty=0");
+    let shown = read_with(&text, &[]).unwrap_err().to_string();
+    assert_eq!(
+        shown,
+        "\
+error: `tau_velocty` is no key of [scheme] `upwind` (in the variant `no-upwinding`)
+    --> case.toml:128:16
+    |
+128 | set = [\"scheme.tau_velocty=0\"]
+    |                ^^^^^^^^^^^ unknown key
+    = help: did you mean `tau_velocity`?
+"
+    );
+    let text = FULL.replace("time.end=0.5", "time.end=-0.5");
+    let shown = read_with(&text, &[]).unwrap_err().to_string();
+    assert!(shown.starts_with("error: `end` must be above 0, got -0.5 (in the coarse setting)"));
+    assert!(shown.contains("must be above 0\n") && shown.contains("^^^^"), "{shown}");
+}
+
+#[test]
+fn an_unknown_variant_is_refused() {
+    let options = LoadOptions { variant: Some("no-upwind".to_owned()), ..LoadOptions::default() };
+    let problems = parse(FULL, "case.toml", &options).unwrap_err();
+    assert_eq!(
+        problems.to_string(),
+        "\
+error: the case has no variant `no-upwind`
+   --> case.toml
+   = help: did you mean `no-upwinding`?
+"
+    );
+}
