@@ -9,7 +9,6 @@ mod particles;
 mod points;
 mod region;
 mod shape;
-mod stub;
 
 pub use error::GeometryError;
 pub use fill::{FillReport, fill};
@@ -18,7 +17,6 @@ pub use particles::Particles;
 pub use points::{PointsError, PointsFault, from_points};
 pub use region::Region;
 pub use shape::Shape;
-pub use stub::lattice;
 
 #[cfg(test)]
 mod tests;
