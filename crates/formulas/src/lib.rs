@@ -5,6 +5,8 @@
 //! There are no loops over particles, no threads and no files in this crate.
 
 pub mod kernels;
+mod power;
+pub mod riemann;
 mod scalar;
 pub mod tensor;
 pub mod volumetric;

@@ -1,73 +1,58 @@
 //! The names that a case file can use: kernels, integrators, fields and columns of tables.
+//!
+//! They come from the registries themselves, so that a new entry there is known here.
 
+use piola_formulas::kernels::Kernel;
+
+use super::simulation;
 use super::spec::Choice;
-use crate::fields::{FieldDescription, FieldKind};
+use crate::fields::FieldDescription;
+use crate::observe;
+use crate::schemes::upwind;
+use crate::time::IntegratorKind;
 
 /// The kernels.
 pub fn kernels() -> Vec<Choice> {
-    [
-        ("cubic_spline", "cubic spline, support 2 h"),
-        ("quintic_spline", "quintic spline, support 3 h"),
-        ("lucy", "Lucy's quartic"),
-        ("gaussian", "truncated Gaussian"),
-        ("mollifier", "mollifier"),
-        ("modified_mollifier", "modified mollifier"),
-        ("linear", "hat function"),
-        ("quadratic", "quadratic"),
-        ("wendland_c2", "Wendland C2"),
-        ("wendland_c4", "Wendland C4"),
-        ("wendland_c6", "Wendland C6"),
-    ]
-    .map(|(name, meaning)| Choice { name, meaning })
-    .to_vec()
+    let meaning = |kernel: &Kernel| match kernel.support_over_h() {
+        1.0 => "support radius h",
+        2.0 => "support radius 2 h",
+        3.0 => "support radius 3 h",
+        _ => "support radius of its own",
+    };
+    Kernel::ALL
+        .iter()
+        .map(|kernel| Choice { name: kernel.name(), meaning: meaning(kernel) })
+        .collect()
 }
 
 /// The time integrators.
 pub fn integrators() -> Vec<Choice> {
-    vec![Choice { name: "tvd_rk2", meaning: "explicit two-stage Runge-Kutta, Upwind (4.1)" }]
+    let meaning = |kind: IntegratorKind| match kind {
+        IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
+    };
+    IntegratorKind::ALL.map(|kind| Choice { name: kind.name(), meaning: meaning(kind) }).to_vec()
 }
 
 /// The fields of the scheme called `scheme`.
 pub fn fields(scheme: &str) -> &'static [FieldDescription] {
     match scheme {
-        "upwind" => UPWIND_FIELDS,
+        "upwind" => &upwind::FIELDS,
         _ => &[],
     }
 }
 
-/// Columns of the energy table, after `energy.`. Empty where any name is accepted.
-pub fn energy_columns(_scheme: &str) -> &'static [&'static str] {
-    &[]
+/// Columns of the energy table, after `energy.`.
+pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
+    match scheme {
+        "upwind" => observe::energy_columns(&upwind::ENERGIES, &upwind::MECHANISMS),
+        _ => Vec::new(),
+    }
 }
 
-/// Columns of the table of steps, after `step.`. Empty where any name is accepted.
-pub fn step_columns() -> &'static [&'static str] {
-    &[]
+/// Columns of the table of steps, after `step.`.
+pub fn step_columns() -> Vec<&'static str> {
+    observe::STEP_COLUMNS.iter().map(|(name, _)| *name).collect()
 }
 
 /// Numbers of the run as a whole, after `run.`.
-pub const RUN_COLUMNS: &[&str] = &["first_step", "steps", "particles", "outcome"];
-
-const fn field(
-    name: &'static str,
-    unit: &'static str,
-    kind: FieldKind,
-    meaning: &'static str,
-) -> FieldDescription {
-    FieldDescription { name, unit, kind, meaning }
-}
-
-const UPWIND_FIELDS: &[FieldDescription] = &[
-    field("position", "m", FieldKind::Vector, "current position"),
-    field("displacement", "m", FieldKind::Vector, "current minus reference position"),
-    field("velocity", "m/s", FieldKind::Vector, "velocity"),
-    field("pressure", "Pa", FieldKind::Scalar, "pressure, positive in compression"),
-    field("volume_ratio", "1", FieldKind::Scalar, "the evolved volume ratio J"),
-    field("determinant", "1", FieldKind::Scalar, "determinant of the deformation gradient"),
-    field("deformation_gradient", "1", FieldKind::Tensor, "deformation gradient F"),
-    field("density", "kg/m^3", FieldKind::Scalar, "reference density over J"),
-    field("wave_speed", "m/s", FieldKind::Scalar, "speed of pressure waves"),
-    field("acceleration", "m/s^2", FieldKind::Vector, "acceleration"),
-    field("neighbours", "1", FieldKind::Scalar, "number of neighbours"),
-    field("volume", "m^D", FieldKind::Scalar, "reference volume of the particle"),
-];
+pub const RUN_COLUMNS: &[&str] = &simulation::RUN_QUANTITIES;

@@ -6,6 +6,7 @@
 //! [`Case`]. Every step keeps the places of its values, so that each problem points at the text
 //! that causes it, and all are reported at once.
 
+pub mod build;
 pub mod catalogue;
 mod decode;
 pub mod diagnostics;
@@ -13,22 +14,28 @@ mod document;
 pub mod expression;
 mod interpret;
 pub mod model;
+
 mod outline;
+mod outputs;
 mod overrides;
+mod plan;
 mod record;
 pub mod reference;
 mod render;
 pub mod schema;
 mod settings;
+mod simulation;
 pub mod source;
 pub mod spec;
 mod suggest;
 pub mod tables;
 pub mod template;
+pub mod verify;
 
 use std::path::Path;
 use std::sync::Arc;
 
+pub use build::build;
 use decode::{Context, evaluate_parameters};
 pub use diagnostics::{Problem, Problems};
 use document::{Node, Table, Value};
@@ -36,6 +43,8 @@ pub use expression::Expression;
 use interpret::Setting;
 pub use model::Case;
 use overrides::Override;
+pub use plan::{Plan, PlannedLimit};
+pub use simulation::{Finished, RunError, Simulation};
 pub use source::{Located, Place, SourceText};
 
 /// What is said on the command line in front of an override.

@@ -18,10 +18,7 @@ mod physics;
 
 pub use checks::{Check, Expectation, Quantity, Reduction, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
-pub use observers::{
-    Component, Compression, Extremum, FieldSelector, Output, Picture, Plot, Probe, ProbeKind,
-    component_name,
-};
+pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
     Boundary, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Scheme,
     StepControl, Stiffness, Time, Upwind, Weights,

@@ -1,5 +1,6 @@
 //! Reading good cases. Faulty ones are in `faults`, overrides and settings in `settings`.
 
+use crate::fields::Component;
 use std::path::PathBuf;
 
 use super::model::*;

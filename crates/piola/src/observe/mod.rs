@@ -1,1 +1,17 @@
-//! (filled in by its first commit)
+//! What is recorded of a run while it goes (probes, energies, steps, particle files, pictures),
+//! and how histories become single numbers.
+
+mod files;
+mod frames;
+mod pictures;
+mod probe;
+mod recorder;
+pub mod reduce;
+mod tables;
+
+pub use files::WrittenFiles;
+pub use frames::FrameWriter;
+pub use pictures::{PictureRequest, PictureWriter};
+pub use probe::{Probe, ProbeKind};
+pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns};
+pub use tables::{Series, Tables};

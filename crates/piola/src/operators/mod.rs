@@ -1,1 +1,17 @@
-//! (filled in by its first commit)
+//! SPH operators on frozen neighbour lists: interpolation, gradient, divergence, their
+//! corrections, and the least-squares gradient.
+//!
+//! An operator is built once from the reference positions and then applied every step. Its rows
+//! are gathered: particle a sums over its own neighbours in a fixed order.
+
+mod error;
+mod gradient;
+mod interpolation;
+mod least_squares;
+mod support;
+
+pub use error::OperatorError;
+pub use gradient::{Correction, GradientOperator};
+pub use interpolation::Interpolation;
+pub use least_squares::LeastSquares;
+pub use support::Support;

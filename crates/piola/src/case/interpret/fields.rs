@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::case::catalogue;
-use crate::case::model::{Component, FieldSelector, Probe, ProbeKind, Quantity};
+use crate::case::model::{Probe, ProbeKind, Quantity};
 use crate::case::suggest::one_of;
-use crate::fields::{FieldDescription, FieldKind};
+use crate::fields::{Component, FieldDescription, FieldKind, FieldSelector, component_name};
 
 impl Reader<'_, '_> {
     /// The field called `name`, which stands at `place`.
@@ -80,11 +80,11 @@ impl Reader<'_, '_> {
         let owned = column.to_owned();
         let quantity = match table {
             "energy" => {
-                self.known_column(text, column, catalogue::energy_columns(self.names.scheme))?;
+                self.known_column(text, column, &catalogue::energy_columns(self.names.scheme))?;
                 Quantity::Energy(owned)
             }
             "step" => {
-                self.known_column(text, column, catalogue::step_columns())?;
+                self.known_column(text, column, &catalogue::step_columns())?;
                 Quantity::Step(owned)
             }
             "run" => {
@@ -156,7 +156,7 @@ fn component_names(kind: FieldKind, dimension: usize) -> Vec<String> {
     match kind {
         FieldKind::Scalar => Vec::new(),
         _ => (0..kind.components(dimension))
-            .map(|number| crate::case::model::component_name(kind, number, dimension))
+            .map(|number| component_name(kind, number, dimension))
             .collect(),
     }
 }

@@ -24,10 +24,7 @@ pub struct Check {
 impl Check {
     /// The file with the reference curve.
     pub fn file(&self) -> Option<&Located<PathBuf>> {
-        match &self.reduce {
-            Reduction::Curve(file) | Reduction::CurveRms(file) => Some(file),
-            _ => None,
-        }
+        self.reduce.reference()
     }
 }
 
@@ -61,40 +58,8 @@ impl Quantity {
     }
 }
 
-/// How the history of a quantity becomes one number.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Reduction {
-    /// The largest value.
-    Maximum,
-    /// The smallest value.
-    Minimum,
-    /// The last value.
-    Final,
-    /// The first value.
-    Initial,
-    /// The value at a time in s, interpolated.
-    At(f64),
-    /// The mean over time.
-    Mean,
-    /// Largest minus smallest value.
-    Range,
-    /// The period of its oscillation in s.
-    Period,
-    /// The value at the local extremum of this number, counted from 1.
-    Extremum(usize),
-    /// The time in s of the local extremum of this number, counted from 1.
-    ExtremumTime(usize),
-    /// The time in s at which it changes sign for this many times.
-    ZeroTime(usize),
-    /// The largest increase from row to row.
-    LargestRise,
-    /// Last value over first value, minus 1.
-    Growth,
-    /// The largest difference to the reference curve of a CSV file.
-    Curve(Located<PathBuf>),
-    /// The root mean square of the difference to the reference curve of a CSV file.
-    CurveRms(Located<PathBuf>),
-}
+/// How the history of a quantity becomes one number; a reference curve is named by its file.
+pub type Reduction = crate::observe::reduce::Reduction<Located<PathBuf>>;
 
 /// What a number should be.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,10 @@
 //!
 //! Output, pictures, probes and checkpoints walk these descriptions; none of them knows a scheme.
 
+mod selector;
+
+pub use selector::{Component, FieldSelector, component_name};
+
 /// How the components of a field are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldKind {

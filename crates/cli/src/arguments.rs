@@ -1,0 +1,114 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueHint};
+use clap_complete::Shell;
+
+use crate::exit::Exit;
+
+/// Solid and fluid mechanics with smoothed particle hydrodynamics.
+#[derive(Debug, Parser)]
+#[command(name = "piola", version, about, after_help = Exit::table())]
+#[command(propagate_version = true, arg_required_else_help = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a case and write its results
+    Run(RunArguments),
+    /// Read and build a case, run nothing, and say what a run will do
+    Check(CheckArguments),
+    /// Run all cases below some folders and evaluate their checks
+    Verify(VerifyArguments),
+    /// Write a commented case to start from
+    New {
+        /// Folder of the new case, which is created
+        #[arg(value_name = "NAME")]
+        name: PathBuf,
+    },
+    /// Print the JSON schema of case files
+    Schema,
+    /// Print the reference of all keys of case files, as Markdown
+    Reference,
+    /// Print the completions of a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+/// Which case, and with what changes.
+#[derive(Args, Debug)]
+pub struct CaseArguments {
+    /// The case file
+    #[arg(value_name = "CASE", value_hint = ValueHint::FilePath)]
+    pub case: PathBuf,
+    /// Set a key of the case file: a path and a TOML value, for example body.column.spacing=0.1
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Apply this variant of the case
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `piola run`.
+#[derive(Args, Debug)]
+#[command(after_help = Exit::table())]
+pub struct RunArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Folder of the results [default: results/ and the name of the case's folder and variant]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Show neither progress nor summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Arguments of `piola check`.
+#[derive(Args, Debug)]
+#[command(after_help = Exit::table())]
+pub struct CheckArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+}
+
+/// Arguments of `piola verify`.
+#[derive(Args, Debug)]
+#[command(after_help = Exit::table())]
+pub struct VerifyArguments {
+    /// Case files, or folders in which all files called case.toml are found
+    #[arg(value_name = "PATH", default_value = "cases", value_hint = ValueHint::AnyPath)]
+    pub paths: Vec<PathBuf>,
+    /// Run at the full setting instead of the coarse one; may take hours
+    #[arg(long)]
+    pub full: bool,
+    /// Only the case with this id, or in a folder of this name
+    #[arg(long, value_name = "ID")]
+    pub only: Option<String>,
+    /// Threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,144 @@
+//! `piola check`: what a run will do.
+
+use piola::case::{Case, Plan};
+use piola::schemes::Particle;
+
+use super::{assemble, read, use_threads};
+use crate::arguments::CheckArguments;
+use crate::exit::{Exit, Fault};
+use crate::text::{bytes, count, duration, large, significant};
+use crate::{table, terminal};
+
+/// Particles with bad support that are listed.
+const LISTED: usize = 10;
+
+/// Reads and builds a case and prints its plan.
+pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
+    use_threads(arguments.case.threads);
+    let case = read(&arguments.case)?;
+    let mut simulation = assemble(&arguments.case.case, &case)?;
+    let plan = simulation.plan();
+    terminal::print(&report(&case, &plan))?;
+    Ok(Exit::Success)
+}
+
+/// The plan as lines of a name and what it says.
+fn report(case: &Case, plan: &Plan) -> String {
+    let mut rows: Vec<[String; 2]> = Vec::new();
+    let mut section = |name: &str, lines: Vec<String>| {
+        for (number, line) in lines.into_iter().enumerate() {
+            let name = if number == 0 { name } else { "" };
+            rows.push([name.to_owned(), line]);
+        }
+    };
+    section("bodies", bodies(plan));
+    let neighbors = &plan.neighbors;
+    section(
+        "neighbours",
+        vec![format!(
+            "{} least, {} mean, {} most",
+            neighbors.least,
+            significant(neighbors.mean, 3),
+            neighbors.most
+        )],
+    );
+    section("support", support(&plan.poorly_supported));
+    section("step limits", limits(plan));
+    let first = significant(plan.step, 3);
+    section("first step", vec![format!("{first} s ({})", plan.limiter)]);
+    let end = significant(*case.time.end, 6);
+    section("steps", vec![format!("{} to t = {end} s, if all are as long", plan.steps)]);
+    section(
+        "wall time",
+        vec![format!(
+            "{} without output, at {} particle evaluations a second",
+            duration(plan.seconds),
+            large(plan.evaluations_per_second)
+        )],
+    );
+    section("memory", vec![bytes(plan.memory)]);
+    section("output", plan.outputs.clone());
+    section("warning", plan.warnings.clone());
+
+    let rows: Vec<Vec<String>> = rows.into_iter().map(Vec::from).collect();
+    let lines = table::align(&rows, None, &[]);
+    format!("{}\n\n{}\n", heading(case), lines.join("\n"))
+}
+
+fn heading(case: &Case) -> String {
+    let id = case.id.as_ref().map(|id| format!("{id}: ")).unwrap_or_default();
+    let variant = case.variant.as_ref().map(|name| format!(", variant {name}")).unwrap_or_default();
+    format!("{id}{} ({}D{variant})", case.title, case.dimension)
+}
+
+fn bodies(plan: &Plan) -> Vec<String> {
+    let unit = match plan.bodies.first().map(|body| body.spacing.len()) {
+        Some(1) => "m",
+        Some(2) => "m^2",
+        _ => "m^3",
+    };
+    let rows: Vec<Vec<String>> = plan
+        .bodies
+        .iter()
+        .map(|body| {
+            let spacing = body.spacing.iter().map(|spacing| significant(*spacing, 4));
+            let exact = body.exact_volume.map(|exact| {
+                let off = 100.0 * (body.volume / exact - 1.0);
+                // Round-off of the sum is no difference.
+                let off = if off.abs() < 1e-9 { 0.0 } else { off };
+                format!(", the shape's is {} ({:+} %)", significant(exact, 6), round(off))
+            });
+            vec![
+                body.name.clone(),
+                count(body.particles as u64, "particle"),
+                format!("spacing {} m", spacing.collect::<Vec<_>>().join(" x ")),
+                format!(
+                    "volume {} {unit}{}",
+                    significant(body.volume, 6),
+                    exact.unwrap_or_default()
+                ),
+            ]
+        })
+        .collect();
+    let mut lines = table::align(&rows, None, &[]);
+    if plan.bodies.len() > 1 {
+        let all: usize = plan.bodies.iter().map(|body| body.particles).sum();
+        lines.push(format!("{all} particles in all"));
+    }
+    lines
+}
+
+/// Three significant digits, as a number so that its sign can be shown.
+fn round(value: f64) -> f64 {
+    significant(value, 3).parse().unwrap_or(value)
+}
+
+fn support(poor: &[Particle]) -> Vec<String> {
+    if poor.is_empty() {
+        return vec!["all particles have enough neighbours".to_owned()];
+    }
+    let mut lines =
+        vec![format!("{} with too few neighbours:", count(poor.len() as u64, "particle"))];
+    lines.extend(poor.iter().take(LISTED).map(place));
+    if poor.len() > LISTED {
+        lines.push(format!("... and {} more", poor.len() - LISTED));
+    }
+    lines
+}
+
+fn limits(plan: &Plan) -> Vec<String> {
+    let rows: Vec<Vec<String>> = plan
+        .limits
+        .iter()
+        .map(|limit| {
+            let step = format!("{} s", significant(limit.step, 3));
+            vec![limit.name.to_owned(), step, place(&limit.particle)]
+        })
+        .collect();
+    table::align(&rows, None, &[])
+}
+
+fn place(particle: &Particle) -> String {
+    let position = particle.reference.iter().map(|x| significant(*x, 5));
+    format!("particle {} at ({}) m", particle.id, position.collect::<Vec<_>>().join(", "))
+}

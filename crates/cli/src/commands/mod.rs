@@ -1,0 +1,49 @@
+//! The commands of the program, one file each, and the steps that they share.
+
+use std::path::Path;
+
+use piola::case::build;
+use piola::case::{Case, LoadOptions, Problems, Simulation, load};
+
+use crate::arguments::CaseArguments;
+use crate::exit::{Exit, Fault};
+use crate::terminal;
+use crate::text::count;
+
+pub mod check;
+pub mod generate;
+pub mod new;
+pub mod run;
+pub mod verify;
+
+/// Sets the number of threads of all loops.
+fn use_threads(threads: Option<u16>) {
+    let Some(threads) = threads else { return };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
+    // Results do not depend on the number of threads, so the run may go on with another.
+    if let Err(error) = pool.build_global() {
+        terminal::report(&format!("warning: cannot use {threads} threads: {error}\n"));
+    }
+}
+
+/// Reads the case at its full setting.
+fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
+    let options = LoadOptions {
+        overrides: arguments.set.clone(),
+        variant: arguments.variant.clone(),
+        coarse: false,
+    };
+    load(&arguments.case, &options).map_err(|problems| refusal(&arguments.case, &problems))
+}
+
+/// Builds what was read from `path`.
+fn assemble(path: &Path, case: &Case) -> Result<Simulation, Fault> {
+    build(case).map_err(|problems| refusal(path, &problems))
+}
+
+/// All problems of the case file `path`, with their number.
+fn refusal(path: &Path, problems: &Problems) -> Fault {
+    let exit = if problems.is_io() { Exit::Io } else { Exit::BadCase };
+    let number = count(problems.len() as u64, "problem");
+    Fault { exit, report: format!("{problems}\n{number} in {}\n", path.display()) }
+}

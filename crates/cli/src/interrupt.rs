@@ -1,0 +1,23 @@
+//! Ctrl-C: the first finishes the step and writes the state, the second ends at once.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::exit::Exit;
+use crate::terminal;
+
+/// Listens for Ctrl-C and for requests to terminate. The flag is set by the first one.
+pub fn listen() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let handler = move || {
+        if flag.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(Exit::Interrupted.code()));
+        }
+        terminal::report("\nstopping after this step; once more stops at once\n");
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        terminal::report(&format!("warning: Ctrl-C will not write the state: {error}\n"));
+    }
+    stop
+}

@@ -1,1 +1,0 @@
-//! Materials whose energy depends on the volume ratio alone.

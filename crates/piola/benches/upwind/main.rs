@@ -1,0 +1,72 @@
+//! Speed of the upwind formulation: `cargo bench -p piola --bench upwind [-- SIZE...]`.
+//!
+//! Prints one Markdown table: for clouds of 2D and 3D particles, on one thread and on all, what an
+//! evaluation of the rates costs, where the time goes, and how much of the memory bandwidth that
+//! the same run measures it takes. Sizes are numbers of particles, 1e4, 1e5 and 1e6 if none is
+//! given. `docs/performance.md` explains the columns.
+
+mod bandwidth;
+mod clock;
+mod measure;
+mod problem;
+
+use measure::Measured;
+use problem::Terms;
+
+const SIZES: [usize; 3] = [10_000, 100_000, 1_000_000];
+
+const HEADER: &str = "\
+| D | threads | particles | neighbours | terms | M eval/s | ns/particle | ns/pair | local % | \
+slopes % | pairs % | inspect | update | B/particle | GB/s | of read % |
+|--:|--:|--:|--:|:--|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
+
+fn main() {
+    let given: Vec<usize> = std::env::args().skip(1).filter_map(|text| size(&text)).collect();
+    let sizes = if given.is_empty() { SIZES.to_vec() } else { given };
+    let all = std::thread::available_parallelism().map_or(1, |threads| threads.get());
+    println!("{HEADER}");
+    for threads in if all > 1 { vec![1, all] } else { vec![1] } {
+        rows::<2>(threads, &sizes);
+        rows::<3>(threads, &sizes);
+    }
+}
+
+/// A number of particles, also as `1e6`; `None` for what cargo adds to the arguments.
+fn size(text: &str) -> Option<usize> {
+    let number: f64 = text.parse().ok()?;
+    (number >= 1.0).then_some(number as usize)
+}
+
+fn rows<const D: usize>(threads: usize, sizes: &[usize]) {
+    for &size in sizes {
+        for terms in Terms::ALL {
+            let measured = measure::on_threads(threads, || measure::run::<D>(size, terms));
+            print_row::<D>(threads, terms, &measured);
+        }
+    }
+}
+
+fn print_row<const D: usize>(threads: usize, terms: Terms, measured: &Measured) {
+    let Measured { particles, neighbors, bytes, read_rate, .. } = *measured;
+    let total: f64 = measured.passes.iter().sum();
+    let share = |pass: usize| 100.0 * measured.passes[pass] / total;
+    let each = |seconds: f64| 1e9 * seconds / particles as f64;
+    let rate = bytes as f64 / total;
+    println!(
+        "| {D} | {threads} | {particles} | {neighbors:.1} | {name} | {speed:.2} | {particle:.0} | \
+         {pair:.2} | {local:.1} | {slopes:.1} | {pairs:.1} | {inspect:.1} | {update:.1} | \
+         {moved:.0} | {streamed:.1} | {share:.0} |",
+        name = terms.name(),
+        speed = particles as f64 / total / 1e6,
+        particle = each(total),
+        pair = each(total) / neighbors,
+        local = share(0),
+        slopes = share(1),
+        pairs = share(2),
+        inspect = each(measured.inspect),
+        update = each(measured.update),
+        moved = bytes as f64 / particles as f64,
+        streamed = rate / 1e9,
+        share = 100.0 * rate / read_rate,
+    );
+}

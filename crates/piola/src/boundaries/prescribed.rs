@@ -1,0 +1,63 @@
+//! Velocity components with prescribed values (Dirichlet conditions).
+
+use std::sync::Arc;
+
+use super::function::{SpaceTime, padded};
+use crate::Vector;
+
+/// One velocity component of a set of particles, prescribed as a function of place and time.
+///
+/// Position follows by integration: with the rate of the value as acceleration and the value
+/// itself set after each stage, a second-order integrator moves the particle by the trapezoidal
+/// sum of the prescribed velocity.
+#[derive(Clone)]
+pub struct PrescribedVelocity {
+    /// Name for messages.
+    pub name: String,
+    /// Particles by index in memory.
+    pub particles: Vec<u32>,
+    /// 0, 1 or 2 for x, y or z.
+    pub component: usize,
+    /// The velocity in m/s.
+    pub value: Arc<dyn SpaceTime>,
+}
+
+/// The prescribed components of a whole run, particle by particle.
+#[derive(Clone, Default)]
+pub(crate) struct PrescribedComponents {
+    entries: Vec<Entry>,
+}
+
+#[derive(Clone)]
+pub(crate) struct Entry {
+    pub particle: usize,
+    pub component: usize,
+    pub place: [f64; 3],
+    pub value: Arc<dyn SpaceTime>,
+}
+
+impl PrescribedComponents {
+    /// Lists all prescribed components by particle. Where two conditions name the same component
+    /// of a particle the later one holds.
+    pub fn new<const D: usize>(conditions: &[PrescribedVelocity], positions: &[Vector<D>]) -> Self {
+        let mut entries: Vec<Entry> = Vec::new();
+        for condition in conditions {
+            entries.extend(condition.particles.iter().map(|&particle| Entry {
+                particle: particle as usize,
+                component: condition.component,
+                place: padded(&positions[particle as usize]),
+                value: condition.value.clone(),
+            }));
+        }
+        // A stable sort keeps the order of the conditions within one component.
+        entries.sort_by_key(|entry| (entry.particle, entry.component));
+        entries.reverse();
+        entries.dedup_by_key(|entry| (entry.particle, entry.component));
+        entries.reverse();
+        Self { entries }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter()
+    }
+}

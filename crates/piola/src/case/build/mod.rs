@@ -1,0 +1,245 @@
+//! From a case to a simulation: the one place where names become types.
+
+pub(super) mod bodies;
+mod functions;
+mod probes;
+mod selections;
+
+use std::time::Instant;
+
+use piola_formulas::kernels::Kernel;
+use piola_formulas::volumetric::VolumetricLaw;
+
+use super::diagnostics::{Problem, Problems};
+use super::model::{self, Case};
+use super::simulation::Simulation;
+use crate::geometry::Particles;
+use crate::neighbors::{Domain, NeighborError, spatial_order};
+use crate::observe::Probe;
+use crate::operators::{Correction, Support};
+use crate::schemes::Scheme;
+use crate::schemes::upwind::{
+    Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
+};
+use crate::time::{IntegratorKind, StepControl};
+
+use bodies::BodyReport;
+
+/// Builds particles, lists and scheme of a case.
+///
+/// # Errors
+/// Everything that only shows when particles exist: a body without particles, a selection that
+/// selects nothing, a particle without a gradient, a prestress that the material cannot carry.
+pub fn build(case: &Case) -> Result<Simulation, Problems> {
+    let start = Instant::now();
+    let mut simulation = match case.dimension {
+        1 => build_in::<1>(case),
+        2 => build_in::<2>(case),
+        _ => build_in::<3>(case),
+    }
+    .map_err(|problems| case.refuse(problems))?;
+    simulation.build_seconds = start.elapsed().as_secs_f64();
+    Ok(simulation)
+}
+
+/// The built parts that do not depend on the dimension.
+pub(super) struct Built {
+    pub scheme: Box<dyn Scheme>,
+    pub probes: Vec<Probe>,
+    pub bodies: Vec<BodyReport>,
+    pub neighbors: crate::neighbors::NeighborStatistics,
+    /// Particles with fewer neighbours than dimensions, by index in memory.
+    pub poorly_supported: Vec<u32>,
+    pub warnings: Vec<String>,
+}
+
+fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
+    let domain = domain::<D>(case)?;
+    let (mut particles, bodies) = bodies::particles::<D>(case, &domain)?;
+    let model::Scheme::Upwind(settings) = &case.scheme.value;
+    let kernel = Kernel::from_name(&settings.kernel).ok_or_else(|| {
+        vec![case.problem_at(settings.kernel.place, "unknown kernel", "not registered", None)]
+    })?;
+    let ratio = *settings.smoothing_length;
+    if settings.weights == model::Weights::Volume {
+        particles.weight.clone_from(&particles.volume);
+    }
+    let widest = particles.spacing.iter().copied().fold(0.0, f64::max);
+    let refuse = |error: NeighborError| {
+        let place = settings.smoothing_length.place;
+        vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
+    };
+    let cell = kernel.support_radius(ratio * widest);
+    particles.reorder(&spatial_order(&particles.position, cell).map_err(refuse)?);
+    let support = Support::new(&particles, kernel, ratio, domain).map_err(refuse)?;
+    let rows = 0..particles.len();
+    let poorly_supported =
+        rows.filter(|&a| support.list.row(a).len() < D).map(|a| a as u32).collect();
+    let neighbors = support.list.statistics();
+    let warnings = stencil_warning::<D>(settings, &bodies, kernel, &neighbors);
+
+    let mut problems = Vec::new();
+    let probes = probes::probes(case, &particles, &mut problems);
+    let scheme = upwind(case, settings, particles, support, &mut problems);
+    match scheme {
+        Some(scheme) if problems.is_empty() => Ok(Simulation::new(
+            case,
+            Built {
+                scheme: Box::new(scheme),
+                probes,
+                bodies,
+                neighbors,
+                poorly_supported,
+                warnings,
+            },
+        )),
+        _ => Err(problems),
+    }
+}
+
+fn domain<const D: usize>(case: &Case) -> Result<Domain<D>, Vec<Problem>> {
+    let axes = std::array::from_fn(|axis| {
+        case.domain.periodic.get(axis).and_then(|ends| ends.as_ref().map(|ends| ends.value))
+    });
+    Domain::new(axes).map_err(|error| {
+        let place = case.domain.periodic.iter().flatten().next().map(|ends| ends.place);
+        let place = place.unwrap_or(case.scheme.place);
+        vec![case.problem_at(place, error.to_string(), "this box", None)]
+    })
+}
+
+fn upwind<const D: usize>(
+    case: &Case,
+    settings: &model::Upwind,
+    particles: Particles<D>,
+    support: Support<D>,
+    problems: &mut Vec<Problem>,
+) -> Option<Upwind<D>> {
+    let materials = materials(case, problems);
+    let initial = initial(case, &particles);
+    let prescribed = selections::prescribed(case, &particles, problems);
+    let body_forces = selections::body_forces(case);
+    let correction = correction(settings);
+    let tractions = selections::tractions(case, &particles, &support, correction, problems);
+    if !problems.is_empty() {
+        return None;
+    }
+    let built = Upwind::new(UpwindInput {
+        particles,
+        support,
+        settings: Settings {
+            correction,
+            tau_velocity: settings.tau_velocity,
+            tau_pressure: settings.tau_pressure,
+            reconstruction: settings.reconstruction,
+            wave_speed: match settings.wave_speed {
+                model::ReferenceWaveSpeed::Constant => WaveSpeed::Constant,
+                model::ReferenceWaveSpeed::Stretch => WaveSpeed::Stretch,
+            },
+        },
+        materials,
+        initial,
+        body_forces,
+        tractions,
+        prescribed,
+    });
+    built
+        .map_err(|error| {
+            let (place, label) = match &error {
+                UpwindError::Prestress { .. } | UpwindError::Velocity { .. } => {
+                    (case.bodies[0].name.place, "initial values of a body")
+                }
+                _ => (settings.smoothing_length.place, "with this smoothing length"),
+            };
+            problems.push(case.problem_at(place, error.to_string(), label, None));
+        })
+        .ok()
+}
+
+fn correction(settings: &model::Upwind) -> Correction {
+    match settings.correction.value {
+        model::Correction::None => Correction::None,
+        model::Correction::Gradient => Correction::Gradient,
+        model::Correction::KernelAndGradient => Correction::KernelAndGradient,
+    }
+}
+
+fn materials(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material> {
+    let law = |material: &model::Material| {
+        let bulk_modulus = material.bulk_modulus(case.dimension);
+        match *material {
+            model::Material::Linear { .. } => VolumetricLaw::linear(bulk_modulus),
+            model::Material::GammaLaw { gamma, .. } => {
+                VolumetricLaw::gamma_law(bulk_modulus, gamma)
+            }
+        }
+    };
+    let mut materials = Vec::new();
+    for body in &case.bodies {
+        match law(&body.material) {
+            Ok(law) => materials.push(Material { density: body.material.density(), law }),
+            Err(error) => problems.push(case.problem_at(
+                body.material.place,
+                error.to_string(),
+                "this material",
+                None,
+            )),
+        }
+    }
+    materials
+}
+
+fn initial<const D: usize>(case: &Case, particles: &Particles<D>) -> Initial<D> {
+    let rows = || particles.position.iter().zip(&particles.body);
+    let body = |number: u32| &case.bodies[number as usize].initial;
+    Initial {
+        velocity: rows()
+            .map(|(x, &number)| {
+                let place = crate::boundaries::padded(x);
+                crate::Vector::from_fn(|k, _| body(number).velocity[k].eval(place, 0.0))
+            })
+            .collect(),
+        pressure: rows()
+            .map(|(x, &number)| body(number).pressure.eval(crate::boundaries::padded(x), 0.0))
+            .collect(),
+    }
+}
+
+/// A support that is neither the narrow one nor wide enough to be smooth is worth a word.
+fn stencil_warning<const D: usize>(
+    settings: &model::Upwind,
+    bodies: &[BodyReport],
+    kernel: Kernel,
+    neighbors: &crate::neighbors::NeighborStatistics,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let reaches_diagonals = bodies.iter().any(|body| {
+        let widest = body.spacing.iter().copied().fold(0.0, f64::max);
+        let mut edges = body.spacing.clone();
+        edges.sort_by(f64::total_cmp);
+        let diagonal = edges.iter().take(2).map(|edge| edge * edge).sum::<f64>().sqrt();
+        D > 1 && kernel.support_radius(*settings.smoothing_length * widest) > diagonal
+    });
+    if reaches_diagonals {
+        warnings.push(format!(
+            "the support reaches diagonal neighbours ({:.0} neighbours on average): gradients stay \
+             exact for linear fields, but nodal forces near walls and edges are no longer; a \
+             smoothing length between 0.5 and 0.7 spacings keeps them exact on a lattice",
+            neighbors.mean
+        ));
+    }
+    warnings
+}
+
+/// How the steps of a case are chosen.
+pub(super) fn step_control(case: &Case) -> StepControl {
+    match case.time.step.value {
+        model::StepControl::Cfl(number) => StepControl::Cfl(number),
+        model::StepControl::Fixed(step) => StepControl::Fixed(step),
+    }
+}
+
+/// The integrator of a case. The reader has checked its name against the same registry.
+pub(super) fn integrator(case: &Case) -> IntegratorKind {
+    IntegratorKind::from_name(&case.time.integrator).unwrap_or(IntegratorKind::TvdRk2)
+}

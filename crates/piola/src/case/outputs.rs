@@ -1,0 +1,139 @@
+//! The files of a run.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use super::build::{Built, bodies::BodyReport};
+use super::model::{self, Case};
+use super::simulation::{Finished, RunError};
+use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, WrittenFiles};
+use crate::output::{
+    self, BodyRecord, Column, Compression, ResultsFolder, RunRecord, StageRecord, timestamp,
+};
+use crate::time::{Observer, Outcome, Schedule};
+
+/// The results folder of a run and what is written into it.
+pub(super) struct Outputs {
+    folder: ResultsFolder,
+    record: RunRecord,
+    written: WrittenFiles,
+}
+
+impl Outputs {
+    /// Makes the folder ready and writes the first record.
+    pub fn new(case: &Case, built: &Built, folder: &Path) -> Result<Self, RunError> {
+        let record = RunRecord {
+            case_file: case.sources()[0].name.clone(),
+            id: case.id.clone(),
+            title: case.title.clone(),
+            variant: case.variant.clone(),
+            case_text: case.as_run.clone(),
+            overrides: case.sources()[1..].iter().map(|flag| flag.text.clone()).collect(),
+            seeds: case.bodies.iter().map(|body| body.lattice.seed).collect(),
+            threads: rayon::current_num_threads(),
+            dimension: case.dimension,
+            bodies: built
+                .bodies
+                .iter()
+                .map(|body| BodyRecord { name: body.name.clone(), particles: body.particles })
+                .collect(),
+            started: timestamp(SystemTime::now()),
+            end_time: *case.time.end,
+            warnings: built.warnings.clone(),
+            ..RunRecord::default()
+        };
+        let folder = ResultsFolder::create(folder, &record)?;
+        Ok(Self { folder, record, written: WrittenFiles::default() })
+    }
+
+    /// Where the tables go.
+    pub fn for_tables(&self) -> (ResultsFolder, WrittenFiles) {
+        (self.folder.clone(), self.written.clone())
+    }
+
+    /// The observers that write particle files and pictures.
+    pub fn observers(&self, case: &Case, bodies: &[BodyReport]) -> Vec<Box<dyn Observer>> {
+        let frames = FrameWriter::new(
+            self.folder.clone(),
+            Schedule::Every(*case.output.every),
+            case.output.fields.iter().map(|field| field.name).collect(),
+            match case.output.compression {
+                model::Compression::None => Compression::None,
+                model::Compression::Zlib => Compression::Zlib,
+            },
+            self.written.clone(),
+        );
+        let mut observers: Vec<Box<dyn Observer>> = vec![Box::new(frames)];
+        let spacings = bodies.iter().flat_map(|body| &body.spacing);
+        let spacing = spacings.copied().fold(f64::INFINITY, f64::min);
+        for picture in &case.pictures {
+            let times = picture.times.iter().map(|time| time.value).collect();
+            observers.push(Box::new(PictureWriter::new(
+                self.folder.clone(),
+                Schedule::at(times),
+                PictureRequest {
+                    title: case.title.clone(),
+                    field: picture.field.value,
+                    range: picture.range,
+                    spacing,
+                },
+                self.written.clone(),
+            )));
+        }
+        observers
+    }
+
+    /// Draws the charts, completes the record, and lists all files.
+    pub fn finish(
+        mut self,
+        case: &Case,
+        finished: &Finished,
+        build_seconds: f64,
+    ) -> Result<Vec<PathBuf>, RunError> {
+        for plot in &case.plots {
+            let path = self.folder.plot(&plot.name)?;
+            chart(case, plot, finished).write_png(&path)?;
+            self.written.push(path);
+        }
+        let mut files = self.written.list();
+        let summary = &finished.summary;
+        let record = &mut self.record;
+        record.finished = Some(timestamp(SystemTime::now()));
+        record.outcome = summary.outcome.summary();
+        if let Outcome::Failed(failure) = &summary.outcome {
+            record.message = Some(failure.to_string());
+        }
+        record.steps = summary.steps;
+        record.time_reached = summary.time;
+        let build = StageRecord { name: "build".into(), seconds: build_seconds, calls: 1 };
+        let stages = summary.timings.iter().map(|timing| StageRecord {
+            name: timing.stage.into(),
+            seconds: timing.seconds,
+            calls: timing.calls,
+        });
+        record.stages = std::iter::once(build).chain(stages).collect();
+        record.files = files.iter().map(|file| self.folder.relative(file)).collect();
+        record.write(&self.folder.record())?;
+        files.push(self.folder.record());
+        Ok(files)
+    }
+}
+
+/// The chart of some columns against time.
+fn chart(case: &Case, plot: &model::Plot, finished: &Finished) -> output::Plot {
+    let series = plot.curves.iter().filter_map(|quantity| {
+        let Some(Series::Curve { time, values, unit }) = finished.quantity(&quantity.name()) else {
+            return None;
+        };
+        Some(output::Series {
+            column: Column::new(quantity.name(), unit),
+            points: time.into_iter().zip(values).map(|(time, value)| [time, value]).collect(),
+            style: output::Style::Line,
+        })
+    });
+    output::Plot {
+        title: case.title.clone(),
+        abscissa: Column::new("time", "s"),
+        series: series.collect(),
+    }
+}

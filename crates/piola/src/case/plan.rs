@@ -1,0 +1,135 @@
+//! What a case will do, without doing it: the content of `piola check`.
+
+use std::time::Instant;
+
+use super::build::{self, bodies::BodyReport};
+use super::simulation::Simulation;
+use crate::neighbors::NeighborStatistics;
+use crate::schemes::Particle;
+use crate::time::StepControl;
+
+/// What will happen when a case runs.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The bodies with their particles.
+    pub bodies: Vec<BodyReport>,
+    /// Least, mean and most neighbours.
+    pub neighbors: NeighborStatistics,
+    /// Particles with fewer neighbours than there are dimensions.
+    pub poorly_supported: Vec<Particle>,
+    /// The bounds on the first step, smallest first.
+    pub limits: Vec<PlannedLimit>,
+    /// The first step in s.
+    pub step: f64,
+    /// What limits it.
+    pub limiter: String,
+    /// Number of steps to the end if all are as large as the first.
+    pub steps: u64,
+    /// Particle evaluations a second, measured on this machine.
+    pub evaluations_per_second: f64,
+    /// Wall time of the run in s at that speed, without output.
+    pub seconds: f64,
+    /// Bytes of states and lists.
+    pub memory: usize,
+    /// What will be written, a line each.
+    pub outputs: Vec<String>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// A bound on the first step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedLimit {
+    /// Its name.
+    pub name: &'static str,
+    /// The largest step it allows, with the CFL number applied where it applies, in s.
+    pub step: f64,
+    /// The particle that sets it.
+    pub particle: Particle,
+}
+
+/// States that a run holds: the current, the previous and the next one, and a rate.
+const STATES: usize = 4;
+
+impl Simulation {
+    /// Looks at the initial state and times two evaluations of the rates.
+    pub fn plan(&mut self) -> Plan {
+        let control = build::step_control(&self.case);
+        let scheme = self.built.scheme.as_mut();
+        let mut state = scheme.initial_state();
+        scheme.constrain(0.0, &mut state);
+        let mut found = Vec::new();
+        scheme.inspect(&state, &mut found);
+        let number = match control {
+            StepControl::Cfl(number) => number,
+            StepControl::Fixed(_) => 1.0,
+        };
+        let mut limits: Vec<PlannedLimit> = found
+            .iter()
+            .map(|limit| PlannedLimit {
+                name: limit.name,
+                step: if limit.scaled { number * limit.step } else { limit.step },
+                particle: scheme.particle(limit.particle),
+            })
+            .collect();
+        limits.sort_by(|a, b| a.step.total_cmp(&b.step));
+        let mut warnings = self.built.warnings.clone();
+        let (step, limiter) = match control.choose(&found) {
+            Ok(chosen) => (chosen.step, chosen.limiter.to_owned()),
+            Err(failure) => {
+                warnings.push(failure.to_string());
+                (limits.first().map_or(f64::NAN, |limit| limit.step), "fixed".to_owned())
+            }
+        };
+        let mut rate = vec![0.0; state.len()];
+        scheme.rates(0.0, &state, &mut rate); // touches all memory once
+        let start = Instant::now();
+        scheme.rates(0.0, &state, &mut rate);
+        let evaluation = start.elapsed().as_secs_f64().max(1e-9);
+        let integrator = build::integrator(&self.case).build(state.len());
+        let steps = (*self.case.time.end / step).ceil().max(0.0) as u64;
+        let count = scheme.particle_count();
+        Plan {
+            bodies: self.built.bodies.clone(),
+            neighbors: self.built.neighbors,
+            poorly_supported: self
+                .built
+                .poorly_supported
+                .iter()
+                .map(|&a| scheme.particle(a as usize))
+                .collect(),
+            limits,
+            step,
+            limiter,
+            steps,
+            evaluations_per_second: count as f64 / evaluation,
+            seconds: steps as f64 * integrator.evaluations() as f64 * evaluation,
+            memory: scheme.memory() + STATES * size_of_val(state.as_slice()),
+            outputs: self.planned_outputs(),
+            warnings,
+        }
+    }
+
+    fn planned_outputs(&self) -> Vec<String> {
+        let (case, end) = (&self.case, *self.case.time.end);
+        let count = |interval: f64| (end / interval).floor() as u64 + 1;
+        let mut outputs = vec![
+            format!(
+                "{} particle files, every {} s: {}",
+                count(*case.output.every),
+                *case.output.every,
+                case.output.fields.iter().map(|field| field.name).collect::<Vec<_>>().join(", ")
+            ),
+            format!(
+                "{} rows of the tables, every {} s",
+                count(*case.output.table_every),
+                *case.output.table_every
+            ),
+        ];
+        let pictures: usize = case.pictures.iter().map(|picture| picture.times.len()).sum();
+        if pictures + case.plots.len() > 0 {
+            outputs.push(format!("{pictures} pictures and {} charts", case.plots.len()));
+        }
+        outputs
+    }
+}

@@ -1,0 +1,87 @@
+//! Numbers of chosen particles against time.
+
+use crate::fields::{FieldDescription, FieldSelector, component_name};
+use crate::output::Column;
+use crate::schemes::Scheme;
+
+/// A probe bound to the particles of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// First part of the names of its columns.
+    pub name: String,
+    /// What it records.
+    pub kind: ProbeKind,
+}
+
+/// What a probe records.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ProbeKind {
+    /// Whole fields of one particle.
+    Particle {
+        /// Its index in memory.
+        particle: u32,
+        /// The fields, with all their components.
+        fields: Vec<FieldDescription>,
+    },
+    /// The largest or smallest value over a set of particles.
+    Extremum {
+        /// One number of each particle.
+        field: FieldSelector,
+        /// Whether it is the largest.
+        largest: bool,
+        /// Their indices in memory, at least one.
+        particles: Vec<u32>,
+    },
+}
+
+impl Probe {
+    /// The columns that it fills, in `dimension` dimensions.
+    pub fn columns(&self, dimension: usize) -> Vec<Column> {
+        match &self.kind {
+            ProbeKind::Particle { fields, .. } => fields
+                .iter()
+                .flat_map(|field| {
+                    (0..field.kind.components(dimension)).map(move |number| {
+                        let component = component_name(field.kind, number, dimension);
+                        let dot = if component.is_empty() { "" } else { "." };
+                        let name = format!("{}.{}{dot}{component}", self.name, field.name);
+                        Column::new(name, field.unit)
+                    })
+                })
+                .collect(),
+            ProbeKind::Extremum { field, .. } => {
+                let name = format!("{}.{}", self.name, field.name(dimension));
+                vec![Column::new(name, field.field.unit)]
+            }
+        }
+    }
+
+    /// Appends its numbers to `row`. `scratch` is overwritten.
+    pub fn record(
+        &self,
+        scheme: &mut dyn Scheme,
+        time: f64,
+        state: &[f64],
+        scratch: &mut Vec<f64>,
+        row: &mut Vec<f64>,
+    ) {
+        match &self.kind {
+            ProbeKind::Particle { particle, fields } => {
+                for field in fields {
+                    scheme.sample(time, state, field.name, &[*particle], row);
+                }
+            }
+            ProbeKind::Extremum { field, largest, particles } => {
+                scratch.clear();
+                scheme.sample(time, state, field.field.name, particles, scratch);
+                let components = field.field.kind.components(scheme.dimension());
+                let values = scratch.chunks_exact(components).map(|value| field.value(value));
+                row.push(if *largest {
+                    values.fold(f64::NEG_INFINITY, f64::max)
+                } else {
+                    values.fold(f64::INFINITY, f64::min)
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! How the history of a quantity becomes one number.
+//!
+//! A history is a column of a table against its times. Between rows it is taken as a straight
+//! line; local extrema are refined by a parabola.
+//!
+//! Extrema and crossings ignore wiggles: a movement of less than [`WIGGLE`] times the range of
+//! the whole history (largest minus smallest value) is not seen.
+
+use thiserror::Error;
+
+use crate::output::Curve;
+use history::History;
+
+mod history;
+mod oscillation;
+mod reference;
+#[cfg(test)]
+mod tests;
+
+/// Movements below this share of a history's range are wiggles, neither extrema nor crossings.
+pub const WIGGLE: f64 = 0.05;
+
+/// A reduction with its arguments. `Reference` is what stands for a reference curve: the curve
+/// itself, or before it is read the name of its file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reduction<Reference = Curve> {
+    /// The largest value.
+    Maximum,
+    /// The smallest value.
+    Minimum,
+    /// The last value.
+    Final,
+    /// The first value.
+    Initial,
+    /// The value at a time in s.
+    At(f64),
+    /// The mean over time.
+    Mean,
+    /// Largest minus smallest value.
+    Range,
+    /// The period of the oscillation about the mid-range in s.
+    Period,
+    /// The value at the local extremum of this number, counted from 1.
+    Extremum(usize),
+    /// The time in s of the local extremum of this number, counted from 1.
+    ExtremumTime(usize),
+    /// The time in s of the change of sign of this number, counted from 1.
+    ZeroTime(usize),
+    /// The largest increase from one row to the next.
+    LargestRise,
+    /// Last value over first value, minus 1.
+    Growth,
+    /// The largest absolute difference to a reference curve.
+    Curve(Reference),
+    /// The root mean square over time of the difference to a reference curve.
+    CurveRms(Reference),
+}
+
+/// What a reduction needs besides the history.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// Nothing.
+    None,
+    /// A time in s: the key `at`.
+    Time,
+    /// A number counted from 1: the key `number`.
+    Number,
+    /// A reference curve: the key `reference`.
+    Reference,
+}
+
+/// A reduction by name, without its arguments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReductionEntry {
+    /// Name in a case file.
+    pub name: &'static str,
+    /// What it needs besides the history.
+    pub argument: Argument,
+    /// One line of explanation for the generated reference.
+    pub meaning: &'static str,
+}
+
+macro_rules! registry {
+    ($($name:literal, $argument:ident, $pattern:pat, $meaning:literal;)*) => {
+        /// All reductions, in the order of the reference.
+        pub const REDUCTIONS: &[ReductionEntry] = &[$(ReductionEntry {
+            name: $name,
+            argument: Argument::$argument,
+            meaning: $meaning,
+        },)*];
+
+        impl<Reference> Reduction<Reference> {
+            /// Name in a case file.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $($pattern => $name,)*
+                }
+            }
+        }
+    };
+}
+
+registry! {
+    "maximum", None, Self::Maximum, "the largest value";
+    "minimum", None, Self::Minimum, "the smallest value";
+    "final", None, Self::Final, "the last value";
+    "initial", None, Self::Initial, "the first value";
+    "at", Time, Self::At(_), "the value at a time, interpolated between rows";
+    "mean", None, Self::Mean, "the mean over time";
+    "range", None, Self::Range, "largest minus smallest value";
+    "period", None, Self::Period,
+        "the period in s of the oscillation about the middle between largest and smallest value";
+    "extremum", Number, Self::Extremum(_),
+        "the value at the local extremum of this number; wiggles below 5 % of the range are ignored";
+    "extremum_time", Number, Self::ExtremumTime(_), "the time of that extremum in s";
+    "zero_time", Number, Self::ZeroTime(_),
+        "the time in s of the change of sign of this number; wiggles are ignored";
+    "largest_rise", None, Self::LargestRise,
+        "the largest increase from one row to the next, negative if all rows fall";
+    "growth", None, Self::Growth, "last value over first value, minus 1";
+    "curve", Reference, Self::Curve(_), "the largest absolute difference to a reference curve";
+    "curve_rms", Reference, Self::CurveRms(_),
+        "the root mean square over time of the difference to a reference curve";
+}
+
+impl ReductionEntry {
+    /// The reduction called `name`.
+    pub fn from_name(name: &str) -> Option<&'static Self> {
+        REDUCTIONS.iter().find(|entry| entry.name == name)
+    }
+}
+
+impl<Reference> Reduction<Reference> {
+    /// The reduction called `name` if it needs no argument.
+    pub fn plain(name: &str) -> Option<Self> {
+        let all = [
+            Self::Maximum,
+            Self::Minimum,
+            Self::Final,
+            Self::Initial,
+            Self::Mean,
+            Self::Range,
+            Self::Period,
+            Self::LargestRise,
+            Self::Growth,
+        ];
+        all.into_iter().find(|reduction| reduction.name() == name)
+    }
+
+    /// The name with its argument, for tables: `at 0.5 s`, `extremum 2`.
+    pub fn label(&self) -> String {
+        match self {
+            Self::At(time) => format!("{} {time} s", self.name()),
+            Self::Extremum(number) | Self::ExtremumTime(number) | Self::ZeroTime(number) => {
+                format!("{} {number}", self.name())
+            }
+            _ => self.name().to_owned(),
+        }
+    }
+
+    /// The unit of the result for a quantity in `unit`.
+    pub fn unit<'a>(&self, unit: &'a str) -> &'a str {
+        match self {
+            Self::Period | Self::ExtremumTime(_) | Self::ZeroTime(_) => "s",
+            Self::Growth => "1",
+            _ => unit,
+        }
+    }
+
+    /// The reference curve, if this reduction has one.
+    pub fn reference(&self) -> Option<&Reference> {
+        match self {
+            Self::Curve(reference) | Self::CurveRms(reference) => Some(reference),
+            _ => None,
+        }
+    }
+
+    /// The same reduction with its reference turned into another by `change`, for example a file
+    /// name into the curve read from it.
+    ///
+    /// # Errors
+    /// That of `change`.
+    pub fn try_map<Other, Error>(
+        &self,
+        change: impl FnOnce(&Reference) -> Result<Other, Error>,
+    ) -> Result<Reduction<Other>, Error> {
+        Ok(match self {
+            Self::Maximum => Reduction::Maximum,
+            Self::Minimum => Reduction::Minimum,
+            Self::Final => Reduction::Final,
+            Self::Initial => Reduction::Initial,
+            Self::At(time) => Reduction::At(*time),
+            Self::Mean => Reduction::Mean,
+            Self::Range => Reduction::Range,
+            Self::Period => Reduction::Period,
+            Self::Extremum(number) => Reduction::Extremum(*number),
+            Self::ExtremumTime(number) => Reduction::ExtremumTime(*number),
+            Self::ZeroTime(number) => Reduction::ZeroTime(*number),
+            Self::LargestRise => Reduction::LargestRise,
+            Self::Growth => Reduction::Growth,
+            Self::Curve(reference) => Reduction::Curve(change(reference)?),
+            Self::CurveRms(reference) => Reduction::CurveRms(change(reference)?),
+        })
+    }
+}
+
+impl Reduction {
+    /// Reduces the history `values` at the times `time` in s.
+    ///
+    /// - `mean` is the integral of the straight lines between rows over the time they span.
+    /// - `period` is the slope of a straight line fitted to the times of the crossings of the
+    ///   mid-range against their number, one line for the upward and one for the downward ones
+    ///   with a common slope. So neither an asymmetric shape nor an offset matters.
+    /// - `extremum` counts rows from which the value moves away by [`WIGGLE`] of the range on
+    ///   both sides, so the first and the last row never count, and refines each by the parabola
+    ///   through it and its two neighbours.
+    /// - `zero_time` counts changes of sign that go beyond half of [`WIGGLE`] of the range on
+    ///   both sides; of rows at zero the first counts. Where noise crosses more than once, the
+    ///   middle between the first and the last crossing is taken; the same holds for `period`.
+    /// - `curve` and `curve_rms` compare the straight lines between rows with those between the
+    ///   points of the reference, over the time that both cover, without error of sampling.
+    ///
+    /// # Errors
+    /// A history with values that are not finite, times that do not grow, or not enough rows; and
+    /// what each reduction cannot find, see [`ReduceError`].
+    pub fn apply(&self, time: &[f64], values: &[f64]) -> Result<f64, ReduceError> {
+        let history = History::new(time, values)?;
+        match self {
+            Self::Maximum => Ok(history.range()[1]),
+            Self::Minimum => Ok(history.range()[0]),
+            Self::Final => Ok(history.last()),
+            Self::Initial => Ok(history.first()),
+            Self::At(time) => history.at(*time),
+            Self::Mean => Ok(history.needs(2)?.mean()),
+            Self::Range => history.needs(2).map(|history| history.range()[1] - history.range()[0]),
+            Self::Period => history.needs(3)?.period(),
+            Self::Extremum(number) => Ok(history.needs(3)?.extremum(*number)?.value),
+            Self::ExtremumTime(number) => Ok(history.needs(3)?.extremum(*number)?.time),
+            Self::ZeroTime(number) => history.needs(2)?.zero_time(*number),
+            Self::LargestRise => Ok(history.needs(2)?.largest_rise()),
+            Self::Growth => history.needs(2)?.growth(),
+            Self::Curve(curve) => history.largest_difference(curve),
+            Self::CurveRms(curve) => history.rms_difference(curve),
+        }
+    }
+}
+
+/// A history cannot be reduced in this way.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ReduceError {
+    /// The history is too short.
+    #[error(
+        "the table has {got} rows where at least {needed} are needed; lower output.table_every"
+    )]
+    TooFewRows {
+        /// Rows needed.
+        needed: usize,
+        /// Rows there are.
+        got: usize,
+    },
+    /// There are not as many times as values.
+    #[error("there are {times} times for {values} values")]
+    UnequalLengths {
+        /// Number of times.
+        times: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// A value is infinite or not a number.
+    #[error("the value in row {row} (t = {time} s) is {value}, which is no finite number")]
+    NotFinite {
+        /// Row, from 1.
+        row: usize,
+        /// Its time in s.
+        time: f64,
+        /// The value.
+        value: f64,
+    },
+    /// A time is not finite or not later than the one before.
+    #[error("the time in row {row} is {time} s, which is not later than that of the row before")]
+    TimeNotGrowing {
+        /// Row, from 1.
+        row: usize,
+        /// Its time in s.
+        time: f64,
+    },
+    /// The time asked for is not covered.
+    #[error("t = {time} s lies outside of the table, which covers {first} s to {last} s")]
+    TimeOutside {
+        /// The time asked for in s.
+        time: f64,
+        /// First time of the history in s.
+        first: f64,
+        /// Last time of the history in s.
+        last: f64,
+    },
+    /// There are fewer local extrema.
+    #[error("there is no local extremum number {wanted}: {found} are there")]
+    NoSuchExtremum {
+        /// Number asked for, from 1.
+        wanted: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// There are fewer changes of sign.
+    #[error("there is no change of sign number {wanted}: {found} are there")]
+    NoSuchZero {
+        /// Number asked for, from 1.
+        wanted: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// There is no whole oscillation.
+    #[error(
+        "there is no whole oscillation: the value crosses the middle of its range {crossings} \
+         times, and two crossings in the same direction are needed"
+    )]
+    NoPeriod {
+        /// Crossings in both directions.
+        crossings: usize,
+    },
+    /// Growth has no meaning.
+    #[error("the growth over a first value of 0 is not defined")]
+    GrowthFromZero,
+    /// History and reference have no time in common.
+    #[error(
+        "the reference covers {} s to {} s and the table {} s to {} s: they have no time in \
+         common", reference[0], reference[1], history[0], history[1]
+    )]
+    NoOverlap {
+        /// First and last time of the history in s.
+        history: [f64; 2],
+        /// First and last abscissa of the reference in s.
+        reference: [f64; 2],
+    },
+    /// The reference curve itself cannot be used.
+    #[error("the reference curve cannot be used: {0}")]
+    Reference(Box<ReduceError>),
+}

@@ -1,0 +1,64 @@
+//! The least-squares gradient of Upwind (3.50) to (3.53).
+
+use super::error::OperatorError;
+use super::gradient::invert;
+use super::support::Support;
+use crate::geometry::Particles;
+use crate::{Tensor, parallel};
+
+/// Inverse moment matrices `[sum_b N_ab (x) N_ab]^-1` of the least-squares gradient
+///
+/// `grad u_a = [sum_b N_ab (x) N_ab]^-1 sum_b (u_b - u_a) / |d_ab| N_ab`, Upwind (3.53),
+///
+/// with `d_ab = X_b - X_a` and `N_ab = d_ab / |d_ab|`. It is exact for linear fields. The sum
+/// itself belongs to the pass of a scheme, which has the fields in its hands.
+#[derive(Clone, Debug)]
+pub struct LeastSquares<const D: usize> {
+    inverse: Vec<Tensor<D>>,
+}
+
+impl<const D: usize> LeastSquares<D> {
+    /// Builds the inverse moments of all particles.
+    ///
+    /// # Errors
+    /// [`OperatorError`] for a particle whose neighbours do not span the space, or that shares
+    /// its place with another.
+    pub fn new(particles: &Particles<D>, support: &Support<D>) -> Result<Self, OperatorError> {
+        let mut moments: Vec<Result<Tensor<D>, OperatorError>> = Vec::new();
+        moments.resize_with(particles.len(), || Ok(Tensor::zeros()));
+        parallel::for_each_chunk(&mut moments, |first, rows| {
+            for (offset, moment) in rows.iter_mut().enumerate() {
+                *moment = inverse_moment(particles, support, first + offset);
+            }
+        });
+        Ok(Self { inverse: moments.into_iter().collect::<Result<_, _>>()? })
+    }
+
+    /// `[sum_b N_ab (x) N_ab]^-1` of particle a.
+    #[inline]
+    pub fn inverse(&self, a: usize) -> &Tensor<D> {
+        &self.inverse[a]
+    }
+}
+
+fn inverse_moment<const D: usize>(
+    particles: &Particles<D>,
+    support: &Support<D>,
+    a: usize,
+) -> Result<Tensor<D>, OperatorError> {
+    let row = support.list.row(a);
+    let mut moment = Tensor::<D>::zeros();
+    for &b in row {
+        let separation = support.separation(&particles.position, a, b);
+        let square = separation.norm_squared();
+        if !(square > 0.0) {
+            return Err(OperatorError::Coincident {
+                first: particles.id[a],
+                second: particles.id[b as usize],
+                position: particles.position[a].iter().copied().collect(),
+            });
+        }
+        moment += separation * separation.transpose() / square;
+    }
+    invert(particles, a, row.len(), &moment, "least-squares")
+}

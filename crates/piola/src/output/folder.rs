@@ -1,0 +1,217 @@
+//! The folder of the results of one run, and what is where in it.
+//!
+//! ```text
+//! run.json                      the record of the run
+//! particles.pvd                 the time series for ParaView
+//! particles/frame_000012.vtp    one instant
+//! probes.csv energy.csv steps.csv
+//! pictures/NAME_000012.png      particles coloured by a field
+//! plots/NAME.png                curves against time
+//! ```
+
+use std::fs;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use super::{OutputError, RunRecord, atomic};
+
+const RECORD: &str = "run.json";
+const SERIES: &str = "particles.pvd";
+const TABLES: [&str; 3] = ["probes.csv", "energy.csv", "steps.csv"];
+const PARTICLES: &str = "particles";
+const PICTURES: &str = "pictures";
+const PLOTS: &str = "plots";
+
+/// A folder that belongs to one run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ResultsFolder {
+    path: PathBuf,
+}
+
+impl ResultsFolder {
+    /// Makes the folder `path` ready for a run and writes `record` into it, so that the folder is
+    /// known as piola's even if the run is killed.
+    ///
+    /// A folder that does not exist is created, with those above it. If it holds the record of an
+    /// earlier run, the files of that run are removed: those that the record lists, and whatever
+    /// has the name of an output file. Other files stay.
+    ///
+    /// # Errors
+    /// The folder holds files but no record; a file has its name; it cannot be created, read or
+    /// written.
+    pub fn create(path: &Path, record: &RunRecord) -> Result<Self, OutputError> {
+        let fail = |source| OutputError::from_io(path, source);
+        let folder = Self { path: path.into() };
+        match fs::metadata(path) {
+            Ok(metadata) if !metadata.is_dir() => {
+                return Err(OutputError::NotAFolder { path: path.into() });
+            }
+            Ok(_) => folder.empty()?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => create_folder(path)?,
+            Err(error) if error.kind() == io::ErrorKind::NotADirectory => create_folder(path)?,
+            Err(error) => return Err(fail(error)),
+        }
+        record.write(&folder.record())?;
+        Ok(folder)
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The record of the run.
+    pub fn record(&self) -> PathBuf {
+        self.path.join(RECORD)
+    }
+
+    /// The time series of the particle files.
+    pub fn series(&self) -> PathBuf {
+        self.path.join(SERIES)
+    }
+
+    /// The table of the probes.
+    pub fn probes(&self) -> PathBuf {
+        self.path.join(TABLES[0])
+    }
+
+    /// The table of energies and momenta.
+    pub fn energy(&self) -> PathBuf {
+        self.path.join(TABLES[1])
+    }
+
+    /// The table of the steps.
+    pub fn steps(&self) -> PathBuf {
+        self.path.join(TABLES[2])
+    }
+
+    /// The particle file number `frame`; its folder is created if it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
+    pub fn particles(&self, frame: u64) -> Result<PathBuf, OutputError> {
+        Ok(self.below(PARTICLES)?.join(format!("frame_{frame:06}.vtp")))
+    }
+
+    /// The picture called `name` of instant `frame`; its folder is created if it is missing.
+    /// Letters of `name` that do not suit a file name become `_`.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
+    pub fn picture(&self, name: &str, frame: u64) -> Result<PathBuf, OutputError> {
+        Ok(self.below(PICTURES)?.join(format!("{}_{frame:06}.png", file_name(name))))
+    }
+
+    /// The chart called `name`; its folder is created if it is missing. Letters of `name` that do
+    /// not suit a file name become `_`.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
+    pub fn plot(&self, name: &str) -> Result<PathBuf, OutputError> {
+        Ok(self.below(PLOTS)?.join(format!("{}.png", file_name(name))))
+    }
+
+    /// `file` relative to this folder with `/` between its parts, as series and records name it.
+    pub fn relative(&self, file: &Path) -> String {
+        let inside = file.strip_prefix(&self.path).unwrap_or(file);
+        let parts = inside.components().map(|part| part.as_os_str().to_string_lossy());
+        parts.collect::<Vec<_>>().join("/")
+    }
+
+    fn below(&self, name: &str) -> Result<PathBuf, OutputError> {
+        let folder = self.path.join(name);
+        create_folder(&folder)?;
+        Ok(folder)
+    }
+
+    /// Removes the files of an earlier run, but not its record, which the next one replaces.
+    fn empty(&self) -> Result<(), OutputError> {
+        let Ok(record) = RunRecord::read(&self.record()) else {
+            // Temporary files are ours, whatever became of the record.
+            let foreign = names(&self.path)?.into_iter().find(|name| !atomic::is_temporary(name));
+            return foreign.map_or(Ok(()), |entry| {
+                Err(OutputError::ForeignFolder { path: self.path.clone(), entry })
+            });
+        };
+        let mut files: Vec<PathBuf> = record.files.iter().filter_map(|file| own(file)).collect();
+        for folder in ["", PARTICLES, PICTURES, PLOTS] {
+            let path = self.path.join(folder);
+            // A link could lead anywhere.
+            if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
+                let known = names(&path)?.into_iter().filter(|name| is_known(folder, name));
+                files.extend(known.map(|name| Path::new(folder).join(name)));
+            }
+        }
+        for file in files {
+            let path = self.path.join(file);
+            let parent = path.parent().unwrap_or(&self.path);
+            let reached = parent == self.path
+                || fs::symlink_metadata(parent).is_ok_and(|metadata| metadata.is_dir());
+            if reached && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+                fs::remove_file(&path).map_err(|error| OutputError::from_io(&path, error))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Creates `path` and the folders above it.
+fn create_folder(path: &Path) -> Result<(), OutputError> {
+    fs::create_dir_all(path).map_err(|error| {
+        let file = path.ancestors().find(|folder| folder.is_file());
+        match file {
+            Some(file) => OutputError::NotAFolder { path: file.into() },
+            None => OutputError::from_io(path, error),
+        }
+    })
+}
+
+/// The names of what is in `folder`, in order.
+fn names(folder: &Path) -> Result<Vec<String>, OutputError> {
+    let fail = |error| OutputError::from_io(folder, error);
+    let entries = fs::read_dir(folder).map_err(fail)?;
+    let mut names = entries
+        .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
+        .collect::<io::Result<Vec<String>>>()
+        .map_err(fail)?;
+    names.sort();
+    Ok(names)
+}
+
+/// Whether a file of this name in this part of a results folder is one of ours.
+fn is_known(folder: &str, name: &str) -> bool {
+    let numbered = |end: &str| {
+        let number = name.strip_suffix(end).and_then(|start| start.rsplit_once('_'));
+        number.is_some_and(|(_, number)| {
+            number.len() >= 6 && number.bytes().all(|digit| digit.is_ascii_digit())
+        })
+    };
+    let by_name = match folder {
+        "" => name == SERIES || TABLES.contains(&name),
+        PARTICLES => name.starts_with("frame_") && numbered(".vtp"),
+        PICTURES => numbered(".png"),
+        _ => false,
+    };
+    by_name || atomic::is_temporary(name)
+}
+
+/// A file of a record as a path inside the folder; nothing if it would lead out of it, or is the
+/// record.
+fn own(file: &str) -> Option<PathBuf> {
+    let path = Path::new(file);
+    let parts: Vec<Component> = path.components().collect();
+    let inside = parts.iter().all(|part| matches!(part, Component::Normal(_)));
+    ((1..=2).contains(&parts.len()) && inside && file != RECORD).then(|| path.into())
+}
+
+/// `name` as part of a file name on any system.
+fn file_name(name: &str) -> String {
+    const LONGEST: usize = 100;
+    let suits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
+    let mut text: String =
+        name.chars().take(LONGEST).map(|letter| if suits(letter) { letter } else { '_' }).collect();
+    if text.is_empty() || text.starts_with('.') {
+        text.insert(0, '_');
+    }
+    text
+}

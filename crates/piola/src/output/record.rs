@@ -1,0 +1,204 @@
+//! The record of a run: all that is needed to say what was run, how it went, and to run it again.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::{OutputError, atomic};
+
+/// What was run and how it went, written as `run.json`.
+///
+/// Keys that a file lacks take their defaults, and unknown ones are passed over, so that records
+/// of other versions can be read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RunRecord {
+    /// `piola`, by which its records are known.
+    pub program: String,
+    /// Version of the program.
+    pub version: String,
+    /// Path of the case file as it was given.
+    pub case_file: String,
+    /// The row of the reproduction list, if the case names one.
+    pub id: Option<String>,
+    /// Title of the case.
+    pub title: String,
+    /// Name of the variant that was run; none for the case itself.
+    pub variant: Option<String>,
+    /// Text of the case file, without overrides.
+    pub case_text: String,
+    /// Overrides in the order in which they were applied, as `path.to.key=value`.
+    pub overrides: Vec<String>,
+    /// All seeds of random numbers, in the order of the case file.
+    pub seeds: Vec<u64>,
+    /// Number of threads.
+    pub threads: usize,
+    /// 1, 2 or 3.
+    pub dimension: usize,
+    /// The bodies, in the order of their numbers.
+    pub bodies: Vec<BodyRecord>,
+    /// When the run started ([`timestamp`]).
+    pub started: String,
+    /// When it ended; none while it runs.
+    pub finished: Option<String>,
+    /// `running`, `completed`, `stopped`, or `failed: ` and the cause in a word.
+    pub outcome: String,
+    /// The whole message of a failure, for a reader.
+    pub message: Option<String>,
+    /// Steps taken.
+    pub steps: u64,
+    /// Simulated time that was to be reached, in s.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub end_time: f64,
+    /// Simulated time that was reached, in s.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub time_reached: f64,
+    /// Where the time went.
+    pub stages: Vec<StageRecord>,
+    /// Files written, relative to the folder of the record, with `/` between their parts.
+    pub files: Vec<String>,
+    /// What the user was warned of.
+    pub warnings: Vec<String>,
+}
+
+/// One body of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BodyRecord {
+    /// Name of the body.
+    pub name: String,
+    /// Number of its particles.
+    pub particles: usize,
+}
+
+/// One stage of a run and the time it took.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct StageRecord {
+    /// Name, for example `rates` or `output`.
+    pub name: String,
+    /// Wall time of all calls together, in s.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub seconds: f64,
+    /// Number of calls.
+    pub calls: u64,
+}
+
+/// A record could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// The operating system refuses.
+    #[error("cannot read {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// The file is no record of a run.
+    #[error("{} is no record of a run: {source}", path.display())]
+    NotARecord {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: serde_json::Error,
+    },
+    /// The file is JSON, but of another program.
+    #[error("{} is no record of a run of piola: its key `program` is {got:?}", path.display())]
+    OtherProgram {
+        /// The file.
+        path: PathBuf,
+        /// Value of `program`, empty if there is none.
+        got: String,
+    },
+}
+
+impl Default for RunRecord {
+    fn default() -> Self {
+        Self {
+            program: Self::PROGRAM.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            case_file: String::new(),
+            id: None,
+            title: String::new(),
+            variant: None,
+            case_text: String::new(),
+            overrides: Vec::new(),
+            seeds: Vec::new(),
+            threads: 1,
+            dimension: 0,
+            bodies: Vec::new(),
+            started: String::new(),
+            finished: None,
+            outcome: "running".into(),
+            message: None,
+            steps: 0,
+            end_time: 0.0,
+            time_reached: 0.0,
+            stages: Vec::new(),
+            files: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+}
+
+impl RunRecord {
+    /// Value of `program` in every record.
+    pub const PROGRAM: &'static str = "piola";
+    /// Longest record that is read: 64 MiB.
+    const MAX_BYTES: u64 = 64 << 20;
+
+    /// Writes the record as JSON to the file `path`, and returns its length in bytes.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<u64, OutputError> {
+        atomic::write_file(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, self)?;
+            out.write_all(b"\n")
+        })
+    }
+
+    /// Reads the record in the file `path`.
+    ///
+    /// # Errors
+    /// The file cannot be read or is no record of a run of piola.
+    pub fn read(path: &Path) -> Result<Self, RecordError> {
+        /// The one key that tells a record from other JSON, without its default.
+        #[derive(Deserialize)]
+        struct Mark {
+            #[serde(default)]
+            program: String,
+        }
+        let fail = |source| RecordError::Io { path: path.into(), source };
+        let mut bytes = Vec::new();
+        File::open(path)
+            .map_err(fail)?
+            .take(Self::MAX_BYTES)
+            .read_to_end(&mut bytes)
+            .map_err(fail)?;
+        let fail = |source| RecordError::NotARecord { path: path.into(), source };
+        let Mark { program } = serde_json::from_slice(&bytes).map_err(fail)?;
+        if program != Self::PROGRAM {
+            return Err(RecordError::OtherProgram { path: path.into(), got: program });
+        }
+        serde_json::from_slice(&bytes).map_err(fail)
+    }
+}
+
+/// `time` in UTC as in RFC 3339, to the second: `2026-11-21T02:42:00Z`. A clock that is set before
+/// 1970 or after 9999 is taken as standing at that end.
+pub fn timestamp(time: SystemTime) -> String {
+    const LAST: u64 = 253_402_300_799;
+    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()).min(LAST);
+    humantime::format_rfc3339_seconds(UNIX_EPOCH + Duration::from_secs(seconds)).to_string()
+}
+
+/// JSON has no NaN: what is not finite is written as `null`, and that is read as NaN.
+fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+}

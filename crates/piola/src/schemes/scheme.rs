@@ -1,0 +1,174 @@
+//! What a formulation offers to integrators, clock, observers and output.
+
+use crate::fields::{FieldDescription, FieldValues, Snapshot};
+
+/// A formulation bound to its particles, materials and kernel.
+///
+/// The state is one flat slice: `particle_count` rows of `row_length` numbers, followed by the
+/// running integrals of the ledger, one for each name in [`Scheme::mechanisms`]. The rate of an
+/// integral is the power of its mechanism, so an integrator carries energy bookkeeping to its
+/// own order without knowing of it, and a copy of the state is all there is to save.
+pub trait Scheme: Send {
+    /// Name in a case file.
+    fn name(&self) -> &'static str;
+
+    /// 1, 2 or 3.
+    fn dimension(&self) -> usize;
+
+    /// Number of particles.
+    fn particle_count(&self) -> usize;
+
+    /// Numbers of state a particle.
+    fn row_length(&self) -> usize;
+
+    /// The fields that [`Scheme::snapshot`] can give.
+    fn fields(&self) -> &'static [FieldDescription];
+
+    /// The mechanisms that give or take energy, in the order of the state's tail. Work done on
+    /// the body is positive; what a dissipative mechanism takes is negative.
+    fn mechanisms(&self) -> &'static [&'static str];
+
+    /// The names of the energies of [`Scheme::energies`].
+    fn energy_names(&self) -> &'static [&'static str];
+
+    /// The state at the start, with zero integrals.
+    fn initial_state(&self) -> Vec<f64>;
+
+    /// Writes the time derivative of `state` at `time` to `rate`, of the same layout.
+    fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]);
+
+    /// Sets prescribed values of `time` in `state`.
+    fn constrain(&self, time: f64, state: &mut [f64]);
+
+    /// Looks once over `state`: the health figures, and the largest stable steps at a CFL number
+    /// of one in `limits`, which is cleared first.
+    fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health;
+
+    /// The energies of `state` in J, in the order of [`Scheme::energy_names`].
+    fn energies(&self, state: &[f64], energies: &mut [f64]);
+
+    /// Appends the components of one of [`Scheme::fields`] at `state` for each of `particles`
+    /// (indices in memory) to `values`. A field of another name appends nothing.
+    fn sample(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    );
+
+    /// Number of the body of each particle.
+    fn bodies(&self) -> &[u32];
+
+    /// Number of each particle in the order of creation.
+    fn ids(&self) -> &[u32];
+
+    /// Reference position in m and number in the order of creation of each particle.
+    fn particle(&self, index: usize) -> Particle;
+
+    /// The likely cause of the collapse of a particle (index in memory), and what to change.
+    fn collapse_advice(&self, index: usize) -> String;
+
+    /// Bytes that the scheme holds, without states.
+    fn memory(&self) -> usize;
+}
+
+/// Where a particle is and what its number is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Particle {
+    /// Number in the order of creation.
+    pub id: u32,
+    /// Reference position in m, `dimension` numbers.
+    pub reference: Vec<f64>,
+}
+
+/// Figures that tell whether a state is sound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Health {
+    /// Largest speed in m/s.
+    pub largest_speed: f64,
+    /// Smallest volume ratio J, evolved or from the deformation gradient, whichever is smaller.
+    pub smallest_ratio: f64,
+    /// Particle (index in memory) of the smallest ratio.
+    pub smallest_ratio_particle: usize,
+    /// Largest difference between the evolved J and det F.
+    pub ratio_mismatch: f64,
+    /// First particle (index in memory) with a value that is not finite.
+    pub first_not_finite: Option<usize>,
+}
+
+impl Health {
+    /// The figures of no particle, from which a reduction starts.
+    pub const NEUTRAL: Self = Self {
+        largest_speed: 0.0,
+        smallest_ratio: f64::INFINITY,
+        smallest_ratio_particle: 0,
+        ratio_mismatch: 0.0,
+        first_not_finite: None,
+    };
+
+    /// The worse of two, figure by figure; `self` wins ties, so that reductions in index order
+    /// name the first particle.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        let other_is_smaller = other.smallest_ratio < self.smallest_ratio;
+        Self {
+            largest_speed: self.largest_speed.max(other.largest_speed),
+            smallest_ratio: self.smallest_ratio.min(other.smallest_ratio),
+            smallest_ratio_particle: if other_is_smaller {
+                other.smallest_ratio_particle
+            } else {
+                self.smallest_ratio_particle
+            },
+            ratio_mismatch: self.ratio_mismatch.max(other.ratio_mismatch),
+            first_not_finite: self.first_not_finite.or(other.first_not_finite),
+        }
+    }
+}
+
+/// A bound on the time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepLimit {
+    /// What limits the step, for example `acoustic`.
+    pub name: &'static str,
+    /// Largest step in s at a CFL number of one.
+    pub step: f64,
+    /// The particle (index in memory) that sets it.
+    pub particle: usize,
+    /// Whether the CFL number scales this bound, or it is a bound by itself.
+    pub scaled: bool,
+}
+
+/// Positions and the named fields of all particles at `state`; names that the scheme does not
+/// have are left out.
+pub fn snapshot(
+    scheme: &mut dyn Scheme,
+    time: f64,
+    step: u64,
+    state: &[f64],
+    names: &[&str],
+) -> Snapshot {
+    let particles: Vec<u32> = (0..scheme.particle_count() as u32).collect();
+    let fields = scheme.fields().iter().filter(|field| names.contains(&field.name));
+    let described: Vec<FieldDescription> = fields.copied().collect();
+    let mut all = |name: &str| {
+        let mut values = Vec::new();
+        scheme.sample(time, state, name, &particles, &mut values);
+        values
+    };
+    let positions = all("position");
+    let fields = described
+        .into_iter()
+        .map(|description| FieldValues { description, values: all(description.name) })
+        .collect();
+    Snapshot {
+        dimension: scheme.dimension(),
+        time,
+        step,
+        positions,
+        ids: scheme.ids().to_vec(),
+        bodies: scheme.bodies().to_vec(),
+        fields,
+    }
+}

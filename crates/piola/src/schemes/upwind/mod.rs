@@ -1,0 +1,135 @@
+//! The upwind formulation: total Lagrangian, mixed in velocity and volume ratio, stabilised by
+//! an acoustic Riemann solver. Paper: Upwind, equations (3.39) to (3.57).
+//!
+//! Unknowns of a particle are v, J, x and F. Reference density is `rho`, quadrature volume V,
+//! `G_ab` the corrected gradient of [`crate::operators::GradientOperator`], H = cof F and
+//! p = p(J) of the evolved J:
+//!
+//! ```text
+//! rho dv_a/dt = 1/V_a sum_b p_b V_b H_b G_ba + A_a t_a / V_a + rho g + D_v / V_a
+//!     dJ_a/dt = H_a : dF_a/dt + D_p / V_a
+//!     dF_a/dt = sum_b (v_b - v_a) (x) G_ab
+//!     dx_a/dt = v_a
+//! ```
+//!
+//! The first sum runs over a itself too, which makes it the exact adjoint of the third: internal
+//! power is `-sum_a V_a p_a dJ_a/dt` to round-off, whatever the correction and the weights, and
+//! a free surface needs no treatment.
+
+mod build;
+mod initial;
+mod inspect;
+mod local;
+mod pairs;
+mod passes;
+mod reconstruction;
+mod scheme;
+mod settings;
+
+use piola_formulas::volumetric::{Prestressed, VolumetricLaw};
+
+use crate::Vector;
+use crate::boundaries::{SpaceTime, prescribed::PrescribedComponents};
+use crate::geometry::Particles;
+use crate::operators::{GradientOperator, LeastSquares, Support};
+
+pub use build::{UpwindError, UpwindInput};
+pub use initial::Initial;
+pub use passes::PASSES;
+pub use scheme::FIELDS;
+pub use settings::{BodyForce, Material, Settings, WaveSpeed};
+
+use inspect::ChunkFigures;
+use local::Side;
+use reconstruction::Slope;
+
+/// The upwind formulation bound to its particles.
+pub struct Upwind<const D: usize> {
+    particles: Particles<D>,
+    support: Support<D>,
+    gradient: GradientOperator<D>,
+    least_squares: Option<LeastSquares<D>>,
+    settings: Settings,
+    /// One a body.
+    materials: Vec<Material>,
+    reference: Vec<Reference>,
+    initial_velocity: Vec<Vector<D>>,
+    /// Distance to the nearest neighbour in the reference, m.
+    nearest: Vec<f64>,
+    /// Largest `1/V_a sum_b 1/2 |N . C_ab|` over all particles, 1/m: see `inspect`.
+    largest_exchange: f64,
+    /// Largest wave speed of the reference state, m/s.
+    fastest_reference: f64,
+    body_forces: Vec<BodyForce<D>>,
+    prescribed: PrescribedComponents,
+    /// Acceleration by body forces: constant in time if all of them are steady.
+    body_acceleration: Vec<Vector<D>>,
+    steady_body_force: bool,
+    /// External force of the tractions on each particle in N, with the particles that have one.
+    loaded: Vec<Loaded<D>>,
+    sides: Vec<Side<D>>,
+    slopes: Vec<Slope<D>>,
+    chunk_powers: Vec<Powers>,
+    chunk_figures: Vec<ChunkFigures>,
+}
+
+/// Reference values of a particle that its material and its start give.
+#[derive(Clone, Copy, Debug)]
+struct Reference {
+    /// Density of the (prestressed) reference in kg/m^D.
+    density: f64,
+    /// Volume ratio J0 of the prestress against the stress-free state.
+    ratio: f64,
+    /// Wave speed at the reference in m/s.
+    wave_speed: f64,
+}
+
+/// A traction evaluated at one particle.
+struct Loaded<const D: usize> {
+    particle: usize,
+    area: f64,
+    place: [f64; 3],
+    value: [std::sync::Arc<dyn SpaceTime>; D],
+}
+
+/// The energies of the formulation.
+pub const ENERGIES: [&str; 2] = ["kinetic", "strain"];
+
+/// The mechanisms of its ledger, in the order of [`Powers`].
+pub const MECHANISMS: [&str; 5] =
+    ["body_force", "traction", "boundary_motion", "upwind_velocity", "upwind_pressure"];
+
+/// Power of each mechanism in W.
+#[derive(Clone, Copy, Debug, Default)]
+struct Powers([f64; MECHANISMS.len()]);
+
+const BODY_FORCE: usize = 0;
+const TRACTION: usize = 1;
+const BOUNDARY_MOTION: usize = 2;
+const UPWIND_VELOCITY: usize = 3;
+const UPWIND_PRESSURE: usize = 4;
+
+/// Where the unknowns stand in a row of the state: v, J, x, F row by row.
+struct Row<const D: usize>;
+
+impl<const D: usize> Row<D> {
+    const VOLUME_RATIO: usize = D;
+    const POSITION: usize = D + 1;
+    const DEFORMATION: usize = 2 * D + 1;
+    const LENGTH: usize = 2 * D + 1 + D * D;
+}
+
+impl<const D: usize> Upwind<D> {
+    /// The law of particle a with its prestress.
+    #[inline]
+    fn law(&self, a: usize) -> Prestressed {
+        let law: VolumetricLaw = self.materials[self.particles.body[a] as usize].law;
+        Prestressed { law, reference_ratio: self.reference[a].ratio }
+    }
+
+    /// Mass of particle a in kg (per unit of the missing dimensions).
+    #[inline]
+    fn mass(&self, a: usize) -> f64 {
+        self.reference[a].density * self.particles.volume[a]
+    }
+}

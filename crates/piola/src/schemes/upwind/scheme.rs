@@ -1,0 +1,196 @@
+//! The upwind formulation as integrators, clock and output see it.
+
+use piola_formulas::tensor;
+use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
+
+use super::local::deformation;
+use super::{ENERGIES, MECHANISMS, Row, Upwind};
+use crate::fields::{FieldDescription, FieldKind};
+use crate::parallel;
+use crate::schemes::{Health, Particle, Scheme, StepLimit};
+
+const fn field(
+    name: &'static str,
+    unit: &'static str,
+    kind: FieldKind,
+    meaning: &'static str,
+) -> FieldDescription {
+    FieldDescription { name, unit, kind, meaning }
+}
+
+/// The fields of the formulation.
+pub const FIELDS: [FieldDescription; 13] = [
+    field("position", "m", FieldKind::Vector, "current position x"),
+    field("displacement", "m", FieldKind::Vector, "x - X"),
+    field("velocity", "m/s", FieldKind::Vector, "velocity v"),
+    field("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
+    field("pressure", "Pa", FieldKind::Scalar, "pressure p(J), positive in compression"),
+    field("volume_ratio", "1", FieldKind::Scalar, "volume ratio J as evolved"),
+    field("determinant", "1", FieldKind::Scalar, "determinant of the deformation gradient"),
+    field("deformation_gradient", "1", FieldKind::Tensor, "deformation gradient F, row by row"),
+    field("density", "kg/m3", FieldKind::Scalar, "current density, from the evolved J"),
+    field("wave_speed", "m/s", FieldKind::Scalar, "fastest wave, measured on the reference"),
+    field("smoothing_length", "m", FieldKind::Scalar, "smoothing length h"),
+    field("neighbors", "1", FieldKind::Scalar, "number of neighbours"),
+    field("volume", "m3", FieldKind::Scalar, "reference quadrature volume V"),
+];
+
+impl<const D: usize> Scheme for Upwind<D> {
+    fn name(&self) -> &'static str {
+        "upwind"
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn particle_count(&self) -> usize {
+        self.particles.len()
+    }
+
+    fn row_length(&self) -> usize {
+        Row::<D>::LENGTH
+    }
+
+    fn fields(&self) -> &'static [FieldDescription] {
+        &FIELDS
+    }
+
+    fn mechanisms(&self) -> &'static [&'static str] {
+        &MECHANISMS
+    }
+
+    fn energy_names(&self) -> &'static [&'static str] {
+        &ENERGIES
+    }
+
+    fn initial_state(&self) -> Vec<f64> {
+        let mut state = vec![0.0; self.particles.len() * Row::<D>::LENGTH + MECHANISMS.len()];
+        let (length, position) = (Row::<D>::LENGTH, Row::<D>::POSITION);
+        for (a, row) in state.chunks_exact_mut(length).take(self.particles.len()).enumerate() {
+            row[..D].copy_from_slice(self.initial_velocity[a].as_slice());
+            row[Row::<D>::VOLUME_RATIO] = 1.0;
+            row[position..position + D].copy_from_slice(self.particles.position[a].as_slice());
+            for i in 0..D {
+                row[Row::<D>::DEFORMATION + i * D + i] = 1.0;
+            }
+        }
+        state
+    }
+
+    fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
+        self.rates_by_pass(time, state, rate, |_| {});
+    }
+
+    fn constrain(&self, time: f64, state: &mut [f64]) {
+        for entry in self.prescribed.iter() {
+            state[entry.particle * Row::<D>::LENGTH + entry.component] =
+                entry.value.value(entry.place, time);
+        }
+    }
+
+    fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        self.look(state, limits)
+    }
+
+    fn energies(&self, state: &[f64], energies: &mut [f64]) {
+        let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+        energies[0] = parallel::sum(self.particles.len(), |a| {
+            0.5 * self.mass(a) * row(a)[..D].iter().map(|v| v * v).sum::<f64>()
+        });
+        energies[1] = parallel::sum(self.particles.len(), |a| {
+            self.particles.volume[a] * self.law(a).energy(row(a)[Row::<D>::VOLUME_RATIO])
+        });
+    }
+
+    fn sample(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    ) {
+        let mut rate = Vec::new();
+        if field == "acceleration" {
+            rate.resize(state.len(), 0.0);
+            self.rates(time, state, &mut rate);
+        }
+        for &particle in particles {
+            let a = particle as usize;
+            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            self.push_field(field, a, row, &rate, values);
+        }
+    }
+
+    fn bodies(&self) -> &[u32] {
+        &self.particles.body
+    }
+
+    fn ids(&self) -> &[u32] {
+        &self.particles.id
+    }
+
+    fn particle(&self, index: usize) -> Particle {
+        Particle {
+            id: self.particles.id[index],
+            reference: self.particles.position[index].iter().copied().collect(),
+        }
+    }
+
+    fn collapse_advice(&self, index: usize) -> String {
+        match self.law(index).law {
+            VolumetricLaw::Linear { .. } => "the linear law lets a volume vanish at finite \
+                energy, Upwind (6.28): use the `gamma_law`, a lower speed or a stiffer material"
+                .into(),
+            VolumetricLaw::Gamma { .. } => "the gamma law resists collapse, so the step or the \
+                stabilisation is at fault: lower `time.cfl`, or raise `scheme.tau_velocity`"
+                .into(),
+        }
+    }
+
+    fn memory(&self) -> usize {
+        let (count, pairs) = (self.particles.len(), self.support.list.pairs());
+        let slope = size_of::<super::Slope<D>>() + size_of::<crate::Tensor<D>>();
+        let particle = 2 * size_of::<crate::Vector<D>>()
+            + 7 * size_of::<f64>()
+            + 2 * size_of::<u32>()
+            + size_of::<super::Side<D>>()
+            + 2 * size_of::<crate::Vector<D>>()
+            + size_of::<super::Reference>()
+            + if self.slopes.is_empty() { 0 } else { slope };
+        let pair = size_of::<u32>() + size_of::<usize>() + 2 * size_of::<[f64; D]>();
+        count * particle + pairs * pair
+    }
+}
+
+impl<const D: usize> Upwind<D> {
+    /// Appends the components of one field of one particle.
+    fn push_field(&self, name: &str, a: usize, row: &[f64], rate: &[f64], values: &mut Vec<f64>) {
+        let position = &row[Row::<D>::POSITION..Row::<D>::DEFORMATION];
+        let ratio = row[Row::<D>::VOLUME_RATIO];
+        match name {
+            "position" => values.extend_from_slice(position),
+            "displacement" => {
+                let reference = self.particles.position[a].iter();
+                values.extend(position.iter().zip(reference).map(|(x, reference)| x - reference));
+            }
+            "velocity" => values.extend_from_slice(&row[..D]),
+            "acceleration" => {
+                values.extend_from_slice(&rate[a * Row::<D>::LENGTH..][..D]);
+            }
+            "pressure" => values.push(self.law(a).pressure(ratio)),
+            "volume_ratio" => values.push(ratio),
+            "determinant" => values.push(tensor::determinant(&deformation::<D>(row))),
+            "deformation_gradient" => {
+                values.extend_from_slice(&row[Row::<D>::DEFORMATION..Row::<D>::LENGTH]);
+            }
+            "density" => values.push(self.reference[a].density / ratio),
+            "wave_speed" => values.push(self.wave_speed(a, row)),
+            "smoothing_length" => values.push(self.support.smoothing_length[a]),
+            "neighbors" => values.push(self.support.list.row(a).len() as f64),
+            "volume" => values.push(self.particles.volume[a]),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The choices of the upwind formulation.
+
+use std::sync::Arc;
+
+use piola_formulas::volumetric::VolumetricLaw;
+
+use crate::boundaries::SpaceTime;
+use crate::operators::Correction;
+
+/// Speed of the shock in the dissipation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WaveSpeed {
+    /// The speed of the reference state, Upwind (3.54) and (6.31).
+    Constant,
+    /// Raised where the material is compressed in one direction, Upwind (3.57).
+    Stretch,
+}
+
+/// Numerical settings of the formulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Correction of the kernel gradient.
+    pub correction: Correction,
+    /// Strength of the velocity dissipation, 0 for none, 1 for the full Riemann flux.
+    pub tau_velocity: f64,
+    /// Strength of the pressure dissipation.
+    pub tau_pressure: f64,
+    /// Whether the states at an interface are reconstructed linearly, Upwind (3.50).
+    pub reconstruction: bool,
+    /// Speed of the shock in the dissipation.
+    pub wave_speed: WaveSpeed,
+}
+
+/// The material of one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Density of the stress-free state in kg/m^3 (per area in 2D, per length in 1D).
+    pub density: f64,
+    /// Energy of volume change.
+    pub law: VolumetricLaw,
+}
+
+/// A force on the mass of a body, as an acceleration in m/s^2.
+#[derive(Clone)]
+pub struct BodyForce<const D: usize> {
+    /// The body it acts on; all if `None`.
+    pub body: Option<u32>,
+    /// Its components.
+    pub acceleration: [Arc<dyn SpaceTime>; D],
+}

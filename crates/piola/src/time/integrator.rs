@@ -1,0 +1,48 @@
+//! Time integration of a state that it knows only as numbers.
+
+use super::tvd_rk2::TvdRk2;
+use crate::schemes::Scheme;
+
+/// A method that takes a state one step further.
+pub trait Integrator: Send {
+    /// Name in a case file.
+    fn name(&self) -> &'static str;
+
+    /// Evaluations of the rates a step.
+    fn evaluations(&self) -> u64;
+
+    /// Writes the state at `time + step` to `new`, from `old` at `time`. Both have the layout of
+    /// the scheme's state; `old` satisfies the constraints at `time`.
+    fn step(&mut self, scheme: &mut dyn Scheme, time: f64, step: f64, old: &[f64], new: &mut [f64]);
+}
+
+/// The integrators by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum IntegratorKind {
+    /// Two-stage TVD Runge-Kutta, Upwind (4.1).
+    TvdRk2,
+}
+
+impl IntegratorKind {
+    /// All integrators.
+    pub const ALL: [Self; 1] = [Self::TvdRk2];
+
+    /// Name in a case file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TvdRk2 => "tvd_rk2",
+        }
+    }
+
+    /// The integrator of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// An integrator for states of `length` numbers.
+    pub fn build(self, length: usize) -> Box<dyn Integrator> {
+        match self {
+            Self::TvdRk2 => Box::new(TvdRk2::new(length)),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! What looks at a run while it goes.
+
+use thiserror::Error;
+
+use super::schedule::Schedule;
+use crate::schemes::{Health, Scheme};
+
+/// One instant of a run.
+pub struct Moment<'a> {
+    /// Simulated time in s.
+    pub time: f64,
+    /// Steps taken.
+    pub step: u64,
+    /// Size of the last step in s, 0 at the start.
+    pub step_size: f64,
+    /// What limited it.
+    pub limiter: &'static str,
+    /// Health of the state.
+    pub health: &'a Health,
+    /// The formulation.
+    pub scheme: &'a mut dyn Scheme,
+    /// The state.
+    pub state: &'a [f64],
+    /// Whether it is the last one: the end, an interruption, or the last good state of a run
+    /// that failed.
+    pub last: bool,
+}
+
+/// A fault of an observer, in practice of a file.
+#[derive(Debug, Error)]
+#[error("{what} at t = {time} s: {source}")]
+pub struct ObserveError {
+    /// What was being done.
+    pub what: &'static str,
+    /// Simulated time in s.
+    pub time: f64,
+    /// The fault itself.
+    pub source: Box<dyn std::error::Error + Send + Sync>,
+}
+
+/// Something that looks at chosen moments, and at the last one.
+pub trait Observer: Send {
+    /// When it wants to look.
+    fn schedule(&self) -> &Schedule;
+
+    /// Looks.
+    ///
+    /// # Errors
+    /// A fault stops the run.
+    fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError>;
+}

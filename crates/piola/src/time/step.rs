@@ -1,0 +1,106 @@
+//! How large the next step is, and why.
+
+use super::failure::Failure;
+use crate::schemes::StepLimit;
+
+/// How the step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepControl {
+    /// The CFL number times the stable step of the current state, Upwind (4.3).
+    Cfl(f64),
+    /// A fixed step in s, checked against the stable step at a CFL number of one.
+    Fixed(f64),
+}
+
+/// A step with what limited it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChosenStep {
+    /// Its size in s.
+    pub step: f64,
+    /// The name of the bound that it meets: a limit of the scheme, `fixed` or `output`.
+    pub limiter: &'static str,
+    /// The particle (index in memory) behind the limit.
+    pub particle: usize,
+}
+
+/// A fixed step may exceed its bound by round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+impl StepControl {
+    /// The step for a state with these limits, before it is shortened to meet a due time.
+    ///
+    /// # Errors
+    /// [`Failure::FixedStepTooLarge`] when a fixed step is beyond the stable one.
+    pub fn choose(self, limits: &[StepLimit]) -> Result<ChosenStep, Failure> {
+        let number = match self {
+            Self::Cfl(number) => number,
+            Self::Fixed(_) => 1.0,
+        };
+        let unlimited = ChosenStep { step: f64::INFINITY, limiter: "none", particle: 0 };
+        let bound = limits.iter().fold(unlimited, |best, limit| {
+            let step = if limit.scaled { number * limit.step } else { limit.step };
+            if step < best.step {
+                ChosenStep { step, limiter: limit.name, particle: limit.particle }
+            } else {
+                best
+            }
+        });
+        match self {
+            Self::Cfl(_) => Ok(bound),
+            Self::Fixed(step) if step > bound.step * (1.0 + ROUND_OFF) => {
+                Err(Failure::FixedStepTooLarge { step, stable: bound.step, limiter: bound.limiter })
+            }
+            Self::Fixed(step) => {
+                Ok(ChosenStep { step, limiter: "fixed", particle: bound.particle })
+            }
+        }
+    }
+
+    /// Shortens `chosen` so that a step ends exactly at `due`. A fixed step stays as it is: it
+    /// meets times that are its multiples, and others at the first step after them.
+    pub fn meet(self, chosen: ChosenStep, time: f64, due: f64) -> ChosenStep {
+        let left = due - time;
+        let step = match self {
+            Self::Fixed(_) => return chosen,
+            Self::Cfl(_) if chosen.step >= left => left,
+            // Two equal steps instead of one full and one tiny one.
+            Self::Cfl(_) if 2.0 * chosen.step > left => 0.5 * left,
+            Self::Cfl(_) => return chosen,
+        };
+        ChosenStep { step, limiter: "output", ..chosen }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: [StepLimit; 2] = [
+        StepLimit { name: "acoustic", step: 0.1, particle: 7, scaled: true },
+        StepLimit { name: "upwind dissipation", step: 0.05, particle: 3, scaled: false },
+    ];
+
+    #[test]
+    fn the_smallest_bound_names_itself() {
+        let chosen = StepControl::Cfl(0.3).choose(&LIMITS).expect("a step exists");
+        assert_eq!((chosen.step, chosen.limiter, chosen.particle), (0.03, "acoustic", 7));
+        let chosen = StepControl::Cfl(0.9).choose(&LIMITS).expect("a step exists");
+        assert_eq!((chosen.step, chosen.limiter), (0.05, "upwind dissipation"));
+    }
+
+    #[test]
+    fn a_fixed_step_beyond_the_bound_is_refused() {
+        assert!(StepControl::Fixed(0.05).choose(&LIMITS).is_ok());
+        let refused = StepControl::Fixed(0.06).choose(&LIMITS);
+        assert!(matches!(refused, Err(Failure::FixedStepTooLarge { stable: 0.05, .. })));
+    }
+
+    #[test]
+    fn due_times_are_met_without_tiny_steps() {
+        let control = StepControl::Cfl(1.0);
+        let chosen = ChosenStep { step: 0.1, limiter: "acoustic", particle: 0 };
+        assert_eq!(control.meet(chosen, 1.0, 1.15).step, 0.5 * (1.15 - 1.0));
+        assert_eq!(control.meet(chosen, 1.0, 1.05).step, 1.05 - 1.0);
+        assert_eq!(control.meet(chosen, 1.0, 1.5), chosen);
+    }
+}
