@@ -1,10 +1,9 @@
 //! Case files: what a user writes, checked and turned into types.
 //!
-//! The way of a case: its text becomes a tree of values (`document`), which overrides change
-//! (`overrides`, `settings`). The tree is checked against the descriptions of the tables ([`spec`],
-//! [`tables`], `decode`), then its values against each other (`interpret`), which yields the typed
-//! [`Case`]. Every step keeps the places of its values, so that each problem points at the text
-//! that causes it, and all are reported at once.
+//! The way of a case: text, tree of values (`document`), overrides (`overrides`), check
+//! against the descriptions of the tables ([`spec`], [`tables`], `decode`), agreement of values
+//! with each other (`interpret`), and the typed [`Case`]. Every step keeps the places of its
+//! values, so that each problem points at the text that causes it, and all are reported at once.
 
 pub mod build;
 pub mod catalogue;
