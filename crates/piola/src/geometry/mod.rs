@@ -1,7 +1,22 @@
-//! Shapes, lattices and files turned into particles.
+//! Shapes, lattices and files turned into particles, and regions that select some of them.
 
+mod cut;
+mod error;
+mod fill;
+mod jitter;
+mod lattice;
 mod particles;
-mod stub;
+mod points;
+mod region;
+mod shape;
 
+pub use error::GeometryError;
+pub use fill::{FillReport, fill};
+pub use lattice::{LatticeKind, LatticeSpec, Placement};
 pub use particles::Particles;
-pub use stub::*;
+pub use points::{PointsError, PointsFault, from_points};
+pub use region::Region;
+pub use shape::Shape;
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! The particles that geometry makes and schemes are bound to.
 
+use super::GeometryError;
 use crate::Vector;
 
 /// Reference state of the particles of a run, as a struct of arrays.
@@ -45,5 +46,29 @@ impl<const D: usize> Particles<D> {
         apply(&mut self.spacing, order);
         apply(&mut self.body, order);
         apply(&mut self.id, order);
+    }
+
+    /// Appends the particles of another body as body `body`. Their ids continue where those here
+    /// end, as if all had been created one after the other.
+    ///
+    /// # Errors
+    /// [`GeometryError::NoParticles`] where the other body has none,
+    /// [`GeometryError::TooManyParticles`] where ids would not fit into 32 bits.
+    pub fn append(&mut self, other: Self, body: u32) -> Result<(), GeometryError> {
+        if other.is_empty() {
+            return Err(GeometryError::NoParticles);
+        }
+        let count = self.len() + other.len();
+        if count > u32::MAX as usize {
+            return Err(GeometryError::TooManyParticles { count });
+        }
+        let first = self.len() as u32;
+        self.body.extend(vec![body; other.len()]);
+        self.id.extend(other.id.iter().map(|id| first + id));
+        self.position.extend(other.position);
+        self.volume.extend(other.volume);
+        self.weight.extend(other.weight);
+        self.spacing.extend(other.spacing);
+        Ok(())
     }
 }

@@ -118,9 +118,7 @@ impl OutputError {
             ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
                 Self::NotWritable { path, source }
             }
-            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-                Self::DiskFull { path, source }
-            }
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::DiskFull { path, source },
             ErrorKind::IsADirectory => Self::NotAFile { path, kind: "a folder" },
             _ => Self::Io { path, source },
         }

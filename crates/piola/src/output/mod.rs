@@ -2,7 +2,18 @@
 //!
 //! Everything here takes plain data (a [`Snapshot`](crate::fields::Snapshot), a [`Table`], a
 //! [`RunRecord`]); nothing knows a scheme or the case file. Every file appears whole or not at all
-//! ([`atomic`]).
+//! ([`atomic`]), and every refusal is an [`OutputError`] that tells what to do.
+//!
+//! | file | made by |
+//! |---|---|
+//! | particles of one instant for ParaView | [`vtp::write`] |
+//! | their time series | [`pvd::write`] |
+//! | tables of probes, energies and steps | [`Table::write_csv`] |
+//! | reference curves, read | [`Curve::read_csv`] |
+//! | particles coloured by a number | [`Picture::write_png`] |
+//! | curves against time | [`Plot::write_png`] |
+//! | what was run and how it went | [`RunRecord::write`] |
+//! | where all that lies | [`ResultsFolder`] |
 
 pub mod atomic;
 mod csv_reader;

@@ -274,8 +274,11 @@ impl Executor {
             return Err(Failure::TooManySteps { steps: step, time });
         }
         let chosen = self.control.choose(limits)?;
-        let floor = self.min_step.unwrap_or(Self::FLOOR * first_step);
-        if chosen.step < floor {
+        // Before the first step, and after one without any limit, there is nothing to compare to.
+        let first = if first_step.is_finite() { first_step } else { 0.0 };
+        let floor = self.min_step.unwrap_or(Self::FLOOR * first);
+        // A step of zero, or of no number, would never get to the end.
+        if !(chosen.step > 0.0 && chosen.step >= floor) {
             let particle = self.scheme.particle(chosen.particle);
             let ChosenStep { step: size, limiter, .. } = chosen;
             return Err(Failure::StepBelowFloor { particle, size, floor, limiter, step, time });

@@ -3,7 +3,7 @@
 /// Times at which something is due.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// At 0 and every so many seconds.
+    /// At 0 and every so many seconds; at 0 only if that number is not positive.
     Every(f64),
     /// At the given times, ascending.
     At(Vec<f64>),
@@ -25,7 +25,10 @@ impl Schedule {
     /// First due time after `time`, if there is one.
     pub fn next_after(&self, time: f64) -> Option<f64> {
         match self {
-            Self::Every(interval) => Some(((time / interval + SAME).floor() + 1.0) * interval),
+            Self::Every(interval) if *interval > 0.0 => {
+                Some(((time / interval + SAME).floor() + 1.0) * interval)
+            }
+            Self::Every(_) => None,
             Self::At(times) => times.iter().copied().find(|&due| due > time * (1.0 + SAME)),
             Self::End => None,
         }

@@ -39,15 +39,16 @@ impl StepControl {
         let unlimited = ChosenStep { step: f64::INFINITY, limiter: "none", particle: 0 };
         let bound = limits.iter().fold(unlimited, |best, limit| {
             let step = if limit.scaled { number * limit.step } else { limit.step };
-            if step < best.step {
-                ChosenStep { step, limiter: limit.name, particle: limit.particle }
-            } else {
+            // A bound that is no number is the smallest of all: no step is safe.
+            if best.step <= step || best.step.is_nan() {
                 best
+            } else {
+                ChosenStep { step, limiter: limit.name, particle: limit.particle }
             }
         });
         match self {
             Self::Cfl(_) => Ok(bound),
-            Self::Fixed(step) if step > bound.step * (1.0 + ROUND_OFF) => {
+            Self::Fixed(step) if !(step <= bound.step * (1.0 + ROUND_OFF)) => {
                 Err(Failure::FixedStepTooLarge { step, stable: bound.step, limiter: bound.limiter })
             }
             Self::Fixed(step) => {

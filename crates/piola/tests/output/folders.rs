@@ -191,6 +191,8 @@ fn times_are_written_in_utc() {
 }
 
 proptest! {
+    // Each case writes and reads a file.
+    #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
     fn no_record_makes_it_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
         let folder = tempfile::tempdir().unwrap();

@@ -46,6 +46,8 @@ fn the_file_is_what_a_user_expects() {
 }
 
 proptest! {
+    // Each case writes and reads a file.
+    #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
     fn numbers_read_back_to_the_bit(
         bits in proptest::collection::vec(any::<u64>(), 0..60),

@@ -2,8 +2,12 @@
 
 use crate::Vector;
 use crate::case::diagnostics::Problem;
-use crate::case::model::{Case, Shape};
-use crate::geometry::Particles;
+use crate::case::model::{self, Body, Case};
+use crate::case::source::Located;
+use crate::geometry::{
+    FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
+    from_points,
+};
 use crate::neighbors::Domain;
 
 /// What became of one body.
@@ -26,19 +30,130 @@ pub(super) fn vector<const D: usize>(components: &[f64]) -> Vector<D> {
     Vector::from_column_slice(components)
 }
 
+/// The particles of all bodies, and a report on each. A refused body is reported and left out,
+/// so that the others are looked at too.
 pub(super) fn particles<const D: usize>(
     case: &Case,
-    _d: &Domain<D>,
+    domain: &Domain<D>,
 ) -> Result<(Particles<D>, Vec<BodyReport>), Vec<Problem>> {
-    let body = &case.bodies[0];
-    let Shape::Box { min, max } = &body.shape.value else { return Err(vec![]) };
-    let p = crate::geometry::lattice(vector::<D>(min), vector(max), vector(&body.spacing));
-    let r = BodyReport {
-        name: body.name.value.clone(),
-        particles: p.len(),
-        volume: p.volume.iter().sum(),
-        exact_volume: None,
-        spacing: body.spacing.value.clone(),
+    let mut all = Particles::default();
+    let mut reports = Vec::new();
+    let mut problems = Vec::new();
+    for (number, body) in (0u32..).zip(&case.bodies) {
+        let made = match &body.shape.value {
+            model::Shape::Points { file } => cloud(case, file),
+            _ => lattice(case, body, domain),
+        };
+        let added = made.and_then(|report| {
+            let (particles, volume) = (report.particles.len(), report.total_volume);
+            all.append(report.particles, number).map_err(|error| refuse(case, body, &error)).map(
+                |()| BodyReport {
+                    name: body.name.value.clone(),
+                    particles,
+                    volume,
+                    exact_volume: report.exact_volume,
+                    spacing: report.actual_spacing.to_vec(),
+                },
+            )
+        });
+        match added {
+            Ok(report) => reports.push(report),
+            Err(problem) => problems.push(problem),
+        }
+    }
+    if problems.is_empty() { Ok((all, reports)) } else { Err(problems) }
+}
+
+fn refuse(case: &Case, body: &Body, error: &GeometryError) -> Problem {
+    let label = format!("body `{}`", body.name.value);
+    case.problem_at(body.shape.place, error.to_string(), label, None)
+}
+
+/// A body of points from a file.
+fn cloud<const D: usize>(
+    case: &Case,
+    file: &Located<std::path::PathBuf>,
+) -> Result<FillReport<D>, Problem> {
+    let particles = from_points::<D>(file)
+        .map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
+    let (count, total_volume) = (particles.len(), particles.volume.iter().sum::<f64>());
+    if count == 0 {
+        return Err(case.problem_at(file.place, "the file holds no point", "this file", None));
+    }
+    let mean = (total_volume / count as f64).powf(1.0 / D as f64);
+    let actual_spacing = [mean; D];
+    Ok(FillReport { particles, total_volume, exact_volume: None, actual_spacing })
+}
+
+/// A body that a lattice fills.
+fn lattice<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+) -> Result<FillReport<D>, Problem> {
+    let shape = shape(case, body, &body.shape)?;
+    let (min, max) = shape.bounding_box();
+    // Along a periodic axis a body that spans the box meets itself: its last layer is its first.
+    let periodic = std::array::from_fn(|axis| {
+        domain.periodic()[axis].is_some_and(|[low, high]| {
+            let slack = 1e-9 * (high - low);
+            min[axis] <= low + slack && max[axis] >= high - slack
+        })
+    });
+    let spec = LatticeSpec {
+        spacing: std::array::from_fn(|axis| body.spacing[axis]),
+        kind: match body.lattice.kind {
+            model::LatticeKind::Square => LatticeKind::Square,
+            model::LatticeKind::Hexagonal => LatticeKind::Hexagonal,
+        },
+        placement: match body.lattice.on {
+            model::LatticeOrigin::Boundary => Placement::Boundary,
+            model::LatticeOrigin::Cells => Placement::Cells,
+        },
+        periodic,
+        jitter: body.lattice.jitter,
+        seed: body.lattice.seed,
     };
-    Ok((p, vec![r]))
+    fill(&shape, &spec).map_err(|error| {
+        let label = format!("spacing of body `{}`", body.name.value);
+        case.problem_at(body.spacing.place, error.to_string(), label, None)
+    })
+}
+
+fn shape<const D: usize>(
+    case: &Case,
+    body: &Body,
+    located: &Located<model::Shape>,
+) -> Result<Shape<D>, Problem> {
+    let all = |shapes: &[Located<model::Shape>]| -> Result<Vec<Shape<D>>, Problem> {
+        shapes.iter().map(|part| shape(case, body, part)).collect()
+    };
+    let built = match &located.value {
+        model::Shape::Box { min, max } => Shape::cuboid(vector(min), vector(max)),
+        model::Shape::Ball { center, radius } => Shape::ball(vector(center), *radius),
+        model::Shape::Annulus { center, inner, outer } => {
+            Shape::annulus(vector(center), *inner, *outer)
+        }
+        model::Shape::Cylinder { start, end, radius } => {
+            Shape::cylinder(vector(start), vector(end), *radius)
+        }
+        model::Shape::Union(parts) => Shape::union(all(parts)?),
+        model::Shape::Intersection(parts) => Shape::intersection(all(parts)?),
+        model::Shape::Difference { from, remove } => {
+            Shape::difference(shape(case, body, from)?, all(remove)?)
+        }
+        model::Shape::Points { .. } => {
+            let help = "make it a body of its own".to_owned();
+            return Err(case.problem_at(
+                located.place,
+                "points from a file cannot be combined with other shapes",
+                "inside another shape",
+                Some(help),
+            ));
+        }
+    };
+    built.map_err(|error| {
+        let label = format!("shape of body `{}`", body.name.value);
+        case.problem_at(located.place, error.to_string(), label, None)
+    })
 }

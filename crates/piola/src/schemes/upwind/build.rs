@@ -3,6 +3,7 @@
 use piola_formulas::volumetric::{Prestressed, VolumetricResponse};
 use thiserror::Error;
 
+use super::check::check;
 use super::inspect::ChunkFigures;
 use super::local::Side;
 use super::reconstruction::Slope;
@@ -53,6 +54,39 @@ pub enum UpwindError {
         /// The pressure in Pa.
         pressure: f64,
     },
+    /// An array that does not have one entry for each particle.
+    #[error("{what} has {got} entries, expected one for each of the {expected} particles")]
+    Length {
+        /// The array.
+        what: &'static str,
+        /// Number of particles.
+        expected: usize,
+        /// Its length.
+        got: usize,
+    },
+    /// The number of a particle, of a component or of a body that does not exist.
+    #[error("{what} {got} does not exist, expected a number below {count}")]
+    Index {
+        /// What is numbered, and where.
+        what: String,
+        /// The number.
+        got: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A particle without mass.
+    #[error(
+        "particle {id} at {position:?} has a mass of {mass} kg; its volume and the density of its \
+         material must be positive"
+    )]
+    Mass {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+        /// Its mass in kg.
+        mass: f64,
+    },
     /// An initial velocity that is no number.
     #[error("the initial velocity of particle {id} at {position:?} is not finite")]
     Velocity {
@@ -67,8 +101,10 @@ impl<const D: usize> Upwind<D> {
     /// Builds operators and scratch; nothing is allocated afterwards.
     ///
     /// # Errors
-    /// [`UpwindError`] for particles without a gradient and impossible initial values.
+    /// [`UpwindError`] for arrays that do not fit together, particles without mass or gradient,
+    /// and impossible initial values.
     pub fn new(input: UpwindInput<D>) -> Result<Self, UpwindError> {
+        check(&input)?;
         let UpwindInput { particles, support, settings, materials, initial, .. } = input;
         let gradient = GradientOperator::new(&particles, &support, settings.correction)?;
         let least_squares = match settings.reconstruction {
@@ -89,7 +125,7 @@ impl<const D: usize> Upwind<D> {
         });
         let steady = |force: &BodyForce<D>| force.acceleration.iter().all(|g| g.is_steady());
         let mut scheme = Self {
-            nearest: nearest(&particles, &support),
+            nearest: nearest(&particles, &support)?,
             largest_exchange: largest_exchange(&particles, &support, &gradient),
             fastest_reference: reference.iter().map(|r| r.wave_speed).fold(0.0, f64::max),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
@@ -150,20 +186,38 @@ fn references<const D: usize>(
                 UpwindError::Prestress { id, position: position().collect(), pressure }
             })?;
             let density = density / ratio;
+            let mass = density * particles.volume[a];
+            if !(mass > 0.0 && mass.is_finite()) {
+                return Err(UpwindError::Mass { id, position: position().collect(), mass });
+            }
             let prestressed = Prestressed { law, reference_ratio: ratio };
             Ok(Reference { density, ratio, wave_speed: prestressed.wave_speed(1.0, density) })
         })
         .collect()
 }
 
-fn nearest<const D: usize>(particles: &Particles<D>, support: &Support<D>) -> Vec<f64> {
-    let distance = |a: usize| {
-        let row = support.list.row(a).iter();
-        row.map(|&b| support.separation(&particles.position, a, b).norm())
-            .fold(f64::INFINITY, f64::min)
-            .min(particles.spacing[a])
-    };
-    (0..particles.len()).map(distance).collect()
+/// Distance from each particle to its nearest neighbour, at most its spacing.
+fn nearest<const D: usize>(
+    particles: &Particles<D>,
+    support: &Support<D>,
+) -> Result<Vec<f64>, OperatorError> {
+    (0..particles.len())
+        .map(|a| {
+            let mut nearest = particles.spacing[a];
+            for &b in support.list.row(a) {
+                let distance = support.separation(&particles.position, a, b).norm();
+                if !(distance > 0.0) {
+                    return Err(OperatorError::Coincident {
+                        first: particles.id[a],
+                        second: particles.id[b as usize],
+                        position: particles.position[a].iter().copied().collect(),
+                    });
+                }
+                nearest = nearest.min(distance);
+            }
+            Ok(nearest)
+        })
+        .collect()
 }
 
 /// Largest `1/V_a sum_b 1/2 |N . C_ab|`: how fast a unit wave speed exchanges a particle's

@@ -17,6 +17,7 @@
 //! a free surface needs no treatment.
 
 mod build;
+mod check;
 mod initial;
 mod inspect;
 mod local;

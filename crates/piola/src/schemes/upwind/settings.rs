@@ -34,7 +34,8 @@ pub struct Settings {
 /// The material of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Density of the stress-free state in kg/m^3 (per area in 2D, per length in 1D).
+    /// Density of the stress-free state in kg/m^3. In 1D and 2D masses, forces and energies are
+    /// those of a body of 1 m in each of the missing dimensions.
     pub density: f64,
     /// Energy of volume change.
     pub law: VolumetricLaw,

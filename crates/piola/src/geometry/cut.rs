@@ -1,0 +1,154 @@
+//! Lattices cut to shape.
+
+use rayon::prelude::*;
+
+use super::fill::ON_BOUNDARY;
+use super::lattice::Lattice;
+use super::{Placement, Shape};
+use crate::Vector;
+use crate::parallel::for_each_chunk;
+
+/// Where the cell of a site lies.
+#[derive(Clone, Copy, PartialEq)]
+enum Cell {
+    Outside,
+    /// Cut by the boundary, with the site outside.
+    Corner,
+    /// Cut by the boundary, with the site inside.
+    Cut,
+    Inside,
+}
+
+/// No particle.
+const NONE: u32 = u32::MAX;
+
+/// The sites of `lattice` in `shape`, and the volume of the shape that belongs to each, see
+/// [`super::fill`]. Sites to which nothing belongs are left out.
+pub(super) fn cut<const D: usize>(
+    shape: &Shape<D>,
+    lattice: &Lattice<D>,
+    placement: Placement,
+) -> (Vec<Vector<D>>, Vec<f64>) {
+    let cells = classify(shape, lattice, placement);
+    let mut particle = vec![NONE; cells.len()];
+    let mut sites = Vec::new();
+    for (site, cell) in cells.iter().enumerate() {
+        if matches!(cell, Cell::Inside | Cell::Cut) {
+            particle[site] = sites.len() as u32;
+            sites.push(site);
+        }
+    }
+    let boundary: Vec<usize> =
+        (0..cells.len()).filter(|&i| matches!(cells[i], Cell::Cut | Cell::Corner)).collect();
+    let found: Vec<Vec<(u32, u32)>> =
+        boundary.par_iter().map(|&site| owners(shape, lattice, &particle, site)).collect();
+
+    // Whole numbers of midpoints: their sum does not depend on any order.
+    let whole = divisions::<D>().pow(D as u32) as u32;
+    let inside = |&site: &usize| if cells[site] == Cell::Inside { whole } else { 0 };
+    let mut midpoints: Vec<u32> = sites.iter().map(inside).collect();
+    for (owner, count) in found.into_iter().flatten() {
+        midpoints[owner as usize] += count;
+    }
+    let part = lattice.cell_volume() / f64::from(whole);
+    let kept = sites.iter().zip(midpoints).filter(|&(_, midpoints)| midpoints > 0);
+    kept.map(|(&site, midpoints)| {
+        (lattice.position(lattice.place(site)), part * f64::from(midpoints))
+    })
+    .unzip()
+}
+
+fn classify<const D: usize>(
+    shape: &Shape<D>,
+    lattice: &Lattice<D>,
+    placement: Placement,
+) -> Vec<Cell> {
+    // Any point of a cell is as near to its site, so that the depth tells cells wholly on one side.
+    let radius = 0.5 * lattice.edges.norm();
+    let tolerance = ON_BOUNDARY * lattice.edges.min();
+    let least = match placement {
+        Placement::Boundary => -tolerance,
+        Placement::Cells => tolerance,
+    };
+    let mut cells = vec![Cell::Outside; lattice.len()];
+    for_each_chunk(&mut cells, |first, cells| {
+        for (i, cell) in cells.iter_mut().enumerate() {
+            let depth = shape.depth(&lattice.fold(&lattice.position(lattice.place(first + i))));
+            *cell = if depth >= radius {
+                Cell::Inside
+            } else if depth >= least {
+                Cell::Cut
+            } else if depth > -radius {
+                Cell::Corner
+            } else {
+                Cell::Outside
+            };
+        }
+    });
+    cells
+}
+
+/// The particles that own parts of the cell of `site`, with the number of midpoints each.
+fn owners<const D: usize>(
+    shape: &Shape<D>,
+    lattice: &Lattice<D>,
+    particle: &[u32],
+    site: usize,
+) -> Vec<(u32, u32)> {
+    let divisions = divisions::<D>();
+    let place = lattice.place(site);
+    let center = lattice.position(place);
+    let own = particle[site];
+    let around = if own == NONE { particles_around(lattice, particle, place) } else { Vec::new() };
+    let mut owners: Vec<(u32, u32)> = Vec::new();
+    for number in 0..divisions.pow(D as u32) {
+        let point = Vector::from_fn(|axis, _| {
+            let step = number / divisions.pow(axis as u32) % divisions;
+            let fraction = (step as f64 + 0.5) / divisions as f64 - 0.5;
+            center[axis] + fraction * lattice.edges[axis]
+        });
+        if shape.depth(&lattice.fold(&point)) < 0.0 {
+            continue;
+        }
+        let distance = |other: &&(u32, Vector<D>)| (other.1 - point).norm_squared();
+        let nearest = around.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let owner = nearest.map_or(own, |(owner, _)| *owner);
+        match owners.iter_mut().find(|(known, _)| *known == owner) {
+            _ if owner == NONE => (),
+            Some((_, count)) => *count += 1,
+            None => owners.push((owner, 1)),
+        }
+    }
+    owners
+}
+
+/// Particles at most two sites away from `place` along each axis.
+fn particles_around<const D: usize>(
+    lattice: &Lattice<D>,
+    particle: &[u32],
+    place: [usize; D],
+) -> Vec<(u32, Vector<D>)> {
+    let mut found = Vec::new();
+    for number in 0..5usize.pow(D as u32) {
+        let other: [usize; D] = std::array::from_fn(|axis| {
+            // Below the first place this wraps round to above the last one.
+            (place[axis] + number / 5usize.pow(axis as u32) % 5).wrapping_sub(2)
+        });
+        if (0..D).all(|axis| other[axis] < lattice.counts[axis]) {
+            let owner = particle[lattice.number(other)];
+            if owner != NONE {
+                found.push((owner, lattice.position(other)));
+            }
+        }
+    }
+    found
+}
+
+/// Midpoints along each edge of a cell. Even, so that none lies on a plane through the site.
+const fn divisions<const D: usize>() -> usize {
+    match D {
+        1 => 256,
+        2 => 16,
+        _ => 8,
+    }
+}

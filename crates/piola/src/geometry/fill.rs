@@ -1,0 +1,96 @@
+//! Shapes filled with the particles of a lattice.
+
+use super::cut::cut;
+use super::jitter::jitter;
+use super::lattice::Lattice;
+use super::{GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape};
+use crate::Vector;
+
+/// Most sites of the lattice around a body. A run needs a kilobyte a particle and more.
+pub(super) const MOST_SITES: usize = 100_000_000;
+
+/// Points as near to a boundary as this, in spacings, lie on it.
+pub(super) const ON_BOUNDARY: f64 = 1e-9;
+
+/// The particles of a body, and how well they fill it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FillReport<const D: usize> {
+    /// The particles, as body 0.
+    pub particles: Particles<D>,
+    /// Sum of the quadrature volumes in m^D.
+    pub total_volume: f64,
+    /// Volume of the shape in m^D, where it is known.
+    pub exact_volume: Option<f64>,
+    /// Edges of a particle's cell in m: the spacing along each axis of a square lattice; of a
+    /// hexagonal one the distances within a row, of rows and of layers.
+    pub actual_spacing: [f64; D],
+}
+
+/// Fills `shape` with particles at the sites of a lattice that lie in it.
+///
+/// A square lattice is fitted to the shape's bounding box: spacings become `L / n`, with the
+/// extent `L` and `n = max(1, round(L / spacing))`. A hexagonal one keeps its spacing and starts
+/// at the lower corner. Kernel weights are the whole cell for every particle. Quadrature volumes
+/// in a box are the part of the cell inside, so that their sum is exact. In other shapes, each
+/// part of the shape belongs to the cell it lies in or, where that has no particle, to the
+/// nearest particle of the cells around; parts are measured with midpoints of a fixed subdivision
+/// of the cell, and their sum nears the shape's volume with the square of the spacing.
+///
+/// With jitter, particles move at random by up to `jitter` spacings along each axis, but not off
+/// the faces of the bounding box, nor out of the shape. The same seed gives the same particles.
+///
+/// # Errors
+/// An impossible specification, too many sites, and a shape without particles.
+pub fn fill<const D: usize>(
+    shape: &Shape<D>,
+    spec: &LatticeSpec<D>,
+) -> Result<FillReport<D>, GeometryError> {
+    let (min, max) = shape.bounding_box();
+    let lattice = Lattice::new(spec, min, max)?;
+    let square = spec.kind == LatticeKind::Square || D == 1;
+    let (position, volume) = match shape.corners() {
+        Some(_) if square => fill_box(&lattice, spec),
+        _ => cut(shape, &lattice, spec.placement),
+    };
+    if position.is_empty() {
+        return Err(GeometryError::NoParticles);
+    }
+    let count = position.len();
+    let mut particles = Particles {
+        weight: vec![lattice.cell_volume(); count],
+        spacing: vec![lattice.spacing; count],
+        body: vec![0; count],
+        id: (0..count as u32).collect(),
+        position,
+        volume,
+    };
+    if spec.jitter > 0.0 {
+        jitter(&mut particles.position, shape, &lattice, spec);
+    }
+    Ok(FillReport {
+        total_volume: particles.volume.iter().sum(),
+        exact_volume: shape.exact_volume(),
+        actual_spacing: lattice.edges.into(),
+        particles,
+    })
+}
+
+/// All sites, with half a cell for each axis on whose end a particle lies.
+fn fill_box<const D: usize>(
+    lattice: &Lattice<D>,
+    spec: &LatticeSpec<D>,
+) -> (Vec<Vector<D>>, Vec<f64>) {
+    let share = |place: [usize; D]| -> f64 {
+        let halves = (0..D).filter(|&axis| {
+            let is_end = place[axis] == 0 || place[axis] + 1 == lattice.counts[axis];
+            is_end && spec.placement == Placement::Boundary && !spec.periodic[axis]
+        });
+        0.5f64.powi(halves.count() as i32)
+    };
+    let cell = lattice.cell_volume();
+    let particle = |site| {
+        let place = lattice.place(site);
+        (lattice.position(place), cell * share(place))
+    };
+    (0..lattice.len()).map(particle).unzip()
+}

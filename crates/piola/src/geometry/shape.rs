@@ -1,0 +1,241 @@
+//! Closed regions of space that particles fill.
+
+use std::f64::consts::PI;
+
+use super::GeometryError;
+use super::error::{axis_name, finite, positive};
+use crate::Vector;
+
+/// A region of space with its boundary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape<const D: usize>(Kind<D>);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Kind<const D: usize> {
+    Box {
+        min: Vector<D>,
+        max: Vector<D>,
+    },
+    /// A ball without the open ball of radius `inner`, which may be 0.
+    Ball {
+        center: Vector<D>,
+        inner: f64,
+        outer: f64,
+    },
+    Cylinder {
+        start: Vector<D>,
+        direction: Vector<D>,
+        length: f64,
+        radius: f64,
+    },
+    Union(Vec<Shape<D>>),
+    Intersection(Vec<Shape<D>>),
+    Difference {
+        from: Box<Shape<D>>,
+        remove: Vec<Shape<D>>,
+    },
+}
+
+impl<const D: usize> Shape<D> {
+    /// The box between two corners in m.
+    ///
+    /// # Errors
+    /// Corners that are not finite or not in order.
+    pub fn cuboid(min: Vector<D>, max: Vector<D>) -> Result<Self, GeometryError> {
+        finite("the lower corner of a box", min.as_slice())?;
+        finite("the upper corner of a box", max.as_slice())?;
+        finite("the extent of a box", (max - min).as_slice())?;
+        if let Some(axis) = (0..D).find(|&axis| min[axis] >= max[axis]) {
+            let (axis, min, max) = (axis_name(axis), min[axis], max[axis]);
+            return Err(GeometryError::Corners { axis, min, max });
+        }
+        Ok(Self(Kind::Box { min, max }))
+    }
+
+    /// A ball, in 2D a disc, with `center` and `radius` in m.
+    ///
+    /// # Errors
+    /// A centre that is not finite, a radius that is not positive.
+    pub fn ball(center: Vector<D>, radius: f64) -> Result<Self, GeometryError> {
+        positive("the radius of a ball", radius)?;
+        finite("the center of a ball", center.as_slice())?;
+        let extent = center.abs().add_scalar(radius);
+        finite("the largest coordinate of a ball", (2.0 * extent).as_slice())?;
+        Ok(Self(Kind::Ball { center, inner: 0.0, outer: radius }))
+    }
+
+    /// What lies between two radii in m around `center`: a ring in 2D, a hollow ball in 3D.
+    ///
+    /// # Errors
+    /// A centre that is not finite, radii that are not positive or not in order, 1D.
+    pub fn annulus(center: Vector<D>, inner: f64, outer: f64) -> Result<Self, GeometryError> {
+        if D < 2 {
+            let (what, expected) = ("an annulus", "2D or 3D");
+            return Err(GeometryError::Dimension { what, got: D, expected });
+        }
+        positive("the inner radius of an annulus", inner)?;
+        Self::ball(center, outer)?;
+        if inner >= outer {
+            return Err(GeometryError::Radii { inner, outer });
+        }
+        Ok(Self(Kind::Ball { center, inner, outer }))
+    }
+
+    /// A straight cylinder with flat ends around the points `start` and `end`, in 3D; all in m.
+    ///
+    /// # Errors
+    /// Ends that are not finite or the same, a radius that is not positive, 1D and 2D.
+    pub fn cylinder(start: Vector<D>, end: Vector<D>, radius: f64) -> Result<Self, GeometryError> {
+        if D != 3 {
+            let (what, expected) = ("a cylinder", "3D; in 2D its section is a ball or a box");
+            return Err(GeometryError::Dimension { what, got: D, expected });
+        }
+        Self::ball(start, radius)?;
+        Self::ball(end, radius)?;
+        let length = (end - start).norm();
+        positive("the length of a cylinder", length)?;
+        let direction = (end - start) / length;
+        Ok(Self(Kind::Cylinder { start, direction, length, radius }))
+    }
+
+    /// What lies in any of `shapes`.
+    ///
+    /// # Errors
+    /// No shapes.
+    pub fn union(shapes: Vec<Self>) -> Result<Self, GeometryError> {
+        if shapes.is_empty() {
+            return Err(GeometryError::NoShapes { what: "a union" });
+        }
+        Ok(Self(Kind::Union(shapes)))
+    }
+
+    /// What lies in all of `shapes`.
+    ///
+    /// # Errors
+    /// No shapes.
+    pub fn intersection(shapes: Vec<Self>) -> Result<Self, GeometryError> {
+        if shapes.is_empty() {
+            return Err(GeometryError::NoShapes { what: "an intersection" });
+        }
+        Ok(Self(Kind::Intersection(shapes)))
+    }
+
+    /// What lies in `from` and not inside any shape of `remove`; their boundary stays.
+    ///
+    /// # Errors
+    /// No shapes to remove.
+    pub fn difference(from: Self, remove: Vec<Self>) -> Result<Self, GeometryError> {
+        if remove.is_empty() {
+            return Err(GeometryError::NoShapes { what: "what a difference removes" });
+        }
+        Ok(Self(Kind::Difference { from: Box::new(from), remove }))
+    }
+
+    /// Whether `point` lies inside or on the boundary; never where it is not finite.
+    pub fn contains(&self, point: &Vector<D>) -> bool {
+        point.iter().all(|x| x.is_finite()) && self.depth(point) >= 0.0
+    }
+
+    /// A depth below the boundary in m: 0 on it, negative outside, and nowhere further from 0 than
+    /// the boundary is from `point`.
+    pub(super) fn depth(&self, point: &Vector<D>) -> f64 {
+        match &self.0 {
+            Kind::Box { min, max } => {
+                let depth = |axis: usize| (point[axis] - min[axis]).min(max[axis] - point[axis]);
+                (0..D).map(depth).fold(f64::INFINITY, f64::min)
+            }
+            Kind::Ball { center, inner, outer } => {
+                let distance = (point - center).norm();
+                let inside = if *inner > 0.0 { distance - inner } else { f64::INFINITY };
+                inside.min(outer - distance)
+            }
+            Kind::Cylinder { start, direction, length, radius } => {
+                let arm = point - start;
+                let along = arm.dot(direction);
+                let across = (arm - direction * along).norm();
+                along.min(length - along).min(radius - across)
+            }
+            Kind::Union(shapes) => {
+                shapes.iter().map(|shape| shape.depth(point)).fold(f64::NEG_INFINITY, f64::max)
+            }
+            Kind::Intersection(shapes) => {
+                shapes.iter().map(|shape| shape.depth(point)).fold(f64::INFINITY, f64::min)
+            }
+            Kind::Difference { from, remove } => {
+                remove.iter().map(|shape| -shape.depth(point)).fold(from.depth(point), f64::min)
+            }
+        }
+    }
+
+    /// Lower and upper corner in m of a box around the shape: the smallest one for all but
+    /// differences and intersections. The corners of an empty intersection may be out of order.
+    pub fn bounding_box(&self) -> (Vector<D>, Vector<D>) {
+        match &self.0 {
+            Kind::Box { min, max } => (*min, *max),
+            Kind::Ball { center, outer, .. } => {
+                (center.add_scalar(-outer), center.add_scalar(*outer))
+            }
+            Kind::Cylinder { start, direction, length, radius } => {
+                let end = start + direction * *length;
+                let reach = direction.map(|d| radius * (1.0 - d * d).max(0.0).sqrt());
+                (start.inf(&end) - reach, start.sup(&end) + reach)
+            }
+            Kind::Union(shapes) => join(shapes, |(a, b), (c, d)| (a.inf(&c), b.sup(&d))),
+            Kind::Intersection(shapes) => join(shapes, |(a, b), (c, d)| (a.sup(&c), b.inf(&d))),
+            Kind::Difference { from, .. } => from.bounding_box(),
+        }
+    }
+
+    /// The volume in m^D, where it is known: for boxes, balls, annuli and cylinders, and for these
+    /// with others cut out of a box wholly inside of it and apart from each other.
+    pub fn exact_volume(&self) -> Option<f64> {
+        match &self.0 {
+            Kind::Box { min, max } => Some((max - min).product()),
+            Kind::Ball { inner, outer, .. } => {
+                let ball = |radius: f64| match D {
+                    1 => 2.0 * radius,
+                    2 => PI * radius * radius,
+                    _ => 4.0 / 3.0 * PI * radius.powi(3),
+                };
+                Some(ball(*outer) - ball(*inner))
+            }
+            Kind::Cylinder { length, radius, .. } => Some(PI * radius * radius * length),
+            Kind::Union(shapes) | Kind::Intersection(shapes) => match shapes.as_slice() {
+                [only] => only.exact_volume(),
+                _ => None,
+            },
+            Kind::Difference { from, remove } => {
+                let bounds: Vec<_> = remove.iter().map(Self::bounding_box).collect();
+                let is_box = matches!(from.0, Kind::Box { .. });
+                let inside = bounds.iter().all(|(a, b)| from.contains(a) && from.contains(b));
+                let apart = bounds.iter().enumerate().all(|(i, (a, b))| {
+                    let apart = |(c, d): &(Vector<D>, Vector<D>)| {
+                        (0..D).any(|axis| b[axis] <= c[axis] || d[axis] <= a[axis])
+                    };
+                    bounds[..i].iter().all(apart)
+                });
+                let removed: Option<f64> = remove.iter().map(Self::exact_volume).sum();
+                (is_box && inside && apart).then_some(from.exact_volume()? - removed?)
+            }
+        }
+    }
+
+    /// The corners, where the shape is one box.
+    pub(super) fn corners(&self) -> Option<(Vector<D>, Vector<D>)> {
+        match self.0 {
+            Kind::Box { min, max } => Some((min, max)),
+            _ => None,
+        }
+    }
+}
+
+type Bounds<const D: usize> = (Vector<D>, Vector<D>);
+
+/// Combines the bounds of `shapes`, of which there is at least one.
+fn join<const D: usize>(
+    shapes: &[Shape<D>],
+    combine: impl Fn(Bounds<D>, Bounds<D>) -> Bounds<D>,
+) -> Bounds<D> {
+    let bounds = shapes.iter().map(Shape::bounding_box).reduce(combine);
+    bounds.expect("combinations are made of at least one shape")
+}

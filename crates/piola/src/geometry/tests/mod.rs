@@ -1,0 +1,4 @@
+mod fill;
+mod points;
+mod region;
+mod shape;

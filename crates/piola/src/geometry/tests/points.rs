@@ -1,0 +1,109 @@
+//! Files of points.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::Vector;
+use crate::geometry::{GeometryError, Particles, PointsFault, from_points};
+use proptest::prelude::*;
+
+fn read<const D: usize>(bytes: &[u8]) -> Result<Particles<D>, GeometryError> {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    file.write_all(bytes).unwrap();
+    from_points(file.path())
+}
+
+#[test]
+fn points_become_particles() {
+    let text = "\u{feff}X, y,volume\r\n0,0,4\r\n\r\n 1e0, \"-2.5\" ,0.25\r\n";
+    let particles = read::<2>(text.as_bytes()).unwrap();
+    assert_eq!(particles.position, [Vector::<2>::zeros(), Vector::<2>::new(1.0, -2.5)]);
+    assert_eq!(particles.volume, [4.0, 0.25]);
+    assert_eq!(particles.weight, [4.0, 0.25]);
+    assert_eq!(particles.spacing, [2.0, 0.5]);
+    assert_eq!((particles.id, particles.body), (vec![0, 1], vec![0, 0]));
+    assert_eq!(read::<1>(b"x,volume\n1,3").unwrap().spacing, [3.0]);
+    assert_eq!(read::<3>(b"x,y,z,volume\n1,1,1,8").unwrap().spacing, [2.0]);
+}
+
+#[test]
+fn faults_are_named_with_line_and_column() {
+    let faults: [(&[u8], &str); 20] = [
+        (b"", ": holds no points"),
+        (b"\n\n", ": holds no points"),
+        (b"x,y,volume\n", ": holds no points"),
+        (
+            b"x,y,z,volume\n0,0,0,1\n",
+            ", line 1: the header is `x,y,z,volume`, expected `x,y,volume`",
+        ),
+        (b"0,0,1\n1,0,1\n", ", line 1: the header is `0,0,1`"),
+        (b"x;y;volume\n0;0;1\n", ", line 1: the header is `x;y;volume`"),
+        (b"x,y,volume\n0,0,1\n1,0\n", ", line 3: 2 fields, expected 3"),
+        (b"x,y,volume\n\n\n0,0,1,5\n", ", line 4: 4 fields, expected 3"),
+        (b"x,y,volume\n0,one,1\n", ", line 2, column y: `one` is not a number"),
+        (b"x,y,volume\n0,,1\n", ", line 2, column y: `` is not a number"),
+        (b"x,y,volume\n0,1 m,1\n", ", line 2, column y: `1 m` is not a number"),
+        (b"x,y,volume\n0,0,1\n\n\n1,nan,1\n", ", line 5, column y: NaN is not finite"),
+        (b"x,y,volume\n-inf,0,1\n", ", line 2, column x: -inf is not finite"),
+        (b"x,y,volume\n1e999,0,1\n", ", line 2, column x: inf is not finite"),
+        (b"x,y,volume\n0,0,0\n", ", line 2, column volume: a volume of 0"),
+        (b"x,y,volume\r\n0,0,-1\r\n", ", line 2, column volume: a volume of -1"),
+        (
+            b"x,y,volume\n0,0,1\n1,0,1\n-0,0,1\n",
+            ", line 4: the point [-0.0, 0.0] is already on line 2",
+        ),
+        (b"x,y,volume\n0,\xff,1\n", ", line 2, column y: bytes that are not UTF-8"),
+        (b"\xff\xfe\x00", ", line 1: the header is"),
+        (b"x,y,volume\n0,0,\"1\n2,2,2\n", ", line 2, column volume: `1"),
+    ];
+    for (bytes, message) in faults {
+        let error = read::<2>(bytes).expect_err(message).to_string();
+        assert!(error.contains(message), "{error}\nexpected {message}");
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let fault = |path: &Path| match from_points::<2>(path).unwrap_err() {
+        GeometryError::Points(error) => {
+            assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+            error.fault
+        }
+        other => panic!("{other}"),
+    };
+    assert!(matches!(fault(folder.path()), PointsFault::NotAFile));
+    assert!(matches!(fault(&folder.path().join("none.csv")), PointsFault::Unreadable(_)));
+    let large = folder.path().join("large.csv");
+    // A file with a hole takes no room on the disk.
+    std::fs::File::create(&large).unwrap().set_len((1 << 31) + 1).unwrap();
+    assert!(matches!(fault(&large), PointsFault::TooLarge));
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_cause_a_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        let _ = read::<1>(&bytes);
+        let _ = read::<3>(&[b"x,y,z,volume\n", bytes.as_slice()].concat());
+    }
+
+    #[test]
+    fn no_text_causes_a_panic(text in "x,volume\n[-0-9.e, \"\n\r]{0,100}") {
+        if let Ok(particles) = read::<1>(text.as_bytes()) {
+            prop_assert!(particles.volume.iter().all(|volume| *volume > 0.0));
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read(points in prop::collection::hash_map(
+        any::<(u32, u32)>(), 1e-9..1e9f64, 1..50,
+    )) {
+        let rows: Vec<_> = points.iter().map(|((x, y), v)| (f64::from(*x) / 7.0, f64::from(*y), *v)).collect();
+        let lines: String = rows.iter().map(|(x, y, v)| format!("{x},{y:e},{v}\n")).collect();
+        let particles = read::<2>(format!("x,y,volume\n{lines}").as_bytes()).unwrap();
+        for (a, (x, y, v)) in rows.into_iter().enumerate() {
+            prop_assert_eq!(particles.position[a], Vector::<2>::new(x, y));
+            prop_assert_eq!(particles.volume[a], v);
+        }
+    }
+}
