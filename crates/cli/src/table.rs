@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn wide_columns_are_cut_to_the_width() {
         let lines = align(&rows(), Some(30), &[1]);
-        assert_eq!(lines[1], "U10  a rather long name …  no");
+        assert_eq!(lines[1], "U10  a rather long name o…  no");
         assert!(lines.iter().all(|line| measure_text_width(line) <= 30));
         // Nothing is cut below a readable width, whatever the terminal.
         let lines = align(&rows(), Some(1), &[1]);
