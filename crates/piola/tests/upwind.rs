@@ -3,10 +3,11 @@
 mod support;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use piola::neighbors::Domain;
-use piola::schemes::upwind::{Settings, Upwind};
+use piola::schemes::upwind::{Initial, Settings, Upwind, UpwindInput};
 use piola::schemes::{Health, Scheme};
 use piola::time::{Executor, IntegratorKind, Outcome, StepControl};
 use piola::{Tensor, Vector};
@@ -350,4 +351,34 @@ fn every_described_field_has_values() {
         assert_eq!(values.len(), 2 * field.kind.components(2), "{}", field.name);
         assert!(values.iter().all(|value| value.is_finite()), "{}", field.name);
     }
+}
+
+/// Parts that do not fit together, and particles that cannot move, are refused by name.
+#[test]
+fn input_that_cannot_be_computed_with_is_refused() {
+    let refuse = |spoil: &dyn Fn(&mut UpwindInput<2>), expected: &str| {
+        let choice = Choice::new(lattice([3.0, 5.0], [6, 10]), gamma())
+            .fix(0, |x| x[0] < 1e-9)
+            .load([Arc::new(0.0), Arc::new(1.0)], |x| x[1] > 4.9, |_| 0.5);
+        let count = choice.particles.len();
+        let zeros = Initial { velocity: vec![Vector::zeros(); count], pressure: vec![0.0; count] };
+        let mut input = choice.input(zeros);
+        assert_eq!(count, 77);
+        spoil(&mut input);
+        let error = Upwind::new(input).map(|_| ()).expect_err(expected).to_string();
+        assert!(error.contains(expected), "`{error}` lacks `{expected}`");
+    };
+    refuse(&|i| i.initial.velocity.truncate(76), "the initial velocity has 76 entries");
+    refuse(&|i| i.initial.pressure.push(0.0), "the initial pressure has 78 entries");
+    refuse(&|i| i.particles.weight.clear(), "the list of weights has 0 entries");
+    refuse(&|i| i.particles.body[70] = 1, "the material of body 1 does not exist");
+    refuse(&|i| i.tractions[0].areas.truncate(3), "the areas of a traction");
+    refuse(&|i| i.tractions[0].particles[2] = 77, "`load`: particle 77 does not exist");
+    refuse(&|i| i.prescribed[0].particles[1] = 99, "particle 99 does not exist");
+    refuse(&|i| i.prescribed[0].component = 2, "component 2 does not exist");
+    refuse(&|i| i.particles.volume[5] = 0.0, "particle 5 at [2.5, 0.0] has a mass of 0 kg");
+    refuse(&|i| i.materials[0].density = f64::NAN, "particle 0 at [0.0, 0.0] has a mass of NaN");
+    refuse(&|i| i.initial.velocity[3][1] = f64::NAN, "velocity of particle 3 at");
+    refuse(&|i| i.initial.pressure[4] = -1e9, "initial pressure -1000000000 Pa of particle 4");
+    refuse(&|i| i.particles.position[8] = i.particles.position[1], "particles 1 and 8 lie");
 }

@@ -1,6 +1,6 @@
 //! Case files: what a user writes, checked and turned into types.
 //!
-//! The way of a case: text, tree of values ([`document`]), overrides ([`overrides`]), check
+//! The way of a case: text, tree of values (`document`), overrides (`overrides`), check
 //! against the descriptions of the tables ([`spec`], [`tables`], `decode`), agreement of values
 //! with each other (`interpret`), and the typed [`Case`]. Every step keeps the places of its
 //! values, so that each problem points at the text that causes it, and all are reported at once.

@@ -33,8 +33,8 @@ pub struct FillReport<const D: usize> {
 /// at the lower corner. Kernel weights are the whole cell for every particle. Quadrature volumes
 /// in a box are the part of the cell inside, so that their sum is exact. In other shapes, each
 /// part of the shape belongs to the cell it lies in or, where that has no particle, to the
-/// nearest particle of the cells around; parts are measured with midpoints of a fixed subdivision
-/// of the cell, and their sum nears the shape's volume with the square of the spacing.
+/// nearest particle of the cells around. Parts are measured with midpoints of a fixed subdivision
+/// of the cell; the error of their sum falls with the power 3/2 of the spacing or faster.
 ///
 /// With jitter, particles move at random by up to `jitter` spacings along each axis, but not off
 /// the faces of the bounding box, nor out of the shape. The same seed gives the same particles.

@@ -21,7 +21,7 @@ pub trait Scheme: Send {
     /// Numbers of state a particle.
     fn row_length(&self) -> usize;
 
-    /// The fields that [`Scheme::snapshot`] can give.
+    /// The fields that [`Scheme::sample`] and [`snapshot`] can give.
     fn fields(&self) -> &'static [FieldDescription];
 
     /// The mechanisms that give or take energy, in the order of the state's tail. Work done on

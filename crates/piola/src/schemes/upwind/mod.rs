@@ -96,7 +96,7 @@ struct Loaded<const D: usize> {
 /// The energies of the formulation.
 pub const ENERGIES: [&str; 2] = ["kinetic", "strain"];
 
-/// The mechanisms of its ledger, in the order of [`Powers`].
+/// The mechanisms of its ledger, in the order of the state's tail.
 pub const MECHANISMS: [&str; 5] =
     ["body_force", "traction", "boundary_motion", "upwind_velocity", "upwind_pressure"];
 
