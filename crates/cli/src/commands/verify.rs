@@ -194,7 +194,7 @@ fn render(rows: &[CheckRow]) -> String {
         ]
     };
     let table: Vec<Vec<String>> = std::iter::once(header).chain(rows.iter().map(cells)).collect();
-    let lines = table::align(&table, terminal::stdout_width(), &[0, 1, 3, 5]);
+    let lines = table::align(&table, terminal::stdout_width(), &[5, 1, 3, 0]);
     let reasons = rows.iter().map(|row| row.reason.as_deref());
     let mut text = String::new();
     for (line, reason) in lines.iter().zip(std::iter::once(None).chain(reasons)) {

@@ -80,6 +80,20 @@ fn files_that_are_no_case_are_bad_cases() {
     refused(&place, "ascii.toml", 2, &["ascii.toml"]);
     place.write("long.toml", format!("title = [{}", "1.0, ".repeat(200_000)));
     refused(&place, "long.toml", 2, &["long.toml:1:"]);
+    // 100 MB that take no room on the disk.
+    let large = std::fs::File::create(place.path("large.toml")).unwrap();
+    large.set_len(100 << 20).unwrap();
+    refused(&place, "large.toml", 2, &["large.toml", "too large"]);
+}
+
+#[test]
+fn numbers_that_are_none_are_refused() {
+    let place = Place::with_bar();
+    for value in ["nan", "inf", "-inf", "1e999", "\"0/0\"", "\"1e308*10\""] {
+        refused(&place, &format!("bar/case.toml --set time.end={value}"), 2, &["time.end="]);
+        let speed = format!("bar/case.toml --set parameters.speed={value}");
+        refused(&place, &speed, 2, &["parameters.speed="]);
+    }
 }
 
 #[test]
