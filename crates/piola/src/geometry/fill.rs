@@ -5,6 +5,7 @@ use super::jitter::jitter;
 use super::lattice::Lattice;
 use super::{GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape};
 use crate::Vector;
+use crate::parallel::sum;
 
 /// Most sites of the lattice around a body. A run needs a kilobyte a particle and more.
 pub(super) const MOST_SITES: usize = 100_000_000;
@@ -68,7 +69,7 @@ pub fn fill<const D: usize>(
         jitter(&mut particles.position, shape, &lattice, spec);
     }
     Ok(FillReport {
-        total_volume: particles.volume.iter().sum(),
+        total_volume: sum(count, |a| particles.volume[a]),
         exact_volume: shape.exact_volume(),
         actual_spacing: lattice.edges.into(),
         particles,
