@@ -84,7 +84,7 @@ pub enum Failure {
     },
     /// The number of steps allowed is used up.
     #[error(
-        "the run took all {steps} steps that it may and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
+        "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
     )]
     TooManySteps {
         /// Steps taken.
