@@ -65,7 +65,7 @@ fn a_failed_run_fails_its_checks_with_the_reason() {
     let place = Place::new();
     place.write("bar/case.toml", BAR.replace("cfl = 0.2", "cfl = 0.2\nmax_steps = 1"));
     let (stdout, _) = place.run("verify bar", 1);
-    assert_contains(&stdout, &["the run failed: 1 steps are done", "1 failed"]);
+    assert_contains(&stdout, &["the run failed: it took all the steps it may, 1,", "1 failed"]);
 }
 
 #[test]

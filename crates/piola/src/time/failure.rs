@@ -84,7 +84,7 @@ pub enum Failure {
     },
     /// The number of steps allowed is used up.
     #[error(
-        "{steps} steps are done at t = {time:.6} s, before the end; raise `time.max_steps` to go on"
+        "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
     )]
     TooManySteps {
         /// Steps taken.
