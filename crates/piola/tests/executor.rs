@@ -182,7 +182,7 @@ fn due_times_are_met_exactly() {
     assert_eq!((summary.first_step, summary.evaluations), (0.7 * 0.1, 2 * summary.steps));
 }
 
-/// Not `time + (due - time)`, which is off by a rounding now and then.
+/// They are the multiples of the interval, not a sum of steps.
 #[test]
 fn many_due_times_do_not_drift() {
     let mut executor = executor(PENDULUM, StepControl::Cfl(0.37), 20.0);

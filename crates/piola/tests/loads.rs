@@ -69,7 +69,7 @@ fn the_later_of_two_conditions_holds() {
         .prescribe(0, Arc::new(2.0), |x| x[0] > 0.4 && x[0] < 0.8)
         .build(|_| Vector::<1>::zeros());
     let state = march(&mut scheme, 1e-3, 1);
-    let velocities: Vec<f64> = state.chunks_exact(4).map(|row| row[0]).collect();
+    let velocities: Vec<f64> = state[..20].chunks_exact(4).map(|row| row[0]).collect();
     assert_eq!(velocities, [1.0, 1.0, 2.0, 2.0, 1.0]);
 }
 
