@@ -1,4 +1,5 @@
 //! Properties of every registered kernel: the tests run over [`Kernel::ALL`].
+#![allow(clippy::approx_constant, reason = "reference values are written as computed")]
 
 use num_dual::Dual64;
 use piola_formulas::kernels::{Kernel, KernelShape, KernelVisitor, ScaledKernel};

@@ -7,13 +7,14 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use piola::Vector;
+use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::schemes::Scheme;
-use piola::schemes::upwind::{BodyForce, Settings, Upwind};
+use piola::schemes::upwind::{BodyForce, Initial, Material, Settings, Upwind};
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 use support::{
-    Choice, Function, PLAIN, disturbed, energy, imbalance, lattice, march, march_from, varying,
-    work,
+    Choice, Function, PLAIN, disturbed, energy, imbalance, lattice, march, march_from, noise,
+    varying, work,
 };
 
 fn linear(modulus: f64) -> VolumetricLaw {
@@ -57,6 +58,19 @@ fn a_prescribed_velocity_moves_by_its_trapezoidal_sum() {
         assert!((state[end + 2] - expected).abs() < 1e-14, "{} {expected}", state[end + 2]);
         assert_eq!((state[0], state[2]), (0.0, 0.0));
     });
+}
+
+/// Of two conditions for one component of a particle the later one holds, whatever the order of
+/// the particles in them.
+#[test]
+fn the_later_of_two_conditions_holds() {
+    let mut scheme = Choice::new(lattice([1.0], [4]), gamma(10.0))
+        .prescribe(0, Arc::new(1.0), |_| true)
+        .prescribe(0, Arc::new(2.0), |x| x[0] > 0.4 && x[0] < 0.8)
+        .build(|_| Vector::<1>::zeros());
+    let state = march(&mut scheme, 1e-3, 1);
+    let velocities: Vec<f64> = state.chunks_exact(4).map(|row| row[0]).collect();
+    assert_eq!(velocities, [1.0, 1.0, 2.0, 2.0, 1.0]);
 }
 
 /// The end is pushed in by a tenth within 100 transit times, softly: the work is the strain
@@ -146,9 +160,9 @@ fn a_step_traction_reaches_twice_the_static_stretch() {
     // Force times way, by the same sums as the way itself, whose rounding is that of x near 1 m.
     let done = work(&scheme, &state, "traction");
     assert!((done - sigma * (state[tip] - 1.0)).abs() < 1e-10 * sigma * twice);
-    // The modes of a front of 1 % of the bar grow by (w dt)^4 / 4 in each of 4000 steps of 0.1.
+    // The modes of a front of 2 % of the bar grow by (w dt)^4 / 4 in each of 4000 steps of 0.1.
     let growth = imbalance(&scheme, 0.0, &state) / (sigma * twice);
-    assert!((0.0..0.01 * 0.1_f64.powi(4) / 4.0 * 4000.0).contains(&growth), "{growth}");
+    assert!((0.0..0.02 * 0.1_f64.powi(4) / 4.0 * 4000.0).contains(&growth), "{growth}");
 }
 
 /// Whatever the state, momentum changes by the loads alone, and a load on a prescribed component
@@ -209,6 +223,60 @@ fn a_uniform_body_force_moves_a_free_body_as_a_whole() {
     assert!((energy(&scheme, &state) - kinetic).abs() < 1e-10 * kinetic);
     let done = work(&scheme, &state, "body_force");
     assert!((begin + done - kinetic).abs() < 1e-3 * kinetic, "{done} {kinetic} {begin}");
+}
+
+/// Two bodies in one place do not see each other: each does to the bit what it does alone, with
+/// its own material and the force that is meant for it.
+#[test]
+fn bodies_are_on_their_own() {
+    let materials = [(1000.0, gamma(10.0)), (500.0, linear(2e5))];
+    let force = |body: Option<u32>, g: f64| BodyForce::<2> {
+        body,
+        acceleration: [Arc::new(0.0), varying(move |x, t| g * (x[0] + t))],
+    };
+    let zeros = |count: usize| Initial {
+        velocity: (0..count).map(|a| Vector::<2>::new(noise(a), 0.0)).collect(),
+        pressure: vec![0.0; count],
+    };
+    let choose = |particles: Particles<2>| {
+        let mut choice = Choice::new(particles, gamma(10.0));
+        choice.settings = upwinded();
+        choice
+    };
+    let one = lattice([1.0, 1.0], [6, 6]);
+    let count = one.len();
+    let mut both = one.clone();
+    both.position.extend(one.position.iter().map(|x| x + Vector::<2>::new(0.03, 0.04)));
+    both.volume.extend_from_slice(&one.volume);
+    both.weight.extend_from_slice(&one.weight);
+    both.spacing.extend_from_slice(&one.spacing);
+    both.body.extend(vec![1; count]);
+    both.id.extend(count as u32..2 * count as u32);
+
+    let mut choice = choose(both);
+    choice.body_forces = vec![force(None, 1.0), force(Some(1), 30.0)];
+    let mut input = choice.input(zeros(2 * count));
+    input.materials = materials.map(|(density, law)| Material { density, law }).to_vec();
+    let together = march(&mut Upwind::new(input).expect("a scheme"), 1e-3, 50);
+
+    for (body, forces) in
+        [vec![force(None, 1.0)], vec![force(None, 1.0), force(None, 30.0)]].into_iter().enumerate()
+    {
+        let mut alone = one.clone();
+        let shift = Vector::<2>::new(0.03, 0.04) * body as f64;
+        alone.position.iter_mut().for_each(|x| *x += shift);
+        let mut choice = choose(alone);
+        choice.body_forces = forces;
+        let mut initial = zeros(2 * count);
+        initial.velocity.drain(..body * count);
+        initial.velocity.truncate(count);
+        initial.pressure.truncate(count);
+        let mut input = choice.input(initial);
+        let (density, law) = materials[body];
+        input.materials = vec![Material { density, law }];
+        let alone = march(&mut Upwind::new(input).expect("a scheme"), 1e-3, 50);
+        assert_eq!(alone[..9 * count], together[9 * count * body..9 * count * (body + 1)]);
+    }
 }
 
 const GRAVITY: f64 = 9.81;

@@ -1,4 +1,5 @@
 //! Files that piola writes, read back by other means than those that wrote them.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
 mod folders;
 mod image;

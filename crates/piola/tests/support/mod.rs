@@ -131,13 +131,18 @@ impl<const D: usize> Choice<D> {
             velocity: positions.iter().map(velocity).collect(),
             pressure: positions.iter().map(pressure).collect(),
         };
+        Upwind::new(self.input(initial)).expect("the scheme can be built")
+    }
+
+    /// All that a scheme is bound to.
+    pub fn input(self, initial: Initial<D>) -> UpwindInput<D> {
         let support =
             Support::new(&self.particles, Kernel::CubicSpline, self.smoothing_ratio, self.domain)
                 .expect("the support of a lattice exists");
         let mut body_forces = self.body_forces;
         let steady = |k: usize| Arc::new(self.gravity[k]) as Arc<dyn SpaceTime>;
         body_forces.push(BodyForce { body: None, acceleration: std::array::from_fn(steady) });
-        Upwind::new(UpwindInput {
+        UpwindInput {
             particles: self.particles,
             support,
             settings: self.settings,
@@ -146,8 +151,7 @@ impl<const D: usize> Choice<D> {
             body_forces,
             tractions: self.tractions,
             prescribed: self.prescribed,
-        })
-        .expect("the scheme can be built")
+        }
     }
 }
 

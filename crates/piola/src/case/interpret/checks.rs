@@ -21,11 +21,16 @@ impl Reader<'_, '_> {
             "full" => When::Full,
             _ => When::Always,
         };
-        let end = end.filter(|_| match when {
-            // The end of a variant or of another setting may be another one.
+        // The end of another variant or setting may be another one.
+        let of_this_run = match &variant {
+            Some(Some(Some(name))) => self.setting.variant == Some(name.as_str()),
+            _ => self.setting.variant.is_none(),
+        };
+        let at_this_setting = match when {
             When::Coarse => self.setting.coarse,
             When::Always | When::Full => !self.setting.coarse,
-        });
+        };
+        let end = end.filter(|_| of_this_run && at_this_setting);
         let reduce = self.reduction(record, end);
         let is_outcome = quantity.as_deref() == Some(&Quantity::Run("outcome".to_owned()));
         let expectation = self.expectation(record, is_outcome);

@@ -106,6 +106,7 @@ impl<const D: usize> Upwind<D> {
     pub fn new(input: UpwindInput<D>) -> Result<Self, UpwindError> {
         check(&input)?;
         let UpwindInput { particles, support, settings, materials, initial, .. } = input;
+        let nearest = nearest(&particles, &support)?;
         let gradient = GradientOperator::new(&particles, &support, settings.correction)?;
         let least_squares = match settings.reconstruction {
             true => Some(LeastSquares::new(&particles, &support)?),
@@ -125,7 +126,7 @@ impl<const D: usize> Upwind<D> {
         });
         let steady = |force: &BodyForce<D>| force.acceleration.iter().all(|g| g.is_steady());
         let mut scheme = Self {
-            nearest: nearest(&particles, &support)?,
+            nearest,
             largest_exchange: largest_exchange(&particles, &support, &gradient),
             fastest_reference: reference.iter().map(|r| r.wave_speed).fold(0.0, f64::max),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),

@@ -52,8 +52,8 @@ pub(super) struct Pair<'a, const D: usize> {
 }
 
 impl<const D: usize> Pair<'_, D> {
-    /// The terms of b in the sums of a, with the dissipation of velocity and of pressure or
-    /// without.
+    /// The terms of b in the sums of a, with the dissipation of velocity and of pressure, theory
+    /// (12) and (13), or without. Its antisymmetric areas let b lose what a receives.
     #[inline(always)]
     pub fn terms<const VELOCITY: bool, const PRESSURE: bool>(&self) -> Gathered<f64, D> {
         let (me, other) = (self.me, self.other);
@@ -70,8 +70,9 @@ impl<const D: usize> Pair<'_, D> {
             pressure_jump -= (mine.pressure + theirs.pressure).dot(&self.reference) * 0.5;
         }
         if VELOCITY || PRESSURE {
-            let impedance =
-                0.5 * (me.density + other.density) * if me.wave_speed > other.wave_speed { me.wave_speed } else { other.wave_speed };
+            let impedance = 0.5
+                * (me.density + other.density)
+                * if me.wave_speed > other.wave_speed { me.wave_speed } else { other.wave_speed };
             let interface = Interface::new(self.current, self.reference);
             if VELOCITY {
                 let area = self.area - self.transposed;
@@ -82,7 +83,9 @@ impl<const D: usize> Pair<'_, D> {
                 let theirs = other.cofactor.tr_mul(&self.current);
                 let d2 = self.current.norm_squared();
                 let k = 1.0 / (d2 * self.reference.norm() * impedance * 4.0);
-                terms.upwind_volume_rate = -(pressure_jump * k * (mine + theirs).dot(&self.reference)
+                terms.upwind_volume_rate = -(pressure_jump
+                    * k
+                    * (mine + theirs).dot(&self.reference)
                     * (mine.dot(&self.area) - self.current.dot(&other_area)));
             }
         }

@@ -21,7 +21,7 @@ pub(super) struct Side<const D: usize> {
     pub cofactor: Tensor<D>,
     /// Pressure p(J) of the evolved J in Pa.
     pub pressure: f64,
-    /// Reference density in kg/m^D.
+    /// Reference density in kg/m^3.
     pub density: f64,
     /// Speed of the shock in the dissipation in m/s.
     pub wave_speed: f64,

@@ -49,7 +49,7 @@ impl<const D: usize> Upwind<D> {
         self.chunk_powers = powers;
     }
 
-    /// Sums over the neighbours of particle a.
+    /// The sums over the neighbours of particle a, theory (8) to (10).
     #[inline(always)]
     fn gather<const VELOCITY: bool, const PRESSURE: bool, const RECONSTRUCTION: bool>(
         &self,
@@ -73,6 +73,7 @@ impl<const D: usize> Upwind<D> {
                     *slope = &self.slopes[b as usize];
                 }
             }
+            let (current, reference) = self.separations(me, &others);
             let count = neighbors.len().min(LANES);
             let (areas, transposed) = (&areas[..count], &transposed[..count]);
             for lane in 0..count {
@@ -81,8 +82,8 @@ impl<const D: usize> Upwind<D> {
                     other: others[lane],
                     area: Vector::from(areas[lane]),
                     transposed: Vector::from(transposed[lane]),
-                    current: others[lane].position - me.position,
-                    reference: others[lane].reference - me.reference,
+                    current: Vector::from_fn(|i, _| current[i][lane]),
+                    reference: Vector::from_fn(|i, _| reference[i][lane]),
                     slopes: slopes.map(|slopes| [&self.slopes[a], slopes[lane]]),
                 };
                 sums.add(lane, &pair.terms::<VELOCITY, PRESSURE>());
@@ -93,31 +94,24 @@ impl<const D: usize> Upwind<D> {
 
     /// Current and reference separations from a particle to others, component by component.
     #[inline(always)]
-    fn separate(
-        &self,
-        me: &Side<D>,
-        others: &[&Side<D>; LANES],
-        current: &mut [Lanes; D],
-        reference: &mut [Lanes; D],
-    ) {
+    fn separations(&self, me: &Side<D>, others: &[&Side<D>; LANES]) -> ([Lanes; D], [Lanes; D]) {
         let domain = &self.support.domain;
-        if domain.is_open() {
+        let (mut current, mut reference) = ([[0.0; LANES]; D], [[0.0; LANES]; D]);
+        for (lane, other) in others.iter().enumerate() {
+            let (now, then) = if domain.is_open() {
+                (other.position - me.position, other.reference - me.reference)
+            } else {
+                (
+                    domain.separation(&me.position, &other.position),
+                    domain.separation(&me.reference, &other.reference),
+                )
+            };
             for i in 0..D {
-                for lane in 0..LANES {
-                    current[i][lane] = others[lane].position[i] - me.position[i];
-                    reference[i][lane] = others[lane].reference[i] - me.reference[i];
-                }
-            }
-        } else {
-            for lane in 0..LANES {
-                let x = domain.separation(&me.position, &others[lane].position);
-                let y = domain.separation(&me.reference, &others[lane].reference);
-                for i in 0..D {
-                    current[i][lane] = x[i];
-                    reference[i][lane] = y[i];
-                }
+                current[i][lane] = now[i];
+                reference[i][lane] = then[i];
             }
         }
+        (current, reference)
     }
 }
 
@@ -187,8 +181,8 @@ impl<const D: usize> Gathered<Lanes, D> {
     }
 
     /// The sums over all lanes.
-    #[inline(never)]
-    fn total(self) -> Gathered<f64, D> {
+    #[inline(always)]
+    fn total(&self) -> Gathered<f64, D> {
         Gathered {
             internal: self.internal.map(total),
             deformation_rate: self.deformation_rate.map(|row| row.map(total)),
