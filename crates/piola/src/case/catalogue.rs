@@ -8,6 +8,7 @@ use super::simulation;
 use super::spec::Choice;
 use crate::fields::FieldDescription;
 use crate::observe;
+use crate::observe::reduce::{REDUCTIONS, ReductionEntry};
 use crate::schemes::upwind;
 use crate::time::IntegratorKind;
 
@@ -31,6 +32,12 @@ pub fn integrators() -> Vec<Choice> {
         IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
     };
     IntegratorKind::ALL.map(|kind| Choice { name: kind.name(), meaning: meaning(kind) }).to_vec()
+}
+
+/// The reductions of a history to one number.
+pub fn reductions() -> Vec<Choice> {
+    let choice = |entry: &ReductionEntry| Choice { name: entry.name, meaning: entry.meaning };
+    REDUCTIONS.iter().map(choice).collect()
 }
 
 /// The fields of the scheme called `scheme`.

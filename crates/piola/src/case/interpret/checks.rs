@@ -89,7 +89,8 @@ impl Reader<'_, '_> {
             "growth" => Reduction::Growth,
             "curve" => Reduction::Curve(self.file(record, "reference")?),
             "curve_rms" => Reduction::CurveRms(self.file(record, "reference")?),
-            _ => Reduction::Final,
+            "final" => Reduction::Final,
+            _ => return None,
         })
     }
 

@@ -159,7 +159,7 @@ pub(super) static CHECK: TableSpec = TableSpec {
         ),
         key(
             "reduce",
-            Kind::Name(REDUCTIONS),
+            Kind::Name(Choices::Registry(catalogue::reductions)),
             "",
             Default("\"final\""),
             "how its history becomes one number; no meaning for run.NAME",
@@ -221,23 +221,6 @@ pub(super) static CHECK: TableSpec = TableSpec {
     ],
 };
 
-const REDUCTIONS: Choices = choices(&[
-    choice("maximum", "the largest value"),
-    choice("minimum", "the smallest value"),
-    choice("final", "the last value"),
-    choice("initial", "the first value"),
-    choice("at", "the value at the time `at`"),
-    choice("mean", "the mean over time"),
-    choice("range", "largest minus smallest value"),
-    choice("period", "the period of its oscillation"),
-    choice("extremum", "the value at a local extremum"),
-    choice("extremum_time", "the time of a local extremum"),
-    choice("zero_time", "the time of a change of sign"),
-    choice("largest_rise", "the largest increase from row to row"),
-    choice("growth", "last value over first value, minus 1"),
-    choice("curve", "largest difference to the curve of a file"),
-    choice("curve_rms", "root mean square of the difference to the curve of a file"),
-]);
 const SETTINGS: Choices = choices(&[
     choice("always", "at both settings"),
     choice("coarse", "at the coarse setting only"),
