@@ -182,6 +182,16 @@ fn due_times_are_met_exactly() {
     assert_eq!((summary.first_step, summary.evaluations), (0.7 * 0.1, 2 * summary.steps));
 }
 
+/// They are the multiples of the interval, not a sum of steps.
+#[test]
+fn many_due_times_do_not_drift() {
+    let mut executor = executor(PENDULUM, StepControl::Cfl(0.37), 20.0);
+    let every = watch(&mut executor, Schedule::Every(0.1));
+    run(&mut executor);
+    let expected: Vec<f64> = (0..=200).map(|count| f64::from(count) * 0.1).collect();
+    assert_eq!(times(&every), expected);
+}
+
 /// Where the run ends does not depend on who looks, but for the error of the integrator, whose
 /// order is two whether steps are clipped or not.
 #[test]

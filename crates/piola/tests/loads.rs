@@ -60,6 +60,19 @@ fn a_prescribed_velocity_moves_by_its_trapezoidal_sum() {
     });
 }
 
+/// Of two conditions for one component of a particle the later one holds, whatever the order of
+/// the particles in them.
+#[test]
+fn the_later_of_two_conditions_holds() {
+    let mut scheme = Choice::new(lattice([1.0], [4]), gamma(10.0))
+        .prescribe(0, Arc::new(1.0), |_| true)
+        .prescribe(0, Arc::new(2.0), |x| x[0] > 0.4 && x[0] < 0.8)
+        .build(|_| Vector::<1>::zeros());
+    let state = march(&mut scheme, 1e-3, 1);
+    let velocities: Vec<f64> = state[..20].chunks_exact(4).map(|row| row[0]).collect();
+    assert_eq!(velocities, [1.0, 1.0, 2.0, 2.0, 1.0]);
+}
+
 /// The end is pushed in by a tenth within 100 transit times, softly: the work is the strain
 /// energy of the homogeneous bar. Vibrations keep the square of (transit/duration)^2, 1e-8.
 #[test]
