@@ -46,6 +46,9 @@ impl Display {
             (false, true) => BAR_INTERVAL,
             (false, false) => LINE_INTERVAL,
         };
+        if !quiet && !on_terminal && !label.is_empty() {
+            terminal::report(&format!("running {label}\n"));
+        }
         Self { label: label.to_owned(), start: now, last: now, bar, interval }
     }
 
@@ -87,15 +90,15 @@ fn share(progress: &Progress) -> f64 {
 fn line(progress: &Progress, elapsed: f64) -> String {
     let share = share(progress);
     format!(
-        "{:.1} %, t = {} of {} s, step {} of {} s ({}), {} evaluations/s, {} left",
+        "{:.1} %, {} left, t = {} of {} s, step {}, dt {} s ({}), {} evaluations/s",
         100.0 * share,
+        duration(elapsed * (1.0 - share) / share),
         significant(progress.time, 5),
         significant(progress.end, 5),
         progress.step,
         significant(progress.step_size, 3),
         progress.limiter,
         large(progress.evaluations as f64 / elapsed),
-        duration(elapsed * (1.0 - share) / share),
     )
 }
 
@@ -115,8 +118,8 @@ mod tests {
         };
         assert_eq!(
             line(&progress, 10.0),
-            "25.0 %, t = 0.75 of 3 s, step 1234 of 0.0006 s (acoustic), 5 million evaluations/s, \
-             30 s left"
+            "25.0 %, 30 s left, t = 0.75 of 3 s, step 1234, dt 0.0006 s (acoustic), \
+             5 million evaluations/s"
         );
         let start = Progress { time: 0.0, end: 0.0, evaluations: 0, ..progress };
         assert!(line(&start, 0.0).contains("unknown left"));

@@ -1,7 +1,8 @@
 //! What `piola run` says at the end.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use piola::case::Finished;
 use piola::observe::Series;
@@ -23,12 +24,15 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
             100.0 * summary.time / end,
         ),
     };
-    let speed = large(summary.evaluations as f64 / seconds);
-    let mut text = format!(
-        "{ended}\n{} particles, {}, {speed} particle evaluations a second\n\n",
-        finished.particles,
-        duration(seconds)
-    );
+    let stepping = summary.timings.iter().find(|timing| timing.stage == "step");
+    let stepping = stepping.map_or(seconds, |timing| timing.seconds);
+    let speed = if stepping > 0.0 {
+        format!(", {} particle evaluations a second", large(summary.evaluations as f64 / stepping))
+    } else {
+        String::new()
+    };
+    let mut text =
+        format!("{ended}\n{} particles, {}{speed}\n\n", finished.particles, duration(seconds));
     let mut line = |name: &str, content: &str| {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{name:<12}{content}");
@@ -44,15 +48,16 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
         .collect();
     line("wall time", &stages.join(", "));
     energies(finished, &mut line);
-    line(
-        "health",
-        &format!(
+    // Of a run that fails at its first look there are no figures.
+    if summary.smallest_ratio.is_finite() {
+        let text = format!(
             "volume ratio at least {}, J and det F differ by at most {}, speed at most {} m/s",
             significant(summary.smallest_ratio, 4),
             significant(summary.ratio_mismatch, 2),
             significant(summary.largest_speed, 4),
-        ),
-    );
+        );
+        line("health", &text);
+    }
     for warning in &finished.warnings {
         line("warning", warning);
     }
@@ -96,21 +101,26 @@ fn energies(finished: &Finished, line: &mut impl FnMut(&str, &str)) {
     }
 }
 
-/// Where to look.
+/// Where to look: the series for ParaView by its path, the rest below the folder of results, with
+/// the files of each folder in it counted.
 fn files(finished: &Finished, folder: &Path, text: &mut String) {
     let is_series = |path: &&PathBuf| path.extension().is_some_and(|end| end == "pvd");
     if let Some(series) = finished.files.iter().find(is_series) {
         let _ = writeln!(text, "\nopen {} in ParaView", series.display());
     }
-    let others: Vec<String> = finished
-        .files
-        .iter()
-        .filter(|path| {
-            path.extension().is_none_or(|extension| extension != "vtp" && extension != "pvd")
-        })
-        .map(|path| path.strip_prefix(folder).unwrap_or(path).display().to_string())
-        .collect();
-    if !others.is_empty() {
-        let _ = writeln!(text, "also in {}: {}", folder.display(), others.join(", "));
+    let (mut single, mut folders) = (Vec::new(), BTreeMap::<PathBuf, u64>::new());
+    for path in finished.files.iter().filter(|path| !is_series(path)) {
+        let relative = path.strip_prefix(folder).unwrap_or(path);
+        match relative.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+            Some(parent) => *folders.entry(parent.to_owned()).or_default() += 1,
+            None => single.push(relative.display().to_string()),
+        }
+    }
+    let folders = folders.iter().map(|(name, number)| {
+        format!("{}{MAIN_SEPARATOR} ({})", name.display(), count(*number, "file"))
+    });
+    single.extend(folders);
+    if !single.is_empty() {
+        let _ = writeln!(text, "in {}: {}", folder.display(), single.join(", "));
     }
 }

@@ -9,8 +9,8 @@ const GAP: usize = 2;
 
 /// Lines of `rows` with aligned columns, one line a row.
 ///
-/// Where they are wider than `width`, the widest of the columns `shrinkable` are cut until they
-/// fit or none can be cut further.
+/// Where they are wider than `width`, the columns `shrinkable` are cut, each as far as needed and
+/// possible before the next, until all fit or none can be cut further.
 pub fn align(rows: &[Vec<String>], width: Option<usize>, shrinkable: &[usize]) -> Vec<String> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let mut widths = vec![0; columns];
@@ -20,13 +20,10 @@ pub fn align(rows: &[Vec<String>], width: Option<usize>, shrinkable: &[usize]) -
         }
     }
     let room = width.unwrap_or(usize::MAX).saturating_sub(GAP * columns.saturating_sub(1));
-    while widths.iter().sum::<usize>() > room {
-        let candidates = shrinkable.iter().copied().filter(|column| *column < columns);
-        let widest = candidates.max_by_key(|column| widths[*column]);
-        match widest {
-            Some(column) if widths[column] > NARROWEST => widths[column] -= 1,
-            _ => break,
-        }
+    for column in shrinkable.iter().copied().filter(|column| *column < columns) {
+        let excess = widths.iter().sum::<usize>().saturating_sub(room);
+        let spare = widths[column].saturating_sub(NARROWEST);
+        widths[column] -= excess.min(spare);
     }
     let line = |row: &Vec<String>| {
         let mut line = String::new();
@@ -62,7 +59,7 @@ mod tests {
     #[test]
     fn wide_columns_are_cut_to_the_width() {
         let lines = align(&rows(), Some(30), &[1]);
-        assert_eq!(lines[1], "U10  a rather long name …  no");
+        assert_eq!(lines[1], "U10  a rather long name o…  no");
         assert!(lines.iter().all(|line| measure_text_width(line) <= 30));
         // Nothing is cut below a readable width, whatever the terminal.
         let lines = align(&rows(), Some(1), &[1]);

@@ -74,3 +74,22 @@ pub fn verdict(word: &str, good: bool) -> String {
         false => style(word).red().bold().to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_change_no_word() {
+        let report = "error: wrong\n  --> case.toml:3:1\n  |\n3 | spacin = 1\n  | ^^^^^^ unknown\n  \
+                      = help: spacing\n\n1 problem\n";
+        console::set_colors_enabled_stderr(true);
+        let painted = coloured(report);
+        assert_eq!(console::strip_ansi_codes(&painted), report);
+        let is_painted = |line: &str| line.contains('\u{1b}');
+        let lines: Vec<bool> = painted.lines().map(is_painted).collect();
+        assert_eq!(lines, [true, true, false, false, true, true, false, false]);
+        console::set_colors_enabled_stderr(false);
+        assert_eq!(coloured(report), report);
+    }
+}

@@ -32,7 +32,8 @@ impl<T: Scalar, const D: usize> Interface<T, D> {
         Self { current, reference, scale }
     }
 
-    /// Dissipative force on a in N, `1/2 z (n . dv) n (N . C)`, Upwind (3.40a) corrected.
+    /// Dissipative force on a in N, `1/2 z (n . dv) n (N . C)`, theory (12), Upwind (3.40a)
+    /// corrected.
     ///
     /// `impedance` z = rho0 c in kg/(m^2 s); `jump` dv = v_f+ - v_f- in m/s; `area` the
     /// antisymmetric `C_ab = V_a G_ab - V_b G_ba` in m^(D-1).
@@ -49,7 +50,7 @@ impl<T: Scalar, const D: usize> Interface<T, D> {
     }
 
     /// Dissipative volume rate of a in m^D/s, `-(dp / 2z) (n . H^Ave N) (n . C^H)`,
-    /// Upwind (3.40b) corrected, for `P = -p H`.
+    /// theory (13), Upwind (3.40b) corrected, for `P = -p H`.
     ///
     /// `jump` dp = p_f+ - p_f- in Pa; `cofactor` the average of the two cofactors; `area` the
     /// antisymmetric `C^H_ab = V_a H_a G_ab - V_b H_b G_ba` in m^(D-1).
@@ -82,7 +83,7 @@ pub fn stretched_wave_speed<T: Scalar>(speed: f64, smallest_eigenvalue: T) -> T 
 /// Fastest wave measured on the reference configuration in m/s, for the time step.
 ///
 /// `sqrt(psi'' / rho0) J / sqrt(lambda_min)`: the wave along the direction that is compressed
-/// most. Upwind (3.57) lacks the factor J. `acoustic` is `sqrt(psi''(J) / rho0)`.
+/// most, theory (16). Upwind (3.57) lacks the factor J. `acoustic` is `sqrt(psi''(J) / rho0)`.
 #[inline]
 pub fn referential_wave_speed<T: Scalar>(acoustic: T, determinant: T, smallest_eigenvalue: T) -> T {
     acoustic * determinant / smallest_eigenvalue.sqrt()

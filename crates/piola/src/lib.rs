@@ -1,7 +1,7 @@
 //! piola: solid and fluid mechanics with smoothed particle hydrodynamics.
 //!
 //! The rooms of the library, each of which uses only those further down in this list:
-//! [`case`], [`schemes`], [`time`], [`observe`] and [`output`], [`boundaries`] and
+//! [`case`], [`observe`], [`time`], [`output`], [`schemes`], [`boundaries`] and
 //! [`operators`], [`geometry`] and [`neighbors`], [`fields`] and [`parallel`].
 
 pub mod boundaries;

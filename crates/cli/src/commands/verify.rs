@@ -100,26 +100,23 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Vec<Check
         };
         load(path, &options).map_err(|problems| refusal(path, &problems))
     };
-    let folder = path.parent().and_then(Path::file_name);
+    let folder = folder_name(path);
     let is_wanted = |id: Option<&str>| match &arguments.only {
         None => true,
-        Some(only) => {
-            id.is_some_and(|id| id.eq_ignore_ascii_case(only))
-                || folder.is_some_and(|folder| folder == only.as_str())
-        }
+        Some(only) => id.is_some_and(|id| id.eq_ignore_ascii_case(only)) || folder == *only,
     };
     let base = match read(None) {
         Ok(base) => base,
         Err(_) if !is_wanted(None) => return Vec::new(),
         Err(fault) => {
             terminal::report(&terminal::coloured(&fault.report));
-            return vec![unreadable(path)];
+            return vec![unreadable(folder)];
         }
     };
     if !is_wanted(base.id.as_deref()) {
         return Vec::new();
     }
-    let name = base.id.clone().unwrap_or_else(|| path.display().to_string());
+    let name = base.id.clone().unwrap_or(folder);
     let runs = needed_variants(&base).len();
     let mut run = 0;
     let mut rows = evaluate(&base, &mut |variant| {
@@ -153,9 +150,16 @@ fn run_quietly(case: &Case, label: &str, stop: &AtomicBool) -> Result<Finished, 
     finished.map_err(|error| error.to_string())
 }
 
-fn unreadable(path: &Path) -> CheckRow {
+/// The name of the folder of a case file, which stands for its id where it has none.
+fn folder_name(path: &Path) -> String {
+    let resolved = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let name = resolved.parent().and_then(Path::file_name);
+    name.map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+fn unreadable(folder: String) -> CheckRow {
     CheckRow {
-        id: Some(path.display().to_string()),
+        id: Some(folder),
         variant: None,
         quantity: "the case file".to_owned(),
         got: None,
@@ -190,7 +194,7 @@ fn render(rows: &[CheckRow]) -> String {
         ]
     };
     let table: Vec<Vec<String>> = std::iter::once(header).chain(rows.iter().map(cells)).collect();
-    let lines = table::align(&table, terminal::stdout_width(), &[0, 1, 3, 5]);
+    let lines = table::align(&table, terminal::stdout_width(), &[5, 1, 3, 0]);
     let reasons = rows.iter().map(|row| row.reason.as_deref());
     let mut text = String::new();
     for (line, reason) in lines.iter().zip(std::iter::once(None).chain(reasons)) {

@@ -19,7 +19,8 @@ use crate::{Scalar, power::integer_power};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VolumetricLaw {
-    /// `psi = kappa (J - 1)^2 / 2`, `p = -kappa (J - 1)`: Upwind (3.11), and (3.12) corrected.
+    /// `psi = kappa (J - 1)^2 / 2`, `p = -kappa (J - 1)`: theory (5), Upwind (3.11), and
+    /// (3.12) corrected.
     ///
     /// Full collapse, `J = 0`, costs the finite energy `kappa / 2` only, Upwind (6.28).
     Linear {
@@ -27,7 +28,7 @@ pub enum VolumetricLaw {
         bulk_modulus: f64,
     },
     /// `psi = kappa (J - 1 - (J^(1 - gamma) - 1) / (1 - gamma))`, `p = kappa (J^-gamma - 1)`:
-    /// Upwind (6.29) and (6.30).
+    /// theory (6), Upwind (6.29) and (6.30).
     ///
     /// At `gamma = 1` the fraction is its limit, `ln J`.
     Gamma {

@@ -6,7 +6,7 @@ use crate::Scalar;
 /// A law whose reference configuration has itself the volume ratio `J0` to the stress-free one.
 ///
 /// With `J` measured from the prestressed configuration, energy per its volume, pressure and
-/// tangent are `psi(J0 J) / J0`, `p(J0 J)` and `J0 psi''(J0 J)`. A hydrostatic start is a ratio
+/// tangent are `psi(J0 J) / J0`, `p(J0 J)` and `J0 psi''(J0 J)`, theory (7). A hydrostatic start is a ratio
 /// per particle, from [`VolumetricResponse::volume_ratio_at_pressure`]. The energy at `J = 1` is
 /// not zero but what the prestress stores.
 #[derive(Clone, Copy, Debug, PartialEq)]

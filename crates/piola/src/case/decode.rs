@@ -2,6 +2,7 @@
 
 use super::diagnostics::Problem;
 use super::document::{Node, Table, Value};
+use super::outline::table_of;
 use super::record::{Datum, Record};
 use super::source::{Located, Place, SourceText};
 use super::spec::{KeySpec, Kind, KindSpec, Presence, TableSpec, TaggedSpec};
@@ -13,6 +14,9 @@ pub(super) use values::evaluate_parameters;
 
 /// Problems after which checking stops looking for suggestions, which take time.
 const PATIENCE: usize = 1000;
+
+/// Entries that a list may have. Larger sets of shapes or points stand in files of their own.
+const MAX_ENTRIES: usize = 10_000;
 
 /// What checking needs to know, and the problems that it finds.
 pub(super) struct Context<'a> {
@@ -81,7 +85,7 @@ impl Context<'_> {
         if let Some(dimension) = self.dimension.filter(|d| !kind.dimensions.contains(d)) {
             let known: Vec<String> = kind.dimensions.iter().map(|d| format!("{d}D")).collect();
             let message = format!(
-                "{} `{name}` exists in {} only, and the case has {dimension} dimension(s)",
+                "{} of kind `{name}` exists in {} only, and the case has {dimension} dimension(s)",
                 quoted(spec.title),
                 known.join(" and ")
             );
@@ -107,8 +111,9 @@ impl Context<'_> {
             if is_kind || known().any(|name| name == entry.key) {
                 continue;
             }
-            let of_kind = tagged.map_or(String::new(), |(_, kind)| format!(" `{}`", kind.name));
-            let message = format!("`{}` is no key of {}{of_kind}", entry.key, quoted(title));
+            let of_kind =
+                tagged.map_or(String::new(), |(_, kind)| format!(" of kind `{}`", kind.name));
+            let message = format!("{}{of_kind} has no key `{}`", quoted(title), entry.key);
             let mut problem = Problem::new(entry.key_place, message, "unknown key");
             if self.problems.len() < PATIENCE {
                 let elsewhere = tagged.and_then(|(spec, _)| owner(spec, &entry.key));
@@ -169,7 +174,11 @@ impl Context<'_> {
 
     fn missing(&mut self, title: &str, key: &KeySpec, place: Place) {
         let title = quoted(title);
-        let message = format!("{title} needs the key `{}`: {}", key.name, key.meaning);
+        let what = match table_of(&key.kind).map(|section| section.title()) {
+            Some(table) if table.starts_with('[') => format!("the table {table}"),
+            _ => format!("the key `{}`", key.name),
+        };
+        let message = format!("{title} needs {what}: {}", key.meaning);
         let label = format!("`{}` is missing", key.name);
         let mut problem = Problem::new(place, message, label);
         // The file as a whole has no text to underline.
@@ -194,12 +203,21 @@ impl Context<'_> {
                 Datum::Record(self.tagged(spec, table, node.place)?)
             }
             (Kind::List(inner), Value::List(list)) => {
+                self.not_too_many(name, list)?;
                 Datum::List(list.iter().filter_map(|item| self.value(name, inner, item)).collect())
             }
             (Kind::Parameters, Value::Table(_)) => return None,
             _ => self.simple(name, kind, node)?,
         };
         Some(Located::new(datum, node.place))
+    }
+
+    fn not_too_many(&mut self, name: &str, list: &[Node]) -> Option<()> {
+        let Some(first) = list.get(MAX_ENTRIES) else { return Some(()) };
+        let count = list.len();
+        let message = format!("`{name}` has {count} entries, at most {MAX_ENTRIES} are allowed");
+        self.report(Problem::new(first.place, message, "one too many"));
+        None
     }
 
     fn wrong_type(&mut self, name: &str, kind: &Kind, node: &Node) {

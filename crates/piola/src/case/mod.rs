@@ -54,7 +54,7 @@ const FLAG: &str = "--set ";
 pub struct LoadOptions {
     /// Overrides `path.to.key=value`, applied last, in this order.
     pub overrides: Vec<String>,
-    /// The variant, `None` for the base case.
+    /// The variant, `None` or `base` for the case itself.
     pub variant: Option<String>,
     /// Whether the coarse setting is read. Its overrides come first, those of a variant next, the
     /// variant's own coarse ones after them.
@@ -92,19 +92,22 @@ fn assemble(
         .map(|text| SourceText { name: "command line".to_owned(), text: format!("{FLAG}{text}") });
     let sources: Arc<[SourceText]> = std::iter::once(file).chain(flags).collect();
     let tree = parsed.map_err(|problems| Problems::new(sources.clone(), problems))?;
-    let wanted = Setting { variant: options.variant.as_deref(), coarse: options.coarse, folder };
-    let case = read(&tree, &sources, options, wanted)
-        .and_then(|case| others(&tree, &sources, options, wanted, &case).map(|()| case));
+    let variant = options.variant.as_deref().filter(|name| *name != "base");
+    let wanted = Setting { variant, coarse: options.coarse, folder };
+    let case = read(&tree, &sources, options, wanted).and_then(|(case, changed)| {
+        others(&tree, &sources, options, wanted, &case)?;
+        Ok(Case { as_run: document::write(&changed), ..case })
+    });
     case.map_err(|problems| Problems::new(sources, problems))
 }
 
-/// Reads one setting of the case.
+/// Reads one setting of the case, and returns it with the tree after all overrides.
 fn read(
     tree: &Table,
     sources: &[SourceText],
     options: &LoadOptions,
     setting: Setting<'_>,
-) -> Result<Case, Vec<Problem>> {
+) -> Result<(Case, Table), Vec<Problem>> {
     let mut problems = Vec::new();
     let mut tree = tree.clone();
     settings::apply(&mut tree, sources, setting, &mut problems);
@@ -122,9 +125,7 @@ fn read(
     let record = context.table(&tables::CASE, &tree, Place::new(0, 0..0));
     let case = interpret::case(&record, &mut context, setting);
     match case {
-        Some(case) if context.problems.is_empty() => {
-            Ok(Case { as_run: document::write(&tree), ..case })
-        }
+        Some(case) if context.problems.is_empty() => Ok((case, tree)),
         _ if context.problems.is_empty() => {
             Err(vec![Problem::whole("the case could not be read, without a known reason")])
         }

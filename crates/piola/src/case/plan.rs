@@ -87,7 +87,8 @@ impl Simulation {
         scheme.rates(0.0, &state, &mut rate);
         let evaluation = start.elapsed().as_secs_f64().max(1e-9);
         let integrator = build::integrator(&self.case).build(state.len());
-        let steps = (*self.case.time.end / step).ceil().max(0.0) as u64;
+        // An end that is a multiple of the step up to round-off takes no step more.
+        let steps = (*self.case.time.end / step - 1e-9).ceil().max(0.0) as u64;
         let count = scheme.particle_count();
         Plan {
             bodies: self.built.bodies.clone(),
@@ -128,7 +129,13 @@ impl Simulation {
         ];
         let pictures: usize = case.pictures.iter().map(|picture| picture.times.len()).sum();
         if pictures + case.plots.len() > 0 {
-            outputs.push(format!("{pictures} pictures and {} charts", case.plots.len()));
+            let plural = |count: usize| if count == 1 { "" } else { "s" };
+            let charts = case.plots.len();
+            outputs.push(format!(
+                "{pictures} picture{} and {charts} chart{}",
+                plural(pictures),
+                plural(charts)
+            ));
         }
         outputs
     }

@@ -122,23 +122,29 @@ fn owners<const D: usize>(
     owners
 }
 
-/// Particles at most two sites away from `place` along each axis.
+/// The particles next to `place`, or two sites away where there is none next to it.
 fn particles_around<const D: usize>(
     lattice: &Lattice<D>,
     particle: &[u32],
     place: [usize; D],
 ) -> Vec<(u32, Vector<D>)> {
     let mut found = Vec::new();
-    for number in 0..5usize.pow(D as u32) {
-        let other: [usize; D] = std::array::from_fn(|axis| {
-            // Below the first place this wraps round to above the last one.
-            (place[axis] + number / 5usize.pow(axis as u32) % 5).wrapping_sub(2)
-        });
-        if (0..D).all(|axis| other[axis] < lattice.counts[axis]) {
-            let owner = particle[lattice.number(other)];
-            if owner != NONE {
-                found.push((owner, lattice.position(other)));
+    for reach in [1usize, 2] {
+        let width = 2 * reach + 1;
+        for number in 0..width.pow(D as u32) {
+            let other: [usize; D] = std::array::from_fn(|axis| {
+                // Below the first place this wraps round to above the last one.
+                (place[axis] + number / width.pow(axis as u32) % width).wrapping_sub(reach)
+            });
+            if (0..D).all(|axis| other[axis] < lattice.counts[axis]) {
+                let owner = particle[lattice.number(other)];
+                if owner != NONE {
+                    found.push((owner, lattice.position(other)));
+                }
             }
+        }
+        if !found.is_empty() {
+            break;
         }
     }
     found

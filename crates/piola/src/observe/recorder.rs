@@ -30,7 +30,8 @@ pub const STEP_COLUMNS: [(&str, &str); 5] = [
 ];
 
 /// Names of the columns of the energy table, after the time: the energies of a scheme and their
-/// sum, the work of its mechanisms so far, and what the sum has gained beyond that work.
+/// sum, the work of its mechanisms so far, and what the sum has gained beyond that work, which by
+/// theory (18) is the error of the integrator.
 pub fn energy_columns(energies: &[&'static str], mechanisms: &[&'static str]) -> Vec<&'static str> {
     [energies, &["total"], mechanisms, &["balance"]].concat()
 }

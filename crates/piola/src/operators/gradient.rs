@@ -12,7 +12,8 @@ use crate::{Tensor, Vector, parallel};
 pub enum Correction {
     /// The plain kernel gradient, exact for constants only.
     None,
-    /// `L grad W` with the L of Upwind (2.43) for the plain kernel: exact for linear fields.
+    /// `L grad W` with the L of Upwind (2.43), theory (3), for the plain kernel: exact for linear
+    /// fields.
     Gradient,
     /// Gradient correction of the Shepard-normalised kernel, Upwind (2.39) to (2.43).
     KernelAndGradient,
@@ -43,9 +44,9 @@ const LEAST_CONDITION: f64 = 1e-8;
 
 /// Gradient coefficients `G_ab = w_b grad~ W~_b(X_a)` of every pair, with their transposes.
 ///
-/// The gradient of a field is `(grad f)_a = sum_b (f_b - f_a) (x) G_ab`, Upwind (3.26) with the
-/// redundant `-f_a` that makes constants exact. Written as one sum over all particles, its
-/// coefficient of a itself is `G_aa = -sum_b G_ab`. The adjoint, which turns stresses into nodal
+/// The gradient of a field is `(grad f)_a = sum_b (f_b - f_a) (x) G_ab`, theory (2), Upwind (3.26)
+/// with the redundant `-f_a` that makes constants exact. Written as one sum over all particles,
+/// its coefficient of a itself is `G_aa = -sum_b G_ab`. The adjoint, which turns stresses into nodal
 /// forces, gathers `G_ba`: a force `f_a = -sum_b V_b P_b G_ba`, b = a included, does exactly the
 /// power `-sum_a V_a P_a : (grad v)_a`, for any correction and any weights.
 #[derive(Clone, Debug)]
@@ -124,9 +125,9 @@ impl<const D: usize> GradientOperator<D> {
         self.apply(support, |a, b, g| (field[b] - field[a]).dot(&g))
     }
 
-    /// Discrete boundary area vectors `A_a = sum_b V_b G_ba` in m^(D-1): the nodal forces of a
-    /// unit tension, zero inside a body where the operator is consistent, and the outward area
-    /// of a particle on its boundary. They sum to zero.
+    /// Discrete boundary area vectors `A_a = sum_b V_b G_ba` in m^(D-1), theory (14): the nodal
+    /// forces of a unit pressure, zero inside a body where the operator is consistent, and the
+    /// outward area of a particle on its boundary. They sum to zero.
     pub fn boundary_areas(&self, support: &Support<D>, volume: &[f64]) -> Vec<Vector<D>> {
         let mut areas = vec![Vector::zeros(); support.list.len()];
         parallel::for_each_chunk(&mut areas, |first, rows| {

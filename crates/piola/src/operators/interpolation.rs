@@ -6,8 +6,8 @@ use crate::parallel;
 
 /// Interpolation coefficients `w_b W_b(X_a)` of every pair, with the particle's own.
 ///
-/// `f(X_a) = sum_b w_b f_b W_b(X_a)`, b = a included: Upwind (2.4), and with `normalised` the
-/// corrected kernel of Upwind (2.39), which is exact for constants.
+/// `f(X_a) = sum_b w_b f_b W_b(X_a)`, b = a included: theory (1), Upwind (2.4), and with
+/// `normalised` the corrected kernel of Upwind (2.39), which is exact for constants.
 #[derive(Clone, Debug)]
 pub struct Interpolation {
     own: Vec<f64>,

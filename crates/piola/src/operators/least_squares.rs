@@ -8,7 +8,7 @@ use crate::{Tensor, parallel};
 
 /// Inverse moment matrices `[sum_b N_ab (x) N_ab]^-1` of the least-squares gradient
 ///
-/// `grad u_a = [sum_b N_ab (x) N_ab]^-1 sum_b (u_b - u_a) / |d_ab| N_ab`, Upwind (3.53),
+/// `grad u_a = [sum_b N_ab (x) N_ab]^-1 sum_b (u_b - u_a) / |d_ab| N_ab`, theory (4), Upwind (3.53),
 ///
 /// with `d_ab = X_b - X_a` and `N_ab = d_ab / |d_ab|`. It is exact for linear fields. The sum
 /// itself belongs to the pass of a scheme, which has the fields in its hands.

@@ -75,7 +75,7 @@ impl ResultsFolder {
         self.path.join(TABLES[0])
     }
 
-    /// The table of energies and momenta.
+    /// The table of energies.
     pub fn energy(&self) -> PathBuf {
         self.path.join(TABLES[1])
     }

@@ -28,7 +28,7 @@ pub struct RunRecord {
     pub title: String,
     /// Name of the variant that was run; none for the case itself.
     pub variant: Option<String>,
-    /// Text of the case file, without overrides.
+    /// Text of the case as it was run, with all overrides applied.
     pub case_text: String,
     /// Overrides in the order in which they were applied, as `path.to.key=value`.
     pub overrides: Vec<String>,

@@ -7,7 +7,7 @@ use crate::fields::{FieldDescription, FieldValues, Snapshot};
 /// The state is one flat slice: `particle_count` rows of `row_length` numbers, followed by the
 /// running integrals of the ledger, one for each name in [`Scheme::mechanisms`]. The rate of an
 /// integral is the power of its mechanism, so an integrator carries energy bookkeeping to its
-/// own order without knowing of it, and a copy of the state is all there is to save.
+/// own order without knowing of it, theory (18), and a copy of the state is all there is to save.
 pub trait Scheme: Send {
     /// Name in a case file.
     fn name(&self) -> &'static str;

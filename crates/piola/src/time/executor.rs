@@ -128,6 +128,9 @@ struct Clock {
 }
 
 impl Executor {
+    /// A volume ratio below this is a particle that is collapsing.
+    const CRUSHED: f64 = 0.1;
+
     /// The default floor of the step as a fraction of the first.
     pub const FLOOR: f64 = 1e-6;
 
@@ -279,9 +282,23 @@ impl Executor {
         let floor = self.min_step.unwrap_or(Self::FLOOR * first);
         // A step of zero, or of no number, would never get to the end.
         if !(chosen.step > 0.0 && chosen.step >= floor) {
-            let particle = self.scheme.particle(chosen.particle);
-            let ChosenStep { step: size, limiter, .. } = chosen;
-            return Err(Failure::StepBelowFloor { particle, size, floor, limiter, step, time });
+            let ChosenStep { step: size, limiter, particle } = chosen;
+            let Health { smallest_ratio: ratio, smallest_ratio_particle, .. } = clock.health;
+            let advice = if ratio < Self::CRUSHED {
+                self.scheme.collapse_advice(smallest_ratio_particle)
+            } else {
+                "raise `scheme.tau_velocity`, or lower `time.min_step`".into()
+            };
+            return Err(Failure::StepBelowFloor {
+                particle: self.scheme.particle(particle),
+                size,
+                floor,
+                limiter,
+                ratio,
+                step,
+                time,
+                advice,
+            });
         }
         Ok(chosen)
     }

@@ -26,7 +26,7 @@ pub enum Failure {
     },
     /// A particle has lost its volume or turned inside out.
     #[error(
-        "particle {} (reference position {:?} m) collapsed: its volume ratio fell to {ratio:.4} \
+        "particle {} (reference position {:?} m) collapsed: its volume ratio fell to {ratio:.2e} \
          at step {step}, t = {time:.6} s; {advice}",
         particle.id,
         particle.reference
@@ -60,7 +60,7 @@ pub enum Failure {
     #[error(
         "the step fell to {size:.3e} s, below the floor of {floor:.3e} s, at step {step}, \
          t = {time:.6} s: the limit `{limiter}` of particle {} (reference position {:?} m) sets \
-         it, which is being crushed; raise `scheme.tau_velocity`, or lower `time.min_step`",
+         it, and the smallest volume ratio is {ratio:.2e}; {advice}",
         particle.id,
         particle.reference
     )]
@@ -73,14 +73,18 @@ pub enum Failure {
         floor: f64,
         /// The limit that sets it.
         limiter: &'static str,
+        /// The smallest volume ratio of the state.
+        ratio: f64,
         /// Steps taken.
         step: u64,
         /// Simulated time in s.
         time: f64,
+        /// The likely cause and what to change.
+        advice: String,
     },
     /// The number of steps allowed is used up.
     #[error(
-        "{steps} steps are done at t = {time:.6} s, before the end; raise `time.max_steps` to go on"
+        "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
     )]
     TooManySteps {
         /// Steps taken.

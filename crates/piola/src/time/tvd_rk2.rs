@@ -4,7 +4,8 @@ use super::integrator::Integrator;
 use crate::parallel;
 use crate::schemes::Scheme;
 
-/// `u* = u + dt f(u, t)`, `u** = u* + dt f(u*, t + dt)`, `u_new = (u + u**) / 2`, Upwind (4.1).
+/// `u* = u + dt f(u, t)`, `u** = u* + dt f(u*, t + dt)`, `u_new = (u + u**) / 2`,
+/// theory (15), Upwind (4.1).
 ///
 /// Second order. An undamped mode of angular frequency w grows by the factor
 /// `sqrt(1 + (w dt)^4 / 4)` a step in amplitude, its energy by `1 + (w dt)^4 / 4`.

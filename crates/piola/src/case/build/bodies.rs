@@ -8,7 +8,10 @@ use crate::geometry::{
     FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
     from_points,
 };
-use crate::neighbors::Domain;
+use crate::neighbors::{Domain, refuse_coincident};
+
+/// Points of a cloud that are closer than this fraction of the mean spacing are one point.
+const COINCIDENT: f64 = 1e-6;
 
 /// What became of one body.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +44,7 @@ pub(super) fn particles<const D: usize>(
     let mut problems = Vec::new();
     for (number, body) in (0u32..).zip(&case.bodies) {
         let made = match &body.shape.value {
-            model::Shape::Points { file } => cloud(case, file),
+            model::Shape::Points { file } => cloud(case, domain, file),
             _ => lattice(case, body, domain),
         };
         let added = made.and_then(|report| {
@@ -72,6 +75,7 @@ fn refuse(case: &Case, body: &Body, error: &GeometryError) -> Problem {
 /// A body of points from a file.
 fn cloud<const D: usize>(
     case: &Case,
+    domain: &Domain<D>,
     file: &Located<std::path::PathBuf>,
 ) -> Result<FillReport<D>, Problem> {
     let particles = from_points::<D>(file)
@@ -81,6 +85,10 @@ fn cloud<const D: usize>(
         return Err(case.problem_at(file.place, "the file holds no point", "this file", None));
     }
     let mean = (total_volume / count as f64).powf(1.0 / D as f64);
+    // The reader refuses points that are equal; nearly equal ones have no direction between them
+    // either, and would make the step vanish.
+    refuse_coincident(&particles.position, COINCIDENT * mean, domain)
+        .map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
     let actual_spacing = [mean; D];
     Ok(FillReport { particles, total_volume, exact_volume: None, actual_spacing })
 }

@@ -13,6 +13,7 @@ use super::{ExpressionError, Variable};
 pub(super) trait Number: Copy + Debug + Default + FromStr<Err: Debug> {
     fn from_number(value: f64) -> Self;
     fn value(self) -> f64;
+    fn negative(self) -> Self;
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
@@ -30,6 +31,9 @@ impl Number for f64 {
     fn value(self) -> f64 {
         self
     }
+    fn negative(self) -> Self {
+        -self
+    }
     fn add(self, other: Self) -> Self {
         self + other
     }
@@ -43,7 +47,7 @@ impl Number for f64 {
         self / other
     }
     fn pow(self, exponent: Self) -> Self {
-        self.powf(exponent)
+        power(self, exponent)
     }
     fn arc_tangent(y: Self, x: Self) -> Self {
         y.atan2(x)
@@ -51,6 +55,12 @@ impl Number for f64 {
     fn chain(self, function: fn(f64) -> f64, _: fn(f64) -> f64) -> Self {
         function(self)
     }
+}
+
+/// `base^exponent`, with squares as products: these are rounded correctly and the same on every
+/// platform, while the power function of the system can be off in the last digit.
+fn power(base: f64, exponent: f64) -> f64 {
+    if exponent == 2.0 { base * base } else { base.powf(exponent) }
 }
 
 /// A number and its rate: `a + b eps` with `eps^2 = 0`.
@@ -81,6 +91,9 @@ impl Number for Dual {
     fn value(self) -> f64 {
         self.value
     }
+    fn negative(self) -> Self {
+        Self { value: -self.value, rate: -self.rate }
+    }
     fn add(self, other: Self) -> Self {
         Self { value: self.value + other.value, rate: self.rate + other.rate }
     }
@@ -97,8 +110,8 @@ impl Number for Dual {
         Self { value, rate }
     }
     fn pow(self, exponent: Self) -> Self {
-        let value = self.value.powf(exponent.value);
-        let by_base = exponent.value * self.value.powf(exponent.value - 1.0);
+        let value = power(self.value, exponent.value);
+        let by_base = exponent.value * power(self.value, exponent.value - 1.0);
         let by_exponent = value * self.value.ln();
         Self { value, rate: scaled(by_base, self.rate) + scaled(by_exponent, exponent.rate) }
     }

@@ -97,7 +97,7 @@ fn arithmetic<'a, T: Number>() -> Vec<Operator<'a, T>> {
         Operator::make_bin("*", binary(|a: T, b: T| a.mul(b))),
         Operator::make_bin("/", binary(|a: T, b: T| a.div(b))),
         Operator::make_bin("+", binary(|a: T, b: T| a.add(b))),
-        Operator::make_bin_unary("-", binary(|a: T, b: T| a.sub(b)), |a: T| T::default().sub(a)),
+        Operator::make_bin_unary("-", binary(|a: T, b: T| a.sub(b)), |a: T| a.negative()),
     ]
 }
 

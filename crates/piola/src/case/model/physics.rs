@@ -1,5 +1,7 @@
 //! Materials, schemes, time, loads and boundaries.
 
+use piola_formulas::volumetric::{self, StressState};
+
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
@@ -80,24 +82,18 @@ pub enum PlaneState {
 }
 
 impl PlaneState {
-    /// Ratio of pressure to relative change of length, area or volume for an isotropic elastic body.
-    ///
-    /// | dimensions | no stress across | no strain across |
-    /// |---|---|---|
-    /// | 1 | `E` | `E (1 - nu) / ((1 + nu)(1 - 2 nu))` |
-    /// | 2 | `E / (2 (1 - nu))` | `E / (2 (1 + nu)(1 - 2 nu))` |
-    /// | 3 | `E / (3 (1 - 2 nu))` | the same |
-    ///
-    /// The entry of 2D without stress is the one that Upwind uses.
+    /// Ratio of pressure to relative change of length, area or volume of an isotropic elastic body
+    /// ([`volumetric::bulk_modulus`]); in three dimensions nothing is left to choose. NaN where it
+    /// does not exist, which no reader of cases lets pass.
     pub fn bulk_modulus(self, young_modulus: f64, poisson_ratio: f64, dimension: usize) -> f64 {
-        let (e, nu) = (young_modulus, poisson_ratio);
-        match (dimension, self) {
-            (1, Self::Stress) => e,
-            (1, Self::Strain) => e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-            (2, Self::Stress) => e / (2.0 * (1.0 - nu)),
-            (2, Self::Strain) => e / (2.0 * (1.0 + nu) * (1.0 - 2.0 * nu)),
-            _ => e / (3.0 * (1.0 - 2.0 * nu)),
-        }
+        let state = match (dimension, self) {
+            (1, Self::Stress) => StressState::UniaxialStress,
+            (1, Self::Strain) => StressState::UniaxialStrain,
+            (2, Self::Stress) => StressState::PlaneStress,
+            (2, Self::Strain) => StressState::PlaneStrain,
+            _ => StressState::ThreeDimensional,
+        };
+        volumetric::bulk_modulus(young_modulus, poisson_ratio, state).unwrap_or(f64::NAN)
     }
 }
 

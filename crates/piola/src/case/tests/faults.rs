@@ -39,57 +39,51 @@ fn the_good_case_is_good() {
     assert_eq!(case.output.fields.len(), catalogue::fields("upwind").len());
 }
 
+/// A part of the good case, what it is replaced by, and what is said then; again and again.
+const FAULTS: &str = include_str!("faults.txt");
+
 #[test]
-fn show() {
-    for (from, to) in CASES {
-        println!("{}", broken(from, to));
+fn every_fault_is_explained_in_its_place() {
+    let parts: Vec<&str> = FAULTS.split("\n=== ").skip(1).collect();
+    assert!(parts.len() > 100 && parts.len().is_multiple_of(3));
+    for fault in parts.chunks(3) {
+        let part = |number: usize, title: &str| {
+            fault[number].strip_prefix(title).and_then(|text| text.strip_prefix('\n')).unwrap()
+        };
+        let (from, to) = (part(0, "replace"), part(1, "by"));
+        assert_eq!(broken(from, to).trim_end(), part(2, "said").trim_end(), "for {to}");
     }
 }
 
-const CASES: &[(&str, &str)] = &[
-    ("spacing = 0.25", "spacng = 0.25"),
-    ("spacing = 0.25", "spacing = -0.25"),
-    ("spacing = 0.25", "spacing = true"),
-    ("end = 3.0", "end = nan"),
-    ("end = 3.0", "end = 3,0"),
-    ("end = 3.0", "end = "),
-    ("end = 3.0", "end = 3.0\nend = 4"),
-    ("end = 3.0", "end = 3.0\ncfl = 0.3\nstep = 1e-3"),
-    ("[0.0, 0.0]", "[0.0, 0.0, 0.0]"),
-    ("[3.0, 5.0]", "[3.0, 0.0]"),
-    ("\"box\"", "\"bxo\""),
-    (
-        "{ kind = \"box\", min = [0.0, 0.0], max = [3.0, 5.0] }",
-        "{ kind = \"cylinder\", start = [0, 0, 0] }",
-    ),
-    (
-        "{ kind = \"box\", min = [0.0, 0.0], max = [3.0, 5.0] }",
-        "{ kind = \"ball\", min = [0, 0], radius = 0 }",
-    ),
-    ("bulk_modulus = 1e5", "young_modulus = 1e5, poisson_ratio = 0.5, plane = \"strain\""),
-    ("bulk_modulus = 1e5", "young_modulus = 1e5, poisson_ratio = 0.6"),
-    ("bulk_modulus = 1e5", "wave_speed = 1, bulk_modulus = 1e5"),
-    (", bulk_modulus = 1e5", ""),
-    ("\"linear\"", "\"gamma_law\", gamma = 0.5"),
-    ("\"-speed\"", "\"-sped * (1 + x)\""),
-    ("\"-speed\"", "\"t\""),
-    ("[[body]]", "[body]"),
-    ("[time]", "[[time]]"),
-    ("speed = 1.0", "speed = \"2 * other\"\nother = 1"),
-    ("speed = 1.0", "speed = 1.0\nx = 2\nsin = 3\n\"a b\" = 4"),
-    ("dimension = 2", "dimension = 4"),
-    ("version = 1", "version = 2"),
-    ("kind = \"upwind\"", "kind = \"upwind\"\nkernel = \"cubic\"\ncorrection = 1"),
-    (
-        "end = 3.0",
-        "end = 3.0\n\n[output]\nevery = 1e-9\nfields = [\"presure\"]\n\n[[picture]]\nfield = \"velocity\"\ntimes = [1, 4]\n",
-    ),
-    (
-        "end = 3.0",
-        "end = 3.0\n\n[[check]]\nquantity = \"top.pressure\"\nexpected = 0\ntolerance = 0.1\nsource = \"s\"\nvariant = \"fast\"\n",
-    ),
-    (
-        "end = 3.0",
-        "end = 3.0\n\n[[load]]\nkind = \"body_force\"\nbody = \"colum\"\nacceleration = [\"0\"]\n",
-    ),
-];
+#[test]
+fn long_lines_are_clipped_around_the_fault() {
+    let long = "the distance between particles ".repeat(20);
+    let shown = broken("spacing = 0.25", &format!("note = \"{long}\""));
+    let lines: Vec<&str> = shown.lines().filter(|line| line.contains("the distance")).collect();
+    assert!(lines[0].len() < 130 && lines[0].ends_with("..."), "{shown}");
+    let shown = broken("bulk_modulus = 1e5 }", &format!("note = \"{long}\", bulk_modulus = 0 }}"));
+    assert!(shown.contains("must be above 0, got 0"), "{shown}");
+    let lines: Vec<&str> = shown.lines().collect();
+    let [.., line, marks] = lines[..] else { panic!("{shown}") };
+    assert!(line.starts_with("12 | ...") && line.len() < 130, "{shown}");
+    assert_eq!(line.find("0 }"), marks.find('^'), "{shown}");
+}
+
+#[test]
+fn marks_stand_under_characters_not_bytes() {
+    let shown = broken("initial = {", "initial = { pressure = \"0 * späed + é\", ");
+    let lines: Vec<&str> = shown.lines().collect();
+    let column = |line: &str, c: char| line.chars().position(|found| found == c);
+    assert!(lines[1].ends_with("case.toml:13:29"), "{shown}");
+    assert_eq!(column(lines[3], 'ä').unwrap() - 2, column(lines[4], '^').unwrap(), "{shown}");
+    assert_eq!(lines[4].matches('^').count(), 5, "{shown}");
+}
+
+#[test]
+fn windows_line_ends_are_no_problem() {
+    let text = GOOD.replace('\n', "\r\n");
+    assert!(read_with(&text, &[]).is_ok());
+    let text = text.replace("spacing = 0.25", "spacing = 0");
+    let shown = read_with(&text, &[]).unwrap_err().to_string();
+    assert!(shown.contains("case.toml:11:11") && !shown.contains('\u{fffd}'), "{shown}");
+}

@@ -19,8 +19,15 @@ fn an_empty_file_lacks_everything() {
     let problems = load_bytes(b"").unwrap_err();
     assert!(!problems.is_io());
     let shown = problems.to_string();
-    for key in ["version", "title", "dimension", "body", "scheme", "time"] {
-        assert!(shown.contains(&format!("needs the key `{key}`")), "{shown}");
+    for key in [
+        "key `version`",
+        "key `title`",
+        "key `dimension`",
+        "table [[body]]",
+        "table [scheme]",
+        "table [time]",
+    ] {
+        assert!(shown.contains(&format!("needs the {key}")), "{shown}");
     }
 }
 
@@ -150,4 +157,16 @@ proptest! {
         let key = keys[number % keys.len()];
         let _ = read_with(FULL, &[&format!("{key}={value}")]).map_err(|problems| problems.to_string());
     }
+}
+
+#[test]
+fn files_are_found_beside_the_case() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("case.toml", FULL), ("cloud.csv", "x,y,volume\n"), ("curve.csv", "t,v\n")]
+    {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let case = load(&folder.path().join("case.toml"), &LoadOptions::default())
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(case.files()[0].value, folder.path().join("cloud.csv"));
 }

@@ -82,7 +82,7 @@ error: `end` must be above 0, got -1
         (
             "time.ende=1",
             "\
-error: `ende` is no key of [time]
+error: [time] has no key `ende`
   --> command line:1:12
   |
 1 | --set time.ende=1
@@ -189,7 +189,7 @@ fn problems_of_settings_underline_the_string_in_the_file() {
     assert_eq!(
         shown,
         "\
-error: `tau_velocty` is no key of [scheme] `upwind` (in the variant `no-upwinding`)
+error: [scheme] of kind `upwind` has no key `tau_velocty` (in the variant `no-upwinding`)
     --> case.toml:128:16
     |
 128 | set = [\"scheme.tau_velocty=0\"]

@@ -12,7 +12,8 @@ fn cuboid<const D: usize>(extent: [f64; D]) -> Shape<D> {
 }
 
 fn assert_total<const D: usize>(report: &FillReport<D>, expected: f64, bound: f64) {
-    assert_eq!(report.total_volume, report.particles.volume.iter().sum::<f64>());
+    let sum = report.particles.volume.iter().sum::<f64>();
+    assert!((report.total_volume / sum - 1.0).abs() < 1e-12);
     let error = report.total_volume / expected - 1.0;
     assert!(error.abs() < bound, "{error:e} of {bound:e}");
 }
@@ -150,32 +151,38 @@ fn jitter_is_uniform_and_differs_with_the_seed() {
     assert!((variance * 75.0 - 1.0).abs() < 0.04, "{variance}");
 }
 
-/// Largest relative volume error over the kinds of lattices, at a spacing of `spacing`.
-fn worst<const D: usize>(shape: &Shape<D>, spacing: f64) -> f64 {
+/// Root of the mean square of relative volume errors, over all kinds of lattices and several
+/// spacings of about `spacing`.
+fn mean_error<const D: usize>(shape: &Shape<D>, spacing: f64) -> f64 {
+    // In the plane errors have a larger scatter, and a measure of them is cheap.
+    let count = if D == 2 { 16 } else { 6 };
+    let spacings = (0..count).map(|i| spacing * (1.0 + 0.5 * f64::from(i) / f64::from(count)));
     let error = |spec| {
         let report = fill(shape, &spec).unwrap();
-        (report.total_volume / report.exact_volume.unwrap() - 1.0).abs()
+        report.total_volume / report.exact_volume.unwrap() - 1.0
     };
-    specs(spacing).into_iter().map(error).fold(0.0, f64::max)
+    let errors: Vec<f64> = spacings.flat_map(specs).map(error).collect();
+    (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
-/// The error falls with the square of the spacing: by 16 over two halvings; as the lattice lies
-/// by chance, half of this is asked for.
+/// The points of a lattice in a round shape differ from its volume by the power 3/2 of the
+/// lattice's width or a little less: by 8 for a quarter of the width, of which 5 are asked for.
 fn assert_converges<const D: usize>(shape: &Shape<D>, spacing: f64, bound: f64) {
-    let (coarse, fine) = (worst(shape, spacing), worst(shape, 0.25 * spacing));
+    let (coarse, fine) = (mean_error(shape, spacing), mean_error(shape, 0.25 * spacing));
     assert!(coarse < bound, "{coarse:e}");
-    assert!(fine < coarse / 8.0, "{coarse:e} {fine:e}");
+    assert!(fine < coarse / 5.0, "{coarse:e} {fine:e}");
 }
 
 #[test]
 fn volumes_of_round_shapes_converge() {
     let v = Vector::<3>::new;
     let disc = Shape::ball(Vector::<2>::new(0.1, 0.2), 1.0).unwrap();
-    assert_converges(&disc, 0.2, 5e-3);
-    assert_converges(&Shape::annulus(Vector::<2>::zeros(), 0.4, 1.0).unwrap(), 0.2, 5e-3);
-    assert_converges(&Shape::ball(v(0.1, 0.2, 0.3), 1.0).unwrap(), 0.25, 1e-2);
+    assert_converges(&disc, 0.2, 1e-3);
+    assert_converges(&Shape::annulus(Vector::<2>::zeros(), 0.4, 1.0).unwrap(), 0.2, 2e-3);
+    assert_converges(&Shape::ball(v(0.1, 0.2, 0.3), 1.0).unwrap(), 0.4, 5e-3);
+    assert_converges(&Shape::annulus(v(0.1, 0.2, 0.3), 0.5, 1.0).unwrap(), 0.4, 5e-3);
     let cylinder = Shape::cylinder(v(0.0, 0.0, 0.0), v(0.0, 0.3, 1.0), 0.6).unwrap();
-    assert_converges(&cylinder, 0.2, 1e-2);
+    assert_converges(&cylinder, 0.4, 1e-2);
 }
 
 #[test]

@@ -15,7 +15,7 @@ fn read<const D: usize>(bytes: &[u8]) -> Result<Particles<D>, GeometryError> {
 
 #[test]
 fn points_become_particles() {
-    let text = "\u{feff}X, y,volume\r\n0,0,4\r\n\r\n 1e0, \"-2.5\" ,0.25\r\n";
+    let text = "\u{feff}X, y,volume\r\n0,0,4\r\n\r\n1e0, -2.5 ,\"0.25\"\r\n";
     let particles = read::<2>(text.as_bytes()).unwrap();
     assert_eq!(particles.position, [Vector::<2>::zeros(), Vector::<2>::new(1.0, -2.5)]);
     assert_eq!(particles.volume, [4.0, 0.25]);

@@ -54,11 +54,11 @@ impl ChunkFigures {
 impl<const D: usize> Upwind<D> {
     /// The health of `state` and the bounds on the step.
     ///
-    /// - `acoustic`: `d_a / c_a`, Upwind (4.3) with each particle's own nearest distance and the
+    /// - `acoustic`: `d_a / c_a`, theory (16), Upwind (4.3) with each particle's own nearest distance and the
     ///   wave speed of the deformed state; scaled by the CFL number.
     /// - `upwind dissipation`: the two stages of an explicit method decay a mode of rate r
     ///   without growth for `r dt <= 2`. By Gershgorin's theorem r is at most twice the row sum
-    ///   of the exchange coefficients, so `dt <= 1 / row sum`; not scaled.
+    ///   of the exchange coefficients, so `dt <= 1 / row sum`, theory (17); not scaled.
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let mut figures = std::mem::take(&mut self.chunk_figures);
         let rows = &state[..self.particles.len() * Row::<D>::LENGTH];

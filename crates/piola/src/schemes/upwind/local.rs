@@ -22,7 +22,7 @@ pub(super) struct Side<const D: usize> {
     pub pressure: f64,
     /// Quadrature volume V in m^D.
     pub volume: f64,
-    /// Reference density in kg/m^D.
+    /// Reference density in kg/m^3.
     pub density: f64,
     /// Speed of the shock in the dissipation in m/s.
     pub wave_speed: f64,

@@ -3,7 +3,7 @@
 //!
 //! Unknowns of a particle are v, J, x and F. Reference density is `rho`, quadrature volume V,
 //! `G_ab` the corrected gradient of [`crate::operators::GradientOperator`], H = cof F and
-//! p = p(J) of the evolved J:
+//! p = p(J) of the evolved J, theory (8) to (11):
 //!
 //! ```text
 //! rho dv_a/dt = 1/V_a sum_b p_b V_b H_b G_ba + A_a t_a / V_a + rho g + D_v / V_a
@@ -77,7 +77,7 @@ pub struct Upwind<const D: usize> {
 /// Reference values of a particle that its material and its start give.
 #[derive(Clone, Copy, Debug)]
 struct Reference {
-    /// Density of the (prestressed) reference in kg/m^D.
+    /// Density of the (prestressed) reference in kg/m^3.
     density: f64,
     /// Volume ratio J0 of the prestress against the stress-free state.
     ratio: f64,

@@ -67,6 +67,7 @@ impl<const D: usize> Upwind<D> {
         powers
     }
 
+    /// The sums over neighbours of theory (8) to (10), with b = a in the first.
     #[inline]
     fn gather(&self, a: usize, me: &Side<D>) -> Gathered<D> {
         let (list, settings) = (&self.support.list, &self.settings);
@@ -95,6 +96,8 @@ impl<const D: usize> Upwind<D> {
         sum
     }
 
+    /// Adds the exchange with one neighbour, theory (12) and (13), with the antisymmetric areas
+    /// that let b lose what a receives.
     #[inline]
     fn dissipate(
         &self,

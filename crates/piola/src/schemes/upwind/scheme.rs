@@ -6,6 +6,7 @@ use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 use super::local::deformation;
 use super::{ENERGIES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
+use crate::operators::GradientOperator;
 use crate::parallel;
 use crate::schemes::{Health, Particle, Scheme, StepLimit};
 
@@ -159,7 +160,8 @@ impl<const D: usize> Scheme for Upwind<D> {
             + 2 * size_of::<crate::Vector<D>>()
             + size_of::<super::Reference>()
             + if self.slopes.is_empty() { 0 } else { slope };
-        let pair = size_of::<u32>() + size_of::<usize>() + 2 * size_of::<[f64; D]>();
+        // An entry of the list, its reverse, and its coefficients.
+        let pair = 2 * size_of::<u32>() + GradientOperator::<D>::BYTES_PER_PAIR;
         count * particle + pairs * pair
     }
 }

@@ -1,0 +1,12 @@
+//! The program as a user meets it: exit codes, messages, files.
+
+#![allow(clippy::unwrap_used, reason = "the helpers of tests may panic as tests do")]
+
+mod bad_cases;
+mod check_and_new;
+mod generated;
+mod interrupt;
+mod repository;
+mod run;
+mod support;
+mod verify;

@@ -1,0 +1,114 @@
+use crate::support::{BAR, Place, assert_contains};
+
+/// A check of the tip that fails, at both settings unless `when` says otherwise.
+fn impossible(when: &str) -> String {
+    format!(
+        "\n[[check]]\nquantity = \"tip.displacement.x\"\nreduce = \"maximum\"\nat_least = 1e3\n\
+         source = \"nothing\"\nwhen = \"{when}\"\n"
+    )
+}
+
+#[test]
+fn checks_that_pass() {
+    let place = Place::with_bar();
+    let (stdout, _) = place.run("verify bar", 0);
+    let mut lines = stdout.lines();
+    assert_contains(lines.next().unwrap(), &["id", "quantity", "got", "expected", "tolerance"]);
+    let row: Vec<&str> = lines.next().unwrap().split("  ").filter(|s| !s.is_empty()).collect();
+    let row: Vec<&str> = row.iter().map(|cell| cell.trim()).collect();
+    let expected =
+        ["T1", "tip.displacement.x initial", "0 m", "0 m", "1e-15 m", "it starts at rest", "yes"];
+    assert_eq!(row, expected);
+    assert_contains(&stdout, &["1 check of 1 case: 1 passed, 0 failed"]);
+    // It leaves no files.
+    assert!(!place.path("results").exists());
+}
+
+#[test]
+fn a_failed_check_is_named_and_counted() {
+    let place = Place::new();
+    place.write("cases/a/case.toml", BAR);
+    place.write("cases/deep/b/case.toml", BAR.to_owned() + &impossible("always"));
+    // The default is the folder `cases`.
+    let (stdout, _) = place.run("verify", 1);
+    assert_contains(&stdout, &["at least 1000 m", "NO", "3 checks of 2 cases: 2 passed, 1 failed"]);
+}
+
+#[test]
+fn the_setting_chooses_runs_and_checks() {
+    let place = Place::new();
+    place.write("bar/case.toml", BAR.to_owned() + &impossible("full"));
+    place.run("verify bar", 0);
+    place.run("verify bar --full", 1);
+    // The end of the run itself is another one.
+    let end =
+        "\n[[check]]\nquantity = \"run.time\"\nexpected = 0.01\ntolerance = 1e-9\nsource = \"s\"\n";
+    place.write("bar/case.toml", BAR.to_owned() + end);
+    place.run("verify bar", 0);
+    place.run("verify bar --full", 1);
+}
+
+#[test]
+fn a_variant_is_run_for_its_checks() {
+    let place = Place::new();
+    let check = "\n[[check]]\nvariant = \"fast\"\nquantity = \"tip.displacement.x\"\n\
+                 reduce = \"final\"\nmore_than = \"base\"\nsource = \"it starts faster\"\n";
+    place.write("bar/case.toml", BAR.to_owned() + check);
+    let (stdout, _) = place.run("verify bar", 0);
+    assert_contains(&stdout, &["fast: tip.displacement.x final", "more than base ("]);
+    place.write("bar/case.toml", BAR.to_owned() + &check.replace("more_than", "less_than"));
+    place.run("verify bar", 1);
+}
+
+#[test]
+fn a_failed_run_fails_its_checks_with_the_reason() {
+    let place = Place::new();
+    place.write("bar/case.toml", BAR.replace("cfl = 0.2", "cfl = 0.2\nmax_steps = 1"));
+    let (stdout, _) = place.run("verify bar", 1);
+    assert_contains(&stdout, &["the run failed: it took all the steps it may, 1,", "1 failed"]);
+}
+
+#[test]
+fn a_case_that_cannot_be_read_fails_and_the_rest_goes_on() {
+    let place = Place::new();
+    place.write("cases/a/case.toml", "version = 7");
+    place.write("cases/b/case.toml", BAR);
+    let (stdout, stderr) = place.run("verify cases", 1);
+    assert_contains(&stderr, &["cases/a/case.toml:1:11", "problems in cases/a/case.toml"]);
+    assert_contains(&stdout, &["the case file", "2 checks of 2 cases: 1 passed, 1 failed"]);
+}
+
+#[test]
+fn one_case_is_chosen_by_id_or_folder() {
+    let place = Place::new();
+    place.write("cases/a/case.toml", BAR.replace("\"T1\"", "\"A7\""));
+    place.write("cases/b/case.toml", BAR.to_owned() + &impossible("always"));
+    place.write("cases/c/case.toml", "version = 7");
+    for only in ["A7", "a7", "a"] {
+        let (stdout, _) = place.run(&format!("verify --only {only}"), 0);
+        assert_contains(&stdout, &["1 check of 1 case"]);
+    }
+    place.run("verify --only b", 1);
+    place.run("verify --only c", 1);
+}
+
+#[test]
+fn no_check_is_no_success() {
+    let place = Place::with_bar();
+    place.write("none/readme.md", "");
+    for arguments in ["verify none", "verify bar --only T2"] {
+        let (_, stderr) = place.run(arguments, 1);
+        assert_contains(&stderr, &["there is no check to evaluate"]);
+    }
+    let (_, stderr) = place.run("verify nowhere", 4);
+    assert_contains(&stderr, &["nowhere"]);
+    let (_, stderr) = place.run("verify", 4);
+    assert_contains(&stderr, &["cases"]);
+}
+
+#[test]
+fn paths_may_be_files_and_may_repeat() {
+    let place = Place::with_bar();
+    let (stdout, _) = place.run("verify bar/case.toml bar bar", 0);
+    assert_contains(&stdout, &["1 check of 1 case"]);
+}

@@ -1,0 +1,8 @@
+//! The pages say what is there: paths exist, citations have a target, generated pages are fresh.
+
+mod cases;
+mod citations;
+mod generated;
+mod pages;
+mod paths;
+mod rooms;
