@@ -6,7 +6,7 @@ use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 use super::local::deformation;
 use super::{ENERGIES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
-use crate::operators::GradientOperator;
+use crate::operators::PairAreas;
 use crate::parallel;
 use crate::schemes::{Health, Particle, Scheme, StepLimit};
 
@@ -161,7 +161,7 @@ impl<const D: usize> Scheme for Upwind<D> {
             + size_of::<super::Reference>()
             + if self.slopes.is_empty() { 0 } else { slope };
         // An entry of the list, its reverse, and its coefficients.
-        let pair = 2 * size_of::<u32>() + GradientOperator::<D>::BYTES_PER_PAIR;
+        let pair = 2 * size_of::<u32>() + PairAreas::<D>::BYTES_PER_PAIR;
         count * particle + pairs * pair
     }
 }
