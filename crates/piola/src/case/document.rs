@@ -249,7 +249,7 @@ fn syntax_problem(text: &str, span: Range<usize>, message: &str) -> Problem {
     problem
 }
 
-/// The tree as TOML, without comments.
+/// The tree as TOML, without comments. Keys keep their order: a parameter may only use those above it.
 pub(super) fn write(root: &Table) -> String {
     toml::to_string(&to_toml(root)).unwrap_or_default()
 }

@@ -225,6 +225,14 @@ fn the_case_as_run_is_the_same_case() {
 }
 
 #[test]
+fn the_case_as_run_keeps_parameters_above_those_that_use_them() {
+    let text = FULL.replace("[parameters]\n", "[parameters]\nzeta = 1.0\nalpha = \"2 * zeta\"\n");
+    let case = parse(&text, "case.toml", &LoadOptions::default()).unwrap();
+    let again = read_with(&case.as_run, &[]).unwrap();
+    assert_eq!(again.parameter("alpha"), Some(2.0));
+}
+
+#[test]
 fn the_reference_names_every_table_and_function() {
     let page = reference::markdown();
     for text in [

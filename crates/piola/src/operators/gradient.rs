@@ -52,14 +52,17 @@ const LEAST_CONDITION: f64 = 1e-8;
 #[derive(Clone, Debug)]
 pub struct GradientOperator<const D: usize> {
     /// `G_ab` for each entry of the list, in 1/m.
-    pub(super) forward: Vec<[f64; D]>,
+    forward: Vec<[f64; D]>,
     /// `G_ba` for each entry of the list, in 1/m.
-    pub(super) adjoint: Vec<[f64; D]>,
+    adjoint: Vec<[f64; D]>,
     /// `G_aa` for each particle, in 1/m.
-    pub(super) diagonal: Vec<[f64; D]>,
+    diagonal: Vec<[f64; D]>,
 }
 
 impl<const D: usize> GradientOperator<D> {
+    /// Bytes that an entry of the list costs in memory and in a pass that uses both directions.
+    pub const BYTES_PER_PAIR: usize = 2 * size_of::<[f64; D]>();
+
     /// Builds the coefficients with kernel weights `particles.weight`.
     ///
     /// # Errors

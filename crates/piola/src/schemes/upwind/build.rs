@@ -11,7 +11,7 @@ use super::{BodyForce, Initial, Loaded, Material, Powers, Reference, Settings, U
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{PrescribedVelocity, Traction, padded};
 use crate::geometry::Particles;
-use crate::operators::{GradientOperator, LeastSquares, OperatorError, PairAreas, Support};
+use crate::operators::{GradientOperator, LeastSquares, OperatorError, Support};
 use crate::{Vector, parallel};
 
 /// All that the formulation is bound to.
@@ -139,9 +139,9 @@ impl<const D: usize> Upwind<D> {
             chunk_figures: vec![ChunkFigures::NEUTRAL; chunks],
             body_forces: input.body_forces,
             initial_velocity: initial.velocity,
-            areas: PairAreas::new(gradient, &support.list, &particles.volume),
             particles,
             support,
+            gradient,
             least_squares,
             settings,
             materials,

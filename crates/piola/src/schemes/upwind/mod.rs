@@ -16,12 +16,10 @@
 //! power is `-sum_a V_a p_a dJ_a/dt` to round-off, whatever the correction and the weights, and
 //! a free surface needs no treatment.
 
-mod boundary;
 mod build;
 mod check;
 mod initial;
 mod inspect;
-mod interaction;
 mod local;
 mod pairs;
 mod passes;
@@ -34,7 +32,7 @@ use piola_formulas::volumetric::{Prestressed, VolumetricLaw};
 use crate::Vector;
 use crate::boundaries::{SpaceTime, prescribed::PrescribedComponents};
 use crate::geometry::Particles;
-use crate::operators::{LeastSquares, PairAreas, Support};
+use crate::operators::{GradientOperator, LeastSquares, Support};
 
 pub use build::{UpwindError, UpwindInput};
 pub use initial::Initial;
@@ -50,7 +48,7 @@ use reconstruction::Slope;
 pub struct Upwind<const D: usize> {
     particles: Particles<D>,
     support: Support<D>,
-    areas: PairAreas<D>,
+    gradient: GradientOperator<D>,
     least_squares: Option<LeastSquares<D>>,
     settings: Settings,
     /// One a body.
