@@ -6,7 +6,6 @@ use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 use super::local::deformation;
 use super::{ENERGIES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
-use crate::operators::PairAreas;
 use crate::parallel;
 use crate::schemes::{Health, Particle, Scheme, StepLimit};
 
@@ -161,7 +160,7 @@ impl<const D: usize> Scheme for Upwind<D> {
             + size_of::<super::Reference>()
             + if self.slopes.is_empty() { 0 } else { slope };
         // An entry of the list, its reverse, and its coefficients.
-        let pair = 2 * size_of::<u32>() + PairAreas::<D>::BYTES_PER_PAIR;
+        let pair = 2 * size_of::<u32>() + 2 * size_of::<[f64; D]>();
         count * particle + pairs * pair
     }
 }
