@@ -6,6 +6,11 @@ use super::function::SpaceTime;
 
 /// A traction in Pa of the reference area on a set of particles that carry areas: `A_a t_a / V_a`
 /// of Upwind (3.39).
+///
+/// The load keeps its direction and its reference area. In one dimension that is sound. In two and
+/// three a material without shear stiffness cannot bear it: wherever the traction t is not zero,
+/// surface waves of wave number k grow like `exp(k sqrt(|t|/rho) time)`, in tension and in
+/// compression, and the faster the finer the particles are. Velocity upwinding only slows this.
 #[derive(Clone)]
 pub struct Traction<const D: usize> {
     /// Name for messages.

@@ -21,7 +21,8 @@ pub enum OperatorError {
         neighbors: usize,
         /// Dimensions of space.
         dimension: usize,
-        /// Smallest over largest singular value of the moment matrix.
+        /// Determinant of the moment matrix over its largest singular value to the power of the
+        /// dimension: at most the smallest over the largest singular value.
         condition: f64,
         /// The correction that was asked for.
         correction: &'static str,

@@ -159,7 +159,8 @@ impl<const D: usize> Scheme for Upwind<D> {
             + 2 * size_of::<crate::Vector<D>>()
             + size_of::<super::Reference>()
             + if self.slopes.is_empty() { 0 } else { slope };
-        let pair = size_of::<u32>() + size_of::<usize>() + 2 * size_of::<[f64; D]>();
+        // An entry of the list, its reverse, and its coefficients.
+        let pair = 2 * size_of::<u32>() + 2 * size_of::<[f64; D]>();
         count * particle + pairs * pair
     }
 }
