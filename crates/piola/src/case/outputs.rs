@@ -5,7 +5,7 @@ use std::time::SystemTime;
 
 use super::build::{Built, bodies::BodyReport};
 use super::model::{self, Case};
-use super::resume::{Found, Store};
+use super::resume::{Resumed, Store};
 use super::simulation::{Finished, RunError};
 use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, WrittenFiles};
 use crate::output::checkpoint::Identity;
@@ -23,34 +23,32 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Makes the folder ready and writes the first record.
-    pub fn new(case: &Case, built: &Built, folder: &Path) -> Result<Self, RunError> {
-        let record = Self::record(case, built);
-        let folder = ResultsFolder::create(folder, &record)?;
-        Ok(Self { folder, record, written: WrittenFiles::default() })
+    /// What goes into `folder`, which is not touched yet.
+    pub fn new(case: &Case, built: &Built, folder: &Path) -> Self {
+        Self {
+            folder: ResultsFolder::at(folder),
+            record: Self::record(case, built),
+            written: WrittenFiles::default(),
+        }
     }
 
-    /// Makes the folder of a run ready to go on from what was found in it.
-    pub fn go_on(
-        case: &Case,
-        built: &Built,
-        folder: &Path,
-        found: &Found,
-    ) -> Result<Self, RunError> {
-        let mut record = Self::record(case, built);
-        let Some(folder) = ResultsFolder::open(folder) else {
-            return Self::new(case, built, folder);
+    /// Makes the folder ready, for a new run or for one that goes on from what was found, and
+    /// writes the first record.
+    pub fn begin(&mut self, resumed: Option<&Resumed>) -> Result<(), RunError> {
+        let Self { folder, record, written } = self;
+        let Some(resumed) = resumed else {
+            ResultsFolder::create(folder.path(), record)?;
+            return Ok(());
         };
         if let Ok(before) = RunRecord::read(&folder.record()) {
             record.started = before.started;
             record.resumed_at = before.resumed_at;
         }
-        record.resumed_at.push(found.checkpoint.time());
-        record.warnings.extend(found.warnings.iter().cloned());
-        folder.go_on(&record, &found.files)?;
-        let written = WrittenFiles::default();
-        found.files.iter().for_each(|file| written.push(folder.path().join(file)));
-        Ok(Self { folder, record, written })
+        record.resumed_at.push(resumed.time);
+        record.warnings.extend(resumed.warnings.iter().cloned());
+        folder.go_on(record, &resumed.files)?;
+        resumed.files.iter().for_each(|file| written.push(folder.path().join(file)));
+        Ok(())
     }
 
     /// Where the checkpoints of the run `identity` go.

@@ -54,7 +54,7 @@ pub enum RunError {
         newest: CheckpointError,
     },
     /// A checkpoint is of a run with other outputs.
-    #[error("{0}; start anew without `--resume`")]
+    #[error("{0}; nothing was changed; start anew without `--resume`")]
     Misfit(#[from] Misfit),
 }
 
@@ -117,11 +117,8 @@ impl Simulation {
         let columns = Recorder::columns(built.scheme.as_ref(), &built.probes);
         let most = resume::most_bytes(&case, &columns, length);
         let found = old.map(|folder| resume::find(&folder, &identity, most)).transpose()?.flatten();
-        let outputs = match (folder, &found) {
-            (Some(folder), Some(found)) => Some(Outputs::go_on(&case, &built, folder, found)?),
-            (Some(folder), None) => Some(Outputs::new(&case, &built, folder)?),
-            (None, _) => None,
-        };
+        let (checkpoint, resumed) = found.unzip();
+        let mut outputs = folder.map(|folder| Outputs::new(&case, &built, folder));
         let recorder = Recorder::new(
             built.scheme.as_ref(),
             built.probes,
@@ -147,11 +144,19 @@ impl Simulation {
             Checkpoints::new(build::checkpoint_policy(&case), Box::new(store))
         });
         let mut warnings = built.warnings;
-        if let Some(found) = found {
-            warnings.extend(found.warnings);
-            executor.resume(found.checkpoint)?;
-        } else if resume {
-            warnings.push("there was no checkpoint to resume from: started at t = 0".into());
+        match (checkpoint, &resumed) {
+            (Some(checkpoint), Some(resumed)) => {
+                warnings.extend(resumed.warnings.iter().cloned());
+                executor.resume(checkpoint)?;
+            }
+            _ if resume => {
+                warnings.push("there was no checkpoint to resume from: started at t = 0".into());
+            }
+            _ => {}
+        }
+        // From here on the folder is this run's: what could be refused has been.
+        if let Some(outputs) = &mut outputs {
+            outputs.begin(resumed.as_ref())?;
         }
         let summary = executor.run(stop, progress)?;
         warnings.extend(summary.warnings.iter().cloned());

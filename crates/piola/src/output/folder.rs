@@ -46,7 +46,7 @@ impl ResultsFolder {
     /// written.
     pub fn create(path: &Path, record: &RunRecord) -> Result<Self, OutputError> {
         let fail = |source| OutputError::from_io(path, source);
-        let folder = Self { path: path.into() };
+        let folder = Self::at(path);
         match fs::metadata(path) {
             Ok(metadata) if !metadata.is_dir() => {
                 return Err(OutputError::NotAFolder { path: path.into() });
@@ -60,10 +60,15 @@ impl ResultsFolder {
         Ok(folder)
     }
 
+    /// The folder `path` as it is, without looking at it.
+    pub fn at(path: &Path) -> Self {
+        Self { path: path.into() }
+    }
+
     /// Opens the folder `path` to go on with the run in it. `None` if there is none: the folder
     /// does not exist or holds no record.
     pub fn open(path: &Path) -> Option<Self> {
-        let folder = Self { path: path.into() };
+        let folder = Self::at(path);
         RunRecord::read(&folder.record()).is_ok().then_some(folder)
     }
 

@@ -5,4 +5,5 @@ mod citations;
 mod generated;
 mod pages;
 mod paths;
+mod promises;
 mod rooms;
