@@ -159,15 +159,18 @@ fn folder_name(path: &Path) -> String {
 
 fn unreadable(folder: String) -> CheckRow {
     CheckRow {
+        check: 0,
         id: Some(folder),
-        variant: None,
+        run: None,
         quantity: "the case file".to_owned(),
         got: None,
         expected: "a good case".to_owned(),
         tolerance: String::new(),
+        deviation: String::new(),
         source: String::new(),
         pass: false,
         reason: Some("the case cannot be read, see above".to_owned()),
+        trend: None,
     }
 }
 
@@ -179,8 +182,8 @@ fn render(rows: &[CheckRow]) -> String {
     let header = ["id", "quantity", "got", "expected", "tolerance", "source", "pass"];
     let header = header.map(str::to_owned).to_vec();
     let cells = |row: &CheckRow| {
-        let quantity = match &row.variant {
-            Some(variant) => format!("{variant}: {}", row.quantity),
+        let quantity = match &row.run {
+            Some(run) => format!("{run}: {}", row.quantity),
             None => row.quantity.clone(),
         };
         vec![

@@ -122,15 +122,18 @@ fn a_row_says_what_was_compared() {
     assert_eq!(
         row,
         CheckRow {
+            check: 0,
             id: Some("T1".into()),
-            variant: None,
+            run: None,
             quantity: "top.displacement.x maximum".into(),
             got: Some(Got::Number(2.0, "m".into())),
             expected: "2 m".into(),
             tolerance: "1 %".into(),
+            deviation: "0 %".into(),
             source: "none".into(),
             pass: true,
             reason: None,
+            trend: None,
         }
     );
     assert_eq!(row.got.unwrap().to_string(), "2 m");
@@ -180,7 +183,7 @@ fn a_variant_brings_its_own_parameters() {
         "{X}variant = \"double\"\nreduce = \"maximum\"\nexpected = \"amplitude\"\ntolerance = 0.0"
     ));
     assert!(row.pass, "{row:?}");
-    assert_eq!((row.variant.as_deref(), row.expected.as_str()), (Some("double"), "4 m"));
+    assert_eq!((row.run.as_deref(), row.expected.as_str()), (Some("double"), "4 m"));
 }
 
 #[test]
