@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::diagnostics::{Problem, Problems};
-use super::expression::Expression;
+use super::expression::{Expression, Scope};
 use super::source::{Located, Place, SourceText};
 
 mod checks;
@@ -129,6 +129,14 @@ impl Case {
     /// The value of the parameter called `name`.
     pub fn parameter(&self, name: &str) -> Option<f64> {
         self.parameters.iter().find(|parameter| parameter.name == name).map(|found| found.value)
+    }
+
+    /// The value of an expression of the parameters, `None` where `text` is none.
+    pub fn evaluate(&self, text: &str) -> Option<f64> {
+        let parameters: Vec<_> =
+            self.parameters.iter().map(|known| (known.name.clone(), Some(known.value))).collect();
+        let scope = Scope { axes: 0, time: false, parameters: &parameters };
+        Expression::parse(text, &scope).ok()?.as_constant()
     }
 
     /// Everything that can be run: the case itself, its variants, and the members of its sweeps.
