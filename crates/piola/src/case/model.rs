@@ -21,8 +21,8 @@ pub use checks::{Check, Expectation, Members, Quantity, Reduction, Trend, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
-    Boundary, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Scheme,
-    StepControl, Stiffness, Time, Upwind, Weights,
+    Boundary, Checkpoint, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed,
+    Scheme, StepControl, Stiffness, Time, Upwind, Weights,
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
 pub(super) use sweeps::{member_name, member_of};
@@ -46,6 +46,8 @@ pub struct Case {
     pub scheme: Located<Scheme>,
     /// Clock and integrator.
     pub time: Time,
+    /// When checkpoints are written.
+    pub checkpoint: Checkpoint,
     /// Body forces and tractions.
     pub loads: Vec<Load>,
     /// Prescribed velocities.
@@ -157,12 +159,19 @@ impl Case {
         })
     }
 
-    /// What tells the member called `name` of a sweep apart: `time.cfl=0.1`. `None` for other
-    /// names.
-    pub fn member_label(&self, name: &str) -> Option<String> {
+    /// The sweep whose member is called `name`, with the member's number from 0. `None` for names of
+    /// variants.
+    pub fn member(&self, name: &str) -> Option<(&Sweep, usize)> {
         let (sweep, index) = member_of(name)?;
         let sweep = self.sweeps.iter().find(|known| *known.name == sweep)?;
-        (index < sweep.count(self.is_coarse)).then(|| sweep.label(index, self.is_coarse))
+        (index < sweep.count(self.is_coarse)).then_some((sweep, index))
+    }
+
+    /// What tells the member called `name` of a sweep apart: `time.cfl=0.1`. `None` for names of
+    /// variants.
+    pub fn member_label(&self, name: &str) -> Option<String> {
+        let (sweep, index) = self.member(name)?;
+        Some(sweep.label(index, self.is_coarse))
     }
 
     /// All files that the case reads besides itself: point clouds and reference curves.

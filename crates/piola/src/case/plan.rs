@@ -48,8 +48,9 @@ pub struct PlannedLimit {
     pub particle: Particle,
 }
 
-/// States that a run holds: the current, the previous and the next one, and a rate.
-const STATES: usize = 4;
+/// States that a run holds: the current, the previous and the next one, two that a failed run looks
+/// back to, and a rate.
+const STATES: usize = 6;
 
 impl Simulation {
     /// Looks at the initial state and times two evaluations of the rates.

@@ -68,12 +68,16 @@ impl Sweep {
 
     /// What tells member number `index` apart: `time.cfl=0.1, scheme.kernel=lucy`.
     pub fn label(&self, index: usize, coarse: bool) -> String {
-        let keys = self.keys(coarse);
-        let each = keys.iter().zip(coordinates(keys, index)).map(|(key, value)| {
-            let text = key.values.get(value).map_or("", |value| value.text.as_str());
-            format!("{}={text}", key.path.value)
-        });
+        let each = self.values(index, coarse);
+        let each = each.iter().map(|(key, value)| format!("{}={}", key.path.value, value.text));
         each.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The keys with the values that member number `index` has.
+    pub fn values(&self, index: usize, coarse: bool) -> Vec<(&SweepKey, &SweepValue)> {
+        let keys = self.keys(coarse);
+        let each = keys.iter().zip(coordinates(keys, index));
+        each.filter_map(|(key, number)| Some((key, &key.values.get(number)?.value))).collect()
     }
 }
 

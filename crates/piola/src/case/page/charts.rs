@@ -1,7 +1,7 @@
 //! Charts of the validation page: the plots of a case with their references, and trends of sweeps.
 
 use super::PageCase;
-use crate::case::model::{Case, Expectation, Reduction};
+use crate::case::model::{Case, Expectation, Reduction, Sweep};
 use crate::case::sweep::curve_series;
 use crate::case::verify::{CheckRow, TrendData};
 use crate::observe;
@@ -12,41 +12,80 @@ const MARKS: usize = 60;
 
 /// The charts of a case with names for their files.
 pub(super) fn charts(case: &Case, page: &PageCase) -> Vec<(String, Plot)> {
-    let plots = case.plots.iter().filter_map(|plot| {
+    let mut charts = Vec::new();
+    for plot in &case.plots {
         let curves: Vec<String> = plot.curves.iter().map(|curve| curve.name()).collect();
-        let series = against_time(case, page, &curves);
-        let chart = Plot { title: case.title.clone(), abscissa: Column::new("time", "s"), series };
-        (!chart.series.is_empty()).then(|| (plot.name.value.clone(), chart))
-    });
-    plots.chain(trends(case, &page.rows)).collect()
+        let name = &plot.name.value;
+        charts.push((name.clone(), chart(&case.title, of_variants(case, page, &curves))));
+        for sweep in case.sweeps.iter().filter(|_| curves.len() == 1) {
+            let title = format!("{}: {}", case.title, keys(sweep, case.is_coarse));
+            let members = of_members(case, page, sweep, &curves[0]);
+            charts.push((format!("{name}-{}", *sweep.name), chart(&title, members)));
+        }
+    }
+    charts.retain(|(_, chart)| chart.series.iter().any(|series| series.style == Style::Line));
+    charts.extend(trends(case, &page.rows));
+    charts
 }
 
-/// Curves of the case itself; of a single column those of all other runs too; and what is expected
+fn chart(title: &str, series: Vec<Series>) -> Plot {
+    Plot { title: title.to_owned(), abscissa: Column::new("time", "s"), series }
+}
+
+/// The last parts of the paths of the keys of a sweep.
+fn keys(sweep: &Sweep, coarse: bool) -> String {
+    let keys = sweep.keys(coarse).iter().map(|key| last_part(&key.path).to_owned());
+    keys.collect::<Vec<_>>().join(", ")
+}
+
+fn last_part(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+/// Curves of the case itself, of a single column those of its variants too, and what is expected
 /// of them.
-fn against_time(case: &Case, page: &PageCase, curves: &[String]) -> Vec<Series> {
+fn of_variants(case: &Case, page: &PageCase, curves: &[String]) -> Vec<Series> {
     let mut series = Vec::new();
     for name in curves {
         for (run, finished) in &page.runs {
             let label = match run {
                 None => name.clone(),
-                Some(_) if curves.len() > 1 => continue,
-                Some(run) => format!("{}: {name}", case.member_label(run).as_ref().unwrap_or(run)),
+                Some(run) if curves.len() == 1 && case.member(run).is_none() => {
+                    format!("{run}: {name}")
+                }
+                Some(_) => continue,
             };
             series.extend(finished.quantity(name).and_then(|found| curve_series(&label, found)));
         }
-    }
-    let base = page.runs.iter().find(|(run, _)| run.is_none());
-    if let Some((_, finished)) = base {
-        for name in curves {
-            let Some(found) = finished.quantity(name) else { continue };
-            let points = references(case, name, &found);
-            if let (observe::Series::Curve { unit, .. }, false) = (found, points.is_empty()) {
-                let column = Column::new("expected", unit);
-                series.push(Series { column, points, style: Style::Marks });
-            }
-        }
+        series.extend(expected(case, page, name));
     }
     series
+}
+
+/// A column of the members of a sweep, and what is expected of it in the case itself.
+fn of_members(case: &Case, page: &PageCase, sweep: &Sweep, name: &str) -> Vec<Series> {
+    let members = page.runs.iter().filter_map(|(run, finished)| {
+        let (own, index) = case.member(run.as_ref()?)?;
+        let values = sweep.values(index, case.is_coarse).into_iter();
+        let values: Vec<&str> = values.map(|(_, value)| value.text.as_str()).collect();
+        let label = format!("{}: {name}", values.join(", "));
+        let curve = curve_series(&label, finished.quantity(name)?)?;
+        (own.name.value == sweep.name.value).then_some((index, curve))
+    });
+    let mut members: Vec<(usize, Series)> = members.collect();
+    members.sort_by_key(|(index, _)| *index);
+    let members = members.into_iter().map(|(_, series)| series);
+    members.chain(expected(case, page, name)).collect()
+}
+
+/// Marks at what is expected of a column of the case itself.
+fn expected(case: &Case, page: &PageCase, name: &str) -> Option<Series> {
+    let (_, finished) = page.runs.iter().find(|(run, _)| run.is_none())?;
+    let found = finished.quantity(name)?;
+    let points = references(case, name, &found);
+    let observe::Series::Curve { unit, .. } = found else { return None };
+    let column = Column::new("expected", unit);
+    (!points.is_empty()).then_some(Series { column, points, style: Style::Marks })
 }
 
 /// Points through which the curve of `name` of the case itself should go.
@@ -146,7 +185,13 @@ impl Group<'_> {
                     numbers.windows(2).map(|w| [w[0][0], (w[0][1] - w[1][1]).abs()]).collect();
             }
             let points = numbers.into_iter().map(|[key, number]| [log(key), log(number)]).collect();
-            let column = Column::new(format!("{run}: {}", self.quantity), unit.clone());
+            let name = match run.split_once('(') {
+                Some((_, others)) => {
+                    format!("{}: {}", last_part(others.trim_end_matches(')')), self.quantity)
+                }
+                None => self.quantity.clone(),
+            };
+            let column = Column::new(name, unit.clone());
             Series { column, points, style: Style::Line }
         });
         let series: Vec<Series> = series.collect();

@@ -74,7 +74,10 @@ fn trend_text(trend: &Trend) -> String {
 /// How far `got` is off `expected`: a share like the tolerance, or in `unit` if it is `absolute`.
 pub(super) fn deviation(got: f64, expected: f64, absolute: bool, unit: &str) -> String {
     let digits = 3;
-    match (got - expected, unit) {
+    // Round-off differs from machine to machine.
+    let difference = got - expected;
+    let is_round_off = difference.abs() <= 1e-11 * expected.abs();
+    match (if is_round_off { 0.0 } else { difference }, unit) {
         (difference, "" | "1") if absolute => significant(difference, digits),
         (difference, unit) if absolute => format!("{} {unit}", significant(difference, digits)),
         (difference, _) => {
