@@ -186,8 +186,10 @@ impl Group<'_> {
             }
             let points = numbers.into_iter().map(|[key, number]| [log(key), log(number)]).collect();
             let name = match run.split_once('(') {
-                Some((_, others)) => {
-                    format!("{}: {}", last_part(others.trim_end_matches(')')), self.quantity)
+                Some((_, other)) => {
+                    let (key, value) = other.split_once('=').unwrap_or((other, ""));
+                    let value = value.trim_end_matches(')');
+                    format!("{}={value}: {}", last_part(key), self.quantity)
                 }
                 None => self.quantity.clone(),
             };
@@ -204,7 +206,7 @@ impl Group<'_> {
         let key = &self.data.key;
         let abscissa = if self.log { format!("log10 of {key}") } else { key.clone() };
         Plot {
-            title: format!("{}: along {key}", case.title),
+            title: format!("{}: {} along {key}", case.title, self.quantity),
             abscissa: Column::new(abscissa, ""),
             series: series.into_iter().chain(marks).collect(),
         }
