@@ -83,7 +83,9 @@ pub(super) fn find(
     for path in folder.checkpoints()? {
         match checkpoint::read(&path, identity, most) {
             Ok(bytes) => match postcard::take_from_bytes::<Payload<Checkpoint>>(&bytes) {
-                Ok((Payload { files, checkpoint }, [])) => {
+                Ok((Payload { files, checkpoint }, []))
+                    if files.iter().all(|file| ResultsFolder::may_hold(file)) =>
+                {
                     let warnings = refused.iter().map(|error| format!("passed over: {error}"));
                     return Ok(Some(Found { checkpoint, files, warnings: warnings.collect() }));
                 }

@@ -1,7 +1,7 @@
 //! The observer that writes particle files.
 
 use super::files::WrittenFiles;
-use super::memory::{decode, encode};
+use super::memory::{decode, encode, inside};
 use crate::output::{Compression, OutputError, ResultsFolder, pvd, vtp};
 use crate::schemes::snapshot;
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
@@ -66,7 +66,7 @@ impl Observer for FrameWriter {
 
     fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
         (self.frames, self.last_time) = decode(saved, "the particle files")?;
-        Ok(())
+        inside(self.frames.iter().map(|frame| &frame.file))
     }
 
     fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::output::ResultsFolder;
 use crate::time::Misfit;
 
 /// The bytes of `value`.
@@ -15,5 +16,13 @@ pub(super) fn decode<T: DeserializeOwned>(saved: &[u8], what: &str) -> Result<T,
     match postcard::take_from_bytes(saved) {
         Ok((value, [])) => Ok(value),
         _ => Err(Misfit(format!("what it remembers of {what} cannot be read"))),
+    }
+}
+
+/// Refuses files that would lead out of the folder of the results: they may be removed later.
+pub(super) fn inside<'a>(files: impl IntoIterator<Item = &'a String>) -> Result<(), Misfit> {
+    match files.into_iter().find(|file| !ResultsFolder::may_hold(file)) {
+        Some(file) => Err(Misfit(format!("{file:?} is no file of a run"))),
+        None => Ok(()),
     }
 }

@@ -1,7 +1,7 @@
 //! The observer that draws the particles.
 
 use super::files::WrittenFiles;
-use super::memory::{decode, encode};
+use super::memory::{decode, encode, inside};
 use crate::fields::FieldSelector;
 use crate::output::{OutputError, Picture, ResultsFolder};
 use crate::schemes::snapshot;
@@ -96,7 +96,7 @@ impl Observer for PictureWriter {
 
     fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
         self.drawn = decode(saved, "the pictures")?;
-        Ok(())
+        inside(self.drawn.iter().map(|(file, _)| file))
     }
 
     fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {

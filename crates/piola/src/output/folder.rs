@@ -85,6 +85,11 @@ impl ResultsFolder {
         Ok(())
     }
 
+    /// Whether `file` is a path that leads to a file of a run, in this folder or in one below it.
+    pub fn may_hold(file: &str) -> bool {
+        own(file).is_some()
+    }
+
     /// The folder itself.
     pub fn path(&self) -> &Path {
         &self.path

@@ -31,6 +31,9 @@ pub struct Checkpoint {
 pub struct Misfit(pub String);
 
 impl Checkpoint {
+    /// Nobody waits for more.
+    const MOST_STEPS: u64 = 1 << 60;
+
     /// Simulated time in s.
     pub fn time(&self) -> f64 {
         self.clock.time
@@ -61,6 +64,11 @@ impl Checkpoint {
             if got != observers {
                 return refuse(format!("it knows {got} outputs, this run has {observers}"));
             }
+        }
+        let step = self.clock.step;
+        let marks = self.history.iter().flat_map(History::mark_steps);
+        if step > Self::MOST_STEPS || marks.into_iter().any(|mark| mark > step) {
+            return refuse(format!("its number of steps, {step}, is not possible"));
         }
         let time = self.clock.time;
         if !(time >= 0.0 && time <= end * (1.0 + 1e-12)) {

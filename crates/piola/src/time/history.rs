@@ -54,7 +54,7 @@ impl History {
         }
         std::mem::swap(&mut self.older, &mut self.newer);
         self.newer.set(clock, tally, due, state);
-        let kept = (clock.step - self.older.clock.step) as usize;
+        let kept = clock.step.saturating_sub(self.older.clock.step) as usize;
         self.steps.drain(..self.steps.len().saturating_sub(kept));
     }
 
@@ -74,6 +74,11 @@ impl History {
     /// Lengths of all states in it.
     pub fn lengths(&self) -> impl Iterator<Item = usize> + '_ {
         [&self.older, &self.newer].into_iter().map(|mark| mark.state.len())
+    }
+
+    /// Steps taken at its marks.
+    pub fn mark_steps(&self) -> impl Iterator<Item = u64> + '_ {
+        [&self.older, &self.newer].into_iter().map(|mark| mark.clock.step)
     }
 
     /// Numbers of outputs that its marks know.

@@ -51,7 +51,7 @@ fn every_fault_is_explained_in_its_place() {
             fault[number].strip_prefix(title).and_then(|text| text.strip_prefix('\n')).unwrap()
         };
         let (from, to) = (part(0, "replace"), part(1, "by"));
-        assert_eq!(broken(from, to.trim_end()).trim_end(), part(2, "said").trim_end(), "for {to}");
+        assert_eq!(broken(from, to).trim_end(), part(2, "said").trim_end(), "for {to}");
     }
 }
 
