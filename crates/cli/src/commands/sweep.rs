@@ -205,7 +205,9 @@ impl Sweep {
         troubles.sort_by_key(|trouble| trouble.member);
         for trouble in &troubles {
             let name = &comparison.members[trouble.member].name;
-            let report = format!("error: {name}: {}\n", trouble.report.trim_end());
+            let report = trouble.report.trim_end();
+            let report = report.strip_prefix("error: ").unwrap_or(report);
+            let report = format!("error: {name}: {report}\n");
             terminal::report(&terminal::coloured(&report));
         }
         if interrupted {

@@ -225,13 +225,13 @@ pub fn split_values(text: &str) -> Vec<&str> {
     parts
 }
 
-/// Names of folders for members, from the values of their keys: `time.cfl=0.1,scheme.kernel=lucy`.
+/// Names of folders for members, from the values of their keys: `time.cfl=0.1+scheme.kernel=lucy`.
 ///
 /// Letters that do not suit a file name on every system become `_`, long values are cut, and names
 /// that would be the same then, or differ in case only, get a number.
 pub fn folder_names(members: &[Vec<(&str, &str)>]) -> Vec<String> {
     const LONGEST: usize = 80;
-    let suits = |letter: char| letter.is_ascii_alphanumeric() || "-_.+".contains(letter);
+    let suits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
     let safe = |text: &str| -> String {
         let text = text.trim().trim_matches(['"', '\'']);
         let letters = text.chars().filter(|letter| !letter.is_whitespace());
@@ -241,7 +241,7 @@ pub fn folder_names(members: &[Vec<(&str, &str)>]) -> Vec<String> {
     for values in members {
         let parts = values.iter().map(|(key, value)| format!("{}={}", safe(key), safe(value)));
         let mut name: String =
-            parts.collect::<Vec<_>>().join(",").chars().take(2 * LONGEST).collect();
+            parts.collect::<Vec<_>>().join("+").chars().take(2 * LONGEST).collect();
         // A point at the end is lost on some systems.
         if name.ends_with('.') {
             name.push('_');
@@ -299,6 +299,6 @@ mod tests {
         assert_eq!(names[7], "body.a.spacing=quoted");
         assert!(names[8].len() < 200 && names[8].is_ascii());
         let two = folder_names(&[vec![("a", "1"), ("b", "x")], vec![("a", "1"), ("b", "y")]]);
-        assert_eq!(two, ["a=1,b=x", "a=1,b=y"]);
+        assert_eq!(two, ["a=1+b=x", "a=1+b=y"]);
     }
 }

@@ -6,3 +6,4 @@ mod generated;
 mod pages;
 mod paths;
 mod rooms;
+mod validation;
