@@ -64,10 +64,11 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
     }
     for retry in &summary.retries {
         let text = format!(
-            "went back to t = {} s, and on with {} of each step, because {}",
+            "{} after step {}: went back to t = {} s, and on with {} of each step",
+            retry.kind,
+            retry.step,
             significant(retry.back_to, 6),
             significant(retry.factor, 3),
-            retry.failure,
         );
         line("retry", &text);
     }

@@ -156,12 +156,34 @@ impl Simulation {
         let summary = executor.run(stop, progress)?;
         warnings.extend(summary.warnings.iter().cloned());
         let tables = tables.lock().clone();
+        warnings.extend(unbalanced(&tables));
         let mut finished = Finished { summary, tables, files: Vec::new(), warnings, particles };
         if let Some(outputs) = outputs {
             finished.files = outputs.finish(&case, &finished, build_seconds)?;
         }
         Ok(finished)
     }
+}
+
+/// A share of the largest energy that does not balance, above which the user is told.
+const UNBALANCED: f64 = 0.01;
+
+/// What the user should know if energy is not accounted for: by theory (18) what the balance is off
+/// by is the error of the integrator.
+fn unbalanced(tables: &Tables) -> Option<String> {
+    let off = tables.energy.values("balance")?.last()?.abs();
+    let largest = |name: &str| -> f64 {
+        let values = tables.energy.values(name).unwrap_or_default();
+        values.iter().fold(0.0, |most, value| most.max(value.abs()))
+    };
+    let share = off / largest("total");
+    (share > UNBALANCED).then(|| {
+        format!(
+            "{:.1} % of the largest energy is not accounted for: the steps are too large for what \
+             happens; lower `time.cfl` and compare",
+            100.0 * share
+        )
+    })
 }
 
 /// The names behind `run.`, numbers and texts of a run as a whole.

@@ -24,8 +24,8 @@ pub(super) struct Tally {
     pub worst: Health,
     pub first_step: f64,
     pub step_range: [f64; 2],
-    /// A larger speed in m/s is a failure.
-    pub speed_limit: f64,
+    /// Largest speed and largest wave speed at the start in m/s.
+    pub start_speeds: [f64; 2],
     /// What every step is multiplied by.
     pub factor: f64,
     pub retries: Vec<Retry>,
@@ -64,7 +64,7 @@ impl Tally {
         worst: Health::NEUTRAL,
         first_step: f64::NAN,
         step_range: [f64::INFINITY, 0.0],
-        speed_limit: f64::INFINITY,
+        start_speeds: [0.0, 0.0],
         factor: 1.0,
         retries: Vec::new(),
         watches: Watches {

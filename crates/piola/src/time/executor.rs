@@ -232,9 +232,10 @@ impl Executor {
         let scheme = self.scheme.as_mut();
         let health = tally.watches.inspect.time(|| scheme.inspect(state, limits));
         if clock.step == 0 {
-            tally.speed_limit = self.speed_limit(&health);
+            tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
+            run.warnings.extend(supersonic(tally.start_speeds));
         }
-        if let Some(failure) = self.broken(&health, clock, tally.speed_limit) {
+        if let Some(failure) = self.broken(&health, clock, tally.start_speeds) {
             let may_retry = run.tally.retries.len() < self.retries
                 && clock.step > 0
                 && matches!(self.control, StepControl::Cfl(_));
@@ -250,17 +251,18 @@ impl Executor {
         Ok(if ended { Verdict::End(Outcome::Completed) } else { Verdict::Sound })
     }
 
-    /// The speed in m/s above which a run that starts with `health` has gone wrong.
-    fn speed_limit(&self, health: &Health) -> f64 {
-        let usual = health.largest_speed + health.largest_wave_speed;
+    /// The speed in m/s above which a run that starts with these has gone wrong.
+    fn speed_limit(&self, [speed, wave_speed]: [f64; 2]) -> f64 {
+        let usual = speed + wave_speed;
         // A scheme without waves, at rest, gives no measure.
         let limit = if usual > 0.0 { Self::TOO_FAST * usual } else { f64::INFINITY };
         self.max_speed.unwrap_or(limit)
     }
 
     /// The failure that a state's health shows, if any.
-    fn broken(&self, health: &Health, clock: &Clock, speed_limit: f64) -> Option<Failure> {
+    fn broken(&self, health: &Health, clock: &Clock, start_speeds: [f64; 2]) -> Option<Failure> {
         let (step, time) = (clock.step, clock.time);
+        let speed_limit = self.speed_limit(start_speeds);
         if let Some(index) = health.first_not_finite {
             let particle = self.scheme.particle(index);
             return Some(Failure::NotFinite { index, particle, step, time });
@@ -273,7 +275,10 @@ impl Executor {
                 ratio: health.smallest_ratio,
                 step,
                 time,
-                advice: self.scheme.collapse_advice(index),
+                advice: match supersonic(start_speeds) {
+                    Some(cause) => format!("{cause}; else {}", self.scheme.collapse_advice(index)),
+                    None => self.scheme.collapse_advice(index),
+                },
             });
         }
         if health.largest_speed > speed_limit {
@@ -299,7 +304,8 @@ impl Executor {
         let (watches, mut retries) = (tally.watches, std::mem::take(&mut tally.retries));
         let factor = tally.factor * Self::RETRY_FACTOR;
         let back_to = mark.clock.time;
-        retries.push(Retry { failure: failure.to_string(), step, time, back_to, factor });
+        let kind = failure.kind().to_owned();
+        retries.push(Retry { kind, failure: failure.to_string(), step, time, back_to, factor });
         *clock = mark.clock;
         *tally = Tally { watches, retries, factor, ..mark.tally.clone() };
         state.copy_from_slice(&mark.state);
@@ -423,6 +429,17 @@ impl Executor {
         let kept = run.tally.watches.checkpoint.time(|| checkpoints.keep(&checkpoint));
         run.warnings.extend(kept.err());
     }
+}
+
+/// What the user should know if a run starts with a speed above the speed of its waves, in m/s:
+/// possible, but most often a stiffness in another unit.
+pub fn supersonic([speed, wave_speed]: [f64; 2]) -> Option<String> {
+    (speed > wave_speed && wave_speed > 0.0).then(|| {
+        format!(
+            "the largest speed at the start, {speed:.3e} m/s, is above the wave speed of the \
+             material, {wave_speed:.3e} m/s: check the stiffness, the density and their units"
+        )
+    })
 }
 
 impl Run {

@@ -13,7 +13,7 @@ mod summary;
 pub mod tvd_rk2;
 
 pub use checkpoint::{Checkpoint, CheckpointPolicy, CheckpointStore, Checkpoints, Misfit};
-pub use executor::Executor;
+pub use executor::{Executor, supersonic};
 pub use failure::Failure;
 pub use history::Trace;
 pub use integrator::{Integrator, IntegratorKind};

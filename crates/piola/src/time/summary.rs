@@ -61,6 +61,8 @@ pub struct Timing {
 /// A failure after which the run went back and on with smaller steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Retry {
+    /// What had gone wrong, in one word.
+    pub kind: String,
     /// What had gone wrong, as a sentence.
     pub failure: String,
     /// Steps taken when it did.
