@@ -108,5 +108,5 @@ fn sweeps_have_a_bounded_number_of_members() {
 fn the_case_as_run_of_a_member_is_the_same_case() {
     let case = read(Some("steps.4"), false);
     let again = read_with(&case.as_run, &[]).unwrap_or_else(|problems| panic!("{problems}"));
-    assert_eq!((again.time.step.value.clone(), again.time.end.value), (StepControl::Cfl(0.2), 2.0));
+    assert_eq!((again.time.step.value, again.time.end.value), (StepControl::Cfl(0.2), 2.0));
 }
