@@ -14,6 +14,7 @@ pub mod check;
 pub mod generate;
 pub mod new;
 pub mod run;
+pub mod sweep;
 pub mod verify;
 
 /// Sets the number of threads of all loops.

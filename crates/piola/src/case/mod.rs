@@ -17,6 +17,7 @@ pub mod model;
 mod outline;
 mod outputs;
 mod overrides;
+pub mod page;
 mod plan;
 mod record;
 pub mod reference;
@@ -28,6 +29,7 @@ mod simulation;
 pub mod source;
 pub mod spec;
 mod suggest;
+pub mod sweep;
 pub mod tables;
 pub mod template;
 pub mod verify;
@@ -55,7 +57,8 @@ const FLAG: &str = "--set ";
 pub struct LoadOptions {
     /// Overrides `path.to.key=value`, applied last, in this order.
     pub overrides: Vec<String>,
-    /// The variant, `None` or `base` for the case itself.
+    /// The variant, `None` or `base` for the case itself; `NAME.3` for the third member of the
+    /// sweep `NAME`.
     pub variant: Option<String>,
     /// Whether the coarse setting is read. Its overrides come first, those of a variant next, the
     /// variant's own coarse ones after them.
@@ -143,11 +146,13 @@ fn others(
     case: &Case,
 ) -> Result<(), Vec<Problem>> {
     let mut problems: Vec<Problem> = Vec::new();
-    let names = case.variants.iter().map(|variant| Some(variant.name.as_str()));
-    for variant in std::iter::once(None).chain(names) {
+    for variant in case.settings() {
         for coarse in [false, true] {
-            let setting = Setting { variant, coarse, ..wanted };
-            if variant == wanted.variant && coarse == wanted.coarse {
+            let setting = Setting { variant: variant.as_deref(), coarse, ..wanted };
+            if setting.variant.is_some_and(|name| !case.is_at(name, coarse)) {
+                continue;
+            }
+            if setting.variant == wanted.variant && coarse == wanted.coarse {
                 continue;
             }
             let found = read(tree, sources, options, setting).err().unwrap_or_default();

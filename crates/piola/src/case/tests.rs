@@ -9,6 +9,7 @@ use super::*;
 mod faults;
 mod hostile;
 mod overrides;
+mod sweeps;
 
 /// A case that uses every table and nearly every key.
 pub(super) const FULL: &str = include_str!("tests/full.toml");

@@ -7,3 +7,4 @@ mod pages;
 mod paths;
 mod promises;
 mod rooms;
+mod validation;
