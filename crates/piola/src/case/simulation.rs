@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::build::{self, Built};
 use super::model::Case;
 use super::outputs::Outputs;
+use super::report;
 use crate::observe::{Recorder, Series, Tables};
 use crate::output::OutputError;
 use crate::schemes::Scheme;
@@ -105,6 +106,13 @@ impl Simulation {
             Finished { summary, tables, files: Vec::new(), warnings: built.warnings, particles };
         if let Some(outputs) = outputs {
             finished.files = outputs.finish(&case, &finished, build_seconds)?;
+        }
+        if let Some(folder) = folder.filter(|_| case.output.report) {
+            // The results are whole without it.
+            match report::write(folder) {
+                Ok(file) => finished.files.push(file),
+                Err(error) => finished.warnings.push(format!("there is no report: {error}")),
+            }
         }
         Ok(finished)
     }

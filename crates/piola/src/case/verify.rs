@@ -16,18 +16,37 @@ mod format;
 #[cfg(test)]
 mod tests;
 
+/// How a run ended, in words: all that the record of a run keeps of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ending {
+    /// [`Outcome::summary`]: `completed`, `interrupted` or `failed: KIND`.
+    pub summary: String,
+    /// The message of a failure.
+    pub message: Option<String>,
+}
+
+impl From<&Outcome> for Ending {
+    fn from(outcome: &Outcome) -> Self {
+        let message = match outcome {
+            Outcome::Failed(failure) => Some(failure.to_string()),
+            _ => None,
+        };
+        Self { summary: outcome.summary(), message }
+    }
+}
+
 /// A run that is over, as checks see it.
 pub trait RunResults {
     /// How it ended.
-    fn outcome(&self) -> &Outcome;
+    fn ending(&self) -> Ending;
 
     /// The quantity called `name`: a column of its tables or a number of the run as a whole.
     fn quantity(&self, name: &str) -> Option<Series>;
 }
 
 impl RunResults for Finished {
-    fn outcome(&self) -> &Outcome {
-        &self.summary.outcome
+    fn ending(&self) -> Ending {
+        Ending::from(&self.summary.outcome)
     }
 
     fn quantity(&self, name: &str) -> Option<Series> {
@@ -203,8 +222,8 @@ impl<Run: RunResults> Runs<Run> {
                     return Err("the quantity is a number, and a text is expected".to_owned());
                 };
                 let pass = text == expected;
-                if let (false, Outcome::Failed(failure)) = (pass, run.run.outcome()) {
-                    row.reason = Some(failure.to_string());
+                if !pass {
+                    row.reason = run.run.ending().message;
                 }
                 Ok(pass)
             }
@@ -256,12 +275,11 @@ impl<Run: RunResults> Runs<Run> {
 /// What the run gives for `check`.
 fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got, String> {
     let name = check.quantity.name();
-    let outcome = run.run.outcome();
     let about_outcome = matches!(&check.quantity.value, Quantity::Run(name) if name == "outcome");
     if !about_outcome && !is_as_announced(run) {
-        return Err(match outcome {
-            Outcome::Failed(failure) => format!("the run failed: {failure}"),
-            _ => "the run was interrupted".to_owned(),
+        return Err(match run.run.ending().message {
+            Some(message) => format!("the run failed: {message}"),
+            None => "the run was interrupted".to_owned(),
         });
     }
     match run.run.quantity(&name) {
@@ -281,11 +299,15 @@ fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got,
 
 /// Whether the run is complete, or failed in the way that a check of the same variant expects.
 fn is_as_announced<Run: RunResults>(run: &VariantRun<Run>) -> bool {
-    let summary = match run.run.outcome() {
-        Outcome::Completed => return true,
-        Outcome::Interrupted => return false,
-        failed => failed.summary(),
-    };
+    let ending = run.run.ending();
+    if ending.summary == Outcome::Completed.summary() {
+        return true;
+    }
+    // An interrupted run has shown nothing.
+    if ending.message.is_none() {
+        return false;
+    }
+    let summary = ending.summary;
     applicable(&run.case).any(|(_, check)| {
         let own = check.variant.as_ref().map(|name| &name.value) == run.case.variant.as_ref();
         own && check.expectation == Expectation::Outcome(summary.clone())

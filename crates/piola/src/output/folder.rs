@@ -7,13 +7,15 @@
 //! probes.csv energy.csv steps.csv
 //! pictures/NAME_000012.png      particles coloured by a field
 //! plots/NAME.png                curves against time
+//! references/0_NAME.csv         reference curves of the case's checks
+//! report.html                   all of it in one page
 //! ```
 
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use super::{OutputError, RunRecord, atomic};
+use super::{OutputError, RecordError, RunRecord, atomic};
 
 const RECORD: &str = "run.json";
 const SERIES: &str = "particles.pvd";
@@ -21,6 +23,8 @@ const TABLES: [&str; 3] = ["probes.csv", "energy.csv", "steps.csv"];
 const PARTICLES: &str = "particles";
 const PICTURES: &str = "pictures";
 const PLOTS: &str = "plots";
+const REFERENCES: &str = "references";
+const REPORT: &str = "report.html";
 
 /// A folder that belongs to one run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,6 +57,16 @@ impl ResultsFolder {
         }
         record.write(&folder.record())?;
         Ok(folder)
+    }
+
+    /// The folder `path` of an earlier run, with its record.
+    ///
+    /// # Errors
+    /// The folder holds no record of a run of piola.
+    pub fn open(path: &Path) -> Result<(Self, RunRecord), RecordError> {
+        let folder = Self { path: path.into() };
+        let record = RunRecord::read(&folder.record())?;
+        Ok((folder, record))
     }
 
     /// The folder itself.
@@ -111,6 +125,53 @@ impl ResultsFolder {
         Ok(self.below(PLOTS)?.join(format!("{}.png", file_name(name))))
     }
 
+    /// The copy of reference curve `number` of the case, which came from a file called `name`; its
+    /// folder is created if it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
+    pub fn reference(&self, number: usize, name: &str) -> Result<PathBuf, OutputError> {
+        Ok(self.below(REFERENCES)?.join(format!("{number}_{}", file_name(name))))
+    }
+
+    /// The page that shows the run.
+    pub fn report(&self) -> PathBuf {
+        self.path.join(REPORT)
+    }
+
+    /// The particle files that are there, in the order of their numbers.
+    pub fn all_particles(&self) -> Vec<PathBuf> {
+        self.numbered(PARTICLES, "vtp")
+    }
+
+    /// The pictures that are there, by name and number.
+    pub fn all_pictures(&self) -> Vec<PathBuf> {
+        self.numbered(PICTURES, "png")
+    }
+
+    /// The plain files `NAME_NUMBER.ending` of a folder, sorted by name and number. A folder that
+    /// cannot be read holds none.
+    fn numbered(&self, folder: &str, ending: &str) -> Vec<PathBuf> {
+        let path = self.path.join(folder);
+        let mut found: Vec<(String, u64)> = names(&path)
+            .unwrap_or_default()
+            .iter()
+            .filter(|name| is_known(folder, name))
+            .filter_map(|name| {
+                let (start, number) = name.strip_suffix(ending)?.strip_suffix('.')?.rsplit_once('_')?;
+                Some((start.to_owned(), number.parse().ok()?))
+            })
+            .collect();
+        found.sort();
+        let paths = found.iter().map(|(name, number)| path.join(format!("{name}_{number:06}.{ending}")));
+        paths.filter(|path| fs::symlink_metadata(path).is_ok_and(|data| data.is_file())).collect()
+    }
+
+    /// The path of `file` of the record, relative to this folder; nothing if it would lead out.
+    pub fn inside(&self, file: &str) -> Option<PathBuf> {
+        Some(self.path.join(own(file)?))
+    }
+
     /// `file` relative to this folder with `/` between its parts, as series and records name it.
     pub fn relative(&self, file: &Path) -> String {
         let inside = file.strip_prefix(&self.path).unwrap_or(file);
@@ -134,7 +195,7 @@ impl ResultsFolder {
             });
         };
         let mut files: Vec<PathBuf> = record.files.iter().filter_map(|file| own(file)).collect();
-        for folder in ["", PARTICLES, PICTURES, PLOTS] {
+        for folder in ["", PARTICLES, PICTURES, PLOTS, REFERENCES] {
             let path = self.path.join(folder);
             // A link could lead anywhere.
             if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
@@ -187,7 +248,7 @@ fn is_known(folder: &str, name: &str) -> bool {
         })
     };
     let by_name = match folder {
-        "" => name == SERIES || TABLES.contains(&name),
+        "" => name == SERIES || name == REPORT || TABLES.contains(&name),
         PARTICLES => name.starts_with("frame_") && numbered(".vtp"),
         PICTURES => numbered(".png"),
         _ => false,

@@ -12,6 +12,7 @@
 //! | reference curves, read | [`Curve::read_csv`] |
 //! | particles coloured by a number | [`Picture::write_png`] |
 //! | curves against time | [`Plot::write_png`] |
+//! | all of a run in one page | [`report::write`] |
 //! | what was run and how it went | [`RunRecord::write`] |
 //! | where all that lies | [`ResultsFolder`] |
 
@@ -25,14 +26,18 @@ mod picture;
 mod plot;
 pub mod pvd;
 mod record;
+pub mod report;
 mod table;
 pub mod vtp;
+pub mod vtp_reader;
 
 pub use csv_reader::{Curve, TableError};
 pub use error::OutputError;
 pub use folder::ResultsFolder;
 pub use picture::{Bounds, Picture};
 pub use plot::{Plot, Series, Style};
-pub use record::{BodyRecord, RecordError, RunRecord, StageRecord, timestamp};
+pub use record::{
+    BodyRecord, FigureRecord, RecordError, ReferenceRecord, RunRecord, StageRecord, timestamp,
+};
 pub use table::{Column, Table};
 pub use vtp::Compression;

@@ -1,0 +1,281 @@
+//! The particles of some instants of a run, chosen so that they fit into a page.
+
+use std::path::{Path, PathBuf};
+
+use super::packed;
+use crate::fields::{FieldKind, component_name};
+use crate::output::vtp_reader::{Array, ParticleFile, ParticleFileError};
+
+/// What is shown of the particles of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frames {
+    /// 1, 2 or 3.
+    pub dimension: usize,
+    /// Number of particles in the files.
+    pub particles: usize,
+    /// Every how many of them is shown.
+    pub stride: usize,
+    /// Number of files.
+    pub files: usize,
+    /// Subtracted from the positions, in m, one number an axis.
+    pub centre: Vec<f64>,
+    /// The fields, in the order of their data.
+    pub fields: Vec<Field>,
+    /// Numbers of the particles shown.
+    pub ids: Vec<u32>,
+    /// The body of each.
+    pub bodies: Vec<u32>,
+    /// The instants, in order.
+    pub frames: Vec<Frame>,
+    /// A sentence for each file that could not be used.
+    pub faults: Vec<String>,
+}
+
+/// One field of the particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Its name.
+    pub name: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// Names of its components, one empty name for a scalar.
+    pub components: Vec<String>,
+}
+
+/// One instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Simulated time in s.
+    pub time: f64,
+    /// Positions, then the fields, component by component: [`packed`], as text.
+    pub data: String,
+}
+
+/// How much may be shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Bytes of all numbers before zlib.
+    pub bytes: usize,
+    /// Instants.
+    pub frames: usize,
+    /// Instants below which particles are left out rather than instants.
+    pub kept_frames: usize,
+}
+
+impl Limits {
+    /// Those of a report. Zlib and the writing of bytes as text lengthen data by a third at most:
+    /// the text is no longer than 8 MiB.
+    pub const REPORT: Self = Self { bytes: 6 << 20, frames: 200, kept_frames: 12 };
+}
+
+/// Reads the particle files `paths`, which are in the order of time, of a run in `dimension`
+/// dimensions. If they are too many or too large, instants are left out first, then particles.
+/// A damaged file is left out with a sentence.
+pub fn read(paths: &[PathBuf], dimension: usize, limits: Limits) -> Frames {
+    let dimension = dimension.clamp(1, 3);
+    let mut faults = Vec::new();
+    let mut first = None;
+    for (number, path) in paths.iter().enumerate() {
+        match first_file(path, dimension) {
+            Ok(file) => {
+                first = Some((number, file));
+                break;
+            }
+            Err(error) => faults.push(sentence(path, &error)),
+        }
+    }
+    let mut frames = Frames { dimension, files: paths.len(), ..Frames::default() };
+    let Some((start, mut file)) = first else {
+        frames.faults = shortened(faults);
+        return frames;
+    };
+    let numbers: usize = dimension + file.fields.iter().map(|field| field.numbers.len()).sum::<usize>();
+    let bytes = (file.file.count * numbers * packed::BYTES_OF_NUMBER).max(1);
+    let usable = paths.len() - start;
+    let wanted = (limits.bytes / bytes).max(limits.kept_frames).min(limits.frames).min(usable);
+    frames.stride = (bytes * wanted).div_ceil(limits.bytes.max(1)).max(1);
+    frames.particles = file.file.count;
+    // Rounding up of the number of particles can exceed the limit by one particle a frame.
+    while file.file.count.div_ceil(frames.stride) * numbers * packed::BYTES_OF_NUMBER * wanted
+        > limits.bytes
+        && frames.stride < file.file.count
+    {
+        frames.stride += 1;
+    }
+    if let Err(error) = frames.common(&mut file) {
+        faults.push(sentence(&paths[start], &error));
+        frames.faults = shortened(faults);
+        return frames;
+    }
+    for number in evenly(usable, wanted) {
+        let path = &paths[start + number];
+        match frames.one(path) {
+            Ok(frame) => frames.frames.push(frame),
+            Err(error) => faults.push(sentence(path, &error)),
+        }
+    }
+    frames.faults = shortened(faults);
+    frames
+}
+
+/// `wanted` of the numbers below `count`, as evenly as whole numbers allow, with both ends.
+pub fn evenly(count: usize, wanted: usize) -> Vec<usize> {
+    match (count, wanted) {
+        (0, _) | (_, 0) => Vec::new(),
+        (_, 1) => vec![count - 1],
+        _ if wanted >= count => (0..count).collect(),
+        _ => (0..wanted).map(|i| (i * (count - 1) + (wanted - 1) / 2) / (wanted - 1)).collect(),
+    }
+}
+
+/// A particle file with those of its arrays that are shown.
+struct Opened {
+    file: ParticleFile,
+    fields: Vec<Shown>,
+}
+
+/// A field of a file, with the places of its numbers in a row of three dimensions.
+struct Shown {
+    array: Array,
+    kind: FieldKind,
+    numbers: Vec<usize>,
+}
+
+fn first_file(path: &Path, dimension: usize) -> Result<Opened, ParticleFileError> {
+    let file = ParticleFile::open(path)?;
+    let fields = file.arrays.iter().filter(|array| !["id", "body"].contains(&array.name.as_str()));
+    let fields = fields.map(|array| {
+        let kind = match array.components {
+            1 => FieldKind::Scalar,
+            3 => FieldKind::Vector,
+            _ => FieldKind::Tensor,
+        };
+        let numbers = match kind {
+            FieldKind::Scalar => vec![0],
+            FieldKind::Vector => (0..dimension).collect(),
+            FieldKind::Tensor => {
+                (0..dimension * dimension).map(|i| i / dimension * 3 + i % dimension).collect()
+            }
+        };
+        Shown { array: array.clone(), kind, numbers }
+    });
+    let fields = fields.collect();
+    Ok(Opened { file, fields })
+}
+
+impl Frames {
+    /// Takes what all instants have in common from one of them.
+    fn common(&mut self, opened: &mut Opened) -> Result<(), ParticleFileError> {
+        self.ids = integers(&mut opened.file, "id", self.stride)?;
+        self.bodies = integers(&mut opened.file, "body", self.stride)?;
+        let points = opened.file.points.clone();
+        let points = opened.file.rows(&points, self.stride)?;
+        self.centre = (0..self.dimension).map(|axis| middle(&points, axis)).collect();
+        self.fields = opened.fields.iter().map(|field| self.field(field)).collect();
+        Ok(())
+    }
+
+    fn field(&self, field: &Shown) -> Field {
+        let numbers = 0..field.numbers.len();
+        Field {
+            name: field.array.name.clone(),
+            unit: field.array.unit.clone(),
+            components: numbers
+                .map(|number| component_name(field.kind, number, self.dimension))
+                .collect(),
+        }
+    }
+
+    fn one(&self, path: &Path) -> Result<Frame, ParticleFileError> {
+        let Opened { mut file, fields } = first_file(path, self.dimension)?;
+        let differs = |what: &str| ParticleFileError::Damaged {
+            path: path.into(),
+            what: format!("its {what} are not those of the first file"),
+        };
+        if !fields.iter().map(|field| self.field(field)).eq(self.fields.iter().cloned()) {
+            return Err(differs("fields"));
+        }
+        if file.count != self.particles || integers(&mut file, "id", self.stride)? != self.ids {
+            return Err(differs("particles"));
+        }
+        let mut bytes = Vec::new();
+        let points = file.points.clone();
+        let rows = file.rows(&points, self.stride)?;
+        for (axis, centre) in self.centre.iter().enumerate() {
+            packed::push(&mut bytes, rows.chunks_exact(3).map(|row| row[axis] - centre));
+        }
+        for Shown { array, numbers, .. } in fields {
+            let rows = file.rows(&array, self.stride)?;
+            for number in numbers {
+                let values = rows.chunks_exact(array.components).map(|row| row[number]);
+                packed::push(&mut bytes, values);
+            }
+        }
+        Ok(Frame { time: file.time, data: packed::text(&bytes) })
+    }
+}
+
+/// The middle between the smallest and the largest finite coordinate of `points`; 0 if there is
+/// none, or if it is beyond all measure.
+fn middle(points: &[f64], axis: usize) -> f64 {
+    let finite = points.chunks_exact(3).map(|row| row[axis]).filter(|value| value.is_finite());
+    let (low, high) = finite
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let middle = 0.5 * low + 0.5 * high;
+    if middle.abs() < 1e30 { middle } else { 0.0 }
+}
+
+/// An array of whole numbers; zeros if the file has none of this name.
+fn integers(
+    file: &mut ParticleFile,
+    name: &str,
+    stride: usize,
+) -> Result<Vec<u32>, ParticleFileError> {
+    let Some(array) = file.array(name).filter(|array| array.components == 1).cloned() else {
+        return Ok(vec![0; file.count.div_ceil(stride.max(1))]);
+    };
+    // The cast saturates.
+    Ok(file.rows(&array, stride)?.into_iter().map(|value| value as u32).collect())
+}
+
+/// What the page says of a file that was left out, without the folder, which may move.
+fn sentence(path: &Path, error: &ParticleFileError) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    match error {
+        ParticleFileError::Io { source, .. } => format!("{name} cannot be read: {source}"),
+        ParticleFileError::Damaged { what, .. } => format!("{name} is damaged: {what}"),
+    }
+}
+
+/// At most ten sentences, and how many more there are.
+fn shortened(mut sentences: Vec<String>) -> Vec<String> {
+    const MOST: usize = 10;
+    let more = sentences.len().saturating_sub(MOST);
+    sentences.truncate(MOST);
+    if more > 0 {
+        sentences.push(format!("{more} more files could not be used"));
+    }
+    sentences
+}
+
+#[cfg(test)]
+mod tests {
+    use super::evenly;
+
+    #[test]
+    fn chosen_instants_are_even_and_hold_both_ends() {
+        for count in 1..60 {
+            for wanted in 2..70 {
+                let chosen = evenly(count, wanted);
+                assert_eq!(chosen.len(), wanted.min(count));
+                assert_eq!((chosen[0], *chosen.last().unwrap()), (0, count - 1));
+                let steps: Vec<usize> = chosen.windows(2).map(|pair| pair[1] - pair[0]).collect();
+                if let (Some(least), Some(most)) = (steps.iter().min(), steps.iter().max()) {
+                    assert!(*least >= 1 && most - least <= 1, "{chosen:?}");
+                }
+            }
+        }
+        assert_eq!(evenly(5, 1), [4]);
+        assert!(evenly(0, 3).is_empty() && evenly(3, 0).is_empty());
+    }
+}
