@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use piola::case::report::{ReportError, write};
+use piola::output::RecordError;
 
 use crate::exit::{Exit, Fault};
 use crate::terminal;
@@ -11,8 +12,10 @@ use crate::terminal;
 pub fn report(folder: &Path) -> Result<Exit, Fault> {
     let path = write(folder).map_err(|error| {
         let exit = match error {
-            ReportError::NoRun { .. } => Exit::BadCase,
-            _ => Exit::Io,
+            ReportError::NoRun { source: RecordError::Io { .. } } | ReportError::Output(_) => {
+                Exit::Io
+            }
+            _ => Exit::BadCase,
         };
         Fault::new(exit, error)
     })?;

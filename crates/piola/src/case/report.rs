@@ -13,7 +13,9 @@ use super::recorded;
 use super::verify::{CheckRow, Ending, RunResults, VariantRun, verify};
 use crate::observe::{Series, Tables};
 use crate::output::report::{self, Chart, ChartGroup, CheckLine, OtherCheck, Report, Verdict};
-use crate::output::{self, Column, Curve, OutputError, RecordError, ResultsFolder, RunRecord, Table};
+use crate::output::{
+    self, Column, Curve, OutputError, RecordError, ResultsFolder, RunRecord, Table,
+};
 
 mod charts;
 
@@ -22,7 +24,9 @@ mod charts;
 #[non_exhaustive]
 pub enum ReportError {
     /// The folder holds no results.
-    #[error("{source}. Give the folder of results of an earlier run, the one with `run.json` in it")]
+    #[error(
+        "{source}. Give the folder of results of an earlier run, the one with `run.json` in it"
+    )]
     NoRun {
         /// What is wrong with the record.
         source: RecordError,

@@ -158,12 +158,14 @@ impl ResultsFolder {
             .iter()
             .filter(|name| is_known(folder, name))
             .filter_map(|name| {
-                let (start, number) = name.strip_suffix(ending)?.strip_suffix('.')?.rsplit_once('_')?;
+                let (start, number) =
+                    name.strip_suffix(ending)?.strip_suffix('.')?.rsplit_once('_')?;
                 Some((start.to_owned(), number.parse().ok()?))
             })
             .collect();
         found.sort();
-        let paths = found.iter().map(|(name, number)| path.join(format!("{name}_{number:06}.{ending}")));
+        let paths =
+            found.iter().map(|(name, number)| path.join(format!("{name}_{number:06}.{ending}")));
         paths.filter(|path| fs::symlink_metadata(path).is_ok_and(|data| data.is_file())).collect()
     }
 

@@ -125,9 +125,16 @@ impl ParticleFile {
         let xml = Document::parse(&closed).map_err(|error| damaged(error.to_string()))?;
         let (description, time) = describe(&xml).map_err(damaged)?;
         let Description { packed, count, points, arrays } = description;
+        // No sound file of this length holds more, so that nobody makes room for them.
+        if (count as u64).saturating_mul(24) > length.saturating_mul(MAX_PACKING) {
+            return Err(damaged(format!(
+                "{length} bytes cannot hold the {count} particles it names"
+            )));
+        }
         let data = data as u64;
         let path = path.to_path_buf();
-        let mut file = Self { path, file, length, data, packed, count, time: f64::NAN, points, arrays };
+        let mut file =
+            Self { path, file, length, data, packed, count, time: f64::NAN, points, arrays };
         if let Some(array) = time {
             let values = file.unpack(&array, 1, 1)?;
             file.time = values.first().copied().unwrap_or(f64::NAN);

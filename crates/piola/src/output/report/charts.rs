@@ -11,12 +11,12 @@ use super::Chart;
 use crate::output::drawing::ticks::{self, Ticks};
 use crate::output::plot::{self, Series, Style};
 
-const WIDTH: f64 = 720.0;
-const LEFT: f64 = 74.0;
+const WIDTH: f64 = 540.0;
+const LEFT: f64 = 70.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 10.0;
 const BELOW: f64 = 44.0;
-const HEIGHT: f64 = 210.0;
+const HEIGHT: f64 = 190.0;
 /// Columns into which a curve is thinned.
 const INSIDE: f64 = WIDTH - LEFT - RIGHT;
 /// Colours of the style before they repeat with dashes.
@@ -71,6 +71,7 @@ fn legend(panel: &[&Series]) -> Markup {
                         @if series.style == Style::Line {
                             path .(class(number, series.style)) d="M1 5H25" {}
                         } @else {
+                            path .(class(number, series.style).replace("marks", "reference")) d="M1 5H25" {}
                             circle .(class(number, series.style)) cx="13" cy="5" r="3.6" {}
                         }
                     }
@@ -84,7 +85,7 @@ fn legend(panel: &[&Series]) -> Markup {
 fn drawing(title: &str, panel: &[&Series], x: [f64; 2]) -> Markup {
     let y = plot::ordinates(panel);
     let unit = panel.first().map_or("", |series| &series.column.unit);
-    let (across, up) = (Ticks::new(x, 8), Ticks::new(y, 6));
+    let (across, up) = (Ticks::new(x, 7), Ticks::new(y, 6));
     let at_x = |value: f64| LEFT + (value - x[0]) / (x[1] - x[0]) * INSIDE;
     let at_y = |value: f64| TOP + (y[1] - value) / (y[1] - y[0]) * HEIGHT;
     let (right, bottom) = (WIDTH - RIGHT, TOP + HEIGHT);
@@ -118,7 +119,10 @@ fn drawing(title: &str, panel: &[&Series], x: [f64; 2]) -> Markup {
                 g .curve data-name=(series.column.name) {
                     @match series.style {
                         Style::Line => { path .(class) d=(line(&points)) {} }
-                        Style::Marks => { path .(class) d=(rings(&points)) {} }
+                        Style::Marks => {
+                            path .(class.replace("marks", "reference")) d=(line(&points)) {}
+                            path .(class) d=(rings(&points)) {}
+                        }
                     }
                 }
             }

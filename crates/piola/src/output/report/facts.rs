@@ -113,7 +113,7 @@ pub fn checks(report: &Report) -> Markup {
             @if report.checks.is_empty() {
                 p { "The case has no checks of this run." }
             } @else {
-                div .wide { table {
+                div .wide { table .checks {
                     thead { tr {
                         th {} th { "Quantity" } th { "Expected" } th { "Tolerance" } th { "Got" }
                         th { "Source of the expected value" }
@@ -168,7 +168,9 @@ fn verdict(verdict: Verdict) -> Markup {
 pub fn energy(report: &Report) -> Markup {
     let table = &report.energy;
     let mut rows = table.rows();
-    let (Some(first), Some(last)) = (rows.next(), table.rows().next_back()) else { return html! {} };
+    let (Some(first), Some(last)) = (rows.next(), table.rows().next_back()) else {
+        return html! {};
+    };
     html! {
         section #energy {
             h2 { "Energy" }

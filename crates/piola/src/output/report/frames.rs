@@ -89,7 +89,8 @@ pub fn read(paths: &[PathBuf], dimension: usize, limits: Limits) -> Frames {
         frames.faults = shortened(faults);
         return frames;
     };
-    let numbers: usize = dimension + file.fields.iter().map(|field| field.numbers.len()).sum::<usize>();
+    let numbers: usize =
+        dimension + file.fields.iter().map(|field| field.numbers.len()).sum::<usize>();
     let bytes = (file.file.count * numbers * packed::BYTES_OF_NUMBER).max(1);
     let usable = paths.len() - start;
     let wanted = (limits.bytes / bytes).max(limits.kept_frames).min(limits.frames).min(usable);
@@ -219,8 +220,8 @@ impl Frames {
 /// none, or if it is beyond all measure.
 fn middle(points: &[f64], axis: usize) -> f64 {
     let finite = points.chunks_exact(3).map(|row| row[axis]).filter(|value| value.is_finite());
-    let (low, high) = finite
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) =
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let middle = 0.5 * low + 0.5 * high;
     if middle.abs() < 1e30 { middle } else { 0.0 }
 }
@@ -259,23 +260,4 @@ fn shortened(mut sentences: Vec<String>) -> Vec<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::evenly;
-
-    #[test]
-    fn chosen_instants_are_even_and_hold_both_ends() {
-        for count in 1..60 {
-            for wanted in 2..70 {
-                let chosen = evenly(count, wanted);
-                assert_eq!(chosen.len(), wanted.min(count));
-                assert_eq!((chosen[0], *chosen.last().unwrap()), (0, count - 1));
-                let steps: Vec<usize> = chosen.windows(2).map(|pair| pair[1] - pair[0]).collect();
-                if let (Some(least), Some(most)) = (steps.iter().min(), steps.iter().max()) {
-                    assert!(*least >= 1 && most - least <= 1, "{chosen:?}");
-                }
-            }
-        }
-        assert_eq!(evenly(5, 1), [4]);
-        assert!(evenly(0, 3).is_empty() && evenly(3, 0).is_empty());
-    }
-}
+mod tests;

@@ -12,7 +12,7 @@ function written(value, digits) {
 
 // The points of a curve out of its path; rings start at their left end.
 function points(group) {
-  const path = group.querySelector("path");
+  const path = group.querySelector("path:last-child");
   const ring = path.classList.contains("marks") ? 3.4 : 0;
   const found = [];
   for (const [, x, y] of path.getAttribute("d").matchAll(/[ML](-?[\d.]+) (-?[\d.]+)/g)) found.push([Number(x) + ring, Number(y)]);

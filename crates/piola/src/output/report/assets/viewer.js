@@ -253,7 +253,17 @@ void main() {
   gl_FragDepth = gl_FragCoord.z - lit * radius * height;
 }`;
 
-let gl = null, program = null, buffers = null, uniforms = null;
+const LINE_VERTEX = `#version 300 es
+in vec2 at;
+in float depth;
+void main() { gl_Position = vec4(at, depth, 1.0); }`;
+const LINE_FRAGMENT = `#version 300 es
+precision mediump float;
+uniform vec4 ink;
+out vec4 colour;
+void main() { colour = ink; }`;
+
+let gl = null, points = null, lines = null;
 
 function compile(kind, code) {
   const shader = gl.createShader(kind);
@@ -263,24 +273,33 @@ function compile(kind, code) {
   return shader;
 }
 
-function prepare() {
-  program = gl.createProgram();
-  gl.attachShader(program, compile(gl.VERTEX_SHADER, VERTEX));
-  gl.attachShader(program, compile(gl.FRAGMENT_SHADER, FRAGMENT));
+// A program with a buffer for each attribute and the places of its uniforms.
+function link(vertex, fragment, attributes, names) {
+  const program = gl.createProgram(), array = gl.createVertexArray(), buffers = {}, uniforms = {};
+  gl.attachShader(program, compile(gl.VERTEX_SHADER, vertex));
+  gl.attachShader(program, compile(gl.FRAGMENT_SHADER, fragment));
   gl.linkProgram(program);
-  gl.useProgram(program);
-  buffers = {};
-  for (const [name, size] of [["place", 3], ["tone", 1], ["diameter", 1]]) {
+  gl.bindVertexArray(array);
+  for (const [name, size] of attributes) {
     buffers[name] = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
     const at = gl.getAttribLocation(program, name);
     gl.enableVertexAttribArray(at);
     gl.vertexAttribPointer(at, size, gl.FLOAT, false, 0, 0);
   }
-  uniforms = {};
-  for (const name of ["right", "up", "front", "middle", "size", "origin", "scale", "depth", "factor", "map", "lit"]) {
-    uniforms[name] = gl.getUniformLocation(program, name);
-  }
+  for (const name of names) uniforms[name] = gl.getUniformLocation(program, name);
+  return { program, array, buffers, uniforms };
+}
+
+function fill(buffer, numbers) {
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.DYNAMIC_DRAW);
+}
+
+function prepare() {
+  points = link(VERTEX, FRAGMENT, [["place", 3], ["tone", 1], ["diameter", 1]],
+    ["right", "up", "front", "middle", "size", "origin", "scale", "depth", "factor", "map", "lit"]);
+  lines = link(LINE_VERTEX, LINE_FRAGMENT, [["at", 2], ["depth", 1]], ["ink"]);
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.LINEAR);
   for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, side, gl.CLAMP_TO_EDGE);
@@ -301,10 +320,7 @@ function upload() {
     sizes[i] = diameters[i];
     if (state.hidden.has(data.body[i])) places[3 * i] = 1e20;
   }
-  for (const [name, array] of [["place", places], ["tone", tones], ["diameter", sizes]]) {
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
-    gl.bufferData(gl.ARRAY_BUFFER, array, gl.DYNAMIC_DRAW);
-  }
+  for (const [name, array] of [["place", places], ["tone", tones], ["diameter", sizes]]) fill(points.buffers[name], array);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 256, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, new Uint8Array(colours()));
 }
 
@@ -316,6 +332,9 @@ function paint() {
   gl.enable(gl.DEPTH_TEST);
   gl.depthFunc(gl.LEQUAL);
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  const { uniforms } = points;
+  gl.useProgram(points.program);
+  gl.bindVertexArray(points.array);
   for (const name of ["right", "up", "front", "middle"]) gl.uniform3fv(uniforms[name], eye[name]);
   gl.uniform2f(uniforms.size, drawing.width, drawing.height);
   gl.uniform2f(uniforms.origin, eye.origin[0] * ratio, eye.origin[1] * ratio);
@@ -325,13 +344,35 @@ function paint() {
   gl.uniform1f(uniforms.lit, D === 3 ? 1 : 0);
   gl.uniform1i(uniforms.map, 0);
   gl.drawArrays(gl.POINTS, 0, N);
+  if (D === 3) edges(eye);
+}
+
+// The edges of the box of the data, behind and in front of the particles.
+function edges(eye) {
+  const corner = (bits) => eye.project([0, 1, 2].map((axis) => (bits >> axis & 1 ? box.high[axis] : box.low[axis])));
+  const at = [], depth = [];
+  for (let axis = 0; axis < 3; axis++) {
+    for (let bits = 0; bits < 8; bits++) {
+      if (bits >> axis & 1) continue;
+      for (const [x, y, near] of [corner(bits), corner(bits | 1 << axis)]) {
+        at.push(2 * x / eye.width - 1, 1 - 2 * y / eye.height);
+        depth.push(-near / eye.depth);
+      }
+    }
+  }
+  gl.useProgram(lines.program);
+  gl.bindVertexArray(lines.array);
+  fill(lines.buffers.at, new Float32Array(at));
+  fill(lines.buffers.depth, new Float32Array(depth));
+  gl.uniform4f(lines.uniforms.ink, 0.55, 0.6, 0.68, 1);
+  gl.drawArrays(gl.LINES, 0, depth.length);
 }
 
 // ---- axes, colour bar and labels ----
 
 function inks() {
   const style = getComputedStyle(view);
-  return { ink: style.getPropertyValue("--ink").trim(), faint: style.getPropertyValue("--faint").trim(), stage: style.getPropertyValue("--stage").trim() };
+  return { ink: style.getPropertyValue("--ink").trim(), faint: style.getPropertyValue("--faint").trim(), line: style.getPropertyValue("--line").trim(), stage: style.getPropertyValue("--stage").trim() };
 }
 
 function label() {
@@ -372,10 +413,10 @@ function flatAxes(pen, eye, ink, faint) {
     [(origin[1] - bottom) / scale + middle[1], (origin[1] - margin.top) / scale + middle[1]],
   ];
   pen.clearRect(0, bottom, width, margin.bottom);
-  axes(pen, ends.map(([low, high], axis) => [low + data.centre[axis], high + data.centre[axis]]), { left: margin.left, right, top: margin.top, bottom }, ["x [m]", "y [m]"], ink, faint, false);
+  axes(pen, ends.map(([low, high], axis) => [low + data.centre[axis], high + data.centre[axis]]), { left: margin.left, right, top: margin.top, bottom }, ["x [m]", "y [m]"], ink, faint, null);
 }
 
-// Ticks, labels and a frame around an area.
+// Ticks, labels and a frame around an area; lines across it in the colour `grid`, if any.
 function axes(pen, [[x0, x1], [y0, y1]], { left, right, top, bottom }, names, ink, faint, grid) {
   pen.lineWidth = 1;
   pen.fillStyle = ink;
@@ -383,7 +424,7 @@ function axes(pen, [[x0, x1], [y0, y1]], { left, right, top, bottom }, names, in
   pen.textBaseline = "top";
   for (const value of ticks(x0, x1, Math.max(2, (right - left) / 90))) {
     const x = left + (value - x0) / (x1 - x0) * (right - left);
-    pen.strokeStyle = faint;
+    pen.strokeStyle = grid || faint;
     pen.beginPath(); pen.moveTo(x, grid ? top : bottom); pen.lineTo(x, bottom + 4); pen.stroke();
     pen.fillText(text(value, 4), x, bottom + 7);
   }
@@ -391,7 +432,7 @@ function axes(pen, [[x0, x1], [y0, y1]], { left, right, top, bottom }, names, in
   pen.textBaseline = "middle";
   for (const value of ticks(y0, y1, Math.max(2, (bottom - top) / 60))) {
     const y = bottom - (value - y0) / (y1 - y0) * (bottom - top);
-    pen.strokeStyle = faint;
+    pen.strokeStyle = grid || faint;
     pen.beginPath(); pen.moveTo(left - 4, y); pen.lineTo(grid ? right : left, y); pen.stroke();
     pen.fillText(text(value, 4), left - 8, y);
   }
@@ -406,22 +447,7 @@ function axes(pen, [[x0, x1], [y0, y1]], { left, right, top, bottom }, names, in
   pen.restore();
 }
 
-function solidAxes(pen, eye, ink, faint) {
-  // The edges of the box that lie behind the particles.
-  const corner = (bits) => [0, 1, 2].map((axis) => (bits >> axis & 1 ? box.high[axis] : box.low[axis]));
-  pen.strokeStyle = faint;
-  pen.lineWidth = 1;
-  let hind = 0;
-  for (let axis = 0; axis < 3; axis++) if (eye.front[axis] < 0) hind |= 1 << axis;
-  for (let axis = 0; axis < 3; axis++) {
-    for (let bits = 0; bits < 8; bits++) {
-      if (bits >> axis & 1) continue;
-      const others = [0, 1, 2].filter((other) => other !== axis);
-      if (!others.some((other) => (bits >> other & 1) === (hind >> other & 1))) continue;
-      const [a, b] = [eye.project(corner(bits)), eye.project(corner(bits | 1 << axis))];
-      pen.beginPath(); pen.moveTo(a[0], a[1]); pen.lineTo(b[0], b[1]); pen.stroke();
-    }
-  }
+function solidAxes(pen, eye, ink) {
   const at = [52, eye.height - 52];
   pen.lineWidth = 1.6;
   pen.textAlign = "center";
@@ -438,7 +464,7 @@ function solidAxes(pen, eye, ink, faint) {
 }
 
 // The field against x.
-function curve(pen, { ink, faint }) {
+function curve(pen, { ink, faint, line }) {
   const width = overlay.clientWidth, height = overlay.clientHeight;
   const area = { left: 84, right: width - 20, top: 22, bottom: height - 46 };
   let [x0, x1] = [box.low[0] + data.centre[0], box.high[0] + data.centre[0]];
@@ -447,8 +473,8 @@ function curve(pen, { ink, faint }) {
   if (!(y1 > y0)) [y0, y1] = [y0 - 0.05 * Math.abs(y0) - 1e-12, y1 + 0.05 * Math.abs(y1) + 1e-12];
   const around = 0.04 * (y1 - y0);
   y0 -= around; y1 += around;
-  axes(pen, [[x0, x1], [y0, y1]], area, ["x [m]", label()], ink, faint, true);
-  const places = frames[state.frame].columns[0], own = values(state.frame);
+  axes(pen, [[x0, x1], [y0, y1]], area, ["x [m]", label()], ink, faint, line);
+  const { columns } = frames[state.frame], places = columns[0], own = values(state.frame);
   const project = (i) => [
     area.left + (places[i] + data.centre[0] - x0) / (x1 - x0) * (area.right - area.left),
     area.bottom - (own[i] - y0) / (y1 - y0) * (area.bottom - area.top),
@@ -491,12 +517,12 @@ function annotate() {
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, overlay.clientWidth, overlay.clientHeight);
   pen.font = "12.5px system-ui, sans-serif";
-  const { ink, faint } = inks();
+  const { ink, faint, line } = inks();
   if (D === 1) {
-    projectLine = curve(pen, { ink, faint });
+    projectLine = curve(pen, { ink, faint, line });
   } else {
     const eye = camera();
-    if (D === 2) flatAxes(pen, eye, ink, faint); else solidAxes(pen, eye, ink, faint);
+    if (D === 2) flatAxes(pen, eye, ink, faint); else solidAxes(pen, eye, ink);
     bar(pen, ink, eye.height, eye.width);
   }
   mark(pen, ink);
@@ -574,10 +600,11 @@ function fillComponents() {
   select.closest("label").hidden = components.length < 2;
 }
 
-// The middle of the data without outliers, where outliers would hide all the rest.
+// The data without their ends, where a short peak would take the colours from all the rest. Of a
+// line the peak is worth seeing, unless it flattens it.
 function chooseRange() {
   const [low, high] = rangeOf("all"), [inner, outer] = rangeOf("most");
-  state.range = outer > inner && high - low > 20 * (outer - inner) ? "most" : "all";
+  state.range = outer > inner && high - low > (D === 1 ? 20 : 1.3) * (outer - inner) ? "most" : "all";
   byId("range").value = state.range;
 }
 
