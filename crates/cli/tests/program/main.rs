@@ -6,6 +6,7 @@ mod bad_cases;
 mod check_and_new;
 mod generated;
 mod interrupt;
+mod report;
 mod repository;
 mod run;
 mod support;

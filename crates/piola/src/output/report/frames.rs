@@ -72,49 +72,25 @@ impl Limits {
 /// dimensions. If they are too many or too large, instants are left out first, then particles.
 /// A damaged file is left out with a sentence.
 pub fn read(paths: &[PathBuf], dimension: usize, limits: Limits) -> Frames {
-    let dimension = dimension.clamp(1, 3);
     let mut faults = Vec::new();
-    let mut first = None;
+    let mut frames = Frames { dimension: dimension.clamp(1, 3), ..Frames::default() };
     for (number, path) in paths.iter().enumerate() {
-        match first_file(path, dimension) {
-            Ok(file) => {
-                first = Some((number, file));
+        match frames.plan(path, paths.len() - number, limits) {
+            Ok(wanted) => {
+                // The first sound file tells what all have in common.
+                for place in evenly(paths.len() - number, wanted) {
+                    let path = &paths[number + place];
+                    match frames.one(path) {
+                        Ok(frame) => frames.frames.push(frame),
+                        Err(error) => faults.push(sentence(path, &error)),
+                    }
+                }
                 break;
             }
             Err(error) => faults.push(sentence(path, &error)),
         }
     }
-    let mut frames = Frames { dimension, files: paths.len(), ..Frames::default() };
-    let Some((start, mut file)) = first else {
-        frames.faults = shortened(faults);
-        return frames;
-    };
-    let numbers: usize =
-        dimension + file.fields.iter().map(|field| field.numbers.len()).sum::<usize>();
-    let bytes = (file.file.count * numbers * packed::BYTES_OF_NUMBER).max(1);
-    let usable = paths.len() - start;
-    let wanted = (limits.bytes / bytes).max(limits.kept_frames).min(limits.frames).min(usable);
-    frames.stride = (bytes * wanted).div_ceil(limits.bytes.max(1)).max(1);
-    frames.particles = file.file.count;
-    // Rounding up of the number of particles can exceed the limit by one particle a frame.
-    while file.file.count.div_ceil(frames.stride) * numbers * packed::BYTES_OF_NUMBER * wanted
-        > limits.bytes
-        && frames.stride < file.file.count
-    {
-        frames.stride += 1;
-    }
-    if let Err(error) = frames.common(&mut file) {
-        faults.push(sentence(&paths[start], &error));
-        frames.faults = shortened(faults);
-        return frames;
-    }
-    for number in evenly(usable, wanted) {
-        let path = &paths[start + number];
-        match frames.one(path) {
-            Ok(frame) => frames.frames.push(frame),
-            Err(error) => faults.push(sentence(path, &error)),
-        }
-    }
+    frames.files = paths.len();
     frames.faults = shortened(faults);
     frames
 }
@@ -142,7 +118,7 @@ struct Shown {
     numbers: Vec<usize>,
 }
 
-fn first_file(path: &Path, dimension: usize) -> Result<Opened, ParticleFileError> {
+fn opened(path: &Path, dimension: usize) -> Result<Opened, ParticleFileError> {
     let file = ParticleFile::open(path)?;
     let fields = file.arrays.iter().filter(|array| !["id", "body"].contains(&array.name.as_str()));
     let fields = fields.map(|array| {
@@ -165,15 +141,35 @@ fn first_file(path: &Path, dimension: usize) -> Result<Opened, ParticleFileError
 }
 
 impl Frames {
-    /// Takes what all instants have in common from one of them.
-    fn common(&mut self, opened: &mut Opened) -> Result<(), ParticleFileError> {
-        self.ids = integers(&mut opened.file, "id", self.stride)?;
-        self.bodies = integers(&mut opened.file, "body", self.stride)?;
-        let points = opened.file.points.clone();
-        let points = opened.file.rows(&points, self.stride)?;
+    /// Takes what all instants have in common from the file `path`, and returns how many of
+    /// `instants` there is room for.
+    fn plan(
+        &mut self,
+        path: &Path,
+        instants: usize,
+        limits: Limits,
+    ) -> Result<usize, ParticleFileError> {
+        let Opened { mut file, fields } = opened(path, self.dimension)?;
+        let numbers: usize = fields.iter().map(|field| field.numbers.len()).sum();
+        let bytes_of_one = (self.dimension + numbers) * packed::BYTES_OF_NUMBER;
+        let whole = (bytes_of_one * file.count).max(1);
+        let most = limits.frames.min(instants);
+        let wanted = (limits.bytes / whole).max(limits.kept_frames).min(most);
+        self.particles = file.count;
+        self.stride = (whole * wanted).div_ceil(limits.bytes.max(1)).max(1);
+        // The last particle counts as a whole stride, so that one more may have to go.
+        while file.count.div_ceil(self.stride) * bytes_of_one * wanted > limits.bytes
+            && self.stride < file.count
+        {
+            self.stride += 1;
+        }
+        self.ids = integers(&mut file, "id", self.stride)?;
+        self.bodies = integers(&mut file, "body", self.stride)?;
+        let points = file.points.clone();
+        let points = file.rows(&points, self.stride)?;
         self.centre = (0..self.dimension).map(|axis| middle(&points, axis)).collect();
-        self.fields = opened.fields.iter().map(|field| self.field(field)).collect();
-        Ok(())
+        self.fields = fields.iter().map(|field| self.field(field)).collect();
+        Ok(wanted)
     }
 
     fn field(&self, field: &Shown) -> Field {
@@ -188,7 +184,7 @@ impl Frames {
     }
 
     fn one(&self, path: &Path) -> Result<Frame, ParticleFileError> {
-        let Opened { mut file, fields } = first_file(path, self.dimension)?;
+        let Opened { mut file, fields } = opened(path, self.dimension)?;
         let differs = |what: &str| ParticleFileError::Damaged {
             path: path.into(),
             what: format!("its {what} are not those of the first file"),
