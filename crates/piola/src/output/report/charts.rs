@@ -13,7 +13,7 @@ use crate::output::plot::{self, Series, Style};
 
 const WIDTH: f64 = 540.0;
 const LEFT: f64 = 70.0;
-const RIGHT: f64 = 12.0;
+const RIGHT: f64 = 20.0;
 const TOP: f64 = 10.0;
 const BELOW: f64 = 44.0;
 const HEIGHT: f64 = 190.0;

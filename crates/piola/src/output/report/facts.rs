@@ -2,14 +2,14 @@
 
 use maud::{Markup, html};
 
-use super::{Report, Verdict, files};
+use super::{Report, files};
 use crate::output::drawing::ticks::number;
 use crate::output::{FigureRecord, RunRecord};
 
 /// Longest case that is shown, in bytes.
 const MAX_CASE: usize = 200_000;
 /// Most lines of any list.
-const MAX_LINES: usize = 500;
+pub const MAX_LINES: usize = 500;
 
 /// What ran, in the first lines of the page.
 pub fn summary(report: &Report) -> Markup {
@@ -25,12 +25,20 @@ pub fn summary(report: &Report) -> Markup {
             (fact("Steps", &record.steps.to_string()))
             (fact("Wall time", &duration(seconds)))
             (fact("Threads", &record.threads.to_string()))
-            (fact("Started", &record.started.replace('T', " ").replace('Z', " UTC")))
+            (fact("Started", &minute(&record.started)))
             (fact("Program", &format!("{} {}", record.program, record.version)))
             @for figure in record.figures.iter().filter(|figure| is_health(figure)) {
                 (fact(label(&figure.name), &with_unit(figure.value, &figure.unit)))
             }
         }
+    }
+}
+
+/// A time of the record to the minute: `2026-11-21 02:42 UTC`.
+fn minute(timestamp: &str) -> String {
+    match (timestamp.get(..10), timestamp.get(11..16)) {
+        (Some(day), Some(time)) if timestamp.ends_with('Z') => format!("{day} {time} UTC"),
+        _ => timestamp.to_owned(),
     }
 }
 
@@ -40,7 +48,7 @@ fn fact(name: &str, value: &str) -> Markup {
 
 /// The figures that say how well the run went.
 fn is_health(figure: &FigureRecord) -> bool {
-    label(&figure.name) != ""
+    !label(&figure.name).is_empty()
 }
 
 fn label(figure: &str) -> &'static str {
@@ -88,80 +96,6 @@ fn bytes(count: u64) -> String {
         s if s >= 1e3 => format!("{:.1} kB", s / 1e3),
         _ => format!("{count} B"),
     }
-}
-
-/// How many of the checks of this run passed: `5 of 6 checks passed`; empty if there is none.
-pub fn tally(report: &Report) -> String {
-    let passed = report.checks.iter().filter(|check| check.verdict == Verdict::Passed).count();
-    match report.checks.len() {
-        0 => String::new(),
-        count => format!("{passed} of {count} checks passed"),
-    }
-}
-
-/// The table of checks.
-pub fn checks(report: &Report) -> Markup {
-    html! {
-        section #checks {
-            h2 { "Checks" }
-            @if !report.record.overrides.is_empty() && !report.checks.is_empty() {
-                p .notice {
-                    "This run had overrides (" code { (report.record.overrides.join(" ")) }
-                    "). The checks were written for the case without them."
-                }
-            }
-            @if report.checks.is_empty() {
-                p { "The case has no checks of this run." }
-            } @else {
-                div .wide { table .checks {
-                    thead { tr {
-                        th {} th { "Quantity" } th { "Expected" } th { "Tolerance" } th { "Got" }
-                        th { "Source of the expected value" }
-                    } }
-                    tbody { @for check in report.checks.iter().take(MAX_LINES) {
-                        tr {
-                            td { (verdict(check.verdict)) }
-                            td { code { (check.quantity) } }
-                            td { (check.expected) }
-                            td { (check.tolerance) }
-                            td { (check.got) }
-                            td {
-                                (check.source)
-                                @if let Some(reason) = &check.reason { p .reason { (reason) } }
-                            }
-                        }
-                    } }
-                } }
-            }
-            @if !report.other_checks.is_empty() {
-                details {
-                    summary {
-                        (report.other_checks.len()) " more checks need another run and are not "
-                        "evaluated here: " code { "piola verify" } " runs them all"
-                    }
-                    div .wide { table {
-                        thead { tr { th { "Quantity" } th { "Needs" } th { "Source" } } }
-                        tbody { @for check in report.other_checks.iter().take(MAX_LINES) {
-                            tr {
-                                td { code { (check.quantity) } }
-                                td { (check.needs) }
-                                td { (check.source) }
-                            }
-                        } }
-                    } }
-                }
-            }
-        }
-    }
-}
-
-fn verdict(verdict: Verdict) -> Markup {
-    let (class, text) = match verdict {
-        Verdict::Passed => ("badge good", "✓ pass"),
-        Verdict::Failed => ("badge bad", "✗ FAIL"),
-        Verdict::Open => ("badge open", "– open"),
-    };
-    html! { span class=(class) { (text) } }
 }
 
 /// First and last row of the energy table.

@@ -6,6 +6,7 @@
 //! and its policy lets nothing run but its own two scripts.
 
 mod charts;
+mod checks;
 mod facts;
 mod files;
 mod frames;

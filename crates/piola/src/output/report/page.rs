@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Report, Verdict, charts, facts, pictures, policy, viewer};
+use super::{Report, Verdict, charts, checks, facts, pictures, policy, viewer};
 
 const STYLE: &str = include_str!("assets/style.css");
 /// The program that tells values under the pointer, and enlarges pictures.
@@ -47,7 +47,7 @@ pub fn page(report: &Report) -> String {
                         a href="#files" { "Files" }
                     }
                     (viewer::section(report))
-                    (facts::checks(report))
+                    (checks::checks(report))
                     (plots(report))
                     (images(report))
                     (facts::energy(report))
@@ -60,8 +60,7 @@ pub fn page(report: &Report) -> String {
                     " from the results folder; one file that needs no network. "
                     code { "piola report DIR" } " makes it again."
                 }
-                script { (PreEscaped(viewer::SCRIPT)) }
-                script { (PreEscaped(SCRIPT)) }
+                script type="module" { (PreEscaped(SCRIPT)) }
             }
         }
     };
@@ -82,7 +81,7 @@ fn head(report: &Report) -> Markup {
         (_, true) => "badge open",
         _ => "badge good",
     };
-    let tally = facts::tally(report);
+    let tally = checks::tally(report);
     html! {
         p .kicker {
             "Report of a run"

@@ -8,7 +8,12 @@ use super::frames::{self, Field, Frames, Limits};
 use crate::output::drawing::colours::ColourMap;
 
 /// The program that draws the particles.
-pub const SCRIPT: &str = include_str!("assets/viewer.js");
+pub const SCRIPT: &str = concat!(
+    include_str!("assets/viewer/data.js"),
+    include_str!("assets/viewer/draw.js"),
+    include_str!("assets/viewer/labels.js"),
+    include_str!("assets/viewer/controls.js"),
+);
 
 /// What the program has to know besides the numbers, in words that it uses.
 #[derive(Serialize)]
@@ -85,7 +90,7 @@ fn controls() -> Markup {
                 label { "Component " select #component {} }
                 label { "Colours " select #range {
                     option value="all" { "range of all times" }
-                    option value="most" { "all times, without 1 % at each end" }
+                    option value="most" { "inner 98 % of all times" }
                     option value="now" { "range of this time" }
                     option value="fixed" { "fixed" }
                 } }
@@ -170,5 +175,6 @@ fn data(report: &Report, frames: &Frames) -> Markup {
         @for frame in &frames.frames {
             script .frame type="text/plain" { (PreEscaped(&frame.data)) }
         }
+        script type="module" { (PreEscaped(SCRIPT)) }
     }
 }

@@ -1,6 +1,4 @@
 // Values under the pointer on charts, and pictures at full size.
-(() => {
-"use strict";
 const SVG = "http://www.w3.org/2000/svg";
 
 function written(value, digits) {
@@ -93,4 +91,3 @@ function enlarge() {
 
 document.querySelectorAll("svg.panel").forEach(chart);
 enlarge();
-})();
