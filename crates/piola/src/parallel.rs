@@ -29,3 +29,21 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let partials: Vec<f64> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
     partials.iter().sum()
 }
+
+/// Adds up `N` numbers a row over `0..count`: `add(i, sums)` adds the terms of row i. The order
+/// does not depend on the number of threads.
+pub fn sums<const N: usize>(count: usize, add: impl Fn(usize, &mut [f64; N]) + Sync) -> [f64; N] {
+    let partial = |chunk: usize| {
+        let mut sums = [0.0; N];
+        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(i, &mut sums));
+        sums
+    };
+    if count <= CHUNK {
+        return partial(0);
+    }
+    let partials: Vec<[f64; N]> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
+    partials.iter().fold([0.0; N], |mut sums, part| {
+        sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        sums
+    })
+}

@@ -8,6 +8,7 @@ mod generated;
 mod interrupt;
 mod report;
 mod repository;
+mod resume;
 mod run;
 mod support;
 mod verify;

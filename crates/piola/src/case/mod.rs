@@ -22,6 +22,7 @@ mod record;
 pub mod reference;
 mod render;
 pub mod report;
+mod resume;
 pub mod schema;
 mod settings;
 mod simulation;

@@ -43,7 +43,7 @@ pub enum ReportError {
 /// The folder holds no record of a run, or the page cannot be written.
 pub fn write(folder: &Path) -> Result<PathBuf, ReportError> {
     let (folder, record) =
-        ResultsFolder::open(folder).map_err(|source| ReportError::NoRun { source })?;
+        ResultsFolder::of_run(folder).map_err(|source| ReportError::NoRun { source })?;
     let mut notes = Vec::new();
     let tables = tables(&folder, &mut notes);
     let case = recorded(&record.case_text, record.variant.as_deref());
@@ -91,6 +91,7 @@ fn tables(folder: &ResultsFolder, notes: &mut Vec<String>) -> Tables {
     Tables {
         probes: read(folder.probes()),
         energy: read(folder.energy()),
+        momentum: read(folder.momentum()),
         steps: read(folder.steps()),
     }
 }

@@ -13,10 +13,12 @@
 //! | particles coloured by a number | [`Picture::write_png`] |
 //! | curves against time | [`Plot::write_png`] |
 //! | all of a run in one page | [`report::write`] |
+//! | where a run can go on from | [`checkpoint::write`] |
 //! | what was run and how it went | [`RunRecord::write`] |
 //! | where all that lies | [`ResultsFolder`] |
 
 pub mod atomic;
+pub mod checkpoint;
 mod csv_reader;
 mod drawing;
 mod error;
@@ -31,13 +33,15 @@ mod table;
 pub mod vtp;
 pub mod vtp_reader;
 
+pub use checkpoint::CheckpointError;
 pub use csv_reader::{Curve, TableError};
 pub use error::OutputError;
 pub use folder::ResultsFolder;
 pub use picture::{Bounds, Picture};
 pub use plot::{Plot, Series, Style};
 pub use record::{
-    BodyRecord, FigureRecord, RecordError, ReferenceRecord, RunRecord, StageRecord, timestamp,
+    BodyRecord, FigureRecord, RecordError, ReferenceRecord, RetryRecord, RunRecord, StageRecord,
+    timestamp,
 };
 pub use table::{Column, Table};
 pub use vtp::Compression;

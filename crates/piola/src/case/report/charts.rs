@@ -15,7 +15,8 @@ pub(super) fn groups(case: Option<&Case>, tables: &Tables) -> Vec<ChartGroup> {
     }
     let names = tables.names();
     let is_of = |name: &str, table: &str| name.strip_prefix(table).is_some();
-    let in_tables = |name: &&String| is_of(name, "energy.") || is_of(name, "step.");
+    let in_tables =
+        |name: &&String| ["energy.", "momentum.", "step."].iter().any(|table| is_of(name, table));
     let mut probes = Vec::new();
     for name in names.iter().filter(|name| !in_tables(name) && !shown.contains(*name)) {
         // The components of a field share a chart.
@@ -51,12 +52,19 @@ pub(super) fn groups(case: Option<&Case>, tables: &Tables) -> Vec<ChartGroup> {
         .cloned()
         .collect();
     energy.push(chart("work of each mechanism so far, and what is left over", &work, case, tables));
+    let momentum: Vec<String> = names
+        .iter()
+        .filter(|name| is_of(name, "momentum.") && moves(name))
+        .cloned()
+        .collect();
+    let momentum = vec![chart("momentum, and what each way in has brought", &momentum, case, tables)];
     let steps = ["step.size", "step.smallest_ratio", "step.largest_speed"];
     let steps = steps.iter().map(|name| chart(&name[5..], &[(*name).to_owned()], case, tables));
     let groups = [
         ("From the case", own),
         ("Probes", probes),
         ("Energy", energy),
+        ("Momentum", momentum),
         ("Steps and health", steps.collect()),
     ];
     groups

@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use crate::output::drawing::ticks::number;
 use super::{Report, Verdict, charts, checks, facts, pictures, policy, viewer};
 
 const STYLE: &str = include_str!("assets/style.css");
@@ -120,6 +121,12 @@ fn warnings(report: &Report) -> Markup {
     const MOST: usize = 50;
     let warnings = report.record.warnings.iter().chain(&report.notes);
     html! {
+        @for retry in report.record.retries.iter().take(MOST) {
+            p .notice {
+                strong { "Retry: " } (retry.failure) " It went back to t = "
+                (number(retry.back_to)) " s, with steps of " (number(retry.factor)) " of the usual."
+            }
+        }
         @for warning in warnings.take(MOST) {
             p .notice { strong { "Warning: " } (warning) }
         }
