@@ -2,8 +2,8 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::output::drawing::ticks::number;
 use super::{Report, Verdict, charts, checks, facts, pictures, policy, viewer};
+use crate::output::drawing::ticks::number;
 
 const STYLE: &str = include_str!("assets/style.css");
 /// The program that tells values under the pointer, and enlarges pictures.
