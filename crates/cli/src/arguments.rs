@@ -28,6 +28,12 @@ pub enum Command {
     Sweep(SweepArguments),
     /// Run all cases below some folders and evaluate their checks
     Verify(VerifyArguments),
+    /// Make the report of an earlier run again, from its results folder
+    Report {
+        /// The results folder
+        #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+        folder: PathBuf,
+    },
     /// Write a commented case to start from
     New {
         /// Folder of the new case, which is created

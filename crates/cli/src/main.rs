@@ -34,6 +34,7 @@ fn dispatch(command: Command) -> Result<Exit, Fault> {
         Command::Check(arguments) => commands::check::check(&arguments),
         Command::Sweep(arguments) => commands::sweep::sweep(&arguments),
         Command::Verify(arguments) => commands::verify::verify(&arguments),
+        Command::Report { folder } => commands::report::report(&folder),
         Command::New { name } => commands::new::new(&name),
         Command::Schema => commands::generate::schema(),
         Command::Reference => commands::generate::reference(),

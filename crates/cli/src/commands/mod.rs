@@ -13,6 +13,7 @@ use crate::text::count;
 pub mod check;
 pub mod generate;
 pub mod new;
+pub mod report;
 pub mod run;
 pub mod sweep;
 pub mod verify;

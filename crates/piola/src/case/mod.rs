@@ -22,6 +22,7 @@ mod plan;
 mod record;
 pub mod reference;
 mod render;
+pub mod report;
 mod resume;
 pub mod schema;
 mod settings;
@@ -118,6 +119,28 @@ fn read(
     for (text, source) in options.overrides.iter().zip(1..) {
         Override::of_command_line(text, source, FLAG.len()).apply(&mut tree, &mut problems);
     }
+    Ok((check(&tree, sources, setting, problems)?, tree))
+}
+
+/// Reads a case from the record of its run: `text` after all overrides, of which the variant was
+/// `variant`. Settings that were not run are not looked at.
+fn recorded(text: &str, variant: Option<&str>) -> Result<Case, Problems> {
+    let sources: Arc<[SourceText]> =
+        Arc::new([SourceText { name: "the case as run".to_owned(), text: text.to_owned() }]);
+    let setting = Setting { variant, coarse: false, folder: None };
+    let tree = document::parse(text);
+    let case = tree.and_then(|tree| check(&tree, &sources, setting, Vec::new()));
+    let case = case.map_err(|problems| Problems::new(sources, problems))?;
+    Ok(Case { as_run: text.to_owned(), ..case })
+}
+
+/// Checks a tree after all overrides, of which `problems` came.
+fn check(
+    tree: &Table,
+    sources: &[SourceText],
+    setting: Setting<'_>,
+    problems: Vec<Problem>,
+) -> Result<Case, Vec<Problem>> {
     let dimension = match tree.get("dimension") {
         Some(Node { value: Value::Integer(dimension @ 1..=3), .. }) => {
             usize::try_from(*dimension).ok()
@@ -125,11 +148,11 @@ fn read(
         _ => None,
     };
     let mut context = Context { sources, dimension, parameters: Vec::new(), problems };
-    evaluate_parameters(&mut context, &tree);
-    let record = context.table(&tables::CASE, &tree, Place::new(0, 0..0));
+    evaluate_parameters(&mut context, tree);
+    let record = context.table(&tables::CASE, tree, Place::new(0, 0..0));
     let case = interpret::case(&record, &mut context, setting);
     match case {
-        Some(case) if context.problems.is_empty() => Ok((case, tree)),
+        Some(case) if context.problems.is_empty() => Ok(case),
         _ if context.problems.is_empty() => {
             Err(vec![Problem::whole("the case could not be read, without a known reason")])
         }

@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::build::{self, Built};
 use super::model::Case;
 use super::outputs::Outputs;
+use super::report;
 use super::resume;
 use crate::observe::{Recorder, Series, Tables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
@@ -165,6 +166,13 @@ impl Simulation {
         let mut finished = Finished { summary, tables, files: Vec::new(), warnings, particles };
         if let Some(outputs) = outputs {
             finished.files = outputs.finish(&case, &finished, build_seconds)?;
+        }
+        if let Some(folder) = folder.filter(|_| case.output.report) {
+            // The results are whole without it.
+            match report::write(folder) {
+                Ok(file) => finished.files.push(file),
+                Err(error) => finished.warnings.push(format!("there is no report: {error}")),
+            }
         }
         Ok(finished)
     }

@@ -21,8 +21,8 @@ pub mod trends;
 
 /// Results that several variants share, because they are the same case in the end.
 impl<Run: RunResults> RunResults for Rc<Run> {
-    fn outcome(&self) -> &Outcome {
-        self.as_ref().outcome()
+    fn ending(&self) -> Ending {
+        self.as_ref().ending()
     }
 
     fn quantity(&self, name: &str) -> Option<Series> {
@@ -30,18 +30,37 @@ impl<Run: RunResults> RunResults for Rc<Run> {
     }
 }
 
+/// How a run ended, in words: all that the record of a run keeps of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ending {
+    /// [`Outcome::summary`]: `completed`, `interrupted` or `failed: KIND`.
+    pub summary: String,
+    /// The message of a failure.
+    pub message: Option<String>,
+}
+
+impl From<&Outcome> for Ending {
+    fn from(outcome: &Outcome) -> Self {
+        let message = match outcome {
+            Outcome::Failed(failure) => Some(failure.to_string()),
+            _ => None,
+        };
+        Self { summary: outcome.summary(), message }
+    }
+}
+
 /// A run that is over, as checks see it.
 pub trait RunResults {
     /// How it ended.
-    fn outcome(&self) -> &Outcome;
+    fn ending(&self) -> Ending;
 
     /// The quantity called `name`: a column of its tables or a number of the run as a whole.
     fn quantity(&self, name: &str) -> Option<Series>;
 }
 
 impl RunResults for Finished {
-    fn outcome(&self) -> &Outcome {
-        &self.summary.outcome
+    fn ending(&self) -> Ending {
+        Ending::from(&self.summary.outcome)
     }
 
     fn quantity(&self, name: &str) -> Option<Series> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use piola::case::verify::{CheckRow, RunResults, VariantRun, verify};
+use piola::case::verify::{CheckRow, Ending, RunResults, VariantRun, verify};
 use piola::case::{LoadOptions, load};
 use piola::observe::Series;
 use piola::time::Outcome;
@@ -17,8 +17,8 @@ const RENEW: &str =
 struct NotRun;
 
 impl RunResults for NotRun {
-    fn outcome(&self) -> &Outcome {
-        &Outcome::Completed
+    fn ending(&self) -> Ending {
+        Ending::from(&Outcome::Completed)
     }
 
     fn quantity(&self, _: &str) -> Option<Series> {

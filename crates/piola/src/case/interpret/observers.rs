@@ -62,7 +62,8 @@ impl Reader<'_, '_> {
             Some("none") => Compression::None,
             _ => Compression::Zlib,
         };
-        Some(Output { every, table_every, fields, compression })
+        let report = record.and_then(|record| record.boolean("report")).unwrap_or(true);
+        Some(Output { every, table_every, fields, compression, report })
     }
 
     fn not_too_often(&mut self, every: &Located<f64>, end: f64, most: f64, what: &str) {

@@ -91,6 +91,13 @@ pub(super) static OUTPUT: TableSpec = TableSpec {
             Default("\"zlib\""),
             "how the particle files are packed",
         ),
+        key(
+            "report",
+            Kind::Boolean,
+            "",
+            Default("true"),
+            "whether the run ends with `report.html`, one page with all of its results",
+        ),
     ],
 };
 

@@ -190,9 +190,9 @@ fn problems_of_settings_underline_the_string_in_the_file() {
         shown,
         "\
 error: [scheme] of kind `upwind` has no key `tau_velocty` (in the variant `no-upwinding`)
-    --> case.toml:128:16
+    --> case.toml:129:16
     |
-128 | set = [\"scheme.tau_velocty=0\"]
+129 | set = [\"scheme.tau_velocty=0\"]
     |                ^^^^^^^^^^^ unknown key
     = help: did you mean `tau_velocity`?
 "

@@ -184,8 +184,8 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
                     return Err("the quantity is a number, and a text is expected".to_owned());
                 };
                 let pass = text == expected;
-                if let (false, Outcome::Failed(failure)) = (pass, run.run.outcome()) {
-                    row.reason = Some(failure.to_string());
+                if !pass {
+                    row.reason = run.run.ending().message;
                 }
                 Ok(pass)
             }
@@ -267,12 +267,11 @@ impl Line<'_> {
 /// What the run gives for `check`.
 fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got, String> {
     let name = check.quantity.name();
-    let outcome = run.run.outcome();
     let about_outcome = matches!(&check.quantity.value, Quantity::Run(name) if name == "outcome");
     if !about_outcome && !is_as_announced(run) {
-        return Err(match outcome {
-            Outcome::Failed(failure) => format!("the run failed: {failure}"),
-            _ => "the run was interrupted".to_owned(),
+        return Err(match run.run.ending().message {
+            Some(message) => format!("the run failed: {message}"),
+            None => "the run was interrupted".to_owned(),
         });
     }
     match run.run.quantity(&name) {
@@ -292,11 +291,15 @@ fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got,
 
 /// Whether the run is complete, or failed in the way that a check of the same variant expects.
 fn is_as_announced<Run: RunResults>(run: &VariantRun<Run>) -> bool {
-    let summary = match run.run.outcome() {
-        Outcome::Completed => return true,
-        Outcome::Interrupted => return false,
-        failed => failed.summary(),
-    };
+    let ending = run.run.ending();
+    if ending.summary == Outcome::Completed.summary() {
+        return true;
+    }
+    // An interrupted run has shown nothing.
+    if ending.message.is_none() {
+        return false;
+    }
+    let summary = ending.summary;
     applicable(&run.case).any(|(_, check)| {
         own_runs(&run.case, check).contains(&run.case.variant)
             && check.expectation == Expectation::Outcome(summary.clone())

@@ -47,8 +47,8 @@ struct Fake {
 }
 
 impl RunResults for Fake {
-    fn outcome(&self) -> &Outcome {
-        &self.outcome
+    fn ending(&self) -> Ending {
+        Ending::from(&self.outcome)
     }
 
     fn quantity(&self, name: &str) -> Option<Series> {
