@@ -1,9 +1,10 @@
-//! Speed of the upwind formulation: `cargo bench -p piola --bench upwind [-- SIZE...]`.
+//! Speed of the upwind formulation:
+//! `cargo bench -p piola --bench upwind [-- SIZE... 2d|3d serial]`.
 //!
 //! Prints one Markdown table: for clouds of 2D and 3D particles, on one thread and on all, what an
 //! evaluation of the rates costs, where the time goes, and how much of the memory bandwidth that
 //! the same run measures it takes. Sizes are numbers of particles, 1e4, 1e5 and 1e6 if none is
-//! given. `docs/performance.md` explains the columns.
+//! given; `2d`, `3d` and `serial` leave the other dimension and all threads out. `docs/performance.md` explains the columns.
 
 mod bandwidth;
 mod clock;
@@ -21,17 +22,23 @@ slopes % | pairs % | inspect | update | B/particle | GB/s | of read % |
 |--:|--:|--:|--:|:--|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
 
 fn main() {
-    let given: Vec<usize> = std::env::args().skip(1).filter_map(|text| size(&text)).collect();
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let given: Vec<usize> = words.iter().filter_map(|word| size(word)).collect();
     let sizes = if given.is_empty() { SIZES.to_vec() } else { given };
+    let asked = |word: &str| words.iter().any(|given| given == word);
     let all = std::thread::available_parallelism().map_or(1, |threads| threads.get());
     println!("{HEADER}");
-    for threads in if all > 1 { vec![1, all] } else { vec![1] } {
-        rows::<2>(threads, &sizes);
-        rows::<3>(threads, &sizes);
+    for threads in if all > 1 && !asked("serial") { vec![1, all] } else { vec![1] } {
+        if !asked("3d") {
+            rows::<2>(threads, &sizes);
+        }
+        if !asked("2d") {
+            rows::<3>(threads, &sizes);
+        }
     }
 }
 
-/// A number of particles, also as `1e6`; `None` for what cargo adds to the arguments.
+/// A number of particles, also as `1e6`; `None` for other words and what cargo adds to them.
 fn size(text: &str) -> Option<usize> {
     let number: f64 = text.parse().ok()?;
     (number >= 1.0).then_some(number as usize)

@@ -16,11 +16,14 @@
 //! power is `-sum_a V_a p_a dJ_a/dt` to round-off, whatever the correction and the weights, and
 //! a free surface needs no treatment.
 
+mod boundary;
 mod build;
 mod check;
+mod gather;
 mod initial;
 mod inspect;
 mod local;
+mod pair;
 mod pairs;
 mod passes;
 mod reconstruction;
@@ -32,7 +35,7 @@ use piola_formulas::volumetric::{Prestressed, VolumetricLaw};
 use crate::Vector;
 use crate::boundaries::{SpaceTime, prescribed::PrescribedComponents};
 use crate::geometry::Particles;
-use crate::operators::{GradientOperator, LeastSquares, Support};
+use crate::operators::{LeastSquares, PairAreas, Support};
 
 pub use build::{UpwindError, UpwindInput};
 pub use initial::Initial;
@@ -48,7 +51,7 @@ use reconstruction::Slope;
 pub struct Upwind<const D: usize> {
     particles: Particles<D>,
     support: Support<D>,
-    gradient: GradientOperator<D>,
+    areas: PairAreas<D>,
     least_squares: Option<LeastSquares<D>>,
     settings: Settings,
     /// One a body.

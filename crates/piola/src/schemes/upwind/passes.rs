@@ -1,7 +1,6 @@
 //! One evaluation of the rates as a row of passes, and what they move through memory.
 
 use super::{Row, Side, Slope, Upwind};
-use crate::operators::GradientOperator;
 use crate::schemes::Scheme;
 use crate::{Tensor, Vector};
 
@@ -44,8 +43,7 @@ impl<const D: usize> Upwind<D> {
         let local = count * (row + vector + reference + entry + side);
         let pass = count * (size_of::<usize>() + side) + pairs * entry;
         let slopes = pass + count * (slope + size_of::<Tensor<D>>());
-        let gathered = pass + count * (2 * vector + reference + row);
-        let pairwise = gathered + pairs * GradientOperator::<D>::BYTES_PER_PAIR;
+        let pairwise = count * (side + vector + reference + row) + self.areas.memory();
         match self.settings.reconstruction {
             true => [local, slopes, pairwise + count * slope, 0],
             false => [local, 0, pairwise, 0],
