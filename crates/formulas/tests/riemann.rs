@@ -67,11 +67,7 @@ impl<const D: usize> Pair<D> {
 
     fn volume_rate(&self) -> f64 {
         let interface = Interface::new(self.current, self.reference, self.impedance);
-        interface.volume_rate(
-            self.pressure_jump,
-            self.cofactors.each_ref(),
-            self.areas.each_ref(),
-        )
+        interface.volume_rate(self.pressure_jump, self.cofactors.each_ref(), self.areas.each_ref())
     }
 }
 

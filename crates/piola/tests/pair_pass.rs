@@ -105,8 +105,8 @@ impl<const D: usize> Parts<'_, D> {
             let cofactors = [&me.cofactor, &other.cofactor];
             force += interface.force(&velocity_jump, &(areas[0] - areas[1]))
                 * self.settings.tau_velocity;
-            volume_rate += interface.volume_rate(pressure_jump, cofactors, areas)
-                * self.settings.tau_pressure;
+            volume_rate +=
+                interface.volume_rate(pressure_jump, cofactors, areas) * self.settings.tau_pressure;
         }
         let acceleration = force / (DENSITY * volume[a]);
         let ratio_rate = me.cofactor.dot(&deformation_rate) + volume_rate / volume[a];

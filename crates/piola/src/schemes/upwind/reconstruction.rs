@@ -10,8 +10,10 @@ use crate::{Tensor, Vector, parallel};
 /// Least-squares gradients of the reconstructed fields with respect to X.
 ///
 /// The paper reconstructs the stress P; here it is the pressure, which with the averaged
-/// cofactor gives the same flux and takes one gradient instead of `D * D`.
+/// cofactor gives the same flux and takes one gradient instead of `D * D`. It begins with a cache
+/// line, as a [`super::local::Side`] does.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(super) struct Slope<const D: usize> {
     /// Gradient of the velocity in 1/s.
     pub velocity: Tensor<D>,
