@@ -21,6 +21,9 @@ pub(super) struct Sums<T, const D: usize> {
 
 impl<const D: usize> Upwind<D> {
     /// The sums over neighbours of theory (8) to (10), without b = a in the first.
+    ///
+    /// Returned by value: as no pointer to them leaves the loop, the compiler sees that they are
+    /// apart from what it reads.
     #[inline(always)]
     pub(super) fn gather<const VELOCITY: bool, const PRESSURE: bool, const RECONSTRUCTION: bool>(
         &self,
@@ -50,8 +53,8 @@ impl<const D: usize> Upwind<D> {
         let mut current = [[0.0; LANES]; D];
         let mut reference = [[0.0; LANES]; D];
         if VELOCITY || PRESSURE {
-            current = self.separations(me, &others, |side| &side.position);
-            reference = self.separations(me, &others, |side| &side.reference);
+            self.separate(me, &others, |side| &side.position, &mut current);
+            self.separate(me, &others, |side| &side.reference, &mut reference);
         }
         for lane in 0..LANES {
             let pair = Pair {
@@ -68,19 +71,21 @@ impl<const D: usize> Upwind<D> {
     }
 
     /// From a point of mine to that of each of the others, the shortest way round in a periodic
-    /// box.
+    /// box. Written in place: a copy of what was just stored would wait for it.
     #[inline(always)]
-    pub(super) fn separations(
+    pub(super) fn separate(
         &self,
         me: &Side<D>,
         others: &[&Side<D>; LANES],
         point: impl Fn(&Side<D>) -> &Vector<D>,
-    ) -> [Lanes; D] {
-        let mine = point(me);
-        let mut separations: [Lanes; D] =
-            std::array::from_fn(|i| std::array::from_fn(|lane| point(others[lane])[i] - mine[i]));
-        self.support.domain.shorten(&mut separations);
-        separations
+        separations: &mut [Lanes; D],
+    ) {
+        for i in 0..D {
+            for lane in 0..LANES {
+                separations[i][lane] = point(others[lane])[i] - point(me)[i];
+            }
+        }
+        self.support.domain.shorten(separations);
     }
 }
 

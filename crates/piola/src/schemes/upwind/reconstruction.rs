@@ -56,7 +56,8 @@ impl<const D: usize> Upwind<D> {
             let mut counts = [0.0; LANES];
             counts[..row.len()].fill(1.0);
             let others = neighbors.map(|b| &self.sides[b as usize]);
-            let separations = self.separations(me, &others, |side| &side.reference);
+            let mut separations = [[0.0; LANES]; D];
+            self.separate(me, &others, |side| &side.reference, &mut separations);
             for lane in 0..LANES {
                 let separation = at(&separations, lane);
                 let weighted = separation * (counts[lane] / separation.norm_squared());
