@@ -80,9 +80,9 @@ impl<const D: usize> Upwind<D> {
         point: impl Fn(&Side<D>) -> &Vector<D>,
         separations: &mut [Lanes; D],
     ) {
-        for i in 0..D {
-            for lane in 0..LANES {
-                separations[i][lane] = point(others[lane])[i] - point(me)[i];
+        for (i, component) in separations.iter_mut().enumerate() {
+            for (separation, other) in component.iter_mut().zip(others) {
+                *separation = point(other)[i] - point(me)[i];
             }
         }
         self.support.domain.shorten(separations);
