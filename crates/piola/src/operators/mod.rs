@@ -4,12 +4,14 @@
 //! An operator is built once from the reference positions and then applied every step. Its rows
 //! are gathered: particle a sums over its own neighbours in a fixed order.
 
+mod areas;
 mod error;
 mod gradient;
 mod interpolation;
 mod least_squares;
 mod support;
 
+pub use areas::{Block, LANES, Lanes, PairAreas};
 pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
