@@ -80,9 +80,14 @@ impl<const D: usize> Upwind<D> {
         point: impl Fn(&Side<D>) -> &Vector<D>,
         separations: &mut [Lanes; D],
     ) {
-        for (i, component) in separations.iter_mut().enumerate() {
-            for (separation, other) in component.iter_mut().zip(others) {
-                *separation = point(other)[i] - point(me)[i];
+        #[expect(
+            clippy::needless_range_loop,
+            reason = "with iterators a pair takes 1.15 to 1.25 times as long in 2D: the compiler \
+                      stores what it keeps in registers here"
+        )]
+        for i in 0..D {
+            for lane in 0..LANES {
+                separations[i][lane] = point(others[lane])[i] - point(me)[i];
             }
         }
         self.support.domain.shorten(separations);
