@@ -1,6 +1,6 @@
 //! The report of a run, made from its results folder alone.
 //!
-//! A run calls [`write`] when all its other files are there, and `piola report` calls the same, so
+//! A run calls [`write()`] when all its other files are there, and `piola report` calls the same, so
 //! that both make the same page to the byte. What the case says (checks, plots, pictures) is read
 //! from the case as run, which the record holds.
 

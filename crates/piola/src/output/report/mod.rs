@@ -1,7 +1,7 @@
 //! One page with all of a run: `report.html`, which needs nothing but itself.
 //!
-//! [`page`] is the frame and the order of the parts, [`charts`] draws curves as SVG, [`frames`]
-//! reads the particles and [`packed`] makes them small, [`viewer`] puts them beside the program
+//! `page` is the frame and the order of the parts, `charts` draws curves as SVG, `frames`
+//! reads the particles and `packed` makes them small, `viewer` puts them beside the program
 //! that draws them in a browser. The page is bounded in size whatever the run, makes no request,
 //! and its policy lets nothing run but its own two scripts.
 
