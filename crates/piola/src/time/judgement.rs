@@ -1,0 +1,123 @@
+//! Whether a state is sound and how far the next step may go.
+
+use super::clock::{Clock, Tally};
+use super::executor::Executor;
+use super::failure::Failure;
+use super::step::ChosenStep;
+use crate::schemes::{Health, StepLimit};
+
+impl Executor {
+    /// A volume ratio below this is a particle that is collapsing.
+    const CRUSHED: f64 = 0.1;
+
+    /// The speed in m/s above which a run that starts with these has gone wrong.
+    fn speed_limit(&self, [speed, wave_speed]: [f64; 2]) -> f64 {
+        let usual = speed + wave_speed;
+        // A scheme without waves, at rest, gives no measure.
+        let limit = if usual > 0.0 { Self::TOO_FAST * usual } else { f64::INFINITY };
+        self.max_speed.unwrap_or(limit)
+    }
+
+    /// The failure that a state's health shows, if any.
+    pub(super) fn broken(
+        &self,
+        health: &Health,
+        clock: &Clock,
+        start_speeds: [f64; 2],
+    ) -> Option<Failure> {
+        let (step, time) = (clock.step, clock.time);
+        let speed_limit = self.speed_limit(start_speeds);
+        if let Some(index) = health.first_not_finite {
+            let particle = self.scheme.particle(index);
+            return Some(Failure::NotFinite { index, particle, step, time });
+        }
+        if !(health.smallest_ratio > 0.0) {
+            let index = health.smallest_ratio_particle;
+            return Some(Failure::Inverted {
+                index,
+                particle: self.scheme.particle(index),
+                ratio: health.smallest_ratio,
+                step,
+                time,
+                advice: match supersonic(start_speeds) {
+                    Some(cause) => format!("{cause}; else {}", self.scheme.collapse_advice(index)),
+                    None => self.scheme.collapse_advice(index),
+                },
+            });
+        }
+        if health.largest_speed > speed_limit {
+            let index = health.largest_speed_particle;
+            return Some(Failure::TooFast {
+                index,
+                particle: self.scheme.particle(index),
+                speed: health.largest_speed,
+                limit: speed_limit,
+                step,
+                time,
+            });
+        }
+        None
+    }
+
+    /// The next step, or the failure that there is none.
+    pub(super) fn choose(
+        &self,
+        limits: &[StepLimit],
+        clock: &Clock,
+        tally: &Tally,
+    ) -> Result<ChosenStep, Failure> {
+        let (time, step) = (clock.time, clock.step);
+        if step >= self.max_steps {
+            return Err(Failure::TooManySteps { steps: step, time });
+        }
+        let mut chosen = self.control.choose(limits).map_err(|too_large| {
+            let index = too_large.bound.particle;
+            Failure::FixedStepTooLarge {
+                index,
+                particle: self.scheme.particle(index),
+                step: too_large.step,
+                stable: too_large.bound.step,
+                limiter: too_large.bound.limiter,
+                time,
+            }
+        })?;
+        chosen.step *= tally.factor;
+        // Before the first step, and after one without any limit, there is nothing to compare to.
+        let first_step = tally.first_step;
+        let first = if first_step.is_finite() { first_step } else { 0.0 };
+        let floor = self.min_step.unwrap_or(Self::FLOOR * first);
+        // A step of zero, or of no number, would never get to the end.
+        if !(chosen.step > 0.0 && chosen.step >= floor) {
+            let ChosenStep { step: size, limiter, particle: index } = chosen;
+            let Health { smallest_ratio: ratio, smallest_ratio_particle, .. } = clock.health;
+            let advice = if ratio < Self::CRUSHED {
+                self.scheme.collapse_advice(smallest_ratio_particle)
+            } else {
+                "raise `scheme.tau_velocity`, or lower `time.min_step`".into()
+            };
+            return Err(Failure::StepBelowFloor {
+                index,
+                particle: self.scheme.particle(index),
+                size,
+                floor,
+                limiter,
+                ratio,
+                step,
+                time,
+                advice,
+            });
+        }
+        Ok(chosen)
+    }
+}
+
+/// What the user should know if a run starts with a speed above the speed of its waves, in m/s:
+/// possible, but most often a stiffness in another unit.
+pub fn supersonic([speed, wave_speed]: [f64; 2]) -> Option<String> {
+    (speed > wave_speed && wave_speed > 0.0).then(|| {
+        format!(
+            "the largest speed at the start, {speed:.3e} m/s, is above the wave speed of the \
+             material, {wave_speed:.3e} m/s: check the stiffness, the density and their units"
+        )
+    })
+}
