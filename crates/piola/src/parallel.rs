@@ -29,3 +29,54 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let partials: Vec<f64> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
     partials.iter().sum()
 }
+
+/// Sums `term(i)` over `0..count`, `N` numbers at once, in the same order as [`sum`]. `partials`
+/// is scratch that keeps its length between calls.
+pub fn sums<const N: usize>(
+    count: usize,
+    partials: &mut Vec<[f64; N]>,
+    term: impl Fn(usize) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let add = |sum: &mut [f64; N], term: [f64; N]| {
+        sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += term);
+    };
+    partials.resize(count.div_ceil(CHUNK), [0.0; N]);
+    let chunk_sum = |(chunk, partial): (usize, &mut [f64; N])| {
+        *partial = [0.0; N];
+        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(partial, term(i)));
+    };
+    if count <= CHUNK {
+        partials.iter_mut().enumerate().for_each(chunk_sum);
+    } else {
+        partials.par_iter_mut().enumerate().for_each(chunk_sum);
+    }
+    let mut total = [0.0; N];
+    partials.iter().for_each(|partial| add(&mut total, *partial));
+    total
+}
+
+/// The largest `term(i)` over `0..count`, at least `least`. A term that is not a number makes the
+/// result infinite.
+pub fn maximum(count: usize, least: f64, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let larger = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
+    let largest = |range: std::ops::Range<usize>| range.map(&term).fold(least, larger);
+    if count <= CHUNK {
+        return largest(0..count);
+    }
+    let chunks = (0..count.div_ceil(CHUNK)).into_par_iter();
+    chunks
+        .map(|chunk| largest(chunk * CHUNK..((chunk + 1) * CHUNK).min(count)))
+        .reduce(|| least, f64::max)
+}
+
+/// Calls `body(number, row)` for each row of `length` numbers, in chunks as [`for_each_chunk`].
+pub fn for_each_row<T: Send>(rows: &mut [T], length: usize, body: impl Fn(usize, &mut [T]) + Sync) {
+    let chunk = |first: usize, rows: &mut [T]| {
+        rows.chunks_exact_mut(length).enumerate().for_each(|(k, row)| body(first + k, row));
+    };
+    if rows.len() <= CHUNK * length {
+        return chunk(0, rows);
+    }
+    let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
+    chunks.for_each(|(number, rows)| chunk(number * CHUNK, rows));
+}

@@ -30,6 +30,7 @@ pub fn kernels() -> Vec<Choice> {
 pub fn integrators() -> Vec<Choice> {
     let meaning = |kind: IntegratorKind| match kind {
         IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
+        IntegratorKind::KickDriftKick => "kick-drift-kick, CTVF (54) to (60)",
     };
     IntegratorKind::ALL.map(|kind| Choice { name: kind.name(), meaning: meaning(kind) }).to_vec()
 }

@@ -2,16 +2,19 @@
 //! corrections, and the least-squares gradient.
 //!
 //! An operator is built once from the reference positions and then applied every step. Its rows
-//! are gathered: particle a sums over its own neighbours in a fixed order.
+//! are gathered: particle a sums over its own neighbours in a fixed order. [`MovingSupport`] is for
+//! particles that move: it shows the neighbours of the moment to the sums of a scheme.
 
 mod error;
 mod gradient;
 mod interpolation;
 mod least_squares;
+mod moving;
 mod support;
 
 pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
 pub use least_squares::LeastSquares;
+pub use moving::{Block, MovingSupport, Needs, Neighbor};
 pub use support::Support;

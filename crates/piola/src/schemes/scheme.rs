@@ -1,5 +1,6 @@
 //! What a formulation offers to integrators, clock, observers and output.
 
+use super::SplitScheme;
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
@@ -72,6 +73,11 @@ pub trait Scheme: Send {
 
     /// Bytes that the scheme holds, without states.
     fn memory(&self) -> usize;
+
+    /// The formulation as one whose steps can be split, if it is one.
+    fn split(&mut self) -> Option<&mut dyn SplitScheme> {
+        None
+    }
 }
 
 /// Where a particle is and what its number is.

@@ -3,6 +3,7 @@
 mod executor;
 mod failure;
 mod integrator;
+mod kick_drift_kick;
 mod observer;
 mod schedule;
 mod step;
@@ -11,6 +12,7 @@ pub mod tvd_rk2;
 pub use executor::{Executor, Outcome, Progress, Summary, Timing};
 pub use failure::Failure;
 pub use integrator::{Integrator, IntegratorKind};
+pub use kick_drift_kick::KickDriftKick;
 pub use observer::{Moment, ObserveError, Observer};
 pub use schedule::Schedule;
 pub use step::{ChosenStep, StepControl};

@@ -18,7 +18,6 @@
 
 mod build;
 mod check;
-mod initial;
 mod inspect;
 mod local;
 mod pairs;
@@ -35,10 +34,12 @@ use crate::geometry::Particles;
 use crate::operators::{GradientOperator, LeastSquares, Support};
 
 pub use build::{UpwindError, UpwindInput};
-pub use initial::Initial;
 pub use passes::PASSES;
 pub use scheme::FIELDS;
-pub use settings::{BodyForce, Material, Settings, WaveSpeed};
+pub use settings::{Material, Settings, WaveSpeed};
+
+pub use crate::boundaries::BodyForce;
+pub use crate::schemes::Initial;
 
 use inspect::ChunkFigures;
 use local::Side;

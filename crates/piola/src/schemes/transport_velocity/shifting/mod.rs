@@ -1,0 +1,4 @@
+//! How particles are kept evenly spread: a velocity deviation, or an iterated displacement.
+
+mod iterative;
+mod sun;

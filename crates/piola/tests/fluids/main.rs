@@ -1,0 +1,4 @@
+//! The transport-velocity formulation.
+
+mod support;
+mod taylor_green;
