@@ -16,5 +16,5 @@ pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
 pub use least_squares::LeastSquares;
-pub use moving::{Block, MovingSupport, Needs, Neighbor};
+pub use moving::{Block, Candidates, MovingSupport, Needs, Neighbor};
 pub use support::Support;

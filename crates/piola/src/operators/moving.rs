@@ -62,6 +62,14 @@ impl<const D: usize> Block<D> {
     }
 }
 
+/// Those who may be neighbours of a particle and have not been looked at yet.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidates<'a> {
+    place: usize,
+    row: &'a [u32],
+    then: &'a [u32],
+}
+
 /// What of the kernel a sum needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
@@ -149,60 +157,57 @@ impl<const D: usize> MovingSupport<D> {
         self.kernel.value(D, 0.0, self.smoothing_length)
     }
 
-    /// Shows the active neighbours of the particle at `place` to `visit`, block by block. `block`
-    /// is scratch, here and below.
+    /// The neighbours of the particle at `place` that are not passive, before the first block.
     #[inline]
-    pub fn active(
-        &self,
-        place: usize,
-        needs: Needs,
-        block: &mut Block<D>,
-        visit: impl FnMut(&Block<D>),
-    ) {
-        self.blocks(place, self.list.active_row(place), needs, block, visit);
+    pub fn active(&self, place: usize) -> Candidates<'_> {
+        Candidates { place, row: self.list.active_row(place), then: &[] }
     }
 
-    /// Shows the passive neighbours of the particle at `place` to `visit`, block by block.
+    /// The passive neighbours of the particle at `place`, before the first block.
     #[inline]
-    pub fn passive(
-        &self,
-        place: usize,
-        needs: Needs,
-        block: &mut Block<D>,
-        visit: impl FnMut(&Block<D>),
-    ) {
-        self.blocks(place, self.list.passive_row(place), needs, block, visit);
+    pub fn passive(&self, place: usize) -> Candidates<'_> {
+        Candidates { place, row: self.list.passive_row(place), then: &[] }
     }
 
-    /// Shows all neighbours of the particle at `place` to `visit`, the active first.
+    /// All neighbours of the particle at `place`, the passive ones last, before the first block.
     #[inline]
-    pub fn all(
-        &self,
-        place: usize,
-        needs: Needs,
-        block: &mut Block<D>,
-        mut visit: impl FnMut(&Block<D>),
-    ) {
-        self.active(place, needs, block, &mut visit);
-        self.passive(place, needs, block, &mut visit);
+    pub fn all(&self, place: usize) -> Candidates<'_> {
+        let (row, then) = (self.list.active_row(place), self.list.passive_row(place));
+        Candidates { place, row, then }
     }
 
+    /// Fills `block` with the next neighbours of a particle; false when there is none left.
     #[inline]
-    fn blocks(
-        &self,
-        place: usize,
-        row: &[u32],
-        needs: Needs,
-        block: &mut Block<D>,
-        mut visit: impl FnMut(&Block<D>),
-    ) {
+    pub fn fill(&self, rest: &mut Candidates<'_>, needs: Needs, block: &mut Block<D>) -> bool {
         block.length = 0;
+        self.filter(rest, block);
+        if rest.row.is_empty() && !rest.then.is_empty() {
+            rest.row = std::mem::take(&mut rest.then);
+            self.filter(rest, block);
+        }
+        let squares = &block.squares[..block.length.min(BLOCK)];
+        if matches!(needs, Needs::Value | Needs::Both) {
+            self.many.values(squares, &mut block.values[..squares.len()]);
+        }
+        if matches!(needs, Needs::Slope | Needs::Both) {
+            self.many.slopes(squares, &mut block.slopes[..squares.len()]);
+        }
+        block.length > 0
+    }
+
+    /// Appends candidates that are inside the support to `block` until it is full.
+    fn filter(&self, rest: &mut Candidates<'_>, block: &mut Block<D>) {
         let positions = self.list.positions();
-        let here = positions[place];
-        for &b in row {
+        let here = positions[rest.place];
+        let mut length = block.length;
+        let mut taken = 0;
+        for &b in rest.row {
+            if length == BLOCK {
+                break;
+            }
             // Every candidate is written and kept by the step of the counter, as a branch would be
             // guessed wrong every fifth time.
-            let k = block.length % BLOCK;
+            let k = length % BLOCK;
             let there = &positions[b as usize];
             let mut square = 0.0;
             for axis in 0..D {
@@ -212,28 +217,11 @@ impl<const D: usize> MovingSupport<D> {
             }
             block.places[k] = b;
             block.squares[k] = square;
-            block.length += usize::from(square < self.limit);
-            if block.length == BLOCK {
-                self.show(block, needs, &mut visit);
-            }
+            length += usize::from(square < self.limit);
+            taken += 1;
         }
-        if block.length > 0 {
-            self.show(block, needs, &mut visit);
-        }
-    }
-
-    #[inline]
-    fn show(&self, block: &mut Block<D>, needs: Needs, visit: &mut impl FnMut(&Block<D>)) {
-        let length = block.length.min(BLOCK);
-        let squares = &block.squares[..length];
-        if needs != Needs::Slope && needs != Needs::Nothing {
-            self.many.values(squares, &mut block.values[..length]);
-        }
-        if needs != Needs::Value && needs != Needs::Nothing {
-            self.many.slopes(squares, &mut block.slopes[..length]);
-        }
-        visit(block);
-        block.length = 0;
+        rest.row = &rest.row[taken..];
+        block.length = length;
     }
 
     /// Bytes of lists and positions.

@@ -1,4 +1,5 @@
 //! The transport-velocity formulation.
 
+mod operators;
 mod support;
 mod taylor_green;

@@ -16,11 +16,12 @@ impl<const D: usize> TransportVelocity<D> {
             for (offset, density) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 let mut sum = sides[place].mass * centre;
-                support.all(place, Needs::Value, &mut block, |block| {
+                let mut rest = support.all(place);
+                while support.fill(&mut rest, Needs::Value, &mut block) {
                     for neighbor in block.iter() {
                         sum += sides[neighbor.place].mass * neighbor.value;
                     }
-                });
+                }
                 *density = sum;
             }
         });

@@ -57,7 +57,8 @@ impl<const D: usize> TransportVelocity<D> {
         };
         let mine = flow(me);
         let mut sum = Rates::default();
-        self.support.all(place, Needs::Slope, block, |block| {
+        let mut rest = self.support.all(place);
+        while self.support.fill(&mut rest, Needs::Slope, block) {
             for neighbor in block.iter() {
                 let other = &self.sides[neighbor.place];
                 let gradient = neighbor.separation * neighbor.slope;
@@ -74,7 +75,7 @@ impl<const D: usize> TransportVelocity<D> {
                     fluid::diffusion(diffusivity, neighbor.square, neighbor.slope, scale);
                 sum.pressure_diffusion -= other.mass * exchange * jump;
             }
-        });
+        }
         if !corrections.density || self.settings.density == DensityRule::Summation {
             sum.density_transport = 0.0;
         }

@@ -70,6 +70,8 @@ struct Constants {
     artificial: f64,
     stress: bool,
     dilatation: Dilatation,
+    /// Whether there is any of both.
+    corrects: bool,
     /// `1 / W(dx)` where particles are shifted by SPST.
     crowding: Option<f64>,
 }
@@ -86,6 +88,8 @@ impl<const D: usize> TransportVelocity<D> {
             artificial: self.settings.artificial_viscosity * h * self.fluid.wave_speed,
             stress: self.settings.corrections.stress,
             dilatation: self.settings.corrections.dilatation,
+            corrects: self.settings.corrections.stress
+                || self.settings.corrections.dilatation != Dilatation::None,
             crowding: match self.settings.shifting {
                 Shifting::Sun { .. } => Some(1.0 / self.value_at_spacing(h)),
                 _ => None,
@@ -109,30 +113,9 @@ impl<const D: usize> TransportVelocity<D> {
         let me = &self.sides[place];
         let needs = if constants.crowding.is_some() { Needs::Both } else { Needs::Slope };
         let mut sum = Forces::default();
-        // sum V_b d_ab . grad W_ab, or uhat_ab as the corrections say.
-        let mut dilatation = 0.0;
-        let transports = constants.dilatation == Dilatation::Transport;
-        let corrects = constants.stress || constants.dilatation != Dilatation::None;
-        let mut shared = |sum: &mut Forces<D>, neighbor: &Neighbor<D>, gradient: &Vector<D>| {
-            let other = &self.sides[neighbor.place];
-            if corrects {
-                let (mine, theirs) = (me.deviation.dot(gradient), other.deviation.dot(gradient));
-                if constants.stress {
-                    sum.transport += me.velocity * (other.mass * mine / me.density)
-                        + other.velocity * (other.volume * theirs);
-                }
-                dilatation += other.volume * (mine - theirs);
-                if transports {
-                    dilatation += other.volume * (me.velocity - other.velocity).dot(gradient);
-                }
-            }
-            sum.opening -= gradient * other.volume;
-            if let Some(inverse) = constants.crowding {
-                let weight = fluid::repulsion(neighbor.value * inverse);
-                sum.crowding += gradient * (other.volume * weight);
-            }
-        };
-        self.support.active(place, needs, block, |block| {
+        let mut carried = Carried::default();
+        let mut rest = self.support.active(place);
+        while self.support.fill(&mut rest, needs, block) {
             for neighbor in block.iter() {
                 let other = &self.sides[neighbor.place];
                 let gradient = neighbor.separation * neighbor.slope;
@@ -146,28 +129,27 @@ impl<const D: usize> TransportVelocity<D> {
                 let exchange =
                     fluid::diffusion(constants.viscosity, neighbor.square, neighbor.slope, scale);
                 sum.viscosity += jump * (other.mass * exchange);
-                let approach = jump.dot(&neighbor.separation);
-                let artificial = fluid::artificial_viscosity(constants.artificial, approach, scale);
-                sum.artificial_viscosity -= gradient * (other.mass * artificial);
-                shared(&mut sum, &neighbor, &gradient);
+                if constants.artificial > 0.0 {
+                    let approach = jump.dot(&neighbor.separation);
+                    let artificial =
+                        fluid::artificial_viscosity(constants.artificial, approach, scale);
+                    sum.artificial_viscosity -= gradient * (other.mass * artificial);
+                }
+                carried.add(other, &neighbor, gradient, constants);
             }
-        });
-        self.support.passive(place, needs, block, |block| {
-            for neighbor in block.iter() {
-                sum.walls += self.wall_force(
-                    me,
-                    &me.velocity,
-                    &neighbor,
-                    &self.shear[neighbor.place],
-                    constants,
-                );
-                let gradient = neighbor.separation * neighbor.slope;
-                shared(&mut sum, &neighbor, &gradient);
-            }
-        });
-        if constants.dilatation != Dilatation::None {
-            sum.transport += me.velocity * dilatation;
         }
+        let mut rest = self.support.passive(place);
+        while self.support.fill(&mut rest, needs, block) {
+            for neighbor in block.iter() {
+                let shear = &self.shear[neighbor.place];
+                sum.walls += self.wall_force(me, &me.velocity, &neighbor, shear, constants);
+                let gradient = neighbor.separation * neighbor.slope;
+                carried.add(&self.sides[neighbor.place], &neighbor, gradient, constants);
+            }
+        }
+        sum.transport = carried.acceleration(me, constants);
+        sum.opening = -carried.volume;
+        sum.crowding = carried.crowding;
         sum
     }
 
@@ -175,13 +157,14 @@ impl<const D: usize> TransportVelocity<D> {
     /// round.
     fn reaction_at(&self, place: usize, constants: &Constants, block: &mut Block<D>) -> Forces<D> {
         let (me, mut sum) = (&self.sides[place], Forces::default());
-        self.support.active(place, Needs::Slope, block, |block| {
+        let mut rest = self.support.active(place);
+        while self.support.fill(&mut rest, Needs::Slope, block) {
             for neighbor in block.iter() {
                 let other = &self.sides[neighbor.place];
                 sum.walls +=
                     self.wall_force(me, &self.shear[place], &neighbor, &other.velocity, constants);
             }
-        });
+        }
         sum
     }
 
@@ -203,5 +186,75 @@ impl<const D: usize> TransportVelocity<D> {
             fluid::diffusion(constants.viscosity, neighbor.square, neighbor.slope, scale);
         let pressure = neighbor.slope * (me.load + other.load);
         ((velocity - other_velocity) * exchange - neighbor.separation * pressure) * other.mass
+    }
+}
+
+/// Sums over all neighbours for the corrections and the shifting. What is of a itself stands
+/// outside of them.
+struct Carried<const D: usize> {
+    /// `sum V_b grad W_ab`.
+    volume: Vector<D>,
+    /// `sum m_b grad W_ab`.
+    mass: Vector<D>,
+    /// `sum m_b d_b . grad W_ab`, or with V_b for the dilatation of uhat.
+    deviation: f64,
+    /// `sum V_b u_b . grad W_ab`.
+    velocity: f64,
+    /// `sum V_b u_b d_b . grad W_ab`.
+    momentum: Vector<D>,
+    crowding: Vector<D>,
+}
+
+impl<const D: usize> Default for Carried<D> {
+    fn default() -> Self {
+        let zero = Vector::zeros();
+        let (volume, mass, momentum, crowding) = (zero, zero, zero, zero);
+        Self { volume, mass, deviation: 0.0, velocity: 0.0, momentum, crowding }
+    }
+}
+
+impl<const D: usize> Carried<D> {
+    #[inline]
+    fn add(
+        &mut self,
+        other: &Side<D>,
+        neighbor: &Neighbor<D>,
+        gradient: Vector<D>,
+        constants: &Constants,
+    ) {
+        let area = gradient * other.volume;
+        self.volume += area;
+        if constants.corrects {
+            self.mass += gradient * other.mass;
+            let carried = other.deviation.dot(&area);
+            self.momentum += other.velocity * carried;
+            if constants.dilatation == Dilatation::Transport {
+                self.deviation += carried;
+                self.velocity += other.velocity.dot(&area);
+            } else {
+                self.deviation += carried * other.density;
+            }
+        }
+        if let Some(inverse) = constants.crowding {
+            self.crowding += area * fluid::repulsion(neighbor.value * inverse);
+        }
+    }
+
+    /// The corrections of the momentum equation for a particle with these sums.
+    fn acceleration(&self, me: &Side<D>, constants: &Constants) -> Vector<D> {
+        let mut sum = Vector::zeros();
+        if constants.stress {
+            let mine = me.velocity * (me.deviation.dot(&self.mass) / me.density);
+            sum += mine + self.momentum;
+        }
+        let mine = me.deviation.dot(&self.volume);
+        sum + me.velocity
+            * match constants.dilatation {
+                Dilatation::None => 0.0,
+                Dilatation::Deviation => mine - self.deviation / me.density,
+                Dilatation::Transport => {
+                    mine - self.deviation + me.velocity.dot(&self.volume) - self.velocity
+                }
+            }
     }
 }

@@ -10,7 +10,7 @@
 //!   dp_a/dt = rho_a c^2 sum V_b u_ab . grad W_ab + sum V_b (p_b - p_a) d_b . grad W_ab + E_a
 //!   du_a/dt = - sum m_b (p_a / rho_a^2 + p_b / rho_b^2 + Pi_ab) grad W_ab + N_a + g
 //!             + sum m_b (u_a d_a / rho_a + u_b d_b / rho_b) . grad W_ab
-//!             + u_a sum V_b d_ab . grad W_ab
+//!             + u_a / rho_a sum V_b (rho d)_ab . grad W_ab
 //! ```
 //!
 //! with the exchange of pressure E, of momentum N and the artificial viscosity Pi of

@@ -71,16 +71,20 @@ impl<const D: usize> TransportVelocity<D> {
     fn neighbor_count(&self, place: usize) -> usize {
         let mut count = 0;
         let mut block = Block::default();
-        self.support.all(place, Needs::Nothing, &mut block, |block| count += block.iter().count());
+        let mut rest = self.support.all(place);
+        while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
+            count += block.iter().count();
+        }
         count
     }
 
     fn summed_density(&self, place: usize) -> f64 {
         let mut sum = self.sides[place].mass * self.support.centre();
         let mut block = Block::default();
-        self.support.all(place, Needs::Value, &mut block, |block| {
+        let mut rest = self.support.all(place);
+        while self.support.fill(&mut rest, Needs::Value, &mut block) {
             sum += block.iter().map(|b| self.sides[b.place].mass * b.value).sum::<f64>();
-        });
+        }
         sum
     }
 
@@ -94,7 +98,8 @@ impl<const D: usize> TransportVelocity<D> {
         let me = &self.sides[place];
         let mut sum = 0.0;
         let mut block = Block::default();
-        self.support.all(place, Needs::Slope, &mut block, |block| {
+        let mut rest = self.support.all(place);
+        while self.support.fill(&mut rest, Needs::Slope, &mut block) {
             for neighbor in block.iter() {
                 let other = &self.sides[neighbor.place];
                 let jump = me.velocity - other.velocity;
@@ -105,7 +110,7 @@ impl<const D: usize> TransportVelocity<D> {
                     }
                 }
             }
-        });
+        }
         sum
     }
 

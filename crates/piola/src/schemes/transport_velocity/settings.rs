@@ -30,14 +30,18 @@ pub enum Divergence {
     Transport,
 }
 
-/// The second term of CTVF (19), `- u div(uhat - u)`.
+/// The second term of the momentum equation.
+///
+/// The stress is that of CTVF (27), `div(rho u (x) d) / rho`, which conserves momentum. What belongs
+/// to it is the second term of (18), `- u div(rho d) / rho`; `- u div d` of (19), which (27) takes
+/// instead, belongs to `div(u (x) d)` and differs by `u (d . grad rho) / rho`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dilatation {
     /// Left away.
     None,
-    /// As derived.
+    /// `- u div(rho d) / rho`, so that both terms together are `(d . grad) u`.
     Deviation,
-    /// `- u div uhat`, as CTVF (27) is printed: equal where div u vanishes.
+    /// `- u div uhat`, as CTVF (27) is printed: the same where the flow is incompressible.
     Transport,
 }
 

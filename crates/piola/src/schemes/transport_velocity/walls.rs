@@ -95,7 +95,8 @@ impl<const D: usize> TransportVelocity<D> {
         let (mut weight, mut pressure) = (0.0, 0.0);
         let zero = Vector::zeros();
         let (mut velocity, mut deviation, mut arm) = (zero, zero, zero);
-        self.support.active(place, Needs::Value, block, |block| {
+        let mut rest = self.support.active(place);
+        while self.support.fill(&mut rest, Needs::Value, block) {
             for neighbor in block.iter() {
                 let side = &self.sides[neighbor.place];
                 weight += neighbor.value;
@@ -104,7 +105,7 @@ impl<const D: usize> TransportVelocity<D> {
                 pressure += side.pressure * neighbor.value;
                 arm += neighbor.separation * (side.density * neighbor.value);
             }
-        });
+        }
         let surface = values.surface_velocity;
         if !(weight > 0.0) {
             values.velocity = surface;
