@@ -1,5 +1,6 @@
 //! The transport-velocity formulation.
 
 mod operators;
+mod runs;
 mod support;
 mod taylor_green;

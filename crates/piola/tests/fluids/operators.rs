@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 use piola::Vector;
 use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{
-    Corrections, DensityRule, Dilatation, Divergence, Fluid, Forces, Rates, Settings,
-    TransportVelocity,
+    Corrections, DensityRule, Dilatation, Fluid, Forces, Rates, Settings, TransportVelocity,
 };
 
 use super::support::{SETTINGS, fluid_in_box, unit_box};
@@ -112,12 +111,23 @@ fn number(value: f64) -> Vector<1> {
 type Check<const D: usize, const N: usize> =
     fn(&Vector<D>, &Rates, &Forces<D>) -> (Vector<N>, Vector<N>);
 
-/// Errors on 16 and 32 particles a side in order, and on 32 displaced by a tenth of the spacing.
-fn errors<const D: usize, const N: usize>(settings: Settings, check: Check<D, N>) -> [f64; 3] {
-    let fine = if D == 3 { 20 } else { 32 };
-    [(fine / 2, 0.0), (fine, 0.0), (fine, 0.1)].map(|(side, jitter)| {
-        error(terms::<D>(side, jitter, settings).iter().map(|(x, r, f)| check(x, r, f)))
-    })
+/// The terms on a lattice, on one twice as fine, and on that displaced by a tenth of its spacing.
+struct Found<const D: usize>([Vec<(Vector<D>, Rates, Forces<D>)>; 3]);
+
+impl<const D: usize> Found<D> {
+    /// Particles a side of the finer lattice.
+    const FINE: usize = if D == 3 { 20 } else { 32 };
+
+    fn new(corrections: Corrections) -> Self {
+        let settings = Settings { corrections, ..SETTINGS };
+        let lattices = [(Self::FINE / 2, 0.0), (Self::FINE, 0.0), (Self::FINE, 0.1)];
+        Self(lattices.map(|(side, jitter)| terms::<D>(side, jitter, settings)))
+    }
+
+    fn errors<const N: usize>(&self, check: Check<D, N>) -> [f64; 3] {
+        let error = |found: &Vec<_>| error(found.iter().map(|(x, r, f)| check(x, r, f)));
+        [error(&self.0[0]), error(&self.0[1]), error(&self.0[2])]
+    }
 }
 
 /// On a lattice a first derivative is of second order: smoothing takes the share
@@ -125,12 +135,8 @@ fn errors<const D: usize, const N: usize>(settings: Settings, check: Check<D, N>
 /// wave vector (2 pi, 2 pi) these are 3 %, for products of two such fields, with waves up to
 /// twice as short, three times as much; in 3D with h = 1.3 / 20 it is 11 %. Disorder of a tenth adds to that, as sums of
 /// a constant no longer vanish.
-fn second_order<const D: usize, const N: usize>(
-    what: &str,
-    settings: Settings,
-    check: Check<D, N>,
-) {
-    let [coarse, fine, disordered] = errors(settings, check);
+fn second_order<const D: usize, const N: usize>(what: &str, found: &Found<D>, check: Check<D, N>) {
+    let [coarse, fine, disordered] = found.errors(check);
     let (largest, disorder, order) = if D == 3 { (0.25, 0.3, 2.5) } else { (0.1, 0.2, 3.2) };
     println!("{what} in {D}D: {coarse:.4} {fine:.4} {disordered:.4}");
     assert!(fine < largest, "{what} in {D}D: {fine}");
@@ -140,8 +146,8 @@ fn second_order<const D: usize, const N: usize>(
 
 /// The exchange of CTVF (26), (27) is softened by `0.01 h^2`, which takes some of it away at any
 /// resolution, so that only its size is bounded.
-fn close<const D: usize, const N: usize>(what: &str, settings: Settings, check: Check<D, N>) {
-    let [coarse, fine, disordered] = errors(settings, check);
+fn close<const D: usize, const N: usize>(what: &str, found: &Found<D>, check: Check<D, N>) {
+    let [coarse, fine, disordered] = found.errors(check);
     println!("{what} in {D}D: {coarse:.4} {fine:.4} {disordered:.4}");
     let (largest, disorder) = if D == 3 { (0.14, 0.3) } else { (0.06, 0.15) };
     assert!(fine < largest && fine < coarse, "{what} in {D}D: {coarse} to {fine}");
@@ -149,12 +155,11 @@ fn close<const D: usize, const N: usize>(what: &str, settings: Settings, check: 
 }
 
 fn in_dimension<const D: usize>() {
-    let with = |corrections| Settings { corrections, ..SETTINGS };
-    let full = with(Corrections::FULL);
+    let full = &Found::<D>::new(Corrections::FULL);
     second_order::<D, 1>("div u", full, |x, rates, _| {
         (number(rates.divergence), number(divergence(velocity, x)))
     });
-    let moving = with(Corrections { divergence: Divergence::Transport, ..Corrections::NONE });
+    let moving = &Found::<D>::new(Corrections::TRANSPORT_DIVERGENCE);
     second_order::<D, 1>("div uhat", moving, |x, rates, _| {
         let expected = divergence(velocity, x) + divergence(deviation, x);
         (number(rates.divergence), number(expected))
@@ -168,7 +173,7 @@ fn in_dimension<const D: usize>() {
         (number(rates.pressure_transport), number(expected))
     });
     close::<D, 1>("nu lap p", full, |x, rates, _| {
-        let side = if D == 3 { 20.0 } else { 32.0 };
+        let side = Found::<D>::FINE as f64;
         let nu = rates.pressure_diffusion / PRESSURE.laplacian(x);
         // CTVF (24) with h = 1.3 / side; the coarse one has twice that.
         let expected = 0.5 * 1.3 / side * FLUID.wave_speed / 8.0;
@@ -182,13 +187,14 @@ fn in_dimension<const D: usize>() {
         let d = vector(deviation, x);
         (forces.transport, Vector::from_fn(|i, _| velocity(i).gradient(x).dot(&d)))
     });
-    let stress = with(Corrections { stress: true, ..Corrections::NONE });
+    let stress = &Found::<D>::new(Corrections::STRESS);
     second_order::<D, D>("div(rho u d) / rho", stress, |x, _, forces| {
         let (u, d) = (vector(velocity, x), vector(deviation, x));
         let carried = DENSITY.gradient(x).dot(&d) / DENSITY.value(x) + divergence(deviation, x);
         (forces.transport, Vector::from_fn(|i, _| velocity(i).gradient(x).dot(&d)) + u * carried)
     });
-    let printed = with(Corrections { dilatation: Dilatation::Transport, ..Corrections::NONE });
+    let printed = Corrections { dilatation: Dilatation::Transport, ..Corrections::NONE };
+    let printed = &Found::<D>::new(printed);
     second_order::<D, D>("-u div uhat", printed, |x, _, forces| {
         let divergence = divergence(velocity, x) + divergence(deviation, x);
         (forces.transport, vector(velocity, x) * -divergence)

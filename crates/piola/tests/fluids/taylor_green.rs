@@ -18,7 +18,7 @@ fn exact(x: &Vector<2>, reynolds: f64, t: f64) -> (Vector<2>, f64) {
     (velocity * decay, pressure * decay * decay)
 }
 
-fn vortices(side: usize, reynolds: f64, settings: Settings, seed: u64) -> TransportVelocity<2> {
+pub fn vortices(side: usize, reynolds: f64, settings: Settings, seed: u64) -> TransportVelocity<2> {
     let fluid = Fluid { density: 1.0, wave_speed: 10.0, viscosity: 1.0 / reynolds };
     let particles = unit_box(side, 0.1, seed);
     fluid_in_box(particles, settings, fluid, 1.0, |x| exact(x, reynolds, 0.0))
@@ -78,6 +78,11 @@ fn experiment() {
     let settings = Settings {
         corrections: piola::schemes::transport_velocity::Corrections::from_name(&corrections)
             .unwrap(),
+        shifting: match std::env::var("SHIFT").as_deref() {
+            Ok("none") => piola::schemes::transport_velocity::Shifting::None,
+            Ok("ipst") => piola::schemes::transport_velocity::Shifting::Iterative { tolerance: 1e-3, most_passes: 5 },
+            _ => piola::schemes::transport_velocity::Shifting::Sun { factor: number("FACTOR", 1.0) },
+        },
         ..SETTINGS
     };
     for seed in 1..=number("SEEDS", 1.0) as u64 {

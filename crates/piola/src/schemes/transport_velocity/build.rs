@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::inspect::ChunkFigures;
 use super::ledger::{self, TAIL};
+use super::shifting::Iteration;
 use super::{
     DensityRule, Fluid, Forces, PressureRule, Rates, Row, Settings, Side, Slip, TransportVelocity,
     WallParticle, WallValues,
@@ -165,6 +166,7 @@ impl<const D: usize> TransportVelocity<D> {
             shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],
             wall_values: vec![WallValues::default(); walls.len()],
             sums: ledger::Scratch::default(),
+            iteration: Iteration::default(),
             chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
             lost: None,
             start: Vec::new(),
@@ -206,6 +208,7 @@ impl<const D: usize> TransportVelocity<D> {
             row[Row::<D>::DENSITY] = self.densities[number];
         }
         self.accelerate(0.0, &mut state);
+        self.note_evenness();
         let end = state.len();
         state[end - super::MECHANISMS.len()..].fill(0.0);
         self.start = state;

@@ -49,6 +49,7 @@ pub use settings::{
 };
 
 use inspect::ChunkFigures;
+use shifting::Iteration;
 use sides::Side;
 use walls::{WallParticle, WallValues};
 
@@ -77,6 +78,7 @@ pub struct TransportVelocity<const D: usize> {
     forces: Vec<Forces<D>>,
     /// Velocity of each wall particle that viscous forces see.
     shear: Vec<Vector<D>>,
+    iteration: Iteration<D>,
     /// Scratch of sums over chunks.
     sums: ledger::Scratch,
     chunk_figures: Vec<ChunkFigures>,

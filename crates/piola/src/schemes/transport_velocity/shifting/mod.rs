@@ -2,3 +2,5 @@
 
 mod iterative;
 mod sun;
+
+pub(super) use iterative::Iteration;
