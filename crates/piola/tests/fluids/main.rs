@@ -3,4 +3,5 @@
 mod operators;
 mod runs;
 mod support;
+mod surfaces;
 mod taylor_green;

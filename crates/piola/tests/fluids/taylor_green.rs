@@ -80,8 +80,13 @@ fn experiment() {
             .unwrap(),
         shifting: match std::env::var("SHIFT").as_deref() {
             Ok("none") => piola::schemes::transport_velocity::Shifting::None,
-            Ok("ipst") => piola::schemes::transport_velocity::Shifting::Iterative { tolerance: 1e-3, most_passes: 5 },
-            _ => piola::schemes::transport_velocity::Shifting::Sun { factor: number("FACTOR", 1.0) },
+            Ok("ipst") => piola::schemes::transport_velocity::Shifting::Iterative {
+                tolerance: 1e-3,
+                most_passes: 5,
+            },
+            _ => {
+                piola::schemes::transport_velocity::Shifting::Sun { factor: number("FACTOR", 1.0) }
+            }
         },
         ..SETTINGS
     };

@@ -8,8 +8,8 @@ use super::inspect::ChunkFigures;
 use super::ledger::{self, TAIL};
 use super::shifting::Iteration;
 use super::{
-    DensityRule, Fluid, Forces, PressureRule, Rates, Row, Settings, Side, Slip, TransportVelocity,
-    WallParticle, WallValues,
+    DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip,
+    TransportVelocity, WallParticle, WallValues,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
@@ -166,6 +166,8 @@ impl<const D: usize> TransportVelocity<D> {
             shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],
             wall_values: vec![WallValues::default(); walls.len()],
             sums: ledger::Scratch::default(),
+            openings: vec![Opening::default(); if settings.free_surface { count } else { 0 }],
+            found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
             iteration: Iteration::default(),
             chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
             lost: None,
@@ -207,8 +209,9 @@ impl<const D: usize> TransportVelocity<D> {
             row[Row::<D>::POSITION..][..D].copy_from_slice(position.as_slice());
             row[Row::<D>::DENSITY] = self.densities[number];
         }
-        self.accelerate(0.0, &mut state);
+        self.load(&state);
         self.note_evenness();
+        self.accelerate(0.0, &mut state);
         let end = state.len();
         state[end - super::MECHANISMS.len()..].fill(0.0);
         self.start = state;

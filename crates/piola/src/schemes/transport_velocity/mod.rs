@@ -33,6 +33,7 @@ mod settings;
 mod shifting;
 mod sides;
 mod split;
+mod surface;
 mod walls;
 
 use crate::Vector;
@@ -51,6 +52,7 @@ pub use settings::{
 use inspect::ChunkFigures;
 use shifting::Iteration;
 use sides::Side;
+use surface::Opening;
 use walls::{WallParticle, WallValues};
 
 /// The formulation bound to its particles.
@@ -78,6 +80,9 @@ pub struct TransportVelocity<const D: usize> {
     forces: Vec<Forces<D>>,
     /// Velocity of each wall particle that viscous forces see.
     shear: Vec<Vector<D>>,
+    /// Where free surfaces are, if they are looked for, and scratch of the search.
+    openings: Vec<Opening<D>>,
+    found: Vec<(Vector<D>, bool)>,
     iteration: Iteration<D>,
     /// Scratch of sums over chunks.
     sums: ledger::Scratch,

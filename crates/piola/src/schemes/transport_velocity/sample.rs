@@ -34,6 +34,12 @@ impl<const D: usize> TransportVelocity<D> {
             self.load(state);
             self.wall_pass(time);
         }
+        if matches!(field, "surface" | "surface_normal") && self.settings.free_surface {
+            self.load(state);
+            self.wall_pass(time);
+            self.opening_pass();
+            self.find_surfaces();
+        }
         for &number in particles {
             let number = number as usize;
             self.push_field(field, number, Row::<D>::of(state, number), values);
@@ -60,6 +66,14 @@ impl<const D: usize> TransportVelocity<D> {
             "summed_density" => values.push(self.summed_density(place)),
             "vorticity" => values.push(self.vorticity(place)),
             "divergence" => values.push(self.velocity_gradient(place, |axis, i| axis == i)),
+            "surface" => {
+                let is_surface = self.openings.get(place).is_some_and(|o| o.is_surface);
+                values.push(f64::from(is_surface && !self.is_wall[number]));
+            }
+            "surface_normal" => {
+                let normal = self.openings.get(place).map_or(Vector::zeros(), |o| o.normal);
+                values.extend_from_slice(normal.as_slice());
+            }
             "wall" => values.push(f64::from(self.is_wall[number])),
             "normal" => values.extend_from_slice(self.normal(number).as_slice()),
             "neighbors" => values.push(self.neighbor_count(place) as f64),

@@ -14,7 +14,7 @@ const fn field(
 }
 
 /// The fields of the formulation.
-pub const FIELDS: [FieldDescription; 14] = [
+pub const FIELDS: [FieldDescription; 16] = [
     field("position", "m", FieldKind::Vector, "current position, inside the periodic box"),
     field("velocity", "m/s", FieldKind::Vector, "momentum velocity u"),
     field("transport_velocity", "m/s", FieldKind::Vector, "velocity uhat of the particle itself"),
@@ -25,6 +25,8 @@ pub const FIELDS: [FieldDescription; 14] = [
     field("summed_density", "kg/m3", FieldKind::Scalar, "density as the sum over masses"),
     field("vorticity", "1/s", FieldKind::Scalar, "curl of u, in 3D its magnitude"),
     field("divergence", "1/s", FieldKind::Scalar, "divergence of u"),
+    field("surface", "1", FieldKind::Scalar, "1 on a free surface, if they are looked for"),
+    field("surface_normal", "1", FieldKind::Vector, "unit normal near a free surface"),
     field("wall", "1", FieldKind::Scalar, "1 for particles of walls, 0 for fluid"),
     field("normal", "1", FieldKind::Vector, "unit normal of walls, towards the fluid"),
     field("neighbors", "1", FieldKind::Scalar, "number of neighbours inside the support"),

@@ -1,7 +1,7 @@
 //! IPST: displacements iterated until particles are even.
 
 use crate::operators::{Block, Needs};
-use crate::schemes::transport_velocity::{Row, Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{Opening, Row, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
 /// Scratch and figures of the iteration.
@@ -12,13 +12,16 @@ pub(in super::super) struct Iteration<const D: usize> {
     pub even: f64,
     /// Positions in m by number.
     positions: Vec<Vector<D>>,
+    /// Free surfaces at the start of the step, by number.
+    openings: Vec<Opening<D>>,
     /// Displacement in m and `chi` by place.
     found: Vec<(Vector<D>, f64)>,
 }
 
 impl<const D: usize> Default for Iteration<D> {
     fn default() -> Self {
-        Self { even: f64::NAN, positions: Vec::new(), found: Vec::new() }
+        let (positions, openings, found) = (Vec::new(), Vec::new(), Vec::new());
+        Self { even: f64::NAN, positions, openings, found }
     }
 }
 
@@ -38,13 +41,21 @@ impl<const D: usize> TransportVelocity<D> {
         iteration.positions.extend((0..count).map(|number| Row::<D>::position(rows(number))));
         self.load(state);
         let reach = self.largest_speed() * step;
+        if self.settings.free_surface {
+            self.opening_pass();
+            self.find_surfaces();
+            iteration.openings.clear();
+            let places = self.support.list().places().iter();
+            iteration.openings.extend(places.map(|&place| self.openings[place as usize]));
+        }
         for _ in 0..most_passes {
             let positions = &iteration.positions;
             // Places that are lost are noticed when the state is loaded.
             if self.support.update(|number| positions[number]).is_err() {
                 break;
             }
-            let largest = self.displacements(reach, &mut iteration.found);
+            let found = &mut iteration.found;
+            let largest = self.displacements(reach, &iteration.openings, found);
             if (largest - iteration.even).abs() <= tolerance {
                 break;
             }
@@ -67,7 +78,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// Notes how even the particles are at the places loaded last.
     pub(in super::super) fn note_evenness(&mut self) {
         let mut iteration = std::mem::take(&mut self.iteration);
-        let largest = self.displacements(0.0, &mut iteration.found);
+        let largest = self.displacements(0.0, &[], &mut iteration.found);
         iteration.even = match self.settings.free_surface {
             true => largest,
             false => {
@@ -81,27 +92,45 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Fills the displacements and `chi` of the fluid, and returns the largest `chi`.
-    fn displacements(&self, reach: f64, found: &mut Vec<(Vector<D>, f64)>) -> f64 {
+    /// `openings` by number tell where surfaces are, if there are any.
+    fn displacements(
+        &self,
+        reach: f64,
+        openings: &[Opening<D>],
+        found: &mut Vec<(Vector<D>, f64)>,
+    ) -> f64 {
         found.resize(self.sides.len(), (Vector::zeros(), 0.0));
         let (support, list) = (&self.support, self.support.list());
-        let scale = support.smoothing_length().powi(D as i32);
+        let h = support.smoothing_length();
+        let scale = h.powi(D as i32);
         parallel::for_each_chunk(found, |first, rows| {
             let mut block = Block::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 let (mut sum, mut direction) = (support.centre(), Vector::zeros());
+                let opening = openings.get(list.numbers()[place] as usize);
+                let within = opening.map(|opening| opening.reach).filter(|&reach| reach < h);
                 let mut rest = match list.is_passive(place) {
                     true => continue,
                     false => support.all(place),
                 };
                 while support.fill(&mut rest, Needs::Value, &mut block) {
                     for neighbor in block.iter() {
-                        let weight = self.sides[neighbor.place].volume * neighbor.value;
                         sum += neighbor.value;
-                        if neighbor.square > 0.0 {
-                            direction += neighbor.separation * (weight / neighbor.square.sqrt());
+                        let distance = neighbor.square.sqrt();
+                        let value = match within {
+                            Some(h) if h > 0.0 => support.kernel().value(D, distance, h),
+                            Some(_) => 0.0,
+                            None => neighbor.value,
+                        };
+                        if distance > 0.0 {
+                            let weight = self.sides[neighbor.place].volume * value / distance;
+                            direction += neighbor.separation * weight;
                         }
                     }
+                }
+                if let (Some(opening), Some(_)) = (opening, within) {
+                    direction = opening.along_surface(direction);
                 }
                 *row = (direction * reach, scale * sum);
             }

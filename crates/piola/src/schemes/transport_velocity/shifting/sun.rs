@@ -1,24 +1,67 @@
 //! SPST: a velocity deviation from the crowding of neighbours.
 
-use crate::parallel;
+use piola_formulas::fluid;
+
+use crate::operators::{Block, Needs};
 use crate::schemes::transport_velocity::{Shifting, TransportVelocity};
+use crate::{Vector, parallel};
 
 impl<const D: usize> TransportVelocity<D> {
     /// Replaces the deviations of the sides by those of the current places,
     /// `d_a = -f Ma 2h c sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab`, CTVF (35), where the Mach
-    /// number is that of the largest speed now: `Ma c = max |u|`.
+    /// number is that of the largest speed now: `Ma c = max |u|`. Near free surfaces the sum has
+    /// the smaller support of CTVF algorithm 1, and (44) holds.
     pub(in super::super) fn shift(&mut self) {
         let Shifting::Sun { factor } = self.settings.shifting else { return };
         let speed = self.largest_speed();
         let scale = -factor * speed * 2.0 * self.support.smoothing_length();
-        let (forces, list) = (&self.forces, self.support.list());
-        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+        if self.settings.free_surface {
+            self.find_surfaces();
+        }
+        let mut sides = std::mem::take(&mut self.sides);
+        let volumes = &mut self.densities;
+        volumes.clear();
+        volumes.extend(sides.iter().map(|side| side.volume));
+        let (list, h) = (self.support.list(), self.support.smoothing_length());
+        parallel::for_each_chunk(&mut sides, |first, sides| {
+            let mut block = Block::default();
             for (offset, side) in sides.iter_mut().enumerate() {
-                if !list.is_passive(first + offset) {
-                    side.deviation = forces[first + offset].crowding * scale;
+                let place = first + offset;
+                if list.is_passive(place) {
+                    continue;
                 }
+                let crowding = self.forces[place].crowding;
+                let shift = match self.openings.get(place) {
+                    None => crowding,
+                    Some(opening) if opening.is_surface => Vector::zeros(),
+                    Some(opening) if opening.reach < h => {
+                        let crowding = self.crowding_within(place, opening.reach, &mut block);
+                        opening.along_surface(crowding)
+                    }
+                    Some(_) => crowding,
+                };
+                side.deviation = shift * scale;
             }
         });
+        self.sides = sides;
+    }
+
+    /// The sum of CTVF (35) with another smoothing length, for the few particles near surfaces.
+    /// Volumes stand in `densities`.
+    fn crowding_within(&self, place: usize, h: f64, block: &mut Block<D>) -> Vector<D> {
+        let kernel = self.support.kernel();
+        let inverse = 1.0 / self.value_at_spacing(self.support.smoothing_length());
+        let (mut sum, mut rest) = (Vector::zeros(), self.support.all(place));
+        while self.support.fill(&mut rest, Needs::Value, block) {
+            for neighbor in block.iter() {
+                let distance = neighbor.square.sqrt();
+                let weight = fluid::repulsion(neighbor.value * inverse)
+                    * kernel.derivative_over_r(D, distance, h)
+                    * self.densities[neighbor.place];
+                sum += neighbor.separation * weight;
+            }
+        }
+        sum
     }
 
     /// Largest speed of the fluid in m/s.
