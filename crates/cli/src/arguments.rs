@@ -70,9 +70,15 @@ pub struct RunArguments {
     /// Folder of the results [default: results/ and the name of the case's folder and variant]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
+    /// Go on from the newest sound checkpoint in the folder of the results
+    #[arg(long)]
+    pub resume: bool,
     /// Show neither progress nor summary
     #[arg(long, short)]
     pub quiet: bool,
+    /// Write progress and summary to stdout for programs, a JSON object a line
+    #[arg(long, conflicts_with = "quiet")]
+    pub json_progress: bool,
 }
 
 /// Arguments of `piola check`.

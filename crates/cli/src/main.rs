@@ -9,6 +9,7 @@ use exit::{Exit, Fault};
 
 mod arguments;
 mod commands;
+mod events;
 mod exit;
 mod interrupt;
 mod progress;

@@ -48,15 +48,29 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
         .collect();
     line("wall time", &stages.join(", "));
     energies(finished, &mut line);
+    momentum(finished, &mut line);
     // Of a run that fails at its first look there are no figures.
-    if summary.smallest_ratio.is_finite() {
+    if summary.worst.smallest_ratio.is_finite() {
         let text = format!(
             "volume ratio at least {}, J and det F differ by at most {}, speed at most {} m/s",
-            significant(summary.smallest_ratio, 4),
-            significant(summary.ratio_mismatch, 2),
-            significant(summary.largest_speed, 4),
+            significant(summary.worst.smallest_ratio, 4),
+            significant(summary.worst.ratio_mismatch, 2),
+            significant(summary.worst.largest_speed, 4),
         );
         line("health", &text);
+    }
+    if let Some((time, steps)) = summary.resumed {
+        line("resumed", &format!("from t = {} s, {}", significant(time, 6), count(steps, "step")));
+    }
+    for retry in &summary.retries {
+        let text = format!(
+            "{} after step {}: went back to t = {} s, and on with {} of each step",
+            retry.kind,
+            retry.step,
+            significant(retry.back_to, 6),
+            significant(retry.factor, 3),
+        );
+        line("retry", &text);
     }
     for warning in &finished.warnings {
         line("warning", warning);
@@ -98,6 +112,47 @@ fn energies(finished: &Finished, line: &mut impl FnMut(&str, &str)) {
             String::new()
         };
         line("balance", &format!("{} J{share}", significant(balance, 3)));
+    }
+}
+
+/// The last row of the momentum table, and what of it does not balance as a share of the largest
+/// momentum or impulse of the run, in any direction.
+fn momentum(finished: &Finished, line: &mut impl FnMut(&str, &str)) {
+    let table = &finished.tables.momentum;
+    let Some(row) = table.rows().next_back() else { return };
+    let mut parts = Vec::new();
+    for kind in ["linear", "angular"] {
+        // A column is called KIND.AXIS, or PART.KIND.AXIS where it is part of the account.
+        let of_kind = |name: &str| name.split('.').rev().nth(1) == Some(kind);
+        let columns = || (0..).zip(table.columns()).filter(|(_, column)| of_kind(&column.name));
+        let (mut largest, mut off, mut values, mut unit) = (0.0_f64, 0.0_f64, Vec::new(), "");
+        for (index, column) in columns() {
+            if column.name.starts_with("balance.") {
+                off = off.max(row[index].abs());
+                continue;
+            }
+            largest = table.column(index).fold(largest, |most, value| most.max(value.abs()));
+            if column.name.starts_with(kind) {
+                values.push(row[index]);
+                unit = &column.unit;
+            }
+        }
+        if largest > 0.0 {
+            // What is round-off beside the largest is shown as nothing.
+            let shown = |value: &f64| match value.abs() < 1e-10 * largest {
+                true => "0".to_owned(),
+                false => significant(*value, 4),
+            };
+            let values: Vec<String> = values.iter().map(shown).collect();
+            let off = significant(off / largest, 2);
+            parts.push(format!(
+                "{kind} ({}) {unit}, off by {off} of its largest",
+                values.join(", ")
+            ));
+        }
+    }
+    if !parts.is_empty() {
+        line("momentum", &parts.join("; "));
     }
 }
 

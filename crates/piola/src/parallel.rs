@@ -30,29 +30,22 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     partials.iter().sum()
 }
 
-/// Sums `term(i)` over `0..count`, `N` numbers at once, in the same order as [`sum`]. `partials`
-/// is scratch that keeps its length between calls.
-pub fn sums<const N: usize>(
-    count: usize,
-    partials: &mut Vec<[f64; N]>,
-    term: impl Fn(usize) -> [f64; N] + Sync,
-) -> [f64; N] {
-    let add = |sum: &mut [f64; N], term: [f64; N]| {
-        sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += term);
-    };
-    partials.resize(count.div_ceil(CHUNK), [0.0; N]);
-    let chunk_sum = |(chunk, partial): (usize, &mut [f64; N])| {
-        *partial = [0.0; N];
-        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(partial, term(i)));
+/// Adds up `N` numbers a row over `0..count`: `add(i, sums)` adds the terms of row i. The order
+/// does not depend on the number of threads.
+pub fn sums<const N: usize>(count: usize, add: impl Fn(usize, &mut [f64; N]) + Sync) -> [f64; N] {
+    let partial = |chunk: usize| {
+        let mut sums = [0.0; N];
+        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(i, &mut sums));
+        sums
     };
     if count <= CHUNK {
-        partials.iter_mut().enumerate().for_each(chunk_sum);
-    } else {
-        partials.par_iter_mut().enumerate().for_each(chunk_sum);
+        return partial(0);
     }
-    let mut total = [0.0; N];
-    partials.iter().for_each(|partial| add(&mut total, *partial));
-    total
+    let partials: Vec<[f64; N]> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
+    partials.iter().fold([0.0; N], |mut sums, part| {
+        sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        sums
+    })
 }
 
 /// The largest `term(i)` over `0..count`, at least `least`. A term that is not a number makes the

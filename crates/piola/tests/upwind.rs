@@ -233,15 +233,8 @@ fn angular_momentum_is_kept(settings: Settings) {
 
 fn executor<S: Scheme + 'static>(scheme: S, control: StepControl, end: f64) -> Executor {
     let length = scheme.initial_state().len();
-    Executor {
-        scheme: Box::new(scheme),
-        integrator: IntegratorKind::TvdRk2.build(length),
-        control,
-        end,
-        max_steps: u64::MAX,
-        min_step: None,
-        observers: Vec::new(),
-    }
+    let integrator = IntegratorKind::TvdRk2.build(length);
+    Executor::new(Box::new(scheme), integrator, control, end)
 }
 
 /// U1: a bar with one mode follows u(L, t) = sin(w t) / w, w = pi c / 2L.

@@ -1,20 +1,31 @@
 //! `piola run`.
 
 use std::ffi::OsString;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use piola::time::Outcome;
+use piola::case::RunError;
+use piola::time::{Outcome, Progress};
 
 use super::{assemble, read, use_threads};
 use crate::arguments::RunArguments;
 use crate::exit::{Exit, Fault};
-use crate::progress::Display;
+use crate::progress::{Audience, Display};
 use crate::summary::summary;
-use crate::{interrupt, terminal};
+use crate::text::count;
+use crate::{events, interrupt, terminal};
 
 /// Runs a case and writes its results.
 pub fn run(arguments: &RunArguments) -> Result<Exit, Fault> {
+    let ended = execute(arguments);
+    if let (true, Err(fault)) = (arguments.json_progress, &ended) {
+        events::error(fault);
+    }
+    ended
+}
+
+fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
     use_threads(arguments.case.threads);
     let case = read(&arguments.case)?;
     let path = &arguments.case.case;
@@ -22,26 +33,57 @@ pub fn run(arguments: &RunArguments) -> Result<Exit, Fault> {
         Some(folder) => folder.clone(),
         None => default_folder(path, case.variant.as_deref()),
     };
+    let audience = match (arguments.quiet, arguments.json_progress) {
+        (true, _) => Audience::Nobody,
+        (false, true) => Audience::Program,
+        (false, false) => Audience::Person,
+    };
     let stop = interrupt::listen();
     let simulation = assemble(path, &case)?;
     let end = *case.time.end;
+    if audience == Audience::Program {
+        events::start(path, &folder, end);
+    }
 
-    let mut display = Display::new("", arguments.quiet);
+    let mut display = Display::new("", audience);
     let start = Instant::now();
-    let finished = simulation
-        .run(Some(&folder), &stop, &mut |progress| display.update(progress))
-        .map_err(|error| Fault::new(Exit::Io, error))?;
+    let mut update = |progress: &Progress| display.update(progress);
+    let finished = match arguments.resume {
+        true => simulation.resume(&folder, &stop, &mut update),
+        false => simulation.run(Some(&folder), &stop, &mut update),
+    }
+    .map_err(|error| Fault::new(code(&error), error))?;
     drop(display);
-    if !arguments.quiet {
-        terminal::print(&summary(&finished, end, &folder, start.elapsed().as_secs_f64()))?;
+    let seconds = start.elapsed().as_secs_f64();
+    match audience {
+        Audience::Person => terminal::print(&summary(&finished, end, &folder, seconds))?,
+        Audience::Program => events::end(&finished, &folder, seconds),
+        Audience::Nobody => {}
     }
     match &finished.summary.outcome {
         Outcome::Completed => Ok(Exit::Success),
         Outcome::Interrupted => Ok(Exit::Interrupted),
-        Outcome::Failed(failure) => Err(Fault::new(
-            Exit::FailedRun,
-            format!("the run failed: {failure}\nthe last good state is in {}", folder.display()),
-        )),
+        Outcome::Failed(failure) => {
+            let mut text = format!("the run failed: {failure}");
+            if let Some(retries @ 1..) = Some(finished.summary.retries.len()) {
+                let _ = write!(text, "\nit had gone back {} before", count(retries as u64, "time"));
+            }
+            let _ = write!(text, "\nthe last good state is in {}", folder.display());
+            if finished.summary.trace.is_some() {
+                text.push_str(
+                    ", the last steps of the particle and its neighbours in failure.csv there",
+                );
+            }
+            Err(Fault::new(Exit::FailedRun, text))
+        }
+    }
+}
+
+/// What a run that cannot write or go on ends with.
+fn code(error: &RunError) -> Exit {
+    match error {
+        RunError::NoCheckpoint { .. } | RunError::Misfit(_) => Exit::BadCase,
+        _ => Exit::Io,
     }
 }
 

@@ -11,7 +11,7 @@ use piola::case::{Case, Finished, LoadOptions, load};
 use super::{refusal, use_threads};
 use crate::arguments::VerifyArguments;
 use crate::exit::{Exit, Fault};
-use crate::progress::Display;
+use crate::progress::{Audience, Display};
 use crate::text::{count, duration};
 use crate::{interrupt, table, terminal};
 
@@ -145,7 +145,7 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Vec<Check
 /// Runs a case without files.
 fn run_quietly(case: &Case, label: &str, stop: &AtomicBool) -> Result<Finished, String> {
     let simulation = build(case).map_err(|problems| problems.to_string().trim_end().to_owned())?;
-    let mut display = Display::new(label, false);
+    let mut display = Display::new(label, Audience::Person);
     let finished = simulation.run(None, stop, &mut |progress| display.update(progress));
     finished.map_err(|error| error.to_string())
 }

@@ -7,6 +7,7 @@ mod check_and_new;
 mod generated;
 mod interrupt;
 mod repository;
+mod resume;
 mod run;
 mod support;
 mod verify;

@@ -9,7 +9,7 @@ use super::spec::Choice;
 use crate::fields::FieldDescription;
 use crate::observe;
 use crate::observe::reduce::{REDUCTIONS, ReductionEntry};
-use crate::schemes::upwind;
+use crate::schemes::{momentum_components, upwind};
 use crate::time::IntegratorKind;
 
 /// The kernels.
@@ -55,6 +55,16 @@ pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
         "upwind" => observe::energy_columns(&upwind::ENERGIES, &upwind::MECHANISMS),
         _ => Vec::new(),
     }
+}
+
+/// Columns of the momentum table in `dimension` dimensions, after `momentum.`.
+pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
+    let impulses = match scheme {
+        "upwind" => &upwind::IMPULSES,
+        _ => return Vec::new(),
+    };
+    let columns = observe::momentum_columns(momentum_components(dimension), impulses);
+    columns.into_iter().map(|(name, _)| name).collect()
 }
 
 /// Columns of the table of steps, after `step.`.

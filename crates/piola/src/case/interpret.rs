@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::decode::Context;
 use super::diagnostics::Problem;
-use super::model::{Case, Domain, Parameter, Scheme, StepControl, Time, Variant};
+use super::model::{Case, Checkpoint, Domain, Parameter, Scheme, StepControl, Time, Variant};
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
 use super::suggest::suggestion;
@@ -42,6 +42,10 @@ pub(super) fn case(
     let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
     let time = record.record("time").and_then(|time| reader.time(time));
     let end = time.as_ref().map(|time| *time.end);
+    let checkpoint = match record.record("checkpoint") {
+        Some(record) => Reader::checkpoint(record),
+        None => Some(Checkpoint::default()),
+    };
     let loads: Vec<_> = record.records("load").map(|load| reader.load(load)).collect();
     let boundaries: Vec<_> = record.records("boundary").map(|wall| reader.boundary(wall)).collect();
     let probes: Vec<_> = record.records("probe").map(|probe| reader.probe(probe)).collect();
@@ -68,6 +72,7 @@ pub(super) fn case(
         bodies: bodies.into_iter().collect::<Option<_>>()?,
         scheme: scheme?,
         time: time?,
+        checkpoint: checkpoint?,
         loads: loads.into_iter().collect::<Option<_>>()?,
         boundaries: boundaries.into_iter().collect::<Option<_>>()?,
         probes: probes?,
@@ -114,7 +119,7 @@ impl Reader<'_, '_> {
     fn collect_names(&mut self, record: &Record) {
         self.names.bodies = self.unique_names(record, "body", &[]);
         self.names.variants = self.unique_names(record, "variant", &["base"]);
-        self.unique_names(record, "probe", &["energy", "step", "run"]);
+        self.unique_names(record, "probe", &["energy", "momentum", "step", "run"]);
         self.unique_names(record, "boundary", &[]);
         self.unique_names(record, "plot", &[]);
     }
@@ -203,6 +208,36 @@ impl Reader<'_, '_> {
             step,
             max_steps: record.whole("max_steps").map(|steps| steps.value),
             min_step: record.number("min_step").map(|step| step.value),
+            max_speed: record.number("max_speed").map(|speed| speed.value),
+            retries: self.retries(record)?,
+        })
+    }
+
+    fn retries(&mut self, record: &Record) -> Option<u64> {
+        let number = record.whole("retries").map(|number| number.value);
+        if record.text("on_failure")?.value != "retry" {
+            self.meaningless(record, "retries", "without `on_failure = \"retry\"`");
+            return Some(0);
+        }
+        if let Some(place) = record.key_place("step") {
+            let problem =
+                Problem::new(place, "a fixed step cannot be retried with a smaller one", "fixed");
+            self.report(problem.help("set `cfl` instead, or `on_failure = \"stop\"`"));
+        }
+        Some(number.unwrap_or(5))
+    }
+
+    fn checkpoint(record: &Record) -> Option<Checkpoint> {
+        let every_steps = record.whole("every_steps").map(|steps| steps.value);
+        let every = record.number("every").map(|time| time.value);
+        let every_wall = record.number("every_wall").map(|time| time.value);
+        let by_wall = every_steps.is_none() && every.is_none();
+        Some(Checkpoint {
+            every_steps,
+            every,
+            every_wall: every_wall.or(Checkpoint::default().every_wall.filter(|_| by_wall)),
+            keep: record.whole("keep")?.value,
+            at_end: record.boolean("at_end")?,
         })
     }
 

@@ -21,6 +21,7 @@ mod plan;
 mod record;
 pub mod reference;
 mod render;
+mod resume;
 pub mod schema;
 mod settings;
 mod simulation;

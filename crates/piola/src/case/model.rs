@@ -20,8 +20,8 @@ pub use checks::{Check, Expectation, Quantity, Reduction, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
-    Boundary, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Scheme,
-    StepControl, Stiffness, Time, Upwind, Weights,
+    Boundary, Checkpoint, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed,
+    Scheme, StepControl, Stiffness, Time, Upwind, Weights,
 };
 
 /// One case: everything that a run needs to know.
@@ -43,6 +43,8 @@ pub struct Case {
     pub scheme: Located<Scheme>,
     /// Clock and integrator.
     pub time: Time,
+    /// When checkpoints are written.
+    pub checkpoint: Checkpoint,
     /// Body forces and tractions.
     pub loads: Vec<Load>,
     /// Prescribed velocities.

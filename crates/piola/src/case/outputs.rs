@@ -5,12 +5,15 @@ use std::time::SystemTime;
 
 use super::build::{Built, bodies::BodyReport};
 use super::model::{self, Case};
+use super::resume::{Found, Store};
 use super::simulation::{Finished, RunError};
 use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, WrittenFiles};
+use crate::output::checkpoint::Identity;
 use crate::output::{
-    self, BodyRecord, Column, Compression, ResultsFolder, RunRecord, StageRecord, timestamp,
+    self, BodyRecord, Column, Compression, ResultsFolder, RetryRecord, RunRecord, StageRecord,
+    Table, timestamp,
 };
-use crate::time::{Observer, Outcome, Schedule};
+use crate::time::{Observer, Outcome, Schedule, Trace};
 
 /// The results folder of a run and what is written into it.
 pub(super) struct Outputs {
@@ -22,7 +25,42 @@ pub(super) struct Outputs {
 impl Outputs {
     /// Makes the folder ready and writes the first record.
     pub fn new(case: &Case, built: &Built, folder: &Path) -> Result<Self, RunError> {
-        let record = RunRecord {
+        let record = Self::record(case, built);
+        let folder = ResultsFolder::create(folder, &record)?;
+        Ok(Self { folder, record, written: WrittenFiles::default() })
+    }
+
+    /// Makes the folder of a run ready to go on from what was found in it.
+    pub fn go_on(
+        case: &Case,
+        built: &Built,
+        folder: &Path,
+        found: &Found,
+    ) -> Result<Self, RunError> {
+        let mut record = Self::record(case, built);
+        let Some(folder) = ResultsFolder::open(folder) else {
+            return Self::new(case, built, folder);
+        };
+        if let Ok(before) = RunRecord::read(&folder.record()) {
+            record.started = before.started;
+            record.resumed_at = before.resumed_at;
+        }
+        record.resumed_at.push(found.checkpoint.time());
+        record.warnings.extend(found.warnings.iter().cloned());
+        folder.go_on(&record, &found.files)?;
+        let written = WrittenFiles::default();
+        found.files.iter().for_each(|file| written.push(folder.path().join(file)));
+        Ok(Self { folder, record, written })
+    }
+
+    /// Where the checkpoints of the run `identity` go.
+    pub fn store(&self, case: &Case, identity: Identity) -> Store {
+        let (folder, written) = self.for_tables();
+        Store { folder, identity, written, keep: case.checkpoint.keep }
+    }
+
+    fn record(case: &Case, built: &Built) -> RunRecord {
+        RunRecord {
             case_file: case.sources()[0].name.clone(),
             id: case.id.clone(),
             title: case.title.clone(),
@@ -41,9 +79,7 @@ impl Outputs {
             end_time: *case.time.end,
             warnings: built.warnings.clone(),
             ..RunRecord::default()
-        };
-        let folder = ResultsFolder::create(folder, &record)?;
-        Ok(Self { folder, record, written: WrittenFiles::default() })
+        }
     }
 
     /// Where the tables go.
@@ -95,6 +131,11 @@ impl Outputs {
             chart(case, plot, finished).write_png(&path)?;
             self.written.push(path);
         }
+        if let Some(trace) = &finished.summary.trace {
+            let path = self.folder.failure();
+            failure_table(trace).write_csv(&path)?;
+            self.written.push(path);
+        }
         let mut files = self.written.list();
         let summary = &finished.summary;
         let record = &mut self.record;
@@ -103,6 +144,14 @@ impl Outputs {
         if let Outcome::Failed(failure) = &summary.outcome {
             record.message = Some(failure.to_string());
         }
+        record.warnings.clone_from(&finished.warnings);
+        let retries = summary.retries.iter().map(|retry| RetryRecord {
+            failure: retry.failure.clone(),
+            step: retry.step,
+            back_to: retry.back_to,
+            factor: retry.factor,
+        });
+        record.retries = retries.collect();
         record.steps = summary.steps;
         record.time_reached = summary.time;
         let build = StageRecord { name: "build".into(), seconds: build_seconds, calls: 1 };
@@ -117,6 +166,14 @@ impl Outputs {
         files.push(self.folder.record());
         Ok(files)
     }
+}
+
+/// What happened around the first bad particle, as a table.
+fn failure_table(trace: &Trace) -> Table {
+    let columns = trace.columns.iter().map(|(name, unit)| Column::new(name, *unit));
+    let mut table = Table::new(columns.collect());
+    table.set_numbers(trace.numbers.clone()).expect("a trace has whole rows");
+    table
 }
 
 /// The chart of some columns against time.

@@ -6,7 +6,7 @@ use super::build::{self, bodies::BodyReport};
 use super::simulation::Simulation;
 use crate::neighbors::NeighborStatistics;
 use crate::schemes::Particle;
-use crate::time::StepControl;
+use crate::time::{StepControl, supersonic};
 
 /// What will happen when a case runs.
 #[derive(Clone, Debug)]
@@ -48,8 +48,9 @@ pub struct PlannedLimit {
     pub particle: Particle,
 }
 
-/// States that a run holds: the current, the previous and the next one, and a rate.
-const STATES: usize = 4;
+/// States that a run holds: the current, the previous and the next one, two that a failed run looks
+/// back to, and a rate.
+const STATES: usize = 6;
 
 impl Simulation {
     /// Looks at the initial state and times two evaluations of the rates.
@@ -59,7 +60,7 @@ impl Simulation {
         let mut state = scheme.initial_state();
         scheme.constrain(0.0, &mut state);
         let mut found = Vec::new();
-        scheme.inspect(&state, &mut found);
+        let health = scheme.inspect(&state, &mut found);
         let number = match control {
             StepControl::Cfl(number) => number,
             StepControl::Fixed(_) => 1.0,
@@ -74,6 +75,7 @@ impl Simulation {
             .collect();
         limits.sort_by(|a, b| a.step.total_cmp(&b.step));
         let mut warnings = self.built.warnings.clone();
+        warnings.extend(supersonic([health.largest_speed, health.largest_wave_speed]));
         let (step, limiter) = match control.choose(&found) {
             Ok(chosen) => (chosen.step, chosen.limiter.to_owned()),
             Err(failure) => {

@@ -8,10 +8,11 @@ use thiserror::Error;
 use super::build::{self, Built};
 use super::model::Case;
 use super::outputs::Outputs;
+use super::resume;
 use crate::observe::{Recorder, Series, Tables};
-use crate::output::OutputError;
+use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::Scheme;
-use crate::time::{Executor, ObserveError, Progress, Schedule, Summary};
+use crate::time::{Checkpoints, Executor, Misfit, ObserveError, Progress, Schedule, Summary};
 
 /// A case with its particles, lists and scheme.
 pub struct Simulation {
@@ -46,6 +47,15 @@ pub enum RunError {
     /// A file during the run.
     #[error(transparent)]
     Observe(#[from] ObserveError),
+    /// There are checkpoints, and none of them is any good for this run.
+    #[error("{newest}\nno checkpoint of this run is sound; nothing was changed")]
+    NoCheckpoint {
+        /// Why the newest was refused.
+        newest: CheckpointError,
+    },
+    /// A checkpoint is of a run with other outputs.
+    #[error("{0}; start anew without `--resume`")]
+    Misfit(#[from] Misfit),
 }
 
 impl Simulation {
@@ -74,9 +84,44 @@ impl Simulation {
         stop: &AtomicBool,
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Finished, RunError> {
+        self.execute(folder, false, stop, progress)
+    }
+
+    /// Goes on with the run in `folder` from its newest sound checkpoint, and starts anew where
+    /// there is none. The results are those of a run that was never broken off, to the bit.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`], and if there are checkpoints of which none is sound or of this
+    /// case; then nothing is changed.
+    pub fn resume(
+        self,
+        folder: &Path,
+        stop: &AtomicBool,
+        progress: &mut dyn FnMut(&Progress),
+    ) -> Result<Finished, RunError> {
+        self.execute(Some(folder), true, stop, progress)
+    }
+
+    fn execute(
+        self,
+        folder: Option<&Path>,
+        resume: bool,
+        stop: &AtomicBool,
+        progress: &mut dyn FnMut(&Progress),
+    ) -> Result<Finished, RunError> {
         let Self { case, built, build_seconds } = self;
         let particles = built.scheme.particle_count();
-        let outputs = folder.map(|folder| Outputs::new(&case, &built, folder)).transpose()?;
+        let length = built.scheme.initial_state().len();
+        let identity = resume::identity(&case, built.scheme.as_ref());
+        let old = folder.filter(|_| resume).and_then(ResultsFolder::open);
+        let columns = Recorder::columns(built.scheme.as_ref(), &built.probes);
+        let most = resume::most_bytes(&case, &columns, length);
+        let found = old.map(|folder| resume::find(&folder, &identity, most)).transpose()?.flatten();
+        let outputs = match (folder, &found) {
+            (Some(folder), Some(found)) => Some(Outputs::go_on(&case, &built, folder, found)?),
+            (Some(folder), None) => Some(Outputs::new(&case, &built, folder)?),
+            (None, _) => None,
+        };
         let recorder = Recorder::new(
             built.scheme.as_ref(),
             built.probes,
@@ -89,20 +134,30 @@ impl Simulation {
         if let Some(outputs) = &outputs {
             observers.extend(outputs.observers(&case, &built.bodies));
         }
-        let length = built.scheme.initial_state().len();
-        let mut executor = Executor {
-            scheme: built.scheme,
-            integrator: build::integrator(&case).build(length),
-            control: build::step_control(&case),
-            end: *case.time.end,
-            max_steps: case.time.max_steps.unwrap_or(u64::MAX),
-            min_step: case.time.min_step,
-            observers,
-        };
+        let integrator = build::integrator(&case).build(length);
+        let control = build::step_control(&case);
+        let mut executor = Executor::new(built.scheme, integrator, control, *case.time.end);
+        executor.max_steps = case.time.max_steps.unwrap_or(u64::MAX);
+        executor.min_step = case.time.min_step;
+        executor.max_speed = case.time.max_speed;
+        executor.retries = case.time.retries as usize;
+        executor.observers = observers;
+        executor.checkpoints = outputs.as_ref().map(|outputs| {
+            let store = outputs.store(&case, identity);
+            Checkpoints::new(build::checkpoint_policy(&case), Box::new(store))
+        });
+        let mut warnings = built.warnings;
+        if let Some(found) = found {
+            warnings.extend(found.warnings);
+            executor.resume(found.checkpoint)?;
+        } else if resume {
+            warnings.push("there was no checkpoint to resume from: started at t = 0".into());
+        }
         let summary = executor.run(stop, progress)?;
+        warnings.extend(summary.warnings.iter().cloned());
         let tables = tables.lock().clone();
-        let mut finished =
-            Finished { summary, tables, files: Vec::new(), warnings: built.warnings, particles };
+        warnings.extend(unbalanced(&tables));
+        let mut finished = Finished { summary, tables, files: Vec::new(), warnings, particles };
         if let Some(outputs) = outputs {
             finished.files = outputs.finish(&case, &finished, build_seconds)?;
         }
@@ -110,8 +165,29 @@ impl Simulation {
     }
 }
 
+/// A share of the largest energy that does not balance, above which the user is told.
+const UNBALANCED: f64 = 0.01;
+
+/// What the user should know if energy is not accounted for: by theory (18) what the balance is off
+/// by is the error of the integrator.
+fn unbalanced(tables: &Tables) -> Option<String> {
+    let off = tables.energy.values("balance")?.last()?.abs();
+    let largest = |name: &str| -> f64 {
+        let values = tables.energy.values(name).unwrap_or_default();
+        values.iter().fold(0.0, |most, value| most.max(value.abs()))
+    };
+    let share = off / largest("total");
+    (share > UNBALANCED).then(|| {
+        format!(
+            "{:.1} % of the largest energy is not accounted for: the steps are too large for what \
+             happens; lower `time.cfl` and compare",
+            100.0 * share
+        )
+    })
+}
+
 /// The names behind `run.`, numbers and texts of a run as a whole.
-pub(super) const RUN_QUANTITIES: [&str; 10] = [
+pub(super) const RUN_QUANTITIES: [&str; 11] = [
     "first_step",
     "smallest_step",
     "largest_step",
@@ -121,6 +197,7 @@ pub(super) const RUN_QUANTITIES: [&str; 10] = [
     "smallest_ratio",
     "ratio_mismatch",
     "largest_speed",
+    "retries",
     "outcome",
 ];
 
@@ -137,9 +214,10 @@ impl Finished {
             Some("steps") => number(summary.steps as f64, "1"),
             Some("particles") => number(self.particles as f64, "1"),
             Some("time") => number(summary.time, "s"),
-            Some("smallest_ratio") => number(summary.smallest_ratio, "1"),
-            Some("ratio_mismatch") => number(summary.ratio_mismatch, "1"),
-            Some("largest_speed") => number(summary.largest_speed, "m/s"),
+            Some("smallest_ratio") => number(summary.worst.smallest_ratio, "1"),
+            Some("ratio_mismatch") => number(summary.worst.ratio_mismatch, "1"),
+            Some("largest_speed") => number(summary.worst.largest_speed, "m/s"),
+            Some("retries") => number(summary.retries.len() as f64, "1"),
             Some("outcome") => Some(Series::Text(summary.outcome.summary())),
             Some(_) => None,
         }

@@ -55,6 +55,13 @@ pub static CASE: TableSpec = TableSpec {
         key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),
         key("time", Kind::Table(&TIME), "", Required, "clock and integrator"),
         key(
+            "checkpoint",
+            Kind::Table(&CHECKPOINT),
+            "",
+            Optional,
+            "when the run writes a file that it can be resumed from; it also does on Ctrl-C and SIGTERM",
+        ),
+        key(
             "load",
             Kind::List(&Kind::Tagged(&LOAD)),
             "",
@@ -236,6 +243,77 @@ static TIME: TableSpec = TableSpec {
             "s",
             Optional,
             "the run fails when the stable step falls below",
+        ),
+        key(
+            "max_speed",
+            Kind::Number(Interval::POSITIVE),
+            "m/s",
+            Derived("10 times the sum of the largest speed and wave speed at the start"),
+            "the run fails when a particle is faster",
+        ),
+        key(
+            "on_failure",
+            Kind::Name(REACTIONS),
+            "",
+            Default("\"stop\""),
+            "what happens when a state turns out to be broken",
+        ),
+        key(
+            "retries",
+            Kind::Integer(Interval::between(1.0, 60.0)),
+            "1",
+            Derived("5 with `on_failure = \"retry\"`"),
+            "how often the run may go back; the steps are halved each time",
+        ),
+    ],
+};
+
+const REACTIONS: Choices = choices(&[
+    choice("stop", "the run ends with the last good state"),
+    choice(
+        "retry",
+        "the run goes back some steps and on with half the step, and stops after too many retries; not for a fixed step",
+    ),
+]);
+
+static CHECKPOINT: TableSpec = TableSpec {
+    title: "[checkpoint]",
+    meaning: "When checkpoints are written, from which `piola run --resume` goes on. Results do not depend on them.",
+    keys: &[
+        key(
+            "every_steps",
+            Kind::Integer(Interval::at_least(1.0)),
+            "1",
+            Optional,
+            "steps between checkpoints",
+        ),
+        key(
+            "every",
+            Kind::Number(Interval::POSITIVE),
+            "s",
+            Optional,
+            "simulated time between checkpoints; steps are not shortened to meet it",
+        ),
+        key(
+            "every_wall",
+            Kind::Number(Interval::POSITIVE),
+            "s",
+            Derived("300 unless `every_steps` or `every` is given"),
+            "wall time between checkpoints",
+        ),
+        key(
+            "keep",
+            Kind::Integer(Interval::between(1.0, 1e6)),
+            "1",
+            Default("2"),
+            "how many are kept, the newest",
+        ),
+        key(
+            "at_end",
+            Kind::Boolean,
+            "",
+            Default("false"),
+            "whether one is written at the end, to go on from with a later `time.end`",
         ),
     ],
 };

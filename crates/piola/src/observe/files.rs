@@ -1,6 +1,6 @@
 //! The list of files that a run has written.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Files in the order of writing, each once, shared by all that write.
@@ -14,6 +14,14 @@ impl WrittenFiles {
         if !files.contains(&file) {
             files.push(file);
         }
+    }
+
+    /// Removes a file of a part of the run that is taken again, here and from the disk. One that
+    /// cannot be removed is written over or stays as it is.
+    pub fn remove(&self, file: &Path) {
+        let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        files.retain(|known| known != file);
+        let _ = std::fs::remove_file(file);
     }
 
     /// All files so far.

@@ -1,9 +1,10 @@
 //! The observer that writes particle files.
 
 use super::files::WrittenFiles;
+use super::memory::{decode, encode, inside};
 use crate::output::{Compression, OutputError, ResultsFolder, pvd, vtp};
 use crate::schemes::snapshot;
-use crate::time::{Moment, ObserveError, Observer, Schedule};
+use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
 /// Writes a particle file at each due time and keeps the time series that names them.
 pub struct FrameWriter {
@@ -57,5 +58,22 @@ impl Observer for FrameWriter {
             time: moment.time,
             source: source.into(),
         })
+    }
+
+    fn save(&self) -> Vec<u8> {
+        encode(&(&self.frames, self.last_time))
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
+        (self.frames, self.last_time) = decode(saved, "the particle files")?;
+        inside(self.frames.iter().map(|frame| &frame.file))
+    }
+
+    fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {
+        for frame in self.frames.extract_if(.., |frame| frame.time > time) {
+            self.written.remove(&self.folder.path().join(frame.file));
+        }
+        self.last_time = self.frames.last().map(|frame| frame.time);
+        Ok(())
     }
 }

@@ -3,6 +3,7 @@
 
 mod files;
 mod frames;
+mod memory;
 mod pictures;
 mod probe;
 mod recorder;
@@ -13,5 +14,5 @@ pub use files::WrittenFiles;
 pub use frames::FrameWriter;
 pub use pictures::{PictureRequest, PictureWriter};
 pub use probe::{Probe, ProbeKind};
-pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns};
+pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns, momentum_columns};
 pub use tables::{Series, Tables};

@@ -1,10 +1,11 @@
 //! The observer that draws the particles.
 
 use super::files::WrittenFiles;
+use super::memory::{decode, encode, inside};
 use crate::fields::FieldSelector;
 use crate::output::{OutputError, Picture, ResultsFolder};
 use crate::schemes::snapshot;
-use crate::time::{Moment, ObserveError, Observer, Schedule};
+use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
 /// What a picture shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +26,8 @@ pub struct PictureWriter {
     folder: ResultsFolder,
     request: PictureRequest,
     written: WrittenFiles,
-    count: u64,
-    last_time: Option<f64>,
+    /// The pictures so far, with their times in s.
+    drawn: Vec<(String, f64)>,
 }
 
 impl PictureWriter {
@@ -37,7 +38,7 @@ impl PictureWriter {
         request: PictureRequest,
         written: WrittenFiles,
     ) -> Self {
-        Self { schedule, folder, request, written, count: 0, last_time: None }
+        Self { schedule, folder, request, written, drawn: Vec::new() }
     }
 
     fn draw(&mut self, moment: &mut Moment) -> Result<(), OutputError> {
@@ -49,7 +50,7 @@ impl PictureWriter {
         let values: Vec<f64> =
             found.values.chunks_exact(components).map(|value| field.value(value)).collect();
         let label = field.name(shot.dimension);
-        let path = self.folder.picture(&label, self.count)?;
+        let path = self.folder.picture(&label, self.drawn.len() as u64)?;
         Picture {
             title,
             time: Some(moment.time),
@@ -63,7 +64,7 @@ impl PictureWriter {
             bounds: None,
         }
         .write_png(&path)?;
-        self.count += 1;
+        self.drawn.push((self.folder.relative(&path), moment.time));
         self.written.push(path);
         Ok(())
     }
@@ -77,16 +78,31 @@ impl Observer for PictureWriter {
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
         // The last moment is shown to every observer. It is worth a picture if it was asked for,
         // or if pictures that were asked for will never be.
-        let before = self.last_time.unwrap_or(-1.0);
-        let pending = self.schedule.next_after(before);
-        if self.last_time == Some(moment.time) || (moment.last && pending.is_none()) {
+        let last = self.drawn.last().map(|(_, time)| *time);
+        let pending = self.schedule.next_after(last.unwrap_or(-1.0));
+        if last == Some(moment.time) || (moment.last && pending.is_none()) {
             return Ok(());
         }
-        self.last_time = Some(moment.time);
         self.draw(moment).map_err(|source| ObserveError {
             what: "drawing the particles",
             time: moment.time,
             source: source.into(),
         })
+    }
+
+    fn save(&self) -> Vec<u8> {
+        encode(&self.drawn)
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
+        self.drawn = decode(saved, "the pictures")?;
+        inside(self.drawn.iter().map(|(file, _)| file))
+    }
+
+    fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {
+        for (path, _) in self.drawn.extract_if(.., |(_, drawn)| *drawn > time) {
+            self.written.remove(&self.folder.path().join(path));
+        }
+        Ok(())
     }
 }

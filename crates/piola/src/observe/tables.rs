@@ -9,6 +9,8 @@ pub struct Tables {
     pub probes: Table,
     /// Energies, the work of each mechanism so far, and the balance, in J.
     pub energy: Table,
+    /// Momentum, the impulse of each way in so far, and the balance.
+    pub momentum: Table,
     /// Steps: count, size, and health figures.
     pub steps: Table,
 }
@@ -37,10 +39,22 @@ pub enum Series {
 }
 
 impl Tables {
-    /// The column that `name` stands for: `energy.NAME`, `step.NAME`, or a column of a probe.
+    /// All tables.
+    pub fn all(&self) -> [&Table; 4] {
+        [&self.probes, &self.energy, &self.momentum, &self.steps]
+    }
+
+    /// All tables, in the order of [`Tables::all`].
+    pub fn all_mut(&mut self) -> [&mut Table; 4] {
+        [&mut self.probes, &mut self.energy, &mut self.momentum, &mut self.steps]
+    }
+
+    /// The column that `name` stands for: `energy.NAME`, `momentum.NAME`, `step.NAME`, or a column
+    /// of a probe.
     pub fn curve(&self, name: &str) -> Option<Series> {
         let (table, column) = match name.split_once('.') {
             Some(("energy", column)) => (&self.energy, column),
+            Some(("momentum", column)) => (&self.momentum, column),
             Some(("step", column)) => (&self.steps, column),
             _ => (&self.probes, name),
         };
@@ -57,6 +71,7 @@ impl Tables {
         };
         let mut names = columns(&self.probes, "");
         names.extend(columns(&self.energy, "energy."));
+        names.extend(columns(&self.momentum, "momentum."));
         names.extend(columns(&self.steps, "step."));
         names
     }

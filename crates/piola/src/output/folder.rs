@@ -4,11 +4,14 @@
 //! run.json                      the record of the run
 //! particles.pvd                 the time series for ParaView
 //! particles/frame_000012.vtp    one instant
-//! probes.csv energy.csv steps.csv
+//! probes.csv energy.csv momentum.csv steps.csv
+//! failure.csv                   where a run failed: the last steps of the first bad particle
+//! checkpoints/step_000000000128 where the run can go on from
 //! pictures/NAME_000012.png      particles coloured by a field
 //! plots/NAME.png                curves against time
 //! ```
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -17,10 +20,12 @@ use super::{OutputError, RunRecord, atomic};
 
 const RECORD: &str = "run.json";
 const SERIES: &str = "particles.pvd";
-const TABLES: [&str; 3] = ["probes.csv", "energy.csv", "steps.csv"];
+const TABLES: [&str; 5] = ["probes.csv", "energy.csv", "momentum.csv", "steps.csv", "failure.csv"];
 const PARTICLES: &str = "particles";
 const PICTURES: &str = "pictures";
 const PLOTS: &str = "plots";
+const CHECKPOINTS: &str = "checkpoints";
+const CHECKPOINT_START: &str = "step_";
 
 /// A folder that belongs to one run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +60,36 @@ impl ResultsFolder {
         Ok(folder)
     }
 
+    /// Opens the folder `path` to go on with the run in it. `None` if there is none: the folder
+    /// does not exist or holds no record.
+    pub fn open(path: &Path) -> Option<Self> {
+        let folder = Self { path: path.into() };
+        RunRecord::read(&folder.record()).is_ok().then_some(folder)
+    }
+
+    /// Removes the files of the run that are not among `kept` (relative paths), except the record
+    /// and the checkpoints: what was written after the checkpoint that the run goes on from is
+    /// written again.
+    ///
+    /// # Errors
+    /// A file cannot be removed, or the record cannot be written.
+    pub fn go_on(&self, record: &RunRecord, kept: &[String]) -> Result<(), OutputError> {
+        for file in self.files_of_run()? {
+            let name = self.relative(&file);
+            let is_checkpoint = name.starts_with(CHECKPOINTS) && !atomic::is_temporary(&name);
+            if !is_checkpoint && !kept.contains(&name) {
+                fs::remove_file(&file).map_err(|error| OutputError::from_io(&file, error))?;
+            }
+        }
+        record.write(&self.record())?;
+        Ok(())
+    }
+
+    /// Whether `file` is a path that leads to a file of a run, in this folder or in one below it.
+    pub fn may_hold(file: &str) -> bool {
+        own(file).is_some()
+    }
+
     /// The folder itself.
     pub fn path(&self) -> &Path {
         &self.path
@@ -80,9 +115,40 @@ impl ResultsFolder {
         self.path.join(TABLES[1])
     }
 
+    /// The table of momentum.
+    pub fn momentum(&self) -> PathBuf {
+        self.path.join(TABLES[2])
+    }
+
     /// The table of the steps.
     pub fn steps(&self) -> PathBuf {
-        self.path.join(TABLES[2])
+        self.path.join(TABLES[3])
+    }
+
+    /// The table of the last steps before a failure.
+    pub fn failure(&self) -> PathBuf {
+        self.path.join(TABLES[4])
+    }
+
+    /// The checkpoint after `step` steps; its folder is created if it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
+    pub fn checkpoint(&self, step: u64) -> Result<PathBuf, OutputError> {
+        Ok(self.below(CHECKPOINTS)?.join(format!("{CHECKPOINT_START}{step:012}")))
+    }
+
+    /// The checkpoints, the newest first.
+    ///
+    /// # Errors
+    /// Their folder cannot be read.
+    pub fn checkpoints(&self) -> Result<Vec<PathBuf>, OutputError> {
+        let folder = self.path.join(CHECKPOINTS);
+        if !fs::symlink_metadata(&folder).is_ok_and(|metadata| metadata.is_dir()) {
+            return Ok(Vec::new());
+        }
+        let known = names(&folder)?.into_iter().rev().filter(|name| is_checkpoint(name));
+        Ok(known.map(|name| folder.join(name)).collect())
     }
 
     /// The particle file number `frame`; its folder is created if it is missing.
@@ -126,15 +192,26 @@ impl ResultsFolder {
 
     /// Removes the files of an earlier run, but not its record, which the next one replaces.
     fn empty(&self) -> Result<(), OutputError> {
-        let Ok(record) = RunRecord::read(&self.record()) else {
+        if RunRecord::read(&self.record()).is_err() {
             // Temporary files are ours, whatever became of the record.
             let foreign = names(&self.path)?.into_iter().find(|name| !atomic::is_temporary(name));
             return foreign.map_or(Ok(()), |entry| {
                 Err(OutputError::ForeignFolder { path: self.path.clone(), entry })
             });
-        };
-        let mut files: Vec<PathBuf> = record.files.iter().filter_map(|file| own(file)).collect();
-        for folder in ["", PARTICLES, PICTURES, PLOTS] {
+        }
+        for file in self.files_of_run()? {
+            fs::remove_file(&file).map_err(|error| OutputError::from_io(&file, error))?;
+        }
+        Ok(())
+    }
+
+    /// The files that exist of those that the record lists and of those that have the name of an
+    /// output file, without the record.
+    fn files_of_run(&self) -> Result<Vec<PathBuf>, OutputError> {
+        let record = RunRecord::read(&self.record()).unwrap_or_default();
+        let mut files: BTreeSet<PathBuf> =
+            record.files.iter().filter_map(|file| own(file)).collect();
+        for folder in ["", PARTICLES, PICTURES, PLOTS, CHECKPOINTS] {
             let path = self.path.join(folder);
             // A link could lead anywhere.
             if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
@@ -142,16 +219,15 @@ impl ResultsFolder {
                 files.extend(known.map(|name| Path::new(folder).join(name)));
             }
         }
-        for file in files {
-            let path = self.path.join(file);
+        let is_plain = |path: &Path, wanted: fn(&fs::Metadata) -> bool| {
+            fs::symlink_metadata(path).is_ok_and(|metadata| wanted(&metadata))
+        };
+        let exists = |path: &PathBuf| {
             let parent = path.parent().unwrap_or(&self.path);
-            let reached = parent == self.path
-                || fs::symlink_metadata(parent).is_ok_and(|metadata| metadata.is_dir());
-            if reached && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
-                fs::remove_file(&path).map_err(|error| OutputError::from_io(&path, error))?;
-            }
-        }
-        Ok(())
+            let reached = parent == self.path || is_plain(parent, fs::Metadata::is_dir);
+            reached && is_plain(path, fs::Metadata::is_file)
+        };
+        Ok(files.into_iter().map(|file| self.path.join(file)).filter(exists).collect())
     }
 }
 
@@ -190,9 +266,18 @@ fn is_known(folder: &str, name: &str) -> bool {
         "" => name == SERIES || TABLES.contains(&name),
         PARTICLES => name.starts_with("frame_") && numbered(".vtp"),
         PICTURES => numbered(".png"),
+        CHECKPOINTS => is_checkpoint(name),
         _ => false,
     };
     by_name || atomic::is_temporary(name)
+}
+
+/// Whether this is the name of a checkpoint: with twelve digits they sort as their numbers do.
+fn is_checkpoint(name: &str) -> bool {
+    let number = name.strip_prefix(CHECKPOINT_START);
+    number.is_some_and(|digits| {
+        digits.len() == 12 && digits.bytes().all(|digit| digit.is_ascii_digit())
+    })
 }
 
 /// A file of a record as a path inside the folder; nothing if it would lead out of it, or is the

@@ -12,10 +12,12 @@
 //! | reference curves, read | [`Curve::read_csv`] |
 //! | particles coloured by a number | [`Picture::write_png`] |
 //! | curves against time | [`Plot::write_png`] |
+//! | where a run can go on from | [`checkpoint::write`] |
 //! | what was run and how it went | [`RunRecord::write`] |
 //! | where all that lies | [`ResultsFolder`] |
 
 pub mod atomic;
+pub mod checkpoint;
 mod csv_reader;
 mod drawing;
 mod error;
@@ -28,11 +30,12 @@ mod record;
 mod table;
 pub mod vtp;
 
+pub use checkpoint::CheckpointError;
 pub use csv_reader::{Curve, TableError};
 pub use error::OutputError;
 pub use folder::ResultsFolder;
 pub use picture::{Bounds, Picture};
 pub use plot::{Plot, Series, Style};
-pub use record::{BodyRecord, RecordError, RunRecord, StageRecord, timestamp};
+pub use record::{BodyRecord, RecordError, RetryRecord, RunRecord, StageRecord, timestamp};
 pub use table::{Column, Table};
 pub use vtp::Compression;

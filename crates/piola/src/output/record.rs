@@ -44,10 +44,14 @@ pub struct RunRecord {
     pub started: String,
     /// When it ended; none while it runs.
     pub finished: Option<String>,
-    /// `running`, `completed`, `stopped`, or `failed: ` and the cause in a word.
+    /// `running`, `completed`, `interrupted`, or `failed: ` and the cause in a word.
     pub outcome: String,
     /// The whole message of a failure, for a reader.
     pub message: Option<String>,
+    /// Simulated times in s of the checkpoints from which the run went on after it was broken off.
+    pub resumed_at: Vec<f64>,
+    /// Failures after which the run went back and on with smaller steps.
+    pub retries: Vec<RetryRecord>,
     /// Steps taken.
     pub steps: u64,
     /// Simulated time that was to be reached, in s.
@@ -72,6 +76,20 @@ pub struct BodyRecord {
     pub name: String,
     /// Number of its particles.
     pub particles: usize,
+}
+
+/// One failure after which a run went on with smaller steps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RetryRecord {
+    /// What had gone wrong, as a sentence.
+    pub failure: String,
+    /// Steps taken when it did.
+    pub step: u64,
+    /// Simulated time in s of the state that the run went back to.
+    pub back_to: f64,
+    /// What every step has been multiplied by since.
+    pub factor: f64,
 }
 
 /// One stage of a run and the time it took.
@@ -136,6 +154,8 @@ impl Default for RunRecord {
             finished: None,
             outcome: "running".into(),
             message: None,
+            resumed_at: Vec::new(),
+            retries: Vec::new(),
             steps: 0,
             end_time: 0.0,
             time_reached: 0.0,

@@ -71,6 +71,31 @@ impl Table {
         Ok(())
     }
 
+    /// All numbers, row by row.
+    pub fn numbers(&self) -> &[f64] {
+        &self.rows
+    }
+
+    /// Replaces all rows by those of `numbers`, row by row.
+    ///
+    /// # Errors
+    /// They are not whole rows: the number of columns is returned, and the table is as before.
+    pub fn set_numbers(&mut self, numbers: Vec<f64>) -> Result<(), usize> {
+        match numbers.len().checked_rem(self.columns.len()) {
+            Some(0) => {
+                self.rows = numbers;
+                Ok(())
+            }
+            _ => Err(self.columns.len()),
+        }
+    }
+
+    /// Removes the rows whose first number is larger than `last`.
+    pub fn truncate_after(&mut self, last: f64) {
+        let kept = self.rows().filter(|row| row.first().is_some_and(|first| *first <= last));
+        self.rows = kept.flatten().copied().collect();
+    }
+
     /// The rows, in order.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[f64]> + ExactSizeIterator {
         // A table without columns has no rows; chunks of one keep the iterator defined.

@@ -1,14 +1,17 @@
 //! What a formulation offers to integrators, clock, observers and output.
 
+use serde::{Deserialize, Serialize};
+
 use super::SplitScheme;
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
 ///
 /// The state is one flat slice: `particle_count` rows of `row_length` numbers, followed by the
-/// running integrals of the ledger, one for each name in [`Scheme::mechanisms`]. The rate of an
-/// integral is the power of its mechanism, so an integrator carries energy bookkeeping to its
-/// own order without knowing of it, theory (18), and a copy of the state is all there is to save.
+/// running integrals of the [`Ledger`]: the work of each of [`Scheme::mechanisms`], then the
+/// impulse of each of [`Scheme::impulses`] with as many numbers as momentum has components. The
+/// rate of an integral is a power or a force, so an integrator carries the bookkeeping to its own
+/// order without knowing of it, theory (18), and a copy of the state is all there is to save.
 pub trait Scheme: Send {
     /// Name in a case file.
     fn name(&self) -> &'static str;
@@ -29,6 +32,9 @@ pub trait Scheme: Send {
     /// the body is positive; what a dissipative mechanism takes is negative.
     fn mechanisms(&self) -> &'static [&'static str];
 
+    /// The ways in which momentum enters from outside, in the order of the state's tail.
+    fn impulses(&self) -> &'static [&'static str];
+
     /// The names of the energies of [`Scheme::energies`].
     fn energy_names(&self) -> &'static [&'static str];
 
@@ -47,6 +53,10 @@ pub trait Scheme: Send {
 
     /// The energies of `state` in J, in the order of [`Scheme::energy_names`].
     fn energies(&self, state: &[f64], energies: &mut [f64]);
+
+    /// The momentum of `state`, one number for each of
+    /// [`momentum_components`](super::momentum_components).
+    fn momentum(&self, state: &[f64], momentum: &mut [f64]);
 
     /// Appends the components of one of [`Scheme::fields`] at `state` for each of `particles`
     /// (indices in memory) to `values`. A field of another name appends nothing.
@@ -68,6 +78,9 @@ pub trait Scheme: Send {
     /// Reference position in m and number in the order of creation of each particle.
     fn particle(&self, index: usize) -> Particle;
 
+    /// The particles (indices in memory) that particle `index` interacts with, in a fixed order.
+    fn neighborhood(&self, index: usize) -> Vec<u32>;
+
     /// The likely cause of the collapse of a particle (index in memory), and what to change.
     fn collapse_advice(&self, index: usize) -> String;
 
@@ -77,6 +90,26 @@ pub trait Scheme: Send {
     /// The formulation as one whose steps can be split, if it is one.
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {
         None
+    }
+}
+
+/// The running integrals at the end of a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ledger<'a> {
+    /// Work so far in J, one number a mechanism.
+    pub work: &'a [f64],
+    /// Impulse so far, one row of momentum components for each way in.
+    pub impulses: &'a [f64],
+}
+
+impl<'a> Ledger<'a> {
+    /// The integrals of `state`.
+    pub fn of(scheme: &dyn Scheme, state: &'a [f64]) -> Self {
+        let tail = &state[scheme.particle_count() * scheme.row_length()..];
+        let (work, rest) = tail.split_at(scheme.mechanisms().len());
+        let components = super::momentum_components(scheme.dimension()).len();
+        // What a scheme keeps behind its ledger is its own.
+        Self { work, impulses: &rest[..scheme.impulses().len() * components] }
     }
 }
 
@@ -90,10 +123,14 @@ pub struct Particle {
 }
 
 /// Figures that tell whether a state is sound.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Health {
     /// Largest speed in m/s.
     pub largest_speed: f64,
+    /// Particle (index in memory) of the largest speed.
+    pub largest_speed_particle: usize,
+    /// Largest wave speed in m/s.
+    pub largest_wave_speed: f64,
     /// Smallest volume ratio J, evolved or from the deformation gradient, whichever is smaller.
     pub smallest_ratio: f64,
     /// Particle (index in memory) of the smallest ratio.
@@ -108,6 +145,8 @@ impl Health {
     /// The figures of no particle, from which a reduction starts.
     pub const NEUTRAL: Self = Self {
         largest_speed: 0.0,
+        largest_speed_particle: 0,
+        largest_wave_speed: 0.0,
         smallest_ratio: f64::INFINITY,
         smallest_ratio_particle: 0,
         ratio_mismatch: 0.0,
@@ -119,8 +158,15 @@ impl Health {
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         let other_is_smaller = other.smallest_ratio < self.smallest_ratio;
+        let other_is_faster = other.largest_speed > self.largest_speed;
         Self {
             largest_speed: self.largest_speed.max(other.largest_speed),
+            largest_speed_particle: if other_is_faster {
+                other.largest_speed_particle
+            } else {
+                self.largest_speed_particle
+            },
+            largest_wave_speed: self.largest_wave_speed.max(other.largest_wave_speed),
             smallest_ratio: self.smallest_ratio.min(other.smallest_ratio),
             smallest_ratio_particle: if other_is_smaller {
                 other.smallest_ratio_particle

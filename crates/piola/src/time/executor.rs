@@ -1,12 +1,15 @@
 //! The loop over steps.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
+use super::checkpoint::{Checkpoint, Checkpoints, Misfit};
+use super::clock::{Clock, Tally};
 use super::failure::Failure;
+use super::history::{History, Mark};
 use super::integrator::Integrator;
 use super::observer::{Moment, ObserveError, Observer};
 use super::step::{ChosenStep, StepControl};
+use super::summary::{Outcome, Progress, Retry, Summary};
 use crate::schemes::{Health, Scheme, StepLimit};
 
 /// Owns a run: the clock, the state, the observers, and the reasons to stop.
@@ -23,108 +26,36 @@ pub struct Executor {
     pub max_steps: u64,
     /// A smaller step in s is a failure; by default [`Executor::FLOOR`] of the first.
     pub min_step: Option<f64>,
+    /// A larger speed in m/s is a failure; by default [`Executor::TOO_FAST`] times the sum of the
+    /// largest speed and the largest wave speed at the start.
+    pub max_speed: Option<f64>,
+    /// How often a run that goes wrong may go back and try with half the step. A fixed step is
+    /// never changed.
+    pub retries: usize,
     /// Who looks.
     pub observers: Vec<Box<dyn Observer>>,
+    /// When and where checkpoints are taken.
+    pub checkpoints: Option<Checkpoints>,
+    resume: Option<Checkpoint>,
 }
 
-/// Where a run stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Simulated time in s.
-    pub time: f64,
-    /// Where it ends in s.
-    pub end: f64,
-    /// Steps taken.
-    pub step: u64,
-    /// Size of the last step in s.
-    pub step_size: f64,
-    /// What limited it.
-    pub limiter: &'static str,
-    /// Evaluations of the rates times particles so far.
-    pub evaluations: u64,
-}
-
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
-    /// At its end.
-    Completed,
-    /// On request, after a whole step.
-    Interrupted,
-    /// With a failure; the last good state has been shown to all observers.
-    Failed(Failure),
-}
-
-impl Outcome {
-    /// One line for tables and checks: `completed`, `interrupted` or `failed: KIND`.
-    pub fn summary(&self) -> String {
-        match self {
-            Self::Completed => "completed".into(),
-            Self::Interrupted => "interrupted".into(),
-            Self::Failed(failure) => format!("failed: {}", failure.kind()),
-        }
-    }
-}
-
-/// Wall time of one stage of the loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Timing {
-    /// Its name.
-    pub stage: &'static str,
-    /// Wall time in s.
-    pub seconds: f64,
-    /// How often it ran.
-    pub calls: u64,
-}
-
-/// What is known at the end of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Summary {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Simulated time reached in s.
-    pub time: f64,
-    /// Steps taken.
-    pub steps: u64,
-    /// The step that the first state allows, before it is shortened to meet an output, in s.
-    pub first_step: f64,
-    /// Smallest and largest step taken in s.
-    pub step_range: [f64; 2],
-    /// Smallest volume ratio over the run.
-    pub smallest_ratio: f64,
-    /// Largest difference between evolved J and det F over the run.
-    pub ratio_mismatch: f64,
-    /// Largest speed over the run in m/s.
-    pub largest_speed: f64,
-    /// Evaluations of the rates times particles.
-    pub evaluations: u64,
-    /// Wall time by stage.
-    pub timings: Vec<Timing>,
-}
-
-/// Stop watches of the loop.
-#[derive(Default)]
-struct Watches {
-    inspect: (Duration, u64),
-    step: (Duration, u64),
-    observe: (Duration, u64),
-}
-
-fn timed<T>(watch: &mut (Duration, u64), body: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
-    let value = body();
-    watch.0 += start.elapsed();
-    watch.1 += 1;
-    value
-}
-
-/// The moving parts of a run.
-struct Clock {
+/// A run between two steps.
+struct Run {
+    clock: Clock,
+    tally: Tally,
     state: Vec<f64>,
-    time: f64,
-    step: u64,
-    chosen: ChosenStep,
-    health: Health,
+    /// When each observer is due next.
+    due: Vec<Option<f64>>,
+    history: History,
+    warnings: Vec<String>,
+    resumed: Option<(f64, u64)>,
+}
+
+/// What a look at a state leads to.
+enum Verdict {
+    Sound,
+    Back,
+    End(Outcome),
 }
 
 impl Executor {
@@ -133,6 +64,50 @@ impl Executor {
 
     /// The default floor of the step as a fraction of the first.
     pub const FLOOR: f64 = 1e-6;
+
+    /// How much faster than speed and wave speed at the start is too fast. What is simulated with
+    /// explicit steps moves at about these speeds; what moves ten times as fast has broken up.
+    pub const TOO_FAST: f64 = 10.0;
+
+    /// What a retry multiplies the steps by.
+    pub const RETRY_FACTOR: f64 = 0.5;
+
+    /// A run without observers and checkpoints, with as many steps as it takes and no retries.
+    pub fn new(
+        scheme: Box<dyn Scheme>,
+        integrator: Box<dyn Integrator>,
+        control: StepControl,
+        end: f64,
+    ) -> Self {
+        Self {
+            scheme,
+            integrator,
+            control,
+            end,
+            max_steps: u64::MAX,
+            min_step: None,
+            max_speed: None,
+            retries: 0,
+            observers: Vec::new(),
+            checkpoints: None,
+            resume: None,
+        }
+    }
+
+    /// Lets the run go on from `checkpoint` instead of the start. Scheme, integrator, settings and
+    /// observers have to be those of the run that it was taken from.
+    ///
+    /// # Errors
+    /// It cannot be a checkpoint of this run.
+    pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), Misfit> {
+        let length = self.scheme.initial_state().len();
+        checkpoint.check(length, self.observers.len(), self.end)?;
+        for (observer, saved) in self.observers.iter_mut().zip(&checkpoint.observers) {
+            observer.restore(saved)?;
+        }
+        self.resume = Some(checkpoint);
+        Ok(())
+    }
 
     /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` each step.
     ///
@@ -143,20 +118,97 @@ impl Executor {
         stop: &AtomicBool,
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Summary, ObserveError> {
-        let start = ChosenStep { step: 0.0, limiter: "start", particle: 0 };
-        let mut clock = Clock {
-            state: self.scheme.initial_state(),
-            time: 0.0,
-            step: 0,
-            chosen: start,
-            health: Health::NEUTRAL,
+        let mut run = self.start();
+        if let Some(checkpoints) = &mut self.checkpoints {
+            checkpoints.start(&run.clock);
+        }
+        let mut next = run.state.clone();
+        // The state before the last step: where a run goes back to when a step fails for good.
+        let mut previous = (run.clock, run.state.clone());
+        let mut limits: Vec<StepLimit> = Vec::with_capacity(8);
+        let evaluations = self.integrator.evaluations() * self.scheme.particle_count() as u64;
+        let mut failed_in_step = false;
+
+        let outcome = loop {
+            match self.judge(&mut run, &mut limits)? {
+                Verdict::Sound => {}
+                Verdict::Back => continue,
+                Verdict::End(outcome) => {
+                    failed_in_step = matches!(outcome, Outcome::Failed(_));
+                    break outcome;
+                }
+            }
+            self.show(&mut run, false)?;
+            run.history.mark(&run.clock, &run.tally, &run.due, &run.state);
+            self.save_if_due(&mut run);
+            if stop.load(Ordering::Relaxed) {
+                break Outcome::Interrupted;
+            }
+            let chosen = match self.choose(&limits, &run) {
+                Ok(chosen) => chosen,
+                Err(failure) => break Outcome::Failed(failure),
+            };
+            if run.clock.step == 0 {
+                run.tally.first_step = chosen.step;
+            }
+            let soonest = run.due.iter().flatten().copied().fold(self.end, f64::min);
+            let met = self.control.meet(chosen, run.clock.time, soonest);
+            let (scheme, integrator) = (self.scheme.as_mut(), self.integrator.as_mut());
+            run.tally.watches.step.time(|| {
+                integrator.step(scheme, run.clock.time, met.step, &run.state, &mut next);
+            });
+            previous.0 = run.clock;
+            std::mem::swap(&mut previous.1, &mut run.state);
+            std::mem::swap(&mut run.state, &mut next);
+            run.advance(self.control, met, soonest);
+            progress(&Progress {
+                time: run.clock.time,
+                end: self.end,
+                step: run.clock.step,
+                step_size: met.step,
+                limiter: met.limiter,
+                evaluations: evaluations * run.clock.step,
+                retries: run.tally.retries.len(),
+            });
         };
-        self.scheme.constrain(0.0, &mut clock.state);
-        // The state before the last step: where a run goes back to when a step fails.
-        let mut previous = clock.state.clone();
-        let mut previous_clock = (clock.time, clock.step, clock.chosen, clock.health);
-        let mut next = clock.state.clone();
-        let mut due: Vec<Option<f64>> = self
+        let trace = match &outcome {
+            Outcome::Failed(failure) => self.trace(&run.history, failure),
+            _ => None,
+        };
+        if failed_in_step && run.clock.step > previous.0.step {
+            (run.clock, run.state) = previous;
+        }
+        self.save_at_end(&mut run, &outcome);
+        self.show(&mut run, true)?;
+        Ok(Summary {
+            outcome,
+            time: run.clock.time,
+            steps: run.clock.step,
+            first_step: run.tally.first_step,
+            step_range: run.tally.step_range,
+            worst: run.tally.worst,
+            evaluations: evaluations * run.clock.step,
+            timings: run.tally.watches.timings(),
+            retries: run.tally.retries,
+            trace,
+            resumed: run.resumed,
+            warnings: run.warnings,
+        })
+    }
+
+    /// The run at its first instant, or at that of the checkpoint to resume from.
+    fn start(&mut self) -> Run {
+        if let Some(checkpoint) = self.resume.take() {
+            let Checkpoint { clock, tally, state, due, history, .. } = checkpoint;
+            let mark =
+                || Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
+            let history = history.unwrap_or_else(|| History::new(mark()));
+            let resumed = Some((clock.time, clock.step));
+            return Run { clock, tally, state, due, history, warnings: Vec::new(), resumed };
+        }
+        let mut state = self.scheme.initial_state();
+        self.scheme.constrain(0.0, &mut state);
+        let due: Vec<Option<f64>> = self
             .observers
             .iter()
             .map(|observer| match observer.schedule() {
@@ -164,133 +216,145 @@ impl Executor {
                 schedule => schedule.next_after(0.0),
             })
             .collect();
-        let mut limits: Vec<StepLimit> = Vec::with_capacity(8);
-        let mut watches = Watches::default();
-        let mut worst = Health::NEUTRAL;
-        let mut first_step = f64::NAN;
-        let mut step_range = [f64::INFINITY, 0.0];
-        let evaluations = self.integrator.evaluations() * self.scheme.particle_count() as u64;
+        let (clock, tally) = (Clock::START, Tally::START);
+        let mark = Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
+        let history = History::new(mark);
+        Run { clock, tally, state, due, history, warnings: Vec::new(), resumed: None }
+    }
 
-        let outcome = loop {
-            let health =
-                timed(&mut watches.inspect, || self.scheme.inspect(&clock.state, &mut limits));
-            if let Some(failure) = self.broken(&health, clock.step, clock.time) {
-                if clock.step > 0 {
-                    std::mem::swap(&mut clock.state, &mut previous);
-                    (clock.time, clock.step, clock.chosen, clock.health) = previous_clock;
-                }
-                break Outcome::Failed(failure);
+    /// Looks at the state: it is sound, or the run ends, or it goes back.
+    fn judge(
+        &mut self,
+        run: &mut Run,
+        limits: &mut Vec<StepLimit>,
+    ) -> Result<Verdict, ObserveError> {
+        let Run { clock, tally, state, .. } = run;
+        let scheme = self.scheme.as_mut();
+        let health = tally.watches.inspect.time(|| scheme.inspect(state, limits));
+        if clock.step == 0 {
+            tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
+            run.warnings.extend(supersonic(tally.start_speeds));
+        }
+        if let Some(failure) = self.broken(&health, clock, tally.start_speeds) {
+            let may_retry = run.tally.retries.len() < self.retries
+                && clock.step > 0
+                && matches!(self.control, StepControl::Cfl(_));
+            if !may_retry {
+                return Ok(Verdict::End(Outcome::Failed(failure)));
             }
-            clock.health = health;
-            worst = worst.worse(health);
-            let ended = clock.time >= self.end * (1.0 - 1e-12);
-            if ended {
-                break Outcome::Completed;
-            }
-            timed(&mut watches.observe, || self.observe(&mut clock, &mut due, false))?;
-            if stop.load(Ordering::Relaxed) {
-                break Outcome::Interrupted;
-            }
-            let chosen = match self.choose(&limits, &clock, first_step) {
-                Ok(chosen) => chosen,
-                Err(failure) => break Outcome::Failed(failure),
-            };
-            if clock.step == 0 {
-                first_step = chosen.step;
-            }
-            let soonest = due.iter().flatten().copied().fold(self.end, f64::min);
-            let met = self.control.meet(chosen, clock.time, soonest);
-            timed(&mut watches.step, || {
-                let scheme = self.scheme.as_mut();
-                self.integrator.step(scheme, clock.time, met.step, &clock.state, &mut next);
-            });
-            previous_clock = (clock.time, clock.step, clock.chosen, clock.health);
-            std::mem::swap(&mut previous, &mut clock.state);
-            std::mem::swap(&mut clock.state, &mut next);
-            clock.step += 1;
-            clock.time = match self.control {
-                StepControl::Fixed(step) => clock.step as f64 * step,
-                StepControl::Cfl(_) if met.step == soonest - clock.time => soonest,
-                StepControl::Cfl(_) => clock.time + met.step,
-            };
-            clock.chosen = met;
-            step_range = [step_range[0].min(met.step), step_range[1].max(met.step)];
-            progress(&Progress {
-                time: clock.time,
-                end: self.end,
-                step: clock.step,
-                step_size: met.step,
-                limiter: met.limiter,
-                evaluations: evaluations * clock.step,
-            });
-        };
-        timed(&mut watches.observe, || self.observe(&mut clock, &mut due, true))?;
-        let timing = |stage, (duration, calls): (Duration, u64)| Timing {
-            stage,
-            seconds: duration.as_secs_f64(),
-            calls,
-        };
-        Ok(Summary {
-            outcome,
-            time: clock.time,
-            steps: clock.step,
-            first_step,
-            step_range,
-            smallest_ratio: worst.smallest_ratio,
-            ratio_mismatch: worst.ratio_mismatch,
-            largest_speed: worst.largest_speed,
-            evaluations: evaluations * clock.step,
-            timings: vec![
-                timing("step", watches.step),
-                timing("inspect", watches.inspect),
-                timing("observe", watches.observe),
-            ],
-        })
+            self.go_back(run, &failure)?;
+            return Ok(Verdict::Back);
+        }
+        clock.health = health;
+        tally.worst = tally.worst.worse(health);
+        let ended = clock.time >= self.end * (1.0 - 1e-12);
+        Ok(if ended { Verdict::End(Outcome::Completed) } else { Verdict::Sound })
+    }
+
+    /// The speed in m/s above which a run that starts with these has gone wrong.
+    fn speed_limit(&self, [speed, wave_speed]: [f64; 2]) -> f64 {
+        let usual = speed + wave_speed;
+        // A scheme without waves, at rest, gives no measure.
+        let limit = if usual > 0.0 { Self::TOO_FAST * usual } else { f64::INFINITY };
+        self.max_speed.unwrap_or(limit)
     }
 
     /// The failure that a state's health shows, if any.
-    fn broken(&self, health: &Health, step: u64, time: f64) -> Option<Failure> {
+    fn broken(&self, health: &Health, clock: &Clock, start_speeds: [f64; 2]) -> Option<Failure> {
+        let (step, time) = (clock.step, clock.time);
+        let speed_limit = self.speed_limit(start_speeds);
         if let Some(index) = health.first_not_finite {
-            return Some(Failure::NotFinite { particle: self.scheme.particle(index), step, time });
+            let particle = self.scheme.particle(index);
+            return Some(Failure::NotFinite { index, particle, step, time });
         }
-        if health.smallest_ratio > 0.0 {
-            return None;
+        if !(health.smallest_ratio > 0.0) {
+            let index = health.smallest_ratio_particle;
+            return Some(Failure::Inverted {
+                index,
+                particle: self.scheme.particle(index),
+                ratio: health.smallest_ratio,
+                step,
+                time,
+                advice: match supersonic(start_speeds) {
+                    Some(cause) => format!("{cause}; else {}", self.scheme.collapse_advice(index)),
+                    None => self.scheme.collapse_advice(index),
+                },
+            });
         }
-        let index = health.smallest_ratio_particle;
-        Some(Failure::Inverted {
-            particle: self.scheme.particle(index),
-            ratio: health.smallest_ratio,
-            step,
-            time,
-            advice: self.scheme.collapse_advice(index),
-        })
+        if health.largest_speed > speed_limit {
+            let index = health.largest_speed_particle;
+            return Some(Failure::TooFast {
+                index,
+                particle: self.scheme.particle(index),
+                speed: health.largest_speed,
+                limit: speed_limit,
+                step,
+                time,
+            });
+        }
+        None
     }
 
-    fn choose(
-        &self,
-        limits: &[StepLimit],
-        clock: &Clock,
-        first_step: f64,
-    ) -> Result<ChosenStep, Failure> {
-        let (time, step) = (clock.time, clock.step);
+    /// Goes back to the older mark, with half the step from there on.
+    fn go_back(&mut self, run: &mut Run, failure: &Failure) -> Result<(), ObserveError> {
+        let Run { clock, tally, state, due, history, .. } = run;
+        let (step, time) = (clock.step, clock.time);
+        let mark = history.go_back();
+        // What the failed attempt took of wall time, and that it was made, are not forgotten.
+        let (watches, mut retries) = (tally.watches, std::mem::take(&mut tally.retries));
+        let factor = tally.factor * Self::RETRY_FACTOR;
+        let back_to = mark.clock.time;
+        let kind = failure.kind().to_owned();
+        retries.push(Retry { kind, failure: failure.to_string(), step, time, back_to, factor });
+        *clock = mark.clock;
+        *tally = Tally { watches, retries, factor, ..mark.tally.clone() };
+        state.copy_from_slice(&mark.state);
+        due.copy_from_slice(&mark.due);
+        for observer in &mut self.observers {
+            observer.rewind(back_to)?;
+        }
+        Ok(())
+    }
+
+    /// What happened around the particle of `failure`.
+    fn trace(&mut self, history: &History, failure: &Failure) -> Option<super::Trace> {
+        let index = failure.particle()?;
+        Some(history.trace(self.scheme.as_mut(), self.integrator.as_mut(), index))
+    }
+
+    fn choose(&self, limits: &[StepLimit], run: &Run) -> Result<ChosenStep, Failure> {
+        let (time, step) = (run.clock.time, run.clock.step);
         if step >= self.max_steps {
             return Err(Failure::TooManySteps { steps: step, time });
         }
-        let chosen = self.control.choose(limits)?;
+        let mut chosen = self.control.choose(limits).map_err(|too_large| {
+            let index = too_large.bound.particle;
+            Failure::FixedStepTooLarge {
+                index,
+                particle: self.scheme.particle(index),
+                step: too_large.step,
+                stable: too_large.bound.step,
+                limiter: too_large.bound.limiter,
+                time,
+            }
+        })?;
+        chosen.step *= run.tally.factor;
         // Before the first step, and after one without any limit, there is nothing to compare to.
+        let first_step = run.tally.first_step;
         let first = if first_step.is_finite() { first_step } else { 0.0 };
         let floor = self.min_step.unwrap_or(Self::FLOOR * first);
         // A step of zero, or of no number, would never get to the end.
         if !(chosen.step > 0.0 && chosen.step >= floor) {
-            let ChosenStep { step: size, limiter, particle } = chosen;
-            let Health { smallest_ratio: ratio, smallest_ratio_particle, .. } = clock.health;
+            let ChosenStep { step: size, limiter, particle: index } = chosen;
+            let Health { smallest_ratio: ratio, smallest_ratio_particle, .. } = run.clock.health;
             let advice = if ratio < Self::CRUSHED {
                 self.scheme.collapse_advice(smallest_ratio_particle)
             } else {
                 "raise `scheme.tau_velocity`, or lower `time.min_step`".into()
             };
             return Err(Failure::StepBelowFloor {
-                particle: self.scheme.particle(particle),
+                index,
+                particle: self.scheme.particle(index),
                 size,
                 floor,
                 limiter,
@@ -304,29 +368,93 @@ impl Executor {
     }
 
     /// Shows the moment to the observers for whom it is due, or to all if it is the last.
-    fn observe(
-        &mut self,
-        clock: &mut Clock,
-        due: &mut [Option<f64>],
-        last: bool,
-    ) -> Result<(), ObserveError> {
-        for (observer, due) in self.observers.iter_mut().zip(due) {
-            let is_due = due.is_some_and(|due| due <= clock.time * (1.0 + 1e-12));
-            if !is_due && !last {
-                continue;
+    fn show(&mut self, run: &mut Run, last: bool) -> Result<(), ObserveError> {
+        let Run { clock, tally, state, due, .. } = run;
+        let (scheme, observers) = (self.scheme.as_mut(), &mut self.observers);
+        tally.watches.observe.time(|| {
+            for (observer, due) in observers.iter_mut().zip(due) {
+                let is_due = due.is_some_and(|due| due <= clock.time * (1.0 + 1e-12));
+                if !is_due && !last {
+                    continue;
+                }
+                observer.observe(&mut Moment {
+                    time: clock.time,
+                    step: clock.step,
+                    step_size: clock.chosen.step,
+                    limiter: clock.chosen.limiter,
+                    health: &clock.health,
+                    scheme: &mut *scheme,
+                    state,
+                    last,
+                })?;
+                *due = observer.schedule().next_after(clock.time);
             }
-            observer.observe(&mut Moment {
-                time: clock.time,
-                step: clock.step,
-                step_size: clock.chosen.step,
-                limiter: clock.chosen.limiter,
-                health: &clock.health,
-                scheme: self.scheme.as_mut(),
-                state: &clock.state,
-                last,
-            })?;
-            *due = observer.schedule().next_after(clock.time);
+            Ok(())
+        })
+    }
+
+    fn save_if_due(&mut self, run: &mut Run) {
+        if self.checkpoints.as_ref().is_some_and(|checkpoints| checkpoints.due(&run.clock)) {
+            self.save(run);
         }
-        Ok(())
+    }
+
+    /// Takes a checkpoint of a run that was interrupted, or that is to be gone on with later. It
+    /// is taken before the observers are shown the last moment, which another end would not have.
+    fn save_at_end(&mut self, run: &mut Run, outcome: &Outcome) {
+        let wanted = |completed| {
+            let checkpoints = self.checkpoints.as_ref();
+            checkpoints.is_some_and(|checkpoints| checkpoints.wanted_at(completed, &run.clock))
+        };
+        let take = match outcome {
+            Outcome::Completed => wanted(true),
+            Outcome::Interrupted => wanted(false),
+            Outcome::Failed(_) => false,
+        };
+        if take {
+            self.save(run);
+        }
+    }
+
+    fn save(&mut self, run: &mut Run) {
+        let checkpoint = Checkpoint {
+            clock: run.clock,
+            tally: run.tally.clone(),
+            state: run.state.clone(),
+            due: run.due.clone(),
+            observers: self.observers.iter().map(|observer| observer.save()).collect(),
+            history: (self.retries > 0).then(|| run.history.clone()),
+        };
+        let Some(checkpoints) = &mut self.checkpoints else { return };
+        let kept = run.tally.watches.checkpoint.time(|| checkpoints.keep(&checkpoint));
+        run.warnings.extend(kept.err());
+    }
+}
+
+/// What the user should know if a run starts with a speed above the speed of its waves, in m/s:
+/// possible, but most often a stiffness in another unit.
+pub fn supersonic([speed, wave_speed]: [f64; 2]) -> Option<String> {
+    (speed > wave_speed && wave_speed > 0.0).then(|| {
+        format!(
+            "the largest speed at the start, {speed:.3e} m/s, is above the wave speed of the \
+             material, {wave_speed:.3e} m/s: check the stiffness, the density and their units"
+        )
+    })
+}
+
+impl Run {
+    /// Moves the clock on by the step `met`, which ends at `soonest` if it was shortened to.
+    fn advance(&mut self, control: StepControl, met: ChosenStep, soonest: f64) {
+        let Self { clock, tally, history, .. } = self;
+        history.step(clock.time, met.step);
+        clock.step += 1;
+        clock.time = match control {
+            StepControl::Fixed(step) => clock.step as f64 * step,
+            StepControl::Cfl(_) if met.step == soonest - clock.time => soonest,
+            StepControl::Cfl(_) => clock.time + met.step,
+        };
+        clock.chosen = met;
+        let [smallest, largest] = tally.step_range;
+        tally.step_range = [smallest.min(met.step), largest.max(met.step)];
     }
 }

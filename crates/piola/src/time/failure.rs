@@ -17,7 +17,9 @@ pub enum Failure {
         particle.reference
     )]
     NotFinite {
-        /// The first such particle.
+        /// Index in memory of the first such particle.
+        index: usize,
+        /// That particle.
         particle: Particle,
         /// Steps taken.
         step: u64,
@@ -32,6 +34,8 @@ pub enum Failure {
         particle.reference
     )]
     Inverted {
+        /// Index of the particle in memory.
+        index: usize,
         /// The particle.
         particle: Particle,
         /// The smaller of its evolved J and the determinant of its deformation gradient.
@@ -43,18 +47,52 @@ pub enum Failure {
         /// The likely cause and what to change.
         advice: String,
     },
+    /// A particle is much faster than anything was at the start.
+    #[error(
+        "particle {} (reference position {:?} m) moves at {speed:.4e} m/s after step {step}, \
+         t = {time:.6} s, where at most {limit:.4e} m/s is expected (ten times the sum of the \
+         largest speed and the wave speed at the start, unless `time.max_speed` says otherwise): \
+         the state has broken up, or the material is far too soft for its loads; check the \
+         numbers of the material and their units, lower `time.cfl` or raise \
+         `scheme.tau_velocity`, or raise `time.max_speed` if such speeds are meant",
+        particle.id,
+        particle.reference
+    )]
+    TooFast {
+        /// Index of the particle in memory.
+        index: usize,
+        /// The particle.
+        particle: Particle,
+        /// Its speed in m/s.
+        speed: f64,
+        /// The limit in m/s.
+        limit: f64,
+        /// Steps taken.
+        step: u64,
+        /// Simulated time in s.
+        time: f64,
+    },
     /// A fixed step is larger than the state allows.
     #[error(
-        "the fixed step {step:.4e} s is larger than the stable step {stable:.4e} s, set by the \
-         limit `{limiter}`; lower `time.step`, or set `time.cfl` and let the step follow the state"
+        "the fixed step {step:.4e} s is larger than the stable step {stable:.4e} s at \
+         t = {time:.6} s, set by the limit `{limiter}` of particle {} (reference position {:?} m); \
+         lower `time.step`, or set `time.cfl` and let the step follow the state",
+        particle.id,
+        particle.reference
     )]
     FixedStepTooLarge {
+        /// Index in memory of the particle that sets the limit.
+        index: usize,
+        /// That particle.
+        particle: Particle,
         /// The step asked for in s.
         step: f64,
         /// The largest stable step in s.
         stable: f64,
         /// The limit that sets it.
         limiter: &'static str,
+        /// Simulated time in s.
+        time: f64,
     },
     /// The stable step has become too small to get anywhere.
     #[error(
@@ -65,7 +103,9 @@ pub enum Failure {
         particle.reference
     )]
     StepBelowFloor {
-        /// The particle that sets the step.
+        /// Index in memory of the particle that sets the step.
+        index: usize,
+        /// That particle.
         particle: Particle,
         /// The step in s.
         size: f64,
@@ -100,9 +140,22 @@ impl Failure {
         match self {
             Self::NotFinite { .. } => "not_finite",
             Self::Inverted { .. } => "inverted",
+            Self::TooFast { .. } => "too_fast",
             Self::FixedStepTooLarge { .. } => "fixed_step_too_large",
             Self::StepBelowFloor { .. } => "step_below_floor",
             Self::TooManySteps { .. } => "too_many_steps",
+        }
+    }
+
+    /// The particle (index in memory) that it names, if it names one.
+    pub fn particle(&self) -> Option<usize> {
+        match self {
+            Self::NotFinite { index, .. }
+            | Self::Inverted { index, .. }
+            | Self::TooFast { index, .. }
+            | Self::FixedStepTooLarge { index, .. }
+            | Self::StepBelowFloor { index, .. } => Some(*index),
+            Self::TooManySteps { .. } => None,
         }
     }
 }

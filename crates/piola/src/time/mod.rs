@@ -1,19 +1,26 @@
 //! The clock: integrators, step control, and the executor that owns a run.
 
+mod checkpoint;
+mod clock;
 mod executor;
 mod failure;
+mod history;
 mod integrator;
 mod kick_drift_kick;
 mod observer;
 mod schedule;
 mod step;
+mod summary;
 pub mod tvd_rk2;
 
-pub use executor::{Executor, Outcome, Progress, Summary, Timing};
+pub use checkpoint::{Checkpoint, CheckpointPolicy, CheckpointStore, Checkpoints, Misfit};
+pub use executor::{Executor, supersonic};
 pub use failure::Failure;
+pub use history::Trace;
 pub use integrator::{Integrator, IntegratorKind};
 pub use kick_drift_kick::KickDriftKick;
 pub use observer::{Moment, ObserveError, Observer};
 pub use schedule::Schedule;
-pub use step::{ChosenStep, StepControl};
+pub use step::{ChosenStep, StepControl, StepTooLarge};
+pub use summary::{Outcome, Progress, Retry, Summary, Timing};
 pub use tvd_rk2::TvdRk2;

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::checkpoint::Misfit;
 use super::schedule::Schedule;
 use crate::schemes::{Health, Scheme};
 
@@ -38,7 +39,8 @@ pub struct ObserveError {
     pub source: Box<dyn std::error::Error + Send + Sync>,
 }
 
-/// Something that looks at chosen moments, and at the last one.
+/// Something that looks at chosen moments, and at the last one, which it may have been shown
+/// already: then it sees it again, marked as the last.
 pub trait Observer: Send {
     /// When it wants to look.
     fn schedule(&self) -> &Schedule;
@@ -48,4 +50,29 @@ pub trait Observer: Send {
     /// # Errors
     /// A fault stops the run.
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError>;
+
+    /// What it has to remember for a run that goes on from a checkpoint taken now. One without
+    /// memory need not say anything.
+    fn save(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// Takes up what [`Observer::save`] gave.
+    ///
+    /// # Errors
+    /// `saved` is not of such an observer.
+    fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
+        match saved {
+            [] => Ok(()),
+            _ => Err(Misfit("one of its outputs remembers what this run's does not know".into())),
+        }
+    }
+
+    /// Forgets all that it was shown after `time` in s, because the run goes back there.
+    ///
+    /// # Errors
+    /// A fault stops the run.
+    fn rewind(&mut self, _time: f64) -> Result<(), ObserveError> {
+        Ok(())
+    }
 }

@@ -1,6 +1,8 @@
 //! How large the next step is, and why.
 
-use super::failure::Failure;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
 use crate::schemes::StepLimit;
 
 /// How the step is chosen.
@@ -13,14 +15,37 @@ pub enum StepControl {
 }
 
 /// A step with what limited it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChosenStep {
     /// Its size in s.
     pub step: f64,
     /// The name of the bound that it meets: a limit of the scheme, `fixed` or `output`.
+    /// A checkpoint does not keep it: `resumed` it is until the next step.
+    #[serde(skip, default = "ChosenStep::resumed")]
     pub limiter: &'static str,
     /// The particle (index in memory) behind the limit.
     pub particle: usize,
+}
+
+impl ChosenStep {
+    fn resumed() -> &'static str {
+        "resumed"
+    }
+}
+
+/// A fixed step that is beyond the stable one.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "the fixed step {step:.4e} s is larger than the stable step {:.4e} s, set by the limit `{}`; \
+     lower `time.step`, or set `time.cfl` and let the step follow the state",
+    bound.step,
+    bound.limiter
+)]
+pub struct StepTooLarge {
+    /// The step asked for in s.
+    pub step: f64,
+    /// The largest stable one.
+    pub bound: ChosenStep,
 }
 
 /// A step may exceed its bound by round-off: one that is fixed, or that meets a due time.
@@ -30,8 +55,8 @@ impl StepControl {
     /// The step for a state with these limits, before it is shortened to meet a due time.
     ///
     /// # Errors
-    /// [`Failure::FixedStepTooLarge`] when a fixed step is beyond the stable one.
-    pub fn choose(self, limits: &[StepLimit]) -> Result<ChosenStep, Failure> {
+    /// A fixed step is beyond the stable one.
+    pub fn choose(self, limits: &[StepLimit]) -> Result<ChosenStep, StepTooLarge> {
         let number = match self {
             Self::Cfl(number) => number,
             Self::Fixed(_) => 1.0,
@@ -49,7 +74,7 @@ impl StepControl {
         match self {
             Self::Cfl(_) => Ok(bound),
             Self::Fixed(step) if !(step <= bound.step * (1.0 + ROUND_OFF)) => {
-                Err(Failure::FixedStepTooLarge { step, stable: bound.step, limiter: bound.limiter })
+                Err(StepTooLarge { step, bound })
             }
             Self::Fixed(step) => {
                 Ok(ChosenStep { step, limiter: "fixed", particle: bound.particle })
@@ -93,7 +118,7 @@ mod tests {
     fn a_fixed_step_beyond_the_bound_is_refused() {
         assert!(StepControl::Fixed(0.05).choose(&LIMITS).is_ok());
         let refused = StepControl::Fixed(0.06).choose(&LIMITS);
-        assert!(matches!(refused, Err(Failure::FixedStepTooLarge { stable: 0.05, .. })));
+        assert!(matches!(refused, Err(StepTooLarge { bound: ChosenStep { step: 0.05, .. }, .. })));
     }
 
     #[test]

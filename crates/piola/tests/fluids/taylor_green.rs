@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use piola::Vector;
 use piola::schemes::transport_velocity::{Fluid, Settings, TransportVelocity};
-use piola::schemes::{Health, Scheme};
+use piola::schemes::{Health, Ledger, Scheme};
 use piola::time::IntegratorKind;
 
 use super::support::{SETTINGS, fluid_in_box, unit_box};
@@ -94,6 +94,9 @@ fn experiment() {
         let mut scheme = vortices(side as usize, reynolds, settings, seed);
         let start = std::time::Instant::now();
         let state = run(&mut scheme, end);
+        for (name, work) in scheme.mechanisms().iter().zip(Ledger::of(&scheme, &state).work) {
+            print!("{name} {:.5} ", work / 0.25);
+        }
         let errors = errors(&mut scheme, &state, reynolds, end);
         println!(
             "{side} {reynolds} {corrections} seed {seed}: {errors:?} builds {} {:?}",

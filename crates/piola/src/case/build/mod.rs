@@ -5,7 +5,7 @@ mod functions;
 mod probes;
 mod selections;
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::VolumetricLaw;
@@ -21,7 +21,7 @@ use crate::schemes::Scheme;
 use crate::schemes::upwind::{
     Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
 };
-use crate::time::{IntegratorKind, StepControl};
+use crate::time::{CheckpointPolicy, IntegratorKind, StepControl};
 
 use bodies::BodyReport;
 
@@ -237,6 +237,14 @@ pub(super) fn step_control(case: &Case) -> StepControl {
         model::StepControl::Cfl(number) => StepControl::Cfl(number),
         model::StepControl::Fixed(step) => StepControl::Fixed(step),
     }
+}
+
+/// When checkpoints of a case are taken.
+pub(super) fn checkpoint_policy(case: &Case) -> CheckpointPolicy {
+    let model::Checkpoint { every_steps, every, every_wall, at_end, .. } = case.checkpoint;
+    // A number of seconds beyond what a clock holds is never reached.
+    let wall = every_wall.and_then(|wall| Duration::try_from_secs_f64(wall).ok());
+    CheckpointPolicy { steps: every_steps, time: every, wall, at_end }
 }
 
 /// The integrator of a case. The reader has checked its name against the same registry.

@@ -73,8 +73,7 @@ impl Reader<'_, '_> {
     ) -> Option<Located<Quantity>> {
         let Some((table, column)) = text.split_once('.') else {
             let message = format!("`{}` is no column of a table", text.value);
-            let help =
-                "expected PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, step.NAME or run.NAME";
+            let help = "expected PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, momentum.NAME, step.NAME or run.NAME";
             return self.refuse(Problem::new(text.place, message, "no column").help(help));
         };
         let owned = column.to_owned();
@@ -82,6 +81,12 @@ impl Reader<'_, '_> {
             "energy" => {
                 self.known_column(text, column, &catalogue::energy_columns(self.names.scheme))?;
                 Quantity::Energy(owned)
+            }
+            "momentum" => {
+                let known = catalogue::momentum_columns(self.names.scheme, self.dimension);
+                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                self.known_column(text, column, &known)?;
+                Quantity::Momentum(owned)
             }
             "step" => {
                 self.known_column(text, column, &catalogue::step_columns())?;
@@ -118,7 +123,7 @@ impl Reader<'_, '_> {
         let Some(probe) = probes.iter().find(|probe| *probe.name == name) else {
             let message = format!("there is no probe `{name}`");
             let names = probes.iter().map(|probe| probe.name.as_str());
-            let help = suggestion(name, names.chain(["energy", "step", "run"]));
+            let help = suggestion(name, names.chain(["energy", "momentum", "step", "run"]));
             return self.refuse(Problem::new(text.place, message, "unknown probe").help(help));
         };
         match &probe.kind {

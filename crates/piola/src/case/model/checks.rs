@@ -40,6 +40,8 @@ pub enum Quantity {
     },
     /// A column of the energy table: `energy.NAME`.
     Energy(String),
+    /// A column of the momentum table: `momentum.NAME`.
+    Momentum(String),
     /// A column of the table of steps: `step.NAME`.
     Step(String),
     /// A number of the run as a whole, without history: `run.NAME`.
@@ -52,6 +54,7 @@ impl Quantity {
         match self {
             Self::Probe { probe, column } => format!("{probe}.{column}"),
             Self::Energy(name) => format!("energy.{name}"),
+            Self::Momentum(name) => format!("momentum.{name}"),
             Self::Step(name) => format!("step.{name}"),
             Self::Run(name) => format!("run.{name}"),
         }

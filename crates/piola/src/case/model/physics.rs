@@ -177,6 +177,32 @@ pub struct Time {
     pub max_steps: Option<u64>,
     /// The run fails when the stable step falls below, in s.
     pub min_step: Option<f64>,
+    /// The run fails when a particle is faster, in m/s.
+    pub max_speed: Option<f64>,
+    /// How often the run may go back and on with half the step.
+    pub retries: u64,
+}
+
+/// When checkpoints are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// Steps between them.
+    pub every_steps: Option<u64>,
+    /// Simulated time between them in s.
+    pub every: Option<f64>,
+    /// Wall time between them in s.
+    pub every_wall: Option<f64>,
+    /// How many are kept.
+    pub keep: u64,
+    /// Whether one is written at the end.
+    pub at_end: bool,
+}
+
+impl Default for Checkpoint {
+    /// Every five minutes, two of them.
+    fn default() -> Self {
+        Self { every_steps: None, every: None, every_wall: Some(300.0), keep: 2, at_end: false }
+    }
 }
 
 /// How long a time step is.

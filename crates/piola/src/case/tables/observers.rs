@@ -155,7 +155,7 @@ pub(super) static CHECK: TableSpec = TableSpec {
             Kind::Text,
             "",
             Required,
-            "column of a table: PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, step.NAME, run.NAME",
+            "column of a table: PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, momentum.NAME, step.NAME, run.NAME",
         ),
         key(
             "reduce",

@@ -72,6 +72,7 @@ impl RunResults for Fake {
 
 fn inverted() -> Outcome {
     Outcome::Failed(Failure::Inverted {
+        index: 7,
         particle: Particle { id: 7, reference: vec![0.7] },
         ratio: -0.1,
         step: 9,

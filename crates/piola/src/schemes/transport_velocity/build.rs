@@ -5,7 +5,7 @@ use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
 use super::inspect::ChunkFigures;
-use super::ledger::{self, TAIL};
+use super::ledger::Tail;
 use super::shifting::Iteration;
 use super::{
     DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip,
@@ -165,7 +165,6 @@ impl<const D: usize> TransportVelocity<D> {
             forces: vec![Forces::default(); count],
             shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],
             wall_values: vec![WallValues::default(); walls.len()],
-            sums: ledger::Scratch::default(),
             openings: vec![Opening::default(); if settings.free_surface { count } else { 0 }],
             found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
             iteration: Iteration::default(),
@@ -189,7 +188,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// Makes the state of the start, with its accelerations and deviations.
     fn begin(&mut self, initial: &Initial<D>) -> Result<(), TransportVelocityError> {
         let count = self.particles.len();
-        let mut state = vec![0.0; count * Row::<D>::LENGTH + TAIL];
+        let mut state = vec![0.0; count * Row::<D>::LENGTH + Tail::new(D).length()];
         for (number, row) in state.chunks_exact_mut(Row::<D>::LENGTH).take(count).enumerate() {
             let position = self.particles.position[number];
             let (velocity, pressure) = (initial.velocity[number], initial.pressure[number]);
@@ -212,8 +211,7 @@ impl<const D: usize> TransportVelocity<D> {
         self.load(&state);
         self.note_evenness();
         self.accelerate(0.0, &mut state);
-        let end = state.len();
-        state[end - super::MECHANISMS.len()..].fill(0.0);
+        Self::clear_bookings(&mut state[count * Row::<D>::LENGTH..]);
         self.start = state;
         Ok(())
     }

@@ -82,6 +82,8 @@ impl<const D: usize> TransportVelocity<D> {
             worst = worst.worse(figures);
         }
         worst.health.largest_speed = worst.speed.0.sqrt();
+        worst.health.largest_speed_particle = worst.speed.1;
+        worst.health.largest_wave_speed = self.fluid.wave_speed;
         worst
     }
 }

@@ -84,8 +84,6 @@ pub struct TransportVelocity<const D: usize> {
     openings: Vec<Opening<D>>,
     found: Vec<(Vector<D>, bool)>,
     iteration: Iteration<D>,
-    /// Scratch of sums over chunks.
-    sums: ledger::Scratch,
     chunk_figures: Vec<ChunkFigures>,
     /// The first particle whose place was no number, if the neighbours could not be found.
     lost: Option<usize>,
@@ -107,6 +105,11 @@ pub const MECHANISMS: [&str; 7] = [
     "body_force",
     "pressure_diffusion",
 ];
+
+/// The ways in which momentum enters, in the order of the state's tail. Viscous forces act along
+/// `u_ab` and turn the fluid; the corrections neither come in pairs, nor do particles move along
+/// their velocity.
+pub const IMPULSES: [&str; 4] = ["walls", "body_force", "viscosity", "corrections"];
 
 const PRESSURE: usize = 0;
 const TRANSPORT: usize = 3;

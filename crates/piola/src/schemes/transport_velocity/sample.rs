@@ -82,6 +82,18 @@ impl<const D: usize> TransportVelocity<D> {
         }
     }
 
+    /// Numbers of the particles inside the support of a particle.
+    pub(super) fn neighbors_of(&self, number: usize) -> Vec<u32> {
+        let list = self.support.list();
+        let place = list.places()[number] as usize;
+        let (mut found, mut block) = (Vec::new(), Block::default());
+        let mut rest = self.support.all(place);
+        while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
+            found.extend(block.iter().map(|neighbor| list.numbers()[neighbor.place]));
+        }
+        found
+    }
+
     fn neighbor_count(&self, place: usize) -> usize {
         let mut count = 0;
         let mut block = Block::default();

@@ -1,6 +1,6 @@
 //! The transport-velocity formulation as integrators, clock and output see it.
 
-use super::{ENERGIES, MECHANISMS, Row, TransportVelocity};
+use super::{ENERGIES, IMPULSES, MECHANISMS, Row, TransportVelocity};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::schemes::{Health, Particle, Scheme, SplitScheme, StepLimit};
 
@@ -58,6 +58,10 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         &MECHANISMS
     }
 
+    fn impulses(&self) -> &'static [&'static str] {
+        &IMPULSES
+    }
+
     fn energy_names(&self) -> &'static [&'static str] {
         &ENERGIES
     }
@@ -103,6 +107,11 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         energies[1] = self.compression_energy(state);
     }
 
+    fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        let count = momentum.len();
+        momentum.copy_from_slice(&self.momentum_of(state)[..count]);
+    }
+
     fn sample(
         &mut self,
         time: f64,
@@ -127,6 +136,10 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
             id: self.particles.id[index],
             reference: self.particles.position[index].iter().copied().collect(),
         }
+    }
+
+    fn neighborhood(&self, index: usize) -> Vec<u32> {
+        self.neighbors_of(index)
     }
 
     fn collapse_advice(&self, _index: usize) -> String {

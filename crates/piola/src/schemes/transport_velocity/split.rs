@@ -1,6 +1,6 @@
 //! The formulation as kick-drift-kick integrators see it.
 
-use super::{ACCELERATING, DensityRule, PRESSURE, PressureRule, Row, Shifting, TransportVelocity};
+use super::{DensityRule, PressureRule, Row, Shifting, TransportVelocity};
 use crate::boundaries::BodyForce;
 use crate::schemes::SplitScheme;
 use crate::{Vector, parallel};
@@ -32,9 +32,7 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
             self.rate_pass();
         }
         let (rows, tail) = self.parts(state);
-        if diffuses {
-            self.book_pressures(step, rows, tail);
-        }
+        self.book_drift(step, diffuses, rows, tail);
         let (scheme, places) = (&*self, self.support.list().places());
         parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
             if scheme.is_wall[number] {
@@ -82,7 +80,7 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         if algebraic {
             let gained = self.compression_energy(state) - before;
             let (_, tail) = self.parts(state);
-            tail[2 * ACCELERATING + PRESSURE] += gained;
+            Self::book_pressure(gained, tail);
         }
     }
 }

@@ -98,7 +98,7 @@ impl<const D: usize> Upwind<D> {
                 scaled: false,
             });
         }
-        worst.health
+        Health { largest_wave_speed: worst.fastest, ..worst.health }
     }
 
     fn look_at_rows(&self, first: usize, rows: &[f64]) -> ChunkFigures {
@@ -122,6 +122,8 @@ impl<const D: usize> Upwind<D> {
         let speed = row[..D].iter().map(|v| v * v).sum::<f64>().sqrt();
         let health = Health {
             largest_speed: speed,
+            largest_speed_particle: a,
+            largest_wave_speed: 0.0,
             smallest_ratio: evolved.min(determinant),
             smallest_ratio_particle: a,
             ratio_mismatch: (evolved - determinant).abs(),

@@ -18,6 +18,7 @@
 
 mod build;
 mod check;
+mod external;
 mod inspect;
 mod local;
 mod pairs;
@@ -100,6 +101,10 @@ pub const ENERGIES: [&str; 2] = ["kinetic", "strain"];
 /// The mechanisms of its ledger, in the order of the state's tail.
 pub const MECHANISMS: [&str; 5] =
     ["body_force", "traction", "boundary_motion", "upwind_velocity", "upwind_pressure"];
+
+/// The ways in which momentum enters. Pairs exchange what one of them loses, so that internal
+/// forces and dissipation are not among them.
+pub const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
 
 /// Power of each mechanism in W.
 #[derive(Clone, Copy, Debug, Default)]

@@ -4,8 +4,7 @@ use piola_formulas::riemann::Interface;
 use rayon::prelude::*;
 
 use super::local::Side;
-use super::{BODY_FORCE, Powers, Row, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
-use super::{BOUNDARY_MOTION, MECHANISMS};
+use super::{BODY_FORCE, Powers, Row, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
 use crate::parallel::CHUNK;
 use crate::{Tensor, Vector};
 
@@ -128,30 +127,6 @@ impl<const D: usize> Upwind<D> {
             let area = me.cofactor * area.g * me.volume - area.other_area;
             let rate = interface.volume_rate(impedance, pressure_jump, &average, &area);
             sum.upwind_volume_rate += rate * settings.tau_pressure;
-        }
-    }
-
-    /// Adds tractions and replaces the acceleration of prescribed components by the rate of
-    /// their value, with the power of both.
-    pub(super) fn boundary_pass(&mut self, time: f64, rate: &mut [f64]) {
-        let (rows, powers) = rate.split_at_mut(self.particles.len() * Row::<D>::LENGTH);
-        debug_assert_eq!(powers.len(), MECHANISMS.len());
-        for load in &self.loaded {
-            let a = load.particle;
-            let row = &mut rows[a * Row::<D>::LENGTH..][..D];
-            for (component, value) in load.value.iter().enumerate() {
-                let force = load.area * value.value(load.place, time);
-                row[component] += force / self.mass(a);
-                powers[TRACTION] += force * self.sides[a].velocity[component];
-            }
-        }
-        for entry in self.prescribed.iter() {
-            let acceleration = &mut rows[entry.particle * Row::<D>::LENGTH + entry.component];
-            let wanted = entry.value.rate(entry.place, time);
-            let reaction = self.mass(entry.particle) * (wanted - *acceleration);
-            powers[BOUNDARY_MOTION] +=
-                reaction * self.sides[entry.particle].velocity[entry.component];
-            *acceleration = wanted;
         }
     }
 }

@@ -4,7 +4,7 @@ use piola_formulas::tensor;
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::local::deformation;
-use super::{ENERGIES, MECHANISMS, Row, Upwind};
+use super::{ENERGIES, IMPULSES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::parallel;
 use crate::schemes::{Health, Particle, Scheme, StepLimit};
@@ -60,12 +60,16 @@ impl<const D: usize> Scheme for Upwind<D> {
         &MECHANISMS
     }
 
+    fn impulses(&self) -> &'static [&'static str] {
+        &IMPULSES
+    }
+
     fn energy_names(&self) -> &'static [&'static str] {
         &ENERGIES
     }
 
     fn initial_state(&self) -> Vec<f64> {
-        let mut state = vec![0.0; self.particles.len() * Row::<D>::LENGTH + MECHANISMS.len()];
+        let mut state = vec![0.0; self.particles.len() * Row::<D>::LENGTH + Self::tail_length()];
         let (length, position) = (Row::<D>::LENGTH, Row::<D>::POSITION);
         for (a, row) in state.chunks_exact_mut(length).take(self.particles.len()).enumerate() {
             row[..D].copy_from_slice(self.initial_velocity[a].as_slice());
@@ -103,6 +107,11 @@ impl<const D: usize> Scheme for Upwind<D> {
         });
     }
 
+    fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        let all = self.momentum_of(state);
+        momentum.copy_from_slice(&all[..momentum.len()]);
+    }
+
     fn sample(
         &mut self,
         time: f64,
@@ -136,6 +145,10 @@ impl<const D: usize> Scheme for Upwind<D> {
             id: self.particles.id[index],
             reference: self.particles.position[index].iter().copied().collect(),
         }
+    }
+
+    fn neighborhood(&self, index: usize) -> Vec<u32> {
+        self.support.list.row(index).to_vec()
     }
 
     fn collapse_advice(&self, index: usize) -> String {

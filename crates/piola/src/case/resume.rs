@@ -1,0 +1,126 @@
+//! Checkpoints of a case: which of them belong to it, and where they are.
+
+use std::error::Error;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::document::{self, Node, Table, Value};
+use super::model::Case;
+use super::simulation::RunError;
+use crate::observe::{Tables, WrittenFiles};
+use crate::output::ResultsFolder;
+use crate::output::checkpoint::{self, CheckpointError, Identity};
+use crate::schemes::Scheme;
+use crate::time::{Checkpoint, CheckpointStore};
+
+/// What a file holds beside the checkpoint itself.
+#[derive(Serialize, Deserialize)]
+struct Payload<C> {
+    /// Files written before, relative to the folder of the results.
+    files: Vec<String>,
+    checkpoint: C,
+}
+
+/// The checkpoint that a run goes on from.
+pub(super) struct Found {
+    pub checkpoint: Checkpoint,
+    /// Files written before it, relative to the folder of the results.
+    pub files: Vec<String>,
+    /// Newer ones that had to be passed over.
+    pub warnings: Vec<String>,
+}
+
+/// Tables and keys that the course of a run does not depend on before it ends.
+const FREE: [&str; 8] =
+    ["id", "title", "checkpoint", "plot", "coarse", "variant", "sweep", "check"];
+/// Those of `[time]`.
+const FREE_TIME: [&str; 2] = ["end", "max_steps"];
+
+/// What tells runs apart that cannot continue each other: the case with all overrides, but for what
+/// may change in between, and the initial state, which knows of the files that the case reads.
+pub(super) fn identity(case: &Case, scheme: &dyn Scheme) -> Identity {
+    // The text is our own: that it cannot be read again is as impossible as that it is empty.
+    let tree = document::parse(&case.as_run).unwrap_or_default();
+    let outputs = [*case.output.every, *case.output.table_every];
+    let mut sum = Sha256::new().chain_update(document::write(&without_free(tree)));
+    // Their defaults depend on the end.
+    outputs.iter().for_each(|interval| sum.update(interval.to_le_bytes()));
+    scheme.ids().iter().for_each(|id| sum.update(id.to_le_bytes()));
+    scheme.initial_state().iter().for_each(|number| sum.update(number.to_le_bytes()));
+    sum.finalize().into()
+}
+
+fn without_free(mut tree: Table) -> Table {
+    tree.entries.retain(|entry| !FREE.contains(&entry.key.as_str()));
+    for entry in &mut tree.entries {
+        if let ("time", Node { value: Value::Table(time), .. }) =
+            (entry.key.as_str(), &mut entry.node)
+        {
+            time.entries.retain(|entry| !FREE_TIME.contains(&entry.key.as_str()));
+        }
+    }
+    tree
+}
+
+/// Most bytes that a checkpoint of a run may have: its states, the tables with as many rows as the
+/// output asks for, twice over, and some room for names.
+pub(super) fn most_bytes(case: &Case, tables: &Tables, state_length: usize) -> u64 {
+    const ROOM: f64 = (64 << 20) as f64;
+    const STATES: f64 = 3.0;
+    let columns: usize = tables.all().iter().map(|table| table.columns().len()).sum();
+    let rows = 2.0 * (*case.time.end / *case.output.table_every + 16.0);
+    (ROOM + 8.0 * (rows * columns as f64 + STATES * state_length as f64)) as u64
+}
+
+/// The newest sound checkpoint in `folder`; none if there are no checkpoints at all.
+pub(super) fn find(
+    folder: &ResultsFolder,
+    identity: &Identity,
+    most: u64,
+) -> Result<Option<Found>, RunError> {
+    let mut refused: Vec<CheckpointError> = Vec::new();
+    for path in folder.checkpoints()? {
+        match checkpoint::read(&path, identity, most) {
+            Ok(bytes) => match postcard::take_from_bytes::<Payload<Checkpoint>>(&bytes) {
+                Ok((Payload { files, checkpoint }, []))
+                    if files.iter().all(|file| ResultsFolder::may_hold(file)) =>
+                {
+                    let warnings = refused.iter().map(|error| format!("passed over: {error}"));
+                    return Ok(Some(Found { checkpoint, files, warnings: warnings.collect() }));
+                }
+                _ => {
+                    let what = "what it holds cannot be read".into();
+                    refused.push(CheckpointError::Damaged { path, what });
+                }
+            },
+            Err(error) => refused.push(error),
+        }
+    }
+    match refused.into_iter().next() {
+        None => Ok(None),
+        Some(newest) => Err(RunError::NoCheckpoint { newest }),
+    }
+}
+
+/// Writes checkpoints into the folder of a run and removes the oldest.
+pub(super) struct Store {
+    pub folder: ResultsFolder,
+    pub identity: Identity,
+    pub written: WrittenFiles,
+    pub keep: u64,
+}
+
+impl CheckpointStore for Store {
+    fn store(&mut self, checkpoint: &Checkpoint) -> Result<(), Box<dyn Error + Send + Sync>> {
+        let files = self.written.list().iter().map(|file| self.folder.relative(file)).collect();
+        let payload = postcard::to_stdvec(&Payload { files, checkpoint })?;
+        let path = self.folder.checkpoint(checkpoint.step())?;
+        checkpoint::write(&path, &self.identity, &payload)?;
+        // The new one is on the disk before an old one goes.
+        for old in self.folder.checkpoints()?.into_iter().skip(self.keep.max(1) as usize) {
+            std::fs::remove_file(old)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,72 @@
+//! What acts on the body from outside: tractions and prescribed motion, and the momentum that
+//! enters with them and with body forces.
+
+use super::{BOUNDARY_MOTION, IMPULSES, MECHANISMS, Row, TRACTION, Upwind};
+use crate::Vector;
+use crate::parallel;
+use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
+
+impl<const D: usize> Upwind<D> {
+    /// Numbers at the end of a state: the work of each mechanism, then the impulse of each way
+    /// in which momentum enters, component by component.
+    pub(super) fn tail_length() -> usize {
+        MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len()
+    }
+
+    /// Adds tractions and replaces the acceleration of prescribed components by the rate of
+    /// their value, with the power and the momentum of both.
+    pub(super) fn boundary_pass(&mut self, time: f64, rate: &mut [f64]) {
+        let (rows, tail) = rate.split_at_mut(self.particles.len() * Row::<D>::LENGTH);
+        debug_assert_eq!(tail.len(), Self::tail_length());
+        let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
+        let components = momentum_components(D).len();
+        let (body_force, impulses) = impulses.split_at_mut(components);
+        let (traction, boundary) = impulses.split_at_mut(components);
+        body_force.copy_from_slice(&self.body_force_moments()[..components]);
+        for load in &self.loaded {
+            let a = load.particle;
+            let force = Vector::<D>::from_fn(|component, _| {
+                load.area * load.value[component].value(load.place, time)
+            });
+            let row = &mut rows[a * Row::<D>::LENGTH..][..D];
+            for (component, force) in force.iter().enumerate() {
+                row[component] += force / self.mass(a);
+                powers[TRACTION] += force * self.sides[a].velocity[component];
+            }
+            add_moments(&self.sides[a].position, &force, traction);
+        }
+        for entry in self.prescribed.iter() {
+            let (a, component) = (entry.particle, entry.component);
+            let acceleration = &mut rows[a * Row::<D>::LENGTH + component];
+            let wanted = entry.value.rate(entry.place, time);
+            let reaction = self.mass(a) * (wanted - *acceleration);
+            powers[BOUNDARY_MOTION] += reaction * self.sides[a].velocity[component];
+            *acceleration = wanted;
+            let mut force = Vector::zeros();
+            force[component] = reaction;
+            add_moments(&self.sides[a].position, &force, boundary);
+        }
+    }
+
+    /// Force and moment of the body forces on all particles together.
+    fn body_force_moments(&self) -> [f64; MOST_COMPONENTS] {
+        if self.body_forces.is_empty() {
+            return [0.0; MOST_COMPONENTS];
+        }
+        parallel::sums(self.particles.len(), |a, sum| {
+            let weight = self.body_acceleration[a] * self.mass(a);
+            add_moments(&self.sides[a].position, &weight, sum);
+        })
+    }
+
+    /// Momentum of all particles together.
+    pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        parallel::sums(self.particles.len(), |a, sum| {
+            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            let position =
+                Vector::from_column_slice(&row[Row::<D>::POSITION..Row::<D>::DEFORMATION]);
+            let velocity = Vector::<D>::from_column_slice(&row[..D]);
+            add_moments(&position, &(velocity * self.mass(a)), sum);
+        })
+    }
+}

@@ -1,0 +1,171 @@
+//! The last steps of a run: where it can go back to, and what a failure looked like coming.
+
+use serde::{Deserialize, Serialize};
+
+use super::clock::{Clock, Tally};
+use super::integrator::Integrator;
+use crate::fields::component_name;
+use crate::schemes::Scheme;
+
+/// A run at one instant in memory.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Mark {
+    pub clock: Clock,
+    pub tally: Tally,
+    pub due: Vec<Option<f64>>,
+    pub state: Vec<f64>,
+}
+
+/// Marks at multiples of a number of steps, the last two of them, and the steps since the older
+/// one. Integrators are deterministic, so the states between are found again by taking the same
+/// steps: nothing but two copies is kept of states that are almost never wanted.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct History {
+    older: Mark,
+    newer: Mark,
+    /// Time and size of each step since the older mark.
+    steps: Vec<(f64, f64)>,
+}
+
+impl Mark {
+    fn set(&mut self, clock: &Clock, tally: &Tally, due: &[Option<f64>], state: &[f64]) {
+        self.clock = *clock;
+        self.tally.clone_from(tally);
+        self.due.copy_from_slice(due);
+        self.state.copy_from_slice(state);
+    }
+}
+
+impl History {
+    /// Steps between marks.
+    const INTERVAL: u64 = 16;
+
+    /// A history that starts at `mark`.
+    pub fn new(mark: Mark) -> Self {
+        // Up to two intervals of steps are kept: from here on nothing is allocated.
+        let steps = Vec::with_capacity(2 * Self::INTERVAL as usize);
+        Self { older: mark.clone(), newer: mark, steps }
+    }
+
+    /// Takes a mark if it is time for one.
+    pub fn mark(&mut self, clock: &Clock, tally: &Tally, due: &[Option<f64>], state: &[f64]) {
+        if !clock.step.is_multiple_of(Self::INTERVAL) || clock.step == self.newer.clock.step {
+            return;
+        }
+        std::mem::swap(&mut self.older, &mut self.newer);
+        self.newer.set(clock, tally, due, state);
+        let kept = clock.step.saturating_sub(self.older.clock.step) as usize;
+        self.steps.drain(..self.steps.len().saturating_sub(kept));
+    }
+
+    /// Notes a step.
+    pub fn step(&mut self, time: f64, size: f64) {
+        self.steps.push((time, size));
+    }
+
+    /// The mark to go back to, which becomes the only one.
+    pub fn go_back(&mut self) -> &Mark {
+        self.steps.clear();
+        let Mark { clock, tally, due, state } = &self.older;
+        self.newer.set(clock, tally, due, state);
+        &self.older
+    }
+
+    /// Lengths of all states in it.
+    pub fn lengths(&self) -> impl Iterator<Item = usize> + '_ {
+        [&self.older, &self.newer].into_iter().map(|mark| mark.state.len())
+    }
+
+    /// Steps taken at its marks.
+    pub fn mark_steps(&self) -> impl Iterator<Item = u64> + '_ {
+        [&self.older, &self.newer].into_iter().map(|mark| mark.clock.step)
+    }
+
+    /// Numbers of outputs that its marks know.
+    pub fn outputs(&self) -> impl Iterator<Item = usize> + '_ {
+        [&self.older, &self.newer].into_iter().map(|mark| mark.due.len())
+    }
+
+    /// Takes the steps since the older mark once more and writes down what `particle` (index in
+    /// memory) and its neighbours did in the last of them.
+    pub fn trace(
+        &self,
+        scheme: &mut dyn Scheme,
+        integrator: &mut dyn Integrator,
+        particle: usize,
+    ) -> Trace {
+        let mut trace = Trace::new(scheme, particle);
+        let mut state = self.older.state.clone();
+        let mut next = state.clone();
+        let first = self.older.clock.step;
+        let shown = self.steps.len().saturating_sub(Trace::STEPS);
+        for (count, &(time, size)) in self.steps.iter().enumerate() {
+            integrator.step(scheme, time, size, &state, &mut next);
+            std::mem::swap(&mut state, &mut next);
+            if count >= shown {
+                trace.record(scheme, first + count as u64 + 1, time + size, size, &state);
+            }
+        }
+        if self.steps.is_empty() {
+            trace.record(scheme, first, self.older.clock.time, 0.0, &state);
+        }
+        trace
+    }
+}
+
+/// What the first bad particle and its neighbours did in the last steps: a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// Name and unit of each column: step, time, size of the step, number of the particle, whether
+    /// it is the bad one, and every component of every field.
+    pub columns: Vec<(String, &'static str)>,
+    /// The numbers row by row, a row for each step and particle.
+    pub numbers: Vec<f64>,
+    bad: u32,
+    particles: Vec<u32>,
+}
+
+impl Trace {
+    /// Steps that it shows at most.
+    pub const STEPS: usize = 12;
+
+    fn new(scheme: &dyn Scheme, particle: usize) -> Self {
+        let bad = particle as u32;
+        let mut particles = vec![bad];
+        let neighbors = scheme.neighborhood(particle);
+        particles.extend(neighbors.into_iter().filter(|&neighbor| neighbor != bad));
+        let head = [("step", "1"), ("time", "s"), ("step_size", "s"), ("particle", "1")];
+        let head = head.into_iter().chain([("is_bad", "1")]);
+        let mut columns: Vec<_> = head.map(|(name, unit)| (name.to_owned(), unit)).collect();
+        let dimension = scheme.dimension();
+        for field in scheme.fields() {
+            columns.extend((0..field.kind.components(dimension)).map(|number| {
+                let component = component_name(field.kind, number, dimension);
+                let dot = if component.is_empty() { "" } else { "." };
+                (format!("{}{dot}{component}", field.name), field.unit)
+            }));
+        }
+        Self { columns, numbers: Vec::new(), bad, particles }
+    }
+
+    fn record(&mut self, scheme: &mut dyn Scheme, step: u64, time: f64, size: f64, state: &[f64]) {
+        let dimension = scheme.dimension();
+        let fields: Vec<(usize, Vec<f64>)> = scheme
+            .fields()
+            .iter()
+            .map(|field| {
+                let mut values = Vec::new();
+                scheme.sample(time, state, field.name, &self.particles, &mut values);
+                (field.kind.components(dimension), values)
+            })
+            .collect();
+        for (row, &particle) in self.particles.iter().enumerate() {
+            let id = scheme.particle(particle as usize).id;
+            let is_bad = f64::from(u8::from(particle == self.bad));
+            self.numbers.extend([step as f64, time, size, f64::from(id), is_bad]);
+            for (components, values) in &fields {
+                self.numbers.extend_from_slice(&values[row * components..][..*components]);
+            }
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Runs that really go wrong: that each ends at once, says what, where, when and why, and leaves
+//! what it takes to understand it.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use piola::case::{self, Case, Finished, LoadOptions};
+use piola::observe::Series;
+use piola::time::{Failure, Outcome, Progress};
+
+fn load(name: &str, set: &[&str]) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/upwind").join(name);
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, ..LoadOptions::default() };
+    case::load(&path.join("case.toml"), &options).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn run(case: &Case, folder: Option<&Path>) -> Finished {
+    let simulation = case::build(case).unwrap_or_else(|problems| panic!("{problems}"));
+    simulation.run(folder, &AtomicBool::new(false), &mut |_| {}).unwrap()
+}
+
+fn failure(finished: &Finished) -> &Failure {
+    match &finished.summary.outcome {
+        Outcome::Failed(failure) => failure,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A column of numbers of the trace.
+fn column(finished: &Finished, name: &str) -> Vec<f64> {
+    let trace = finished.summary.trace.as_ref().unwrap();
+    let index = trace.columns.iter().position(|(known, _)| known == name).unwrap();
+    trace.numbers.chunks_exact(trace.columns.len()).map(|row| row[index]).collect()
+}
+
+/// Five times the stable step without upwinding: the column breaks up.
+#[test]
+fn a_step_that_is_too_large() {
+    let set = ["time.cfl=2.5", "scheme.tau_velocity=0"];
+    let finished = run(&load("column-impact", &set), None);
+    let Failure::Inverted { particle, ratio, step, time, advice, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    assert!(*ratio <= 0.0 && advice.contains("lower `time.cfl`"), "{ratio}: {advice}");
+    // It ends with the step that broke it, and what it leaves is the state before.
+    assert_eq!(*step, finished.summary.steps + 1);
+    assert!(*time > finished.summary.time && finished.summary.worst.smallest_ratio > 0.0);
+    let rows = finished.tables.steps.values("smallest_ratio").unwrap();
+    assert!(rows.iter().all(|ratio| *ratio > 0.0));
+    // Most of the energy came from nowhere, and that is said too.
+    assert!(finished.warnings.iter().any(|text| text.contains("is not accounted for")));
+
+    // The trace shows the particle and those around it, up to the step that broke it.
+    let (ids, bad) = (column(&finished, "particle"), column(&finished, "is_bad"));
+    let steps = column(&finished, "step");
+    let here: Vec<usize> = (0..ids.len()).filter(|&row| bad[row] == 1.0).collect();
+    assert!(here.iter().all(|&row| ids[row] == f64::from(particle.id)));
+    let last = (step + 1 - here.len() as u64..=*step).map(|step| step as f64);
+    assert!(here.len() >= 10 && here.iter().map(|&row| steps[row]).eq(last), "{steps:?}");
+    let around = ids.len() / here.len();
+    assert!(around >= 3 && around * here.len() == ids.len());
+    let ratios: Vec<f64> = here.iter().map(|&row| column(&finished, "volume_ratio")[row]).collect();
+    let smallest = |row: usize| ratios[row].min(column(&finished, "determinant")[here[row]]);
+    assert_eq!(smallest(here.len() - 1), *ratio);
+    assert!((0..here.len() - 1).all(|row| smallest(row) > 0.0));
+}
+
+/// The steps of the trace are taken anew; they are those of the run to the bit.
+#[test]
+fn the_trace_is_what_happened() {
+    let set = ["time.cfl=2.5", "scheme.tau_velocity=0"];
+    let finished = run(&load("column-impact", &set), None);
+    let place = match failure(&finished) {
+        Failure::Inverted { particle, .. } => format!("{:?}", particle.reference),
+        other => panic!("{other:?}"),
+    };
+    let [probe, fields] = [
+        format!("probe.top.at={place}"),
+        "probe.top.fields=['displacement', 'acceleration']".to_owned(),
+    ];
+    let seen = run(&load("column-impact", &[set[0], set[1], &probe, &fields]), None);
+    let of_last = |name: &str| {
+        let rows = column(&seen, "step").into_iter().zip(column(&seen, "is_bad"));
+        let row = rows.into_iter().position(|row| row == (seen.summary.steps as f64, 1.0));
+        column(&seen, name)[row.unwrap()]
+    };
+    for name in ["displacement.x", "displacement.y", "acceleration.x", "acceleration.y"] {
+        let recorded = seen.tables.probes.values(&format!("top.{name}")).unwrap();
+        assert_eq!(recorded.last().copied(), Some(of_last(name)), "{name}");
+    }
+}
+
+/// Fewer neighbours than a gradient needs are noticed before the run, with the place in the file.
+#[test]
+fn a_kernel_that_is_too_narrow() {
+    let case = load("column-impact", &["scheme.smoothing_length=0.3"]);
+    let problems = case::build(&case).err().unwrap().to_string();
+    for part in ["has 0 neighbours", "enlarge the smoothing length", "with this smoothing length"] {
+        assert!(problems.contains(part), "{problems}");
+    }
+}
+
+/// The linear law costs finite energy to squeeze to nothing: at 8 m/s a column has it.
+#[test]
+fn the_linear_law_under_collapse() {
+    let finished = run(&load("impact-linear", &["parameters.speed=8"]), None);
+    let Failure::StepBelowFloor { ratio, advice, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    assert!(*ratio < 1e-3 && advice.contains("Upwind (6.28)") && advice.contains("gamma_law"));
+    assert!(finished.summary.trace.is_some());
+}
+
+/// A stiffness a thousand times too small: a piston that is faster than sound.
+#[test]
+fn a_parameter_that_is_wrong_by_a_thousand() {
+    let case = load("piston", &["parameters.E=1e2"]);
+    let plan = case::build(&case).unwrap().plan();
+    let is_told = |texts: &[String]| texts.iter().any(|text| text.contains("check the stiffness"));
+    assert!(is_told(&plan.warnings), "{:?}", plan.warnings);
+    let finished = run(&case, None);
+    assert!(is_told(&finished.warnings));
+    let text = failure(&finished).to_string();
+    assert!(text.contains("is above the wave speed of the material, 2.673e-1 m/s"), "{text}");
+    // At the right stiffness nothing of this is said.
+    assert!(!is_told(&case::build(&load("piston", &[])).unwrap().plan().warnings));
+}
+
+/// Upwinding bounds the column's ratios while it is torn apart: what shows is the speed.
+#[test]
+fn a_particle_that_is_far_too_fast() {
+    let set = ["time.cfl=3", "scheme.tau_velocity=0.05"];
+    let finished = run(&load("column-impact", &set), None);
+    let Failure::TooFast { speed, limit, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    // Ten times the speed of 1 m/s and the wave speed of 10 m/s together.
+    assert!((limit - 110.0).abs() < 1e-9 && speed > limit, "{speed} {limit}");
+    assert!(finished.summary.worst.largest_speed <= *limit);
+    let finished = run(&load("column-impact", &[set[0], set[1], "time.max_speed=20"]), None);
+    let Failure::TooFast { limit, time, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    assert!(*limit == 20.0 && *time < 1.33, "{limit} {time}");
+}
+
+#[test]
+fn a_load_that_is_no_number() {
+    let load = "load=[{ kind = 'body_force', acceleration = [0, 'sqrt(0.05 - t)'] }]";
+    let finished = run(&self::load("column-impact", &[load]), None);
+    let Failure::NotFinite { particle, time, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    assert!(particle.id < 225 && *time > 0.05 && *time < 0.07, "{time}");
+    assert!(finished.summary.time <= 0.05 + 1e-9);
+    let trace = finished.summary.trace.as_ref().unwrap();
+    assert!(trace.numbers.iter().any(|number| number.is_nan()));
+}
+
+const RETRIED: [&str; 4] = [
+    "body.water.spacing=0.1",
+    "time.cfl=2",
+    "time.on_failure='retry'",
+    "output.compression='none'",
+];
+
+/// A run that goes back leaves the results of the steps that it kept, and says how often it did.
+#[test]
+fn a_retried_run_gets_to_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let finished = run(&load("dam-break", &RETRIED), Some(&out));
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    let retries = &finished.summary.retries;
+    assert!((1..=5).contains(&retries.len()), "{retries:?}");
+    for (count, retry) in (1..).zip(retries) {
+        assert!(retry.back_to < retry.time && retry.factor == 0.5_f64.powi(count));
+    }
+    // No row and no file is left of what was given up.
+    for table in finished.tables.all() {
+        let times: Vec<f64> = table.column(0).collect();
+        assert_eq!(times.len(), 101);
+        assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+    let files = |end: &str| {
+        let is_such = |path: &&PathBuf| path.extension().is_some_and(|found| found == end);
+        finished.files.iter().filter(is_such).count()
+    };
+    let frames = std::fs::read_dir(out.join("particles")).unwrap().count();
+    assert_eq!((files("vtp"), frames), (21, 21));
+    let record = std::fs::read_to_string(out.join("run.json")).unwrap();
+    assert!(record.contains("\"retries\": [\n    {\n      \"failure\": \"particle"), "{record}");
+    let Some(Series::Number { value, .. }) = finished.quantity("run.retries") else {
+        panic!("a number of the run")
+    };
+    assert_eq!(value, retries.len() as f64);
+}
+
+#[test]
+fn the_number_of_retries_is_bounded() {
+    // What is as soft as this collapses with any step.
+    let set = ["parameters.E=1e2", "time.on_failure='retry'", "time.retries=3"];
+    let finished = run(&load("piston", &set), None);
+    assert!(matches!(finished.summary.outcome, Outcome::Failed(_)));
+    assert_eq!(finished.summary.retries.len(), 3);
+}
+
+/// What a run goes back to is in its checkpoints: broken off between that and the failure, it goes
+/// the same way.
+#[test]
+fn a_retried_run_resumes_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = load("dam-break", &RETRIED);
+    let whole = run(&case, None);
+    let retry = whole.summary.retries.first().unwrap();
+    let out = folder.path().join("out");
+    let stop = AtomicBool::new(false);
+    let mut until = |progress: &Progress| {
+        stop.store(progress.step + 2 >= retry.step, Ordering::Relaxed);
+    };
+    let first = case::build(&case).unwrap().run(Some(&out), &stop, &mut until).unwrap();
+    assert_eq!(first.summary.outcome, Outcome::Interrupted);
+    assert!(first.summary.retries.is_empty() && first.summary.time > retry.back_to);
+    stop.store(false, Ordering::Relaxed);
+    let last = case::build(&case).unwrap().resume(&out, &stop, &mut |_| {}).unwrap();
+    assert_eq!(last.tables, whole.tables);
+    assert_eq!(last.summary.retries, whole.summary.retries);
+}

@@ -1,0 +1,346 @@
+//! Runs that are broken off and gone on with, against runs that are not.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use piola::case::{self, Case, Finished, LoadOptions, RunError};
+use piola::output::checkpoint;
+use piola::time::{Outcome, Progress};
+
+fn load(path: &Path, set: &[&str]) -> Case {
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, coarse: true, ..LoadOptions::default() };
+    case::load(path, &options).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// A run on `threads` threads that is stopped after `last` steps, or never.
+fn run(case: &Case, folder: &Path, resume: bool, threads: usize, last: u64) -> Finished {
+    try_run(case, folder, resume, threads, last).unwrap()
+}
+
+fn try_run(
+    case: &Case,
+    folder: &Path,
+    resume: bool,
+    threads: usize,
+    last: u64,
+) -> Result<Finished, RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let simulation = case::build(case).unwrap_or_else(|problems| panic!("{problems}"));
+        let stop = AtomicBool::new(false);
+        let mut progress = |progress: &Progress| {
+            stop.store(progress.step >= last, Ordering::Relaxed);
+        };
+        match resume {
+            true => simulation.resume(folder, &stop, &mut progress),
+            false => simulation.run(Some(folder), &stop, &mut progress),
+        }
+    })
+}
+
+/// All files of a run by their names, but for the record, which tells times of day, and for
+/// checkpoints, which tell how long the run has taken.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    fn walk(root: &Path, folder: &Path, all: &mut BTreeMap<PathBuf, Vec<u8>>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                walk(root, &path, all);
+            } else {
+                let name = path.strip_prefix(root).unwrap().to_owned();
+                all.insert(name, fs::read(path).unwrap());
+            }
+        }
+    }
+    let mut all = BTreeMap::new();
+    walk(folder, folder, &mut all);
+    let told = ["run.json", "report.html"];
+    all.retain(|name, _| {
+        !name.starts_with("checkpoints") && !told.iter().any(|it| name == Path::new(it))
+    });
+    all
+}
+
+fn assert_same(whole: &Path, broken: &Path, what: &str) {
+    let (whole, broken) = (files(whole), files(broken));
+    let names = |files: &BTreeMap<PathBuf, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&whole), names(&broken), "{what}");
+    for (name, bytes) in &whole {
+        assert!(*bytes == broken[name], "{what}: {} differs", name.display());
+    }
+}
+
+fn cases() -> Vec<PathBuf> {
+    fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+        paths.sort();
+        for path in paths {
+            if path.is_dir() {
+                walk(&path, found);
+            } else if path.file_name().is_some_and(|name| name == "case.toml") {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"), &mut found);
+    assert!(found.len() >= 10);
+    found
+}
+
+/// Every case, broken off twice, on other numbers of threads each time: every file of the results
+/// has the bytes of the run that was never broken off.
+#[test]
+fn every_case_resumes_to_the_bit() {
+    for path in cases() {
+        // What is drawn and packed only takes time here; one picture and five files have it all.
+        let mut case = load(&path, &["output.compression='none'"]);
+        let end = *case.time.end;
+        case.output.every.value = end / 5.0;
+        case.output.table_every.value = end / 50.0;
+        case.pictures.truncate(1);
+        let folder = tempfile::tempdir().unwrap();
+        let (whole, broken) = (folder.path().join("whole"), folder.path().join("broken"));
+        let unbroken = run(&case, &whole, false, 1, u64::MAX);
+        let steps = unbroken.summary.steps;
+        assert!(steps >= 4, "{}", path.display());
+
+        let first = run(&case, &broken, false, 2, steps / 3);
+        assert_eq!(first.summary.outcome, Outcome::Interrupted, "{}", path.display());
+        let second = run(&case, &broken, true, 1, 3 * steps / 4);
+        assert_eq!(second.summary.resumed, Some((first.summary.time, first.summary.steps)));
+        let last = run(&case, &broken, true, 3, u64::MAX);
+        assert_eq!(last.summary.resumed.map(|(_, steps)| steps), Some(3 * steps / 4));
+
+        assert_same(&whole, &broken, &path.display().to_string());
+        assert_eq!(last.tables, unbroken.tables, "{}", path.display());
+        let (mut last, unbroken) = (last.summary, unbroken.summary);
+        assert!(unbroken.trace.is_some() == matches!(unbroken.outcome, Outcome::Failed(_)));
+        (last.timings, last.resumed) = (unbroken.timings.clone(), None);
+        assert_eq!(last, unbroken, "{}", path.display());
+    }
+}
+
+/// A wave in a bar that is over in a blink, in a folder of its own.
+struct Bar {
+    folder: tempfile::TempDir,
+}
+
+const BAR: &str = r#"
+version = 1
+title = "A bar"
+dimension = 1
+[[body]]
+name = "bar"
+shape = { kind = "box", min = [0.0], max = [1.0] }
+spacing = 0.1
+material = { kind = "linear", density = 1000.0, bulk_modulus = 1e5 }
+initial = { velocity = ["x"] }
+[scheme]
+kind = "upwind"
+smoothing_length = 1.0
+[time]
+end = 1.0
+cfl = 0.2
+[checkpoint]
+every_steps = 10
+keep = 3
+[[probe]]
+name = "tip"
+kind = "particle"
+at = [1.0]
+fields = ["displacement"]
+[output]
+every = 0.5
+table_every = 0.1
+"#;
+
+impl Bar {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("case.toml"), BAR).unwrap();
+        Self { folder }
+    }
+
+    fn case(&self, set: &[&str]) -> Case {
+        let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+        let options = LoadOptions { overrides, ..LoadOptions::default() };
+        let path = self.folder.path().join("case.toml");
+        case::load(&path, &options).unwrap_or_else(|problems| panic!("{problems}"))
+    }
+
+    fn out(&self) -> PathBuf {
+        self.folder.path().join("out")
+    }
+
+    /// The checkpoints, the newest first.
+    fn checkpoints(&self) -> Vec<PathBuf> {
+        let entries = fs::read_dir(self.out().join("checkpoints")).unwrap();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+        paths.sort();
+        paths.reverse();
+        paths
+    }
+
+    /// Breaks the case off after 45 steps: checkpoints are those of steps 45, 40 and 30.
+    fn broken_off(&self) -> Case {
+        let case = self.case(&[]);
+        run(&case, &self.out(), false, 1, 45);
+        let names: Vec<_> =
+            self.checkpoints().iter().map(|path| path.file_name().unwrap().to_owned()).collect();
+        assert_eq!(names, ["step_000000000045", "step_000000000040", "step_000000000030"]);
+        case
+    }
+
+    fn resume(&self, case: &Case) -> Result<Finished, RunError> {
+        try_run(case, &self.out(), true, 1, u64::MAX)
+    }
+}
+
+#[test]
+fn a_damaged_checkpoint_is_passed_over_with_a_warning() {
+    let bar = Bar::new();
+    let case = bar.broken_off();
+    let paths = bar.checkpoints();
+    let mut bytes = fs::read(&paths[0]).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 4;
+    fs::write(&paths[0], bytes).unwrap();
+    fs::write(&paths[1], "something else").unwrap();
+    let finished = bar.resume(&case).unwrap();
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    assert_eq!(finished.summary.resumed.map(|(_, step)| step), Some(30));
+    assert_eq!(finished.warnings.len(), 2, "{:?}", finished.warnings);
+    assert!(finished.warnings[0].contains("step_000000000045 is damaged: its checksum"));
+    assert!(finished.warnings[1].contains("step_000000000040 is no checkpoint of piola"));
+    let whole = bar.folder.path().join("whole");
+    run(&case, &whole, false, 1, u64::MAX);
+    assert_same(&whole, &bar.out(), "from the third checkpoint");
+}
+
+#[test]
+fn without_any_sound_checkpoint_nothing_is_touched() {
+    let bar = Bar::new();
+    let case = bar.broken_off();
+    for path in bar.checkpoints() {
+        fs::write(path, "").unwrap();
+    }
+    let before = files(&bar.out());
+    let error = bar.resume(&case).unwrap_err();
+    assert!(matches!(error, RunError::NoCheckpoint { .. }), "{error}");
+    assert!(error.to_string().contains("it ends after 0 bytes"), "{error}");
+    assert_eq!(files(&bar.out()), before);
+}
+
+#[test]
+fn a_checkpoint_of_another_case_is_refused() {
+    let bar = Bar::new();
+    bar.broken_off();
+    for set in ["scheme.tau_velocity=0.5", "body.bar.spacing=0.05", "output.every=0.25"] {
+        let error = bar.resume(&bar.case(&[set])).unwrap_err().to_string();
+        assert!(error.contains("belongs to another case, or to this one with other"), "{error}");
+    }
+    // What a run does not depend on before its end may change.
+    let longer = bar.case(&["time.end=1.5", "title='Longer'", "checkpoint.keep=1"]);
+    let finished = bar.resume(&longer).unwrap();
+    assert_eq!((finished.summary.time, finished.summary.resumed.is_some()), (1.5, true));
+    let whole = bar.folder.path().join("whole");
+    run(&longer, &whole, false, 1, u64::MAX);
+    assert_same(&whole, &bar.out(), "a later end");
+}
+
+#[test]
+fn a_checkpoint_after_the_end_is_refused() {
+    let bar = Bar::new();
+    bar.broken_off();
+    let error = bar.resume(&bar.case(&["time.end=0.01"])).unwrap_err();
+    assert!(error.to_string().contains("the run goes from 0 to 0.01 s"), "{error}");
+}
+
+#[test]
+fn without_a_checkpoint_a_resumed_run_starts() {
+    let bar = Bar::new();
+    let finished = bar.resume(&bar.case(&[])).unwrap();
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    assert!(finished.warnings[0].contains("no checkpoint to resume from"));
+}
+
+/// The one at the end is there on request, and a later end goes on from it.
+#[test]
+fn a_completed_run_can_be_extended() {
+    let bar = Bar::new();
+    run(&bar.case(&["checkpoint.at_end=true"]), &bar.out(), false, 1, u64::MAX);
+    let longer = bar.case(&["time.end=2.0"]);
+    let finished = bar.resume(&longer).unwrap();
+    assert_eq!(finished.summary.resumed.map(|(time, _)| time), Some(1.0));
+    assert_eq!(finished.summary.time, 2.0);
+}
+
+/// Checkpoints by simulated time come at the first step after each multiple, and neither kind
+/// changes what is computed.
+#[test]
+fn results_do_not_depend_on_checkpoints() {
+    let bar = Bar::new();
+    let plain = run(&bar.case(&["checkpoint.every_steps=1000000"]), &bar.out(), false, 1, u64::MAX);
+    for set in [
+        ["checkpoint.every=0.3", "checkpoint.every_steps=1000000"],
+        ["checkpoint.every_wall=1e-9", "checkpoint.keep=1000000"],
+    ] {
+        let other = bar.folder.path().join("other");
+        let finished = run(&bar.case(&set), &other, false, 1, u64::MAX);
+        assert_eq!(finished.tables, plain.tables);
+        assert_same(&bar.out(), &other, set[0]);
+        let count = fs::read_dir(other.join("checkpoints")).unwrap().count() as u64;
+        // At 0.3, 0.6 and 0.9 s, or after every step but the last.
+        let expected = if set[0].contains("wall") { plain.summary.steps - 1 } else { 3 };
+        assert_eq!(count, expected, "{set:?}");
+    }
+}
+
+/// Every single flipped bit and every length that is too short is noticed before anything is
+/// read into memory that the file does not have.
+#[test]
+fn no_damage_goes_unnoticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("step");
+    let identity = [7; 32];
+    checkpoint::write(&path, &identity, b"a payload of some bytes").unwrap();
+    let sound = fs::read(&path).unwrap();
+    let read = || checkpoint::read(&path, &identity, 1000);
+    assert_eq!(read().unwrap(), b"a payload of some bytes");
+    for bit in 0..8 * sound.len() {
+        let mut bytes = sound.clone();
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        fs::write(&path, bytes).unwrap();
+        assert!(read().is_err(), "bit {bit}");
+    }
+    for length in 0..sound.len() {
+        fs::write(&path, &sound[..length]).unwrap();
+        assert!(read().is_err(), "length {length}");
+        fs::write(&path, [&sound[..], &sound[..=length]].concat()).unwrap();
+        assert!(read().is_err(), "{} more", length + 1);
+    }
+    fs::write(&path, &sound).unwrap();
+    assert!(
+        checkpoint::read(&path, &[8; 32], 1000).unwrap_err().to_string().contains("another case")
+    );
+    assert!(checkpoint::read(&path, &identity, 22).unwrap_err().to_string().contains("more than"));
+    assert!(checkpoint::read(folder.path(), &identity, 1000).is_err(), "a folder");
+}
+
+#[test]
+fn another_version_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("step");
+    checkpoint::write(&path, &[0; 32], b"").unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    bytes[12..17].copy_from_slice(b"9.8.7");
+    fs::write(&path, bytes).unwrap();
+    let error = checkpoint::read(&path, &[0; 32], 1000).unwrap_err().to_string();
+    assert!(error.contains("was written by piola 9.8.7 in format 1, and this is piola"), "{error}");
+}
