@@ -161,6 +161,11 @@ impl<const D: usize> TransportVelocity<D> {
         self.support.list().builds()
     }
 
+    /// Whether a particle (index in memory) belongs to a wall.
+    pub fn is_wall(&self, index: u32) -> bool {
+        self.is_wall.get(index as usize).copied().unwrap_or(false)
+    }
+
     /// Splits a state into its rows and its tail.
     fn parts<'a>(&self, state: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
         state.split_at_mut(self.particles.len() * Row::<D>::LENGTH)
