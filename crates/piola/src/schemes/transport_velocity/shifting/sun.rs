@@ -10,11 +10,13 @@ impl<const D: usize> TransportVelocity<D> {
     /// Replaces the deviations of the sides by those of the current places,
     /// `d_a = -f Ma 2h c sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab`, CTVF (35), where the Mach
     /// number is that of the largest speed now: `Ma c = max |u|`. Near free surfaces the sum has
-    /// the smaller support of CTVF algorithm 1, and (44) holds.
+    /// the smaller support of CTVF algorithm 1, and (44) holds. As in the method's source, no
+    /// deviation is larger than half of the largest speed.
     pub(in super::super) fn shift(&mut self) {
         let Shifting::Sun { factor } = self.settings.shifting else { return };
         let speed = self.largest_speed();
         let scale = -factor * speed * 2.0 * self.support.smoothing_length();
+        let most = 0.5 * speed;
         if self.settings.free_surface {
             self.find_surfaces();
         }
@@ -40,23 +42,33 @@ impl<const D: usize> TransportVelocity<D> {
                     }
                     Some(_) => crowding,
                 };
-                side.deviation = shift * scale;
+                let deviation = shift * scale;
+                let length = deviation.norm();
+                side.deviation = match length > most {
+                    true => deviation * (most / length),
+                    false => deviation,
+                };
             }
         });
         self.sides = sides;
     }
 
-    /// The sum of CTVF (35) with another smoothing length, for the few particles near surfaces.
-    /// Volumes stand in `densities`.
+    /// The sum of CTVF (35) with a smaller support, for the few particles near surfaces. Volumes
+    /// stand in `densities`.
+    ///
+    /// The gradients keep the size that they have with the full support: a kernel that is scaled
+    /// down to a unit integral pushes without bounds once it holds but a neighbour or two.
     fn crowding_within(&self, place: usize, h: f64, block: &mut Block<D>) -> Vector<D> {
         let kernel = self.support.kernel();
-        let inverse = 1.0 / self.value_at_spacing(self.support.smoothing_length());
+        let full = self.support.smoothing_length();
+        let inverse = 1.0 / self.value_at_spacing(full);
+        let size = (h / full).powi(D as i32 + 1);
         let (mut sum, mut rest) = (Vector::zeros(), self.support.all(place));
         while self.support.fill(&mut rest, Needs::Value, block) {
             for neighbor in block.iter() {
                 let distance = neighbor.square.sqrt();
                 let weight = fluid::repulsion(neighbor.value * inverse)
-                    * kernel.derivative_over_r(D, distance, h)
+                    * (size * kernel.derivative_over_r(D, distance, h))
                     * self.densities[neighbor.place];
                 sum += neighbor.separation * weight;
             }
