@@ -71,6 +71,7 @@ fn vortices<const D: usize>(
             shifting: Shifting::Sun { factor: 1.0 },
             artificial_viscosity: 0.0,
             free_surface: false,
+            density_drift: 0.02,
         },
         fluid: Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 },
         initial: Initial { velocity: velocity.collect(), pressure: vec![0.0; particles.len()] },

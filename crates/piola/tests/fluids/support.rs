@@ -20,6 +20,7 @@ pub const SETTINGS: Settings = Settings {
     shifting: Shifting::Sun { factor: 1.0 },
     artificial_viscosity: 0.0,
     free_surface: false,
+    density_drift: 0.02,
 };
 
 /// `side^D` particles in the unit box, each coordinate displaced by up to `jitter` spacings.

@@ -33,6 +33,7 @@ pub(super) fn transport_velocity(record: &Record) -> Option<TransportVelocity> {
             shifting,
             artificial_viscosity: record.number("artificial_viscosity")?.value,
             free_surface: record.boolean("free_surface")?,
+            density_drift: record.number("density_drift")?.value,
         },
     })
 }

@@ -28,15 +28,15 @@ impl<const D: usize> TransportVelocity<D> {
         self.densities = densities;
     }
 
-    /// Gives the fluid the density and pressure that are functions of where particles are.
+    /// Gives the fluid the density and pressure that are functions of where particles are, or of
+    /// each other, and ties a density that has drifted to its pressure again.
     pub(super) fn update_density_and_pressure(&mut self) {
         let sums = self.settings.density == DensityRule::Summation;
         let algebraic = self.settings.pressure == PressureRule::StateEquation;
         if sums {
             self.sum_densities();
-        } else if !algebraic {
-            return;
         }
+        let drift = self.settings.density_drift * self.fluid.density;
         let (densities, list, fluid) = (&self.densities, self.support.list(), self.fluid);
         parallel::for_each_chunk(&mut self.sides, |first, sides| {
             for (offset, side) in sides.iter_mut().enumerate() {
@@ -44,7 +44,12 @@ impl<const D: usize> TransportVelocity<D> {
                 if list.is_passive(place) {
                     continue;
                 }
-                let density = if sums { densities[place] } else { side.density };
+                let tied = fluid::density(side.pressure, fluid.density, fluid.wave_speed);
+                let density = match (sums, algebraic) {
+                    (true, _) => densities[place],
+                    (false, false) if (side.density - tied).abs() > drift => tied,
+                    (false, _) => side.density,
+                };
                 let pressure = match algebraic {
                     true => fluid::pressure(density, fluid.density, fluid.wave_speed),
                     false => side.pressure,

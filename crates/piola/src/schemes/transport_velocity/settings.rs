@@ -133,6 +133,10 @@ pub struct Settings {
     pub artificial_viscosity: f64,
     /// Whether free surfaces are looked for, CTVF (42) to (45).
     pub free_surface: bool,
+    /// Largest relative departure of an integrated density from that of an integrated pressure.
+    /// Nothing else ties the two to each other, and the density drifts; beyond this it is set to
+    /// the density that the law of state gives for the pressure.
+    pub density_drift: f64,
 }
 
 /// The one fluid of a run.

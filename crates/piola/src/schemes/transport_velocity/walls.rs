@@ -18,8 +18,10 @@ pub(super) struct WallParticle<const D: usize> {
 /// What a wall particle takes from the fluid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WallValues<const D: usize> {
-    /// Velocity of the wall's surface in m/s.
-    surface_velocity: Vector<D>,
+    /// Velocity with which the wall moves in m/s.
+    motion: Vector<D>,
+    /// Velocity with which its surface slides besides, in m/s.
+    sliding: Vector<D>,
     /// Acceleration of the wall in m/s^2.
     acceleration: Vector<D>,
     velocity: Vector<D>,
@@ -32,7 +34,8 @@ impl<const D: usize> Default for WallValues<D> {
     fn default() -> Self {
         let zero = Vector::zeros();
         Self {
-            surface_velocity: zero,
+            motion: zero,
+            sliding: zero,
             acceleration: zero,
             velocity: zero,
             deviation: zero,
@@ -73,12 +76,12 @@ impl<const D: usize> TransportVelocity<D> {
         values.fill(WallValues::default());
         for entry in self.motion.iter() {
             let wall = &mut values[entry.particle];
-            wall.surface_velocity[entry.component] += entry.value.value(entry.place, time);
+            wall.motion[entry.component] = entry.value.value(entry.place, time);
             wall.acceleration[entry.component] = entry.value.rate(entry.place, time);
         }
         for entry in self.sliding.iter() {
             let wall = &mut values[entry.particle];
-            wall.surface_velocity[entry.component] += entry.value.value(entry.place, time);
+            wall.sliding[entry.component] = entry.value.value(entry.place, time);
         }
     }
 
@@ -106,9 +109,9 @@ impl<const D: usize> TransportVelocity<D> {
                 arm += neighbor.separation * (side.density * neighbor.value);
             }
         }
-        let surface = values.surface_velocity;
+        let surface = values.motion + values.sliding;
         if !(weight > 0.0) {
-            values.velocity = surface;
+            values.velocity = values.motion;
             values.shear = surface;
             return;
         }
@@ -116,7 +119,9 @@ impl<const D: usize> TransportVelocity<D> {
         let gravity = self.body_force_at(wall.number as usize, place, time);
         values.pressure = (pressure + (gravity - values.acceleration).dot(&arm)) / weight;
         let normal = &wall.normal;
-        values.velocity = velocity + normal * (2.0 * (surface - velocity).dot(normal));
+        // A surface that slides goes nowhere: at corners, where the normal is between two faces,
+        // it must not push.
+        values.velocity = velocity + normal * (2.0 * (values.motion - velocity).dot(normal));
         // The reflected uhat less the reflected u, CTVF (49) less (48).
         values.deviation = deviation - normal * (2.0 * deviation.dot(normal));
         values.shear = match wall.slip {

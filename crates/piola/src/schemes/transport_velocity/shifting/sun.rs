@@ -6,6 +6,10 @@ use crate::operators::{Block, Needs};
 use crate::schemes::transport_velocity::{Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
+/// Largest Mach number of CTVF (35). A fluid that is faster is not weakly compressible: such a
+/// speed is that of a particle in a splash, and no measure of how fast the others lose their order.
+const MOST_MACH: f64 = 0.25;
+
 impl<const D: usize> TransportVelocity<D> {
     /// Replaces the deviations of the sides by those of the current places,
     /// `d_a = -f Ma 2h c sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab`, CTVF (35), where the Mach
@@ -14,7 +18,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// deviation is larger than half of the largest speed.
     pub(in super::super) fn shift(&mut self) {
         let Shifting::Sun { factor } = self.settings.shifting else { return };
-        let speed = self.largest_speed();
+        let speed = self.largest_speed().min(MOST_MACH * self.fluid.wave_speed);
         let scale = -factor * speed * 2.0 * self.support.smoothing_length();
         let most = 0.5 * speed;
         if self.settings.free_surface {
