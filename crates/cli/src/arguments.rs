@@ -24,8 +24,16 @@ pub enum Command {
     Run(RunArguments),
     /// Read and build a case, run nothing, and say what a run will do
     Check(CheckArguments),
+    /// Run a case with every value of one or two keys, and compare
+    Sweep(SweepArguments),
     /// Run all cases below some folders and evaluate their checks
     Verify(VerifyArguments),
+    /// Make the report of an earlier run again, from its results folder
+    Report {
+        /// The results folder
+        #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+        folder: PathBuf,
+    },
     /// Write a commented case to start from
     New {
         /// Folder of the new case, which is created
@@ -52,7 +60,7 @@ pub struct CaseArguments {
     /// Set a key of the case file: a path and a TOML value, for example body.column.spacing=0.1
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,
-    /// Apply this variant of the case
+    /// Apply this variant of the case, or this member of a sweep (NAME.1, NAME.2, ...)
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
     /// Threads to use [default: one for each processor]
@@ -90,6 +98,31 @@ pub struct CheckArguments {
     pub case: CaseArguments,
 }
 
+/// Arguments of `piola sweep`.
+#[derive(Args, Debug)]
+#[command(after_help = Exit::table())]
+pub struct SweepArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// A key and its values, for example body.column.spacing=0.2,0.1; with two keys every pair runs
+    #[arg(long, value_name = "PATH=V1,V2,...", required_unless_present = "sweep")]
+    pub over: Vec<String>,
+    /// The members of this sweep of the case file instead
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["over", "variant"])]
+    pub sweep: Option<String>,
+    /// Members that run at the same time, each with its share of the threads
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: u16,
+    /// Folder of the results [default: results/ and the name of the case's folder with -sweep]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Show neither progress nor table
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
 /// Arguments of `piola verify`.
 #[derive(Args, Debug)]
 #[command(after_help = Exit::table())]
@@ -100,6 +133,9 @@ pub struct VerifyArguments {
     /// Run at the full setting instead of the coarse one; may take hours
     #[arg(long)]
     pub full: bool,
+    /// Write a page with all checks and charts beside it, for example docs/validation.md
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub page: Option<PathBuf>,
     /// Only the case with this id, or in a folder of this name
     #[arg(long, value_name = "ID")]
     pub only: Option<String>,

@@ -32,7 +32,9 @@ fn dispatch(command: Command) -> Result<Exit, Fault> {
     match command {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Check(arguments) => commands::check::check(&arguments),
+        Command::Sweep(arguments) => commands::sweep::sweep(&arguments),
         Command::Verify(arguments) => commands::verify::verify(&arguments),
+        Command::Report { folder } => commands::report::report(&folder),
         Command::New { name } => commands::new::new(&name),
         Command::Schema => commands::generate::schema(),
         Command::Reference => commands::generate::reference(),

@@ -163,8 +163,12 @@ fn files(finished: &Finished, folder: &Path, text: &mut String) {
     if let Some(series) = finished.files.iter().find(is_series) {
         let _ = writeln!(text, "\nopen {} in ParaView", series.display());
     }
+    let is_page = |path: &&PathBuf| path.extension().is_some_and(|end| end == "html");
+    if let Some(page) = finished.files.iter().find(is_page) {
+        let _ = writeln!(text, "open {} in a browser", page.display());
+    }
     let (mut single, mut folders) = (Vec::new(), BTreeMap::<PathBuf, u64>::new());
-    for path in finished.files.iter().filter(|path| !is_series(path)) {
+    for path in finished.files.iter().filter(|path| !is_series(path) && !is_page(path)) {
         let relative = path.strip_prefix(folder).unwrap_or(path);
         match relative.parent().filter(|parent| !parent.as_os_str().is_empty()) {
             Some(parent) => *folders.entry(parent.to_owned()).or_default() += 1,

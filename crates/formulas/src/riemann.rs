@@ -5,6 +5,8 @@
 //! `S_p = 1/(2 rho0 c) n (x) n` (corrected). Areas are the antisymmetric averages of (3.41) and
 //! (3.42, sign corrected), so that what a particle receives its neighbour loses.
 
+use std::ops::Mul;
+
 use nalgebra::{SMatrix, SVector};
 
 use crate::Scalar;
@@ -15,61 +17,59 @@ use crate::Scalar;
 /// `N = (X_b - X_a) / |X_b - X_a|` its reference normal.
 #[derive(Clone, Copy, Debug)]
 pub struct Interface<T, const D: usize> {
+    /// Current separation `x_b - x_a` in m.
     current: SVector<T, D>,
+    /// Reference separation `X_b - X_a` in m.
     reference: SVector<f64, D>,
-    /// `1 / (|X_ab| |x_ab|^2)`: turns the unnormalised `x_ab (x) x_ab` and `X_ab` of the fluxes
-    /// into `n (x) n` and `N` with one root and one division.
+    /// Impedance `z = rho0 c` in kg/(m^2 s).
+    impedance: T,
+    /// `1 / (2 z |X_ab| |x_ab|^2)`: turns the unnormalised `x_ab (x) x_ab` and `X_ab` of the fluxes
+    /// into `n (x) n` and `N`, and divides by the impedance, all with one root and one division.
     scale: T,
 }
 
 impl<T: Scalar, const D: usize> Interface<T, D> {
     /// The interface of a pair with current separation `x_b - x_a` and reference separation
-    /// `X_b - X_a`, both in m.
+    /// `X_b - X_a`, both in m, and impedance `z = rho0 c` in kg/(m^2 s).
     #[inline]
-    pub fn new(current: SVector<T, D>, reference: SVector<f64, D>) -> Self {
+    pub fn new(current: SVector<T, D>, reference: SVector<f64, D>, impedance: T) -> Self {
         let square = dot(&current, &current);
-        let scale = (square * reference.norm_squared().sqrt()).recip();
-        Self { current, reference, scale }
+        let distance = dot(&reference, &reference).sqrt();
+        let scale = (square * impedance * T::from(2.0 * distance)).recip();
+        Self { current, reference, impedance, scale }
     }
 
     /// Dissipative force on a in N, `1/2 z (n . dv) n (N . C)`, theory (12), Upwind (3.40a)
     /// corrected.
     ///
-    /// `impedance` z = rho0 c in kg/(m^2 s); `jump` dv = v_f+ - v_f- in m/s; `area` the
-    /// antisymmetric `C_ab = V_a G_ab - V_b G_ba` in m^(D-1).
+    /// `jump` dv = v_f+ - v_f- in m/s; `area` the antisymmetric `C_ab = V_a G_ab - V_b G_ba` in
+    /// m^(D-1).
     #[inline]
-    pub fn force(
-        &self,
-        impedance: T,
-        jump: &SVector<T, D>,
-        area: &SVector<f64, D>,
-    ) -> SVector<T, D> {
-        let normal_area = self.reference.dot(area);
-        let size = impedance * dot(&self.current, jump) * self.scale * T::from(0.5 * normal_area);
+    pub fn force(&self, jump: &SVector<T, D>, area: &SVector<f64, D>) -> SVector<T, D> {
+        let normal_area = dot(&self.reference, area);
+        let flux = self.scale * self.impedance * self.impedance * dot(&self.current, jump);
+        let size = flux * T::from(normal_area);
         self.current.map(|component| component * size)
     }
 
     /// Dissipative volume rate of a in m^D/s, `-(dp / 2z) (n . H^Ave N) (n . C^H)`,
     /// theory (13), Upwind (3.40b) corrected, for `P = -p H`.
     ///
-    /// `jump` dp = p_f+ - p_f- in Pa; `cofactor` the average of the two cofactors; `area` the
-    /// antisymmetric `C^H_ab = V_a H_a G_ab - V_b H_b G_ba` in m^(D-1).
+    /// `jump` dp = p_f+ - p_f- in Pa; `cofactors` H_a and H_b, of which H^Ave is the average;
+    /// `areas` V_a G_ab and V_b G_ba in m^(D-1), which give the antisymmetric
+    /// `C^H_ab = V_a H_a G_ab - V_b H_b G_ba`.
     #[inline]
     pub fn volume_rate(
         &self,
-        impedance: T,
         jump: T,
-        cofactor: &SMatrix<T, D, D>,
-        area: &SVector<T, D>,
+        cofactors: [&SMatrix<T, D, D>; 2],
+        areas: [&SVector<f64, D>; 2],
     ) -> T {
-        let mut mapped = SVector::<T, D>::from_element(T::from(0.0));
-        for i in 0..D {
-            for j in 0..D {
-                mapped[i] += cofactor[(i, j)] * T::from(self.reference[j]);
-            }
-        }
-        let projected = dot(&self.current, &mapped) * dot(&self.current, area);
-        -(jump * projected * self.scale) / (impedance * T::from(2.0))
+        // What a cofactor maps is needed along x_ab only: two products with its transpose do.
+        let [mine, theirs] = cofactors.map(|h| transposed_product(h, &self.current));
+        let both = SVector::from_fn(|i, _| mine[i] + theirs[i]);
+        let area = dot(&mine, areas[0]) - dot(&theirs, areas[1]);
+        -(jump * self.scale * T::from(0.5) * dot(&both, &self.reference) * area)
     }
 }
 
@@ -90,10 +90,28 @@ pub fn referential_wave_speed<T: Scalar>(acoustic: T, determinant: T, smallest_e
 }
 
 #[inline]
-fn dot<T: Scalar, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>) -> T {
-    let mut sum = T::from(0.0);
-    for i in 0..D {
+fn dot<T: Scalar + Mul<U, Output = T>, U: nalgebra::Scalar + Copy, const D: usize>(
+    a: &SVector<T, D>,
+    b: &SVector<U, D>,
+) -> T {
+    let mut sum = a[0] * b[0];
+    for i in 1..D {
         sum += a[i] * b[i];
     }
     sum
+}
+
+/// `H^T x`.
+#[inline]
+fn transposed_product<T: Scalar, const D: usize>(
+    matrix: &SMatrix<T, D, D>,
+    vector: &SVector<T, D>,
+) -> SVector<T, D> {
+    SVector::from_fn(|j, _| {
+        let mut sum = matrix[(0, j)] * vector[0];
+        for i in 1..D {
+            sum += matrix[(i, j)] * vector[i];
+        }
+        sum
+    })
 }

@@ -35,9 +35,10 @@ struct Pair<const D: usize> {
     impedance: f64,
     velocity_jump: Vector<D>,
     pressure_jump: f64,
-    cofactor: Matrix<D>,
-    area: Vector<D>,
-    mapped_area: Vector<D>,
+    /// H_a and H_b.
+    cofactors: [Matrix<D>; 2],
+    /// `V_a G_ab` and `V_b G_ba`.
+    areas: [Vector<D>; 2],
 }
 
 impl<const D: usize> Pair<D> {
@@ -48,36 +49,40 @@ impl<const D: usize> Pair<D> {
             reference: -self.reference,
             velocity_jump: -self.velocity_jump,
             pressure_jump: -self.pressure_jump,
-            area: -self.area,
-            mapped_area: -self.mapped_area,
+            cofactors: [self.cofactors[1], self.cofactors[0]],
+            areas: [self.areas[1], self.areas[0]],
             ..self
         }
     }
 
+    /// `C_ab`.
+    fn area(&self) -> Vector<D> {
+        self.areas[0] - self.areas[1]
+    }
+
     fn force(&self) -> Vector<D> {
-        let interface = Interface::new(self.current, self.reference);
-        interface.force(self.impedance, &self.velocity_jump, &self.area)
+        let interface = Interface::new(self.current, self.reference, self.impedance);
+        interface.force(&self.velocity_jump, &self.area())
     }
 
     fn volume_rate(&self) -> f64 {
-        let interface = Interface::new(self.current, self.reference);
-        interface.volume_rate(self.impedance, self.pressure_jump, &self.cofactor, &self.mapped_area)
+        let interface = Interface::new(self.current, self.reference, self.impedance);
+        interface.volume_rate(self.pressure_jump, self.cofactors.each_ref(), self.areas.each_ref())
     }
 }
 
 fn pairs<const D: usize>() -> impl Strategy<Value = Pair<D>> {
-    let geometry = (separations::<D>(), separations::<D>(), deformations::<D>());
+    let geometry = (separations::<D>(), separations::<D>(), [deformations::<D>(), deformations()]);
     let areas = (vectors::<D>(3.0), vectors::<D>(3.0));
     (geometry, areas, vectors::<D>(10.0), -1e5..1e5, 1e2..1e6).prop_map(
-        |((current, reference, f), (area, mapped_area), velocity_jump, pressure_jump, z)| Pair {
+        |((current, reference, f), (area, transposed), velocity_jump, pressure_jump, z)| Pair {
             current,
             reference,
             impedance: z,
             velocity_jump,
             pressure_jump,
-            cofactor: cofactor(&f),
-            area,
-            mapped_area,
+            cofactors: f.map(|f| cofactor(&f)),
+            areas: [area, transposed],
         },
     )
 }
@@ -90,12 +95,15 @@ fn check_definition<const D: usize>(pair: &Pair<D>) -> Result<(), TestCaseError>
     let s_p = projector / (2.0 * pair.impedance);
     let stress = (s_v * pair.velocity_jump) * normal.transpose();
     // Projections may cancel: the rounding is relative to the sizes of what is projected.
-    let size = pair.impedance * pair.velocity_jump.norm() * pair.area.norm();
-    prop_assert!((pair.force() - stress * pair.area).norm() <= 1e-13 * size);
-    let stress_jump = pair.cofactor * -pair.pressure_jump;
+    let sizes = pair.areas[0].norm() + pair.areas[1].norm();
+    let size = pair.impedance * pair.velocity_jump.norm() * sizes;
+    prop_assert!((pair.force() - stress * pair.area()).norm() <= 1e-13 * size);
+    let [mine, theirs] = pair.cofactors;
+    let stress_jump = (mine + theirs) * 0.5 * -pair.pressure_jump;
     let velocity = s_p * (stress_jump * normal);
-    let rate = velocity.dot(&pair.mapped_area);
-    let size = pair.pressure_jump.abs() / pair.impedance * pair.mapped_area.norm();
+    let mapped_area = mine * pair.areas[0] - theirs * pair.areas[1];
+    let rate = velocity.dot(&mapped_area);
+    let size = pair.pressure_jump.abs() / pair.impedance * sizes;
     prop_assert!((pair.volume_rate() - rate).abs() <= 1e-13 * size);
     Ok(())
 }
@@ -118,9 +126,9 @@ fn check_dissipation<const D: usize>(
     size: f64,
 ) -> Result<(), TestCaseError> {
     let h = cofactor(f);
-    let area = pair.reference.normalize() * size;
-    let pair =
-        Pair { current: f * pair.reference, cofactor: h, area, mapped_area: h * area, ..*pair };
+    let area = pair.reference.normalize() * (0.5 * size);
+    let (cofactors, areas) = ([h, h], [area, -area]);
+    let pair = Pair { current: f * pair.reference, cofactors, areas, ..*pair };
     prop_assert!(-pair.force().dot(&pair.velocity_jump) <= 0.0);
     prop_assert!(pair.pressure_jump * pair.volume_rate() <= 0.0);
     // They are zero only for a zero jump: n . H N = det F / |F N| does not vanish.
@@ -144,28 +152,34 @@ fn check_derivatives<const D: usize>(
         moved.velocity_jump += direction * step;
         moved.impedance *= 1.0 + step;
         moved.pressure_jump *= 1.0 + 2.0 * step;
-        moved.mapped_area += direction * step;
+        moved.cofactors[0] += direction * direction.transpose() * step;
+        moved.cofactors[1] -= direction * direction.transpose() * step;
         moved
     };
     let along =
         |x: &Vector<D>| SVector::<Dual64, D>::from_fn(|i, _| Dual64::new(x[i], direction[i]));
-    let interface = Interface::new(along(&pair.current), pair.reference);
+    let along_square = |h: &Matrix<D>, sign: f64| {
+        SMatrix::<Dual64, D, D>::from_fn(|i, j| {
+            Dual64::new(h[(i, j)], sign * direction[i] * direction[j])
+        })
+    };
     let impedance = Dual64::new(pair.impedance, pair.impedance);
-    let force = interface.force(impedance, &along(&pair.velocity_jump), &pair.area);
+    let interface = Interface::new(along(&pair.current), pair.reference, impedance);
+    let force = interface.force(&along(&pair.velocity_jump), &pair.area());
     let rate = interface.volume_rate(
-        impedance,
         Dual64::new(pair.pressure_jump, 2.0 * pair.pressure_jump),
-        &pair.cofactor.map(Dual64::from_re),
-        &along(&pair.mapped_area),
+        [&along_square(&pair.cofactors[0], 1.0), &along_square(&pair.cofactors[1], -1.0)],
+        pair.areas.each_ref(),
     );
     // Separations of 0.1 m and more: third derivatives are below 1e4 times the sizes, so that
     // central differences of 1e-5 are good to 1e-6 of them; rounding is below that.
     let step = 1e-5;
-    let size = pair.impedance * (pair.velocity_jump.norm() + 1.0) * pair.area.norm();
+    let sizes = pair.areas[0].norm() + pair.areas[1].norm();
+    let size = pair.impedance * (pair.velocity_jump.norm() + 1.0) * sizes;
     let slope = (moved(step).force() - moved(-step).force()) / (2.0 * step);
     prop_assert!((force.map(|f| f.re) - pair.force()).norm() <= 1e-14 * size);
     prop_assert!((force.map(|f| f.eps) - slope).norm() <= 1e-5 * size);
-    let size = pair.pressure_jump.abs() / pair.impedance * (pair.mapped_area.norm() + 1.0);
+    let size = pair.pressure_jump.abs() / pair.impedance * (sizes + 1.0);
     let slope = (moved(step).volume_rate() - moved(-step).volume_rate()) / (2.0 * step);
     prop_assert!((rate.re - pair.volume_rate()).abs() <= 1e-14 * size);
     prop_assert!((rate.eps - slope).abs() <= 1e-5 * size);
@@ -231,9 +245,8 @@ proptest! {
             impedance: z,
             velocity_jump: normal * (v_right - v_left) + slide,
             pressure_jump: p_right - p_left,
-            cofactor: Matrix::identity(),
-            area: normal,
-            mapped_area: normal,
+            cofactors: [Matrix::identity(); 2],
+            areas: [normal * 0.5, normal * -0.5],
         };
         // The left particle is pushed back by the pressure of the face, and grows with its speed.
         let pressure = 0.5 * (p_left + p_right) - normal.dot(&pair.force());

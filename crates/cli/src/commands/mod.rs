@@ -13,7 +13,9 @@ use crate::text::count;
 pub mod check;
 pub mod generate;
 pub mod new;
+pub mod report;
 pub mod run;
+pub mod sweep;
 pub mod verify;
 
 /// Sets the number of threads of all loops.

@@ -89,7 +89,7 @@ fn code(error: &RunError) -> Exit {
 
 /// `results/` with the name of the case's folder, or of the case file if it is not called
 /// `case.toml`, and of the variant.
-fn default_folder(path: &Path, variant: Option<&str>) -> PathBuf {
+pub(super) fn default_folder(path: &Path, variant: Option<&str>) -> PathBuf {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let name = match path.file_stem() {
         Some(stem) if stem != "case" => Some(stem),

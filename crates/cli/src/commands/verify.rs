@@ -1,10 +1,12 @@
 //! `piola verify`: all cases below some folders, and one table of their checks.
 
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use piola::case::build;
+use piola::case::page::PageCase;
 use piola::case::verify::{CheckRow, VariantRun, needed_variants, verify as evaluate};
 use piola::case::{Case, Finished, LoadOptions, load};
 
@@ -15,20 +17,25 @@ use crate::progress::{Audience, Display};
 use crate::text::{count, duration};
 use crate::{interrupt, table, terminal};
 
+mod page;
+
 /// Runs the cases and prints the table.
 pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     use_threads(arguments.threads);
     let start = Instant::now();
     let stop = interrupt::listen();
     let mut rows = Vec::new();
-    let mut cases = 0_u64;
+    let mut cases = Vec::new();
     for path in discover(&arguments.paths)? {
         if stop.load(Ordering::Relaxed) {
             break;
         }
-        let found = one(&path, arguments, &stop);
-        cases += u64::from(!found.is_empty());
-        rows.extend(found);
+        let Some(mut found) = one(&path, arguments, &stop) else { continue };
+        rows.extend(found.rows.iter().cloned());
+        if arguments.page.is_none() {
+            found.runs.clear();
+        }
+        cases.push(found);
     }
     let seconds = start.elapsed().as_secs_f64();
     let failed = rows.iter().filter(|row| !row.pass).count();
@@ -36,13 +43,16 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     let total = format!(
         "{} of {}: {passed} passed, {failed} failed ({})\n",
         count(rows.len() as u64, "check"),
-        count(cases, "case"),
+        count(cases.len() as u64, "case"),
         duration(seconds)
     );
     terminal::print(&format!("{}\n{total}", render(&rows)))?;
     if stop.load(Ordering::Relaxed) {
         terminal::report("interrupted: the other cases have not been run\n");
         return Ok(Exit::Interrupted);
+    }
+    if let Some(file) = arguments.page.as_ref().filter(|_| !rows.is_empty()) {
+        page::write(file, cases, arguments.full)?;
     }
     match (rows.len(), failed) {
         (0, _) => Err(Fault::new(Exit::FailedCheck, nothing_found(arguments))),
@@ -90,8 +100,9 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The rows of one case. A case that cannot be read is one failed row.
-fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Vec<CheckRow> {
+/// The rows of one case with its runs, `None` where it is not wanted or has no check. A case that
+/// cannot be read is one failed row.
+fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Option<PageCase> {
     let read = |variant: Option<&str>| -> Result<Case, Fault> {
         let options = LoadOptions {
             overrides: Vec::new(),
@@ -105,41 +116,61 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Vec<Check
         None => true,
         Some(only) => id.is_some_and(|id| id.eq_ignore_ascii_case(only)) || folder == *only,
     };
+    let mut found = PageCase {
+        case: None,
+        name: folder.clone(),
+        link: path.display().to_string(),
+        rows: Vec::new(),
+        runs: Vec::new(),
+    };
     let base = match read(None) {
         Ok(base) => base,
-        Err(_) if !is_wanted(None) => return Vec::new(),
+        Err(_) if !is_wanted(None) => return None,
         Err(fault) => {
             terminal::report(&terminal::coloured(&fault.report));
-            return vec![unreadable(folder)];
+            found.rows.push(unreadable(folder));
+            return Some(found);
         }
     };
     if !is_wanted(base.id.as_deref()) {
-        return Vec::new();
+        return None;
     }
     let name = base.id.clone().unwrap_or(folder);
-    let runs = needed_variants(&base).len();
-    let mut run = 0;
-    let mut rows = evaluate(&base, &mut |variant| {
-        run += 1;
+    let count = needed_variants(&base).len();
+    let mut number = 0;
+    // Settings that are the same case in the end share one run.
+    let mut known: Vec<(String, Rc<Finished>)> = Vec::new();
+    found.rows = evaluate(&base, &mut |variant| {
+        number += 1;
         if stop.load(Ordering::Relaxed) {
             return Err("interrupted before its run".to_owned());
         }
         let case = read(variant).map_err(|fault| fault.report.trim_end().to_owned())?;
-        let label = match variant {
-            Some(variant) => format!("{name} {variant} ({run} of {runs})"),
-            None => format!("{name} ({run} of {runs})"),
+        let same = known.iter().find(|(as_run, _)| *as_run == case.as_run);
+        let run = match same {
+            Some((_, run)) => Rc::clone(run),
+            None => {
+                let label = match variant {
+                    Some(variant) => format!("{name} {variant} ({number} of {count})"),
+                    None => format!("{name} ({number} of {count})"),
+                };
+                let run = Rc::new(run_quietly(&case, &label, stop)?);
+                known.push((case.as_run.clone(), Rc::clone(&run)));
+                run
+            }
         };
-        let finished = run_quietly(&case, &label, stop)?;
-        Ok(VariantRun { case, run: finished })
+        found.runs.push((variant.map(str::to_owned), Rc::clone(&run)));
+        Ok(VariantRun { case, run })
     });
-    if stop.load(Ordering::Relaxed) {
+    if stop.load(Ordering::Relaxed) || found.rows.is_empty() {
         // What was interrupted has neither passed nor failed.
-        return Vec::new();
+        return None;
     }
-    for row in &mut rows {
+    for row in &mut found.rows {
         row.id = Some(name.clone());
     }
-    rows
+    found.case = Some(base);
+    Some(found)
 }
 
 /// Runs a case without files.
@@ -159,15 +190,18 @@ fn folder_name(path: &Path) -> String {
 
 fn unreadable(folder: String) -> CheckRow {
     CheckRow {
+        check: 0,
         id: Some(folder),
-        variant: None,
+        run: None,
         quantity: "the case file".to_owned(),
         got: None,
         expected: "a good case".to_owned(),
         tolerance: String::new(),
+        deviation: String::new(),
         source: String::new(),
         pass: false,
         reason: Some("the case cannot be read, see above".to_owned()),
+        trend: None,
     }
 }
 
@@ -179,8 +213,8 @@ fn render(rows: &[CheckRow]) -> String {
     let header = ["id", "quantity", "got", "expected", "tolerance", "source", "pass"];
     let header = header.map(str::to_owned).to_vec();
     let cells = |row: &CheckRow| {
-        let quantity = match &row.variant {
-            Some(variant) => format!("{variant}: {}", row.quantity),
+        let quantity = match &row.run {
+            Some(run) => format!("{run}: {}", row.quantity),
             None => row.quantity.clone(),
         };
         vec![

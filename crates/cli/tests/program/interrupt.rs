@@ -106,3 +106,24 @@ fn an_interrupted_verification_says_so() {
     assert_eq!(code, Some(130));
     assert_contains(&stderr, &["stopping after this step", "interrupted"]);
 }
+
+#[test]
+fn an_interrupted_sweep_keeps_what_it_has() {
+    let place = Place::with_bar();
+    let endless = ENDLESS[1..].join(" --set ");
+    let arguments =
+        format!("sweep bar/case.toml --over time.end=0.01,1e6,2e6 --out out --set {endless}");
+    // Outputs are rare enough for the short member too.
+    let arguments = arguments.replace("every=100", "every=0.01").replace("1e6", "200");
+    let mut program = Program::start(&place, &arguments.replace("2e6", "201"));
+    program.wait_for(&place.path("out/sweep.csv"), |text| text.contains(",completed,"));
+    program.wait_for(&place.path("out/time.end=200/steps.csv"), |text| text.lines().count() > 2);
+    let (code, stdout, stderr) = program.stop("INT");
+    assert_eq!(code, Some(130), "{stdout}{stderr}");
+    assert_contains(&stderr, &["stopping after this step", "interrupted: 1 member not run"]);
+    let table = place.read("out/sweep.csv");
+    let outcomes = ["0.01,time.end=0.01,completed,", "200,time.end=200,interrupted,"];
+    assert_contains(&table, &outcomes);
+    assert_contains(&table, &["201,time.end=201,not run,,"]);
+    assert!(place.path("out/plots/tip.displacement.x.png").exists());
+}

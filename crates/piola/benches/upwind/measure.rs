@@ -6,7 +6,7 @@ use piola::schemes::Scheme;
 use piola::schemes::upwind::{PASSES, Upwind};
 use piola::time::tvd_rk2;
 
-use crate::problem::{self, Terms};
+use crate::problem::{self, Switches};
 use crate::{bandwidth, clock};
 
 /// What a problem costs; times in seconds.
@@ -33,8 +33,8 @@ pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R
 }
 
 /// Measures a cloud of about `size` particles.
-pub fn run<const D: usize>(size: usize, terms: Terms) -> Measured {
-    let (mut scheme, neighbors) = problem::build::<D>(size, terms);
+pub fn run<const D: usize>(size: usize, switches: Switches) -> Measured {
+    let (mut scheme, neighbors) = problem::build::<D>(size, switches);
     let particles = scheme.particle_count();
     let bytes = scheme.streamed_bytes().iter().sum();
     let state = problem::disturbed(&scheme);

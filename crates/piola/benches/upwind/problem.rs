@@ -14,30 +14,46 @@ use piola::schemes::upwind::{
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::VolumetricLaw;
 
-/// Which terms of the formulation are on.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Terms {
-    /// No dissipation.
-    Plain,
-    /// Dissipation of velocity.
-    Velocity,
-    /// Dissipation of velocity and pressure.
-    Both,
-    /// Both, with states reconstructed at mid-edges.
-    Reconstructed,
+/// What is switched on in the formulation.
+#[derive(Clone, Copy)]
+pub struct Switches {
+    pub name: &'static str,
+    velocity: bool,
+    pressure: bool,
+    reconstruction: bool,
+    wave_speed: WaveSpeed,
+    periodic: bool,
 }
 
-impl Terms {
-    pub const ALL: [Self; 4] = [Self::Plain, Self::Velocity, Self::Both, Self::Reconstructed];
+impl Switches {
+    /// No dissipation, in a cloud with a boundary.
+    const NONE: Self = Self {
+        name: "none",
+        velocity: false,
+        pressure: false,
+        reconstruction: false,
+        wave_speed: WaveSpeed::Constant,
+        periodic: false,
+    };
+    const BOTH: Self = Self { name: "v, p", velocity: true, pressure: true, ..Self::NONE };
+    const RECONSTRUCTED: Self = Self { name: "v, p, rec.", reconstruction: true, ..Self::BOTH };
 
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Plain => "none",
-            Self::Velocity => "v",
-            Self::Both => "v, p",
-            Self::Reconstructed => "v, p, rec.",
-        }
-    }
+    /// Those measured at every size.
+    pub const MAIN: [Self; 4] = [
+        Self::NONE,
+        Self { name: "v", velocity: true, ..Self::NONE },
+        Self::BOTH,
+        Self::RECONSTRUCTED,
+    ];
+
+    /// Those measured at the first size, too.
+    pub const OTHERS: [Self; 5] = [
+        Self { name: "p", pressure: true, ..Self::NONE },
+        Self { name: "v, rec.", pressure: false, ..Self::RECONSTRUCTED },
+        Self { name: "p, rec.", velocity: false, ..Self::RECONSTRUCTED },
+        Self { name: "v, p, stretch", wave_speed: WaveSpeed::Stretch, ..Self::BOTH },
+        Self { name: "v, p, periodic", periodic: true, ..Self::BOTH },
+    ];
 }
 
 /// Smoothing length over spacing: inside a cloud about 29 neighbours in 2D and 70 in 3D, less at its
@@ -70,9 +86,13 @@ fn cloud<const D: usize>(size: usize) -> Particles<D> {
 }
 
 /// The formulation on a cloud of about `size` particles, and the mean number of neighbours.
-pub fn build<const D: usize>(size: usize, terms: Terms) -> (Upwind<D>, f64) {
+pub fn build<const D: usize>(size: usize, switches: Switches) -> (Upwind<D>, f64) {
     let particles = cloud::<D>(size);
-    let support = Support::new(&particles, Kernel::CubicSpline, smoothing_ratio(D), Domain::open())
+    let domain = match switches.periodic {
+        true => Domain::new([Some([0.0, 1.0]); D]).expect("the unit box is sound"),
+        false => Domain::open(),
+    };
+    let support = Support::new(&particles, Kernel::CubicSpline, smoothing_ratio(D), domain)
         .expect("the cloud has a support");
     let neighbors = support.list.statistics().mean;
     let initial = Initial {
@@ -86,13 +106,10 @@ pub fn build<const D: usize>(size: usize, terms: Terms) -> (Upwind<D>, f64) {
         support,
         settings: Settings {
             correction: Correction::Gradient,
-            tau_velocity: if terms == Terms::Plain { 0.0 } else { 0.5 },
-            tau_pressure: match terms {
-                Terms::Plain | Terms::Velocity => 0.0,
-                Terms::Both | Terms::Reconstructed => 0.5,
-            },
-            reconstruction: terms == Terms::Reconstructed,
-            wave_speed: WaveSpeed::Constant,
+            tau_velocity: if switches.velocity { 0.5 } else { 0.0 },
+            tau_pressure: if switches.pressure { 0.5 } else { 0.0 },
+            reconstruction: switches.reconstruction,
+            wave_speed: switches.wave_speed,
         },
         materials: vec![Material { density: 1000.0, law: law.expect("the law is sound") }],
         initial,

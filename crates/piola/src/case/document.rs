@@ -254,6 +254,11 @@ pub(super) fn write(root: &Table) -> String {
     toml::to_string(&to_toml(root)).unwrap_or_default()
 }
 
+/// One value as TOML on one line.
+pub(super) fn write_value(value: &Value) -> String {
+    to_value(value).to_string()
+}
+
 fn to_toml(table: &Table) -> toml::Table {
     let entries = table.entries.iter();
     entries.map(|entry| (entry.key.clone(), to_value(&entry.node.value))).collect()

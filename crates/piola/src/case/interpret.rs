@@ -15,13 +15,15 @@ mod bodies;
 mod checks;
 mod fields;
 mod fluids;
+mod members;
 mod observers;
 mod physics;
+mod sweeps;
 
 /// Which of the settings of a case file is read.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting<'a> {
-    /// Name of the variant, `None` for the base case.
+    /// Name of the variant or of the member of a sweep, `None` for the base case.
     pub variant: Option<&'a str>,
     /// Whether the coarse overrides are applied.
     pub coarse: bool,
@@ -64,8 +66,11 @@ pub(super) fn case(
     let plots: Vec<_> =
         record.records("plot").map(|plot| reader.plot(plot, known_probes)).collect();
     let variants: Vec<_> = record.records("variant").map(|it| reader.variant(it)).collect();
-    let checks: Vec<_> =
-        record.records("check").map(|check| reader.check(check, known_probes, end)).collect();
+    let sweeps: Vec<_> = record.records("sweep").map(|sweep| reader.sweep(sweep)).collect();
+    let sweeps: Option<Vec<_>> = sweeps.into_iter().collect();
+    reader.not_too_many_members(sweeps.as_deref().unwrap_or(&[]));
+    let known = checks::Known { probes: known_probes, sweeps: sweeps.as_deref(), end };
+    let checks: Vec<_> = record.records("check").map(|check| reader.check(check, known)).collect();
     let coarse = record.record("coarse").map(|coarse| strings(coarse, "set")).unwrap_or_default();
     let parameters = reader.context.parameters.iter();
     Some(Case {
@@ -88,6 +93,7 @@ pub(super) fn case(
         plots: plots.into_iter().collect::<Option<_>>()?,
         coarse,
         variants: variants.into_iter().collect::<Option<_>>()?,
+        sweeps: sweeps?,
         checks: checks.into_iter().collect::<Option<_>>()?,
         variant: setting.variant.map(str::to_owned),
         is_coarse: setting.coarse,
@@ -126,6 +132,7 @@ impl Reader<'_, '_> {
     fn collect_names(&mut self, record: &Record) {
         self.names.bodies = self.unique_names(record, "body", &[]);
         self.names.variants = self.unique_names(record, "variant", &["base"]);
+        self.unique_names(record, "sweep", &[]);
         self.unique_names(record, "probe", &["energy", "momentum", "step", "run"]);
         self.unique_names(record, "boundary", &[]);
         self.unique_names(record, "plot", &[]);

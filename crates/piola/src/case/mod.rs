@@ -17,10 +17,12 @@ pub mod model;
 mod outline;
 mod outputs;
 mod overrides;
+pub mod page;
 mod plan;
 mod record;
 pub mod reference;
 mod render;
+pub mod report;
 mod resume;
 pub mod schema;
 mod settings;
@@ -28,6 +30,7 @@ mod simulation;
 pub mod source;
 pub mod spec;
 mod suggest;
+pub mod sweep;
 pub mod tables;
 pub mod template;
 pub mod verify;
@@ -55,7 +58,8 @@ const FLAG: &str = "--set ";
 pub struct LoadOptions {
     /// Overrides `path.to.key=value`, applied last, in this order.
     pub overrides: Vec<String>,
-    /// The variant, `None` or `base` for the case itself.
+    /// The variant, `None` or `base` for the case itself; `NAME.3` for the third member of the
+    /// sweep `NAME`.
     pub variant: Option<String>,
     /// Whether the coarse setting is read. Its overrides come first, those of a variant next, the
     /// variant's own coarse ones after them.
@@ -115,6 +119,28 @@ fn read(
     for (text, source) in options.overrides.iter().zip(1..) {
         Override::of_command_line(text, source, FLAG.len()).apply(&mut tree, &mut problems);
     }
+    Ok((check(&tree, sources, setting, problems)?, tree))
+}
+
+/// Reads a case from the record of its run: `text` after all overrides, of which the variant was
+/// `variant`. Settings that were not run are not looked at.
+fn recorded(text: &str, variant: Option<&str>) -> Result<Case, Problems> {
+    let sources: Arc<[SourceText]> =
+        Arc::new([SourceText { name: "the case as run".to_owned(), text: text.to_owned() }]);
+    let setting = Setting { variant, coarse: false, folder: None };
+    let tree = document::parse(text);
+    let case = tree.and_then(|tree| check(&tree, &sources, setting, Vec::new()));
+    let case = case.map_err(|problems| Problems::new(sources, problems))?;
+    Ok(Case { as_run: text.to_owned(), ..case })
+}
+
+/// Checks a tree after all overrides, of which `problems` came.
+fn check(
+    tree: &Table,
+    sources: &[SourceText],
+    setting: Setting<'_>,
+    problems: Vec<Problem>,
+) -> Result<Case, Vec<Problem>> {
     let dimension = match tree.get("dimension") {
         Some(Node { value: Value::Integer(dimension @ 1..=3), .. }) => {
             usize::try_from(*dimension).ok()
@@ -122,11 +148,11 @@ fn read(
         _ => None,
     };
     let mut context = Context { sources, dimension, parameters: Vec::new(), problems };
-    evaluate_parameters(&mut context, &tree);
-    let record = context.table(&tables::CASE, &tree, Place::new(0, 0..0));
+    evaluate_parameters(&mut context, tree);
+    let record = context.table(&tables::CASE, tree, Place::new(0, 0..0));
     let case = interpret::case(&record, &mut context, setting);
     match case {
-        Some(case) if context.problems.is_empty() => Ok((case, tree)),
+        Some(case) if context.problems.is_empty() => Ok(case),
         _ if context.problems.is_empty() => {
             Err(vec![Problem::whole("the case could not be read, without a known reason")])
         }
@@ -143,11 +169,13 @@ fn others(
     case: &Case,
 ) -> Result<(), Vec<Problem>> {
     let mut problems: Vec<Problem> = Vec::new();
-    let names = case.variants.iter().map(|variant| Some(variant.name.as_str()));
-    for variant in std::iter::once(None).chain(names) {
+    for variant in case.settings() {
         for coarse in [false, true] {
-            let setting = Setting { variant, coarse, ..wanted };
-            if variant == wanted.variant && coarse == wanted.coarse {
+            let setting = Setting { variant: variant.as_deref(), coarse, ..wanted };
+            if setting.variant.is_some_and(|name| !case.is_at(name, coarse)) {
+                continue;
+            }
+            if setting.variant == wanted.variant && coarse == wanted.coarse {
                 continue;
             }
             let found = read(tree, sources, options, setting).err().unwrap_or_default();

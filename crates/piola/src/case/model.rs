@@ -8,21 +8,24 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::diagnostics::{Problem, Problems};
-use super::expression::Expression;
+use super::expression::{Expression, Scope};
 use super::source::{Located, Place, SourceText};
 
 mod checks;
 mod geometry;
 mod observers;
 mod physics;
+mod sweeps;
 
-pub use checks::{Check, Expectation, Quantity, Reduction, When};
+pub use checks::{Check, Expectation, Members, Quantity, Reduction, Trend, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
     Boundary, Checkpoint, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed,
     Scheme, StepControl, Stiffness, Time, TransportVelocity, Upwind, Wall, Weights,
 };
+pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
+pub(super) use sweeps::{member_name, member_of};
 
 /// One case: everything that a run needs to know.
 #[derive(Clone, Debug)]
@@ -61,9 +64,11 @@ pub struct Case {
     pub coarse: Vec<String>,
     /// The same case with other settings.
     pub variants: Vec<Variant>,
+    /// The same case with every value of some keys.
+    pub sweeps: Vec<Sweep>,
     /// What `piola verify` evaluates.
     pub checks: Vec<Check>,
-    /// The variant that this is, `None` for the base case.
+    /// The variant or member of a sweep that this is, `None` for the base case.
     pub variant: Option<String>,
     /// Whether the coarse overrides are applied.
     pub is_coarse: bool,
@@ -85,7 +90,7 @@ pub struct Parameter {
 /// The same case with some keys set otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
-    /// Name on the command line and in checks.
+    /// Name on the command line and in checks. Members of sweeps are no entries of this list.
     pub name: Located<String>,
     /// What it shows, in one line.
     pub title: Option<String>,
@@ -126,6 +131,47 @@ impl Case {
     /// The value of the parameter called `name`.
     pub fn parameter(&self, name: &str) -> Option<f64> {
         self.parameters.iter().find(|parameter| parameter.name == name).map(|found| found.value)
+    }
+
+    /// The value of an expression of the parameters, `None` where `text` is none.
+    pub fn evaluate(&self, text: &str) -> Option<f64> {
+        let parameters: Vec<_> =
+            self.parameters.iter().map(|known| (known.name.clone(), Some(known.value))).collect();
+        let scope = Scope { axes: 0, time: false, parameters: &parameters };
+        Expression::parse(text, &scope).ok()?.as_constant()
+    }
+
+    /// Everything that can be run: the case itself, its variants, and the members of its sweeps.
+    pub fn settings(&self) -> Vec<Option<String>> {
+        let variants = self.variants.iter().map(|variant| variant.name.value.clone());
+        let members = self.sweeps.iter().flat_map(|sweep| {
+            let count = sweep.count(false).max(sweep.count(true));
+            (0..count).map(|index| sweep.member(index))
+        });
+        std::iter::once(None).chain(variants.chain(members).map(Some)).collect()
+    }
+
+    /// Whether there is the member of a sweep called `name` at a setting. Variants are at both.
+    pub fn is_at(&self, name: &str, coarse: bool) -> bool {
+        member_of(name).is_none_or(|(sweep, index)| {
+            let sweep = self.sweeps.iter().find(|known| *known.name == sweep);
+            sweep.is_some_and(|sweep| index < sweep.count(coarse))
+        })
+    }
+
+    /// The sweep whose member is called `name`, with the member's number from 0. `None` for names of
+    /// variants.
+    pub fn member(&self, name: &str) -> Option<(&Sweep, usize)> {
+        let (sweep, index) = member_of(name)?;
+        let sweep = self.sweeps.iter().find(|known| *known.name == sweep)?;
+        (index < sweep.count(self.is_coarse)).then_some((sweep, index))
+    }
+
+    /// What tells the member called `name` of a sweep apart: `time.cfl=0.1`. `None` for names of
+    /// variants.
+    pub fn member_label(&self, name: &str) -> Option<String> {
+        let (sweep, index) = self.member(name)?;
+        Some(sweep.label(index, self.is_coarse))
     }
 
     /// All files that the case reads besides itself: point clouds and reference curves.

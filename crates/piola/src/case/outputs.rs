@@ -5,13 +5,13 @@ use std::time::SystemTime;
 
 use super::build::{Built, bodies::BodyReport};
 use super::model::{self, Case};
-use super::resume::{Found, Store};
-use super::simulation::{Finished, RunError};
+use super::resume::{Resumed, Store};
+use super::simulation::{Finished, RUN_QUANTITIES, RunError};
 use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, WrittenFiles};
 use crate::output::checkpoint::Identity;
 use crate::output::{
-    self, BodyRecord, Column, Compression, ResultsFolder, RetryRecord, RunRecord, StageRecord,
-    Table, timestamp,
+    self, BodyRecord, Column, Compression, Curve, FigureRecord, ReferenceRecord, ResultsFolder,
+    RetryRecord, RunRecord, StageRecord, Table, atomic, timestamp,
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
 
@@ -23,34 +23,32 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Makes the folder ready and writes the first record.
-    pub fn new(case: &Case, built: &Built, folder: &Path) -> Result<Self, RunError> {
-        let record = Self::record(case, built);
-        let folder = ResultsFolder::create(folder, &record)?;
-        Ok(Self { folder, record, written: WrittenFiles::default() })
+    /// What goes into `folder`, which is not touched yet.
+    pub fn new(case: &Case, built: &Built, folder: &Path) -> Self {
+        Self {
+            folder: ResultsFolder::at(folder),
+            record: Self::record(case, built),
+            written: WrittenFiles::default(),
+        }
     }
 
-    /// Makes the folder of a run ready to go on from what was found in it.
-    pub fn go_on(
-        case: &Case,
-        built: &Built,
-        folder: &Path,
-        found: &Found,
-    ) -> Result<Self, RunError> {
-        let mut record = Self::record(case, built);
-        let Some(folder) = ResultsFolder::open(folder) else {
-            return Self::new(case, built, folder);
+    /// Makes the folder ready, for a new run or for one that goes on from what was found, and
+    /// writes the first record.
+    pub fn begin(&mut self, resumed: Option<&Resumed>) -> Result<(), RunError> {
+        let Self { folder, record, written } = self;
+        let Some(resumed) = resumed else {
+            ResultsFolder::create(folder.path(), record)?;
+            return Ok(());
         };
         if let Ok(before) = RunRecord::read(&folder.record()) {
             record.started = before.started;
             record.resumed_at = before.resumed_at;
         }
-        record.resumed_at.push(found.checkpoint.time());
-        record.warnings.extend(found.warnings.iter().cloned());
-        folder.go_on(&record, &found.files)?;
-        let written = WrittenFiles::default();
-        found.files.iter().for_each(|file| written.push(folder.path().join(file)));
-        Ok(Self { folder, record, written })
+        record.resumed_at.push(resumed.time);
+        record.warnings.extend(resumed.warnings.iter().cloned());
+        folder.go_on(record, &resumed.files)?;
+        resumed.files.iter().for_each(|file| written.push(folder.path().join(file)));
+        Ok(())
     }
 
     /// Where the checkpoints of the run `identity` go.
@@ -73,7 +71,11 @@ impl Outputs {
             bodies: built
                 .bodies
                 .iter()
-                .map(|body| BodyRecord { name: body.name.clone(), particles: body.particles })
+                .map(|body| BodyRecord {
+                    name: body.name.clone(),
+                    particles: body.particles,
+                    spacing: body.spacing.clone(),
+                })
                 .collect(),
             started: timestamp(SystemTime::now()),
             end_time: *case.time.end,
@@ -131,6 +133,7 @@ impl Outputs {
             chart(case, plot, finished).write_png(&path)?;
             self.written.push(path);
         }
+        self.copy_references(case)?;
         if let Some(trace) = &finished.summary.trace {
             let path = self.folder.failure();
             failure_table(trace).write_csv(&path)?;
@@ -161,10 +164,41 @@ impl Outputs {
             calls: timing.calls,
         });
         record.stages = std::iter::once(build).chain(stages).collect();
+        record.figures = RUN_QUANTITIES
+            .iter()
+            .filter_map(|name| match finished.quantity(&format!("run.{name}")) {
+                Some(Series::Number { value, unit }) => {
+                    Some(FigureRecord { name: (*name).into(), value, unit: unit.into() })
+                }
+                _ => None,
+            })
+            .collect();
         record.files = files.iter().map(|file| self.folder.relative(file)).collect();
         record.write(&self.folder.record())?;
         files.push(self.folder.record());
         Ok(files)
+    }
+
+    /// Copies the reference curves of the checks, so that the folder can be read without the case.
+    /// One that cannot be read is left to the check that uses it.
+    fn copy_references(&mut self, case: &Case) -> Result<(), RunError> {
+        let folder = Path::new(&case.sources()[0].name).parent().unwrap_or(Path::new(""));
+        for file in case.checks.iter().filter_map(model::Check::file) {
+            // The case as run names files as its author wrote them.
+            let written = file.strip_prefix(folder).unwrap_or(file).to_string_lossy().into_owned();
+            let known = self.record.references.iter().any(|one| one.path == written);
+            if known || Curve::read_csv(file).is_err() {
+                continue;
+            }
+            let Ok(bytes) = std::fs::read(&file.value) else { continue };
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let copy = self.folder.reference(self.record.references.len(), &name)?;
+            atomic::write_file(&copy, |out| out.write_all(&bytes))?;
+            let file = self.folder.relative(&copy);
+            self.record.references.push(ReferenceRecord { path: written, file });
+            self.written.push(copy);
+        }
+        Ok(())
     }
 }
 

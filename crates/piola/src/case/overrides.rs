@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::diagnostics::Problem;
 use super::document::{Entry, Node, Table, Value, parse_value};
-use super::source::{Place, SourceText};
+use super::source::{Located, Place, SourceText};
 use super::suggest::{nearest, one_of};
 
 /// How deep a path may go. The deepest key of the case file is far above.
@@ -17,18 +17,30 @@ pub(super) struct Override<'a> {
     place: Place,
     /// The place of its first byte, if its bytes stand in the source one by one.
     start: Option<usize>,
+    /// The value, where the text is the path alone.
+    value: Option<&'a Node>,
 }
 
 impl<'a> Override<'a> {
     /// An override of the command line, which is text number `source`, after `prefix` bytes.
     pub(super) fn of_command_line(text: &'a str, source: u32, prefix: usize) -> Self {
         let place = Place::new(source, prefix..prefix + text.len());
-        Self { text, place, start: Some(prefix) }
+        Self { text, place, start: Some(prefix), value: None }
     }
 
     /// An override that stands as a string in one of the texts.
     pub(super) fn of_string(text: &'a str, place: Place, sources: &[SourceText]) -> Self {
-        Self { text, place, start: start_of_content(sources, place, text) }
+        Self { text, place, start: start_of_content(sources, place, text), value: None }
+    }
+
+    /// The value of a sweep for the key that `path` leads to.
+    pub(super) fn of_key(
+        path: &'a Located<String>,
+        value: &'a Node,
+        sources: &[SourceText],
+    ) -> Self {
+        let start = start_of_content(sources, path.place, path);
+        Self { text: path, place: path.place, start, value: Some(value) }
     }
 
     fn place(&self, span: Range<usize>) -> Place {
@@ -55,7 +67,10 @@ impl<'a> Override<'a> {
             let Some((last, parents)) = path.split_last() else {
                 return Err(self.problem(0..value, "the path of the key is empty", "no path"));
             };
-            let new = self.value(value, problems);
+            let new = match self.value {
+                Some(node) => Some(node.clone()),
+                None => self.value(value, problems),
+            };
             self.set(root, parents, last, new)
         });
         if let Err(problem) = applied {
@@ -76,7 +91,11 @@ impl<'a> Override<'a> {
             }
             match self.text[end..].chars().next() {
                 Some('.') => offset = end + 1,
-                Some('=') => return Ok((path, end + 1)),
+                Some('=') if self.value.is_none() => return Ok((path, end + 1)),
+                None if self.value.is_some() => return Ok((path, end)),
+                _ if self.value.is_some() => {
+                    return Err(self.problem(all, "this is no path of a key", "not a path"));
+                }
                 _ => {
                     return Err(self
                         .problem(all, "an override has the form path.to.key=value", "no `=`")

@@ -1,5 +1,6 @@
 //! Checked values: what a table says once names, types and ranges are right.
 
+use super::document::Node;
 use super::expression::Expression;
 use super::source::{Located, Place};
 
@@ -15,6 +16,8 @@ pub(super) enum Datum {
     /// One entry an axis of the case.
     Axes(Vec<Option<Located<Datum>>>),
     Record(Record),
+    /// Paths of keys with one or more values, unchecked but for their number.
+    Keys(Vec<(Located<String>, Vec<Node>)>),
 }
 
 /// A checked table.
@@ -134,6 +137,13 @@ impl Record {
     pub(super) fn axes(&self, key: &str) -> &[Option<Located<Datum>>] {
         match self.get(key).map(|found| &found.value) {
             Some(Datum::Axes(axes)) => axes,
+            _ => &[],
+        }
+    }
+
+    pub(super) fn keys(&self, key: &str) -> &[(Located<String>, Vec<Node>)] {
+        match self.get(key).map(|found| &found.value) {
+            Some(Datum::Keys(keys)) => keys,
             _ => &[],
         }
     }

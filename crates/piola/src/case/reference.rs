@@ -120,6 +120,8 @@ fn value(kind: &Kind) -> String {
             format!("table, see `{title}`")
         }
         Kind::Parameters => "table of numbers and expressions".to_owned(),
+        Kind::KeysWithValues => "table of one or two key paths, each with a list".to_owned(),
+        Kind::KeysWithValue => "table of key paths, each with a value".to_owned(),
     }
 }
 

@@ -22,9 +22,10 @@ struct Payload<C> {
     checkpoint: C,
 }
 
-/// The checkpoint that a run goes on from.
-pub(super) struct Found {
-    pub checkpoint: Checkpoint,
+/// What is known of a run that goes on from a checkpoint.
+pub(super) struct Resumed {
+    /// Simulated time of the checkpoint in s.
+    pub time: f64,
     /// Files written before it, relative to the folder of the results.
     pub files: Vec<String>,
     /// Newer ones that had to be passed over.
@@ -78,7 +79,7 @@ pub(super) fn find(
     folder: &ResultsFolder,
     identity: &Identity,
     most: u64,
-) -> Result<Option<Found>, RunError> {
+) -> Result<Option<(Checkpoint, Resumed)>, RunError> {
     let mut refused: Vec<CheckpointError> = Vec::new();
     for path in folder.checkpoints()? {
         match checkpoint::read(&path, identity, most) {
@@ -87,7 +88,8 @@ pub(super) fn find(
                     if files.iter().all(|file| ResultsFolder::may_hold(file)) =>
                 {
                     let warnings = refused.iter().map(|error| format!("passed over: {error}"));
-                    return Ok(Some(Found { checkpoint, files, warnings: warnings.collect() }));
+                    let (time, warnings) = (checkpoint.time(), warnings.collect());
+                    return Ok(Some((checkpoint, Resumed { time, files, warnings })));
                 }
                 _ => {
                     let what = "what it holds cannot be read".into();

@@ -123,6 +123,13 @@ fn value(kind: &Kind) -> Value {
             "type": "object",
             "additionalProperties": { "type": ["number", "string"] },
         }),
+        // A path may be written as one key in quotes or as nested tables.
+        Kind::KeysWithValues => json!({
+            "type": "object",
+            "minProperties": 1,
+            "additionalProperties": { "type": ["array", "object"] },
+        }),
+        Kind::KeysWithValue => json!({ "type": "object", "minProperties": 1 }),
     }
 }
 

@@ -1,13 +1,16 @@
-//! The settings of a case file: coarse and variants, which are overrides of the base case.
+//! The settings of a case file: coarse, variants and members of sweeps, which are overrides of the
+//! base case.
 
 use super::diagnostics::Problem;
 use super::document::{Node, Table, Value};
 use super::interpret::Setting;
+use super::model::{member_name, member_of};
 use super::overrides::Override;
-use super::source::SourceText;
+use super::source::{Located, SourceText};
 use super::suggest::suggestion;
 
-/// Applies the overrides of the coarse setting and of the variant to the tree.
+/// Applies the overrides of the coarse setting, of the variant, and of the sweep and its member to
+/// the tree, in this order.
 ///
 /// What is misshapen here is left out: checking the tree reports it.
 pub(super) fn apply(
@@ -17,19 +20,27 @@ pub(super) fn apply(
     problems: &mut Vec<Problem>,
 ) {
     let mut lists = Vec::new();
+    let mut values = Vec::new();
     if setting.coarse
         && let Some(Value::Table(coarse)) = tree.get("coarse").map(|node| &node.value)
     {
         lists.push(coarse.get("set").cloned());
     }
-    if let Some(name) = setting.variant {
-        match variant(tree, name) {
-            Ok(variant) => {
-                lists.push(variant.get("set").cloned());
-                lists.extend(setting.coarse.then(|| variant.get("coarse").cloned()));
+    let mut variant = setting.variant;
+    let sweep;
+    if let Some((name, index)) = variant.and_then(member_of) {
+        match member(tree, name, index, setting.coarse) {
+            Ok(found) => {
+                sweep = found.sweep;
+                values = found.values;
+                variant = text(&sweep, "variant").filter(|name| *name != "base");
+                extend(&mut lists, tree, variant, setting.coarse, problems);
+                lists.push(sweep.get("set").cloned());
             }
             Err(problem) => problems.push(problem),
         }
+    } else {
+        extend(&mut lists, tree, variant, setting.coarse, problems);
     }
     for list in lists.into_iter().flatten() {
         let Value::List(list) = list.value else { continue };
@@ -39,33 +50,143 @@ pub(super) fn apply(
             }
         }
     }
+    for (path, value) in &values {
+        Override::of_key(path, value, sources).apply(tree, problems);
+    }
 }
 
-fn variant<'t>(tree: &'t Table, name: &str) -> Result<&'t Table, Problem> {
-    let list: &[Node] = match tree.get("variant").map(|node| &node.value) {
+/// Adds the overrides of a variant.
+fn extend(
+    lists: &mut Vec<Option<Node>>,
+    tree: &Table,
+    variant: Option<&str>,
+    coarse: bool,
+    problems: &mut Vec<Problem>,
+) {
+    let Some(name) = variant else { return };
+    match find(tree, name) {
+        Ok(variant) => {
+            lists.push(variant.get("set").cloned());
+            lists.extend(coarse.then(|| variant.get("coarse").cloned()));
+        }
+        Err(problem) => problems.push(problem),
+    }
+}
+
+/// A member of a sweep: the table of the sweep, and the value of each key.
+struct Member {
+    sweep: Table,
+    values: Vec<(Located<String>, Node)>,
+}
+
+fn member(tree: &Table, name: &str, index: usize, coarse: bool) -> Result<Member, Problem> {
+    let found = named(tree, "sweep").find(|(known, _)| *known == name);
+    let Some((_, sweep)) = found else {
+        let problem = Problem::whole(format!("the case has no sweep `{name}`"));
+        let names: Vec<&str> = named(tree, "sweep").map(|(name, _)| name).collect();
+        return Err(match names.is_empty() {
+            true => problem.help("it has no sweeps at all"),
+            false => problem.help(suggestion(name, names)),
+        });
+    };
+    let keys = keys_of(sweep, coarse);
+    let count = keys.iter().fold(1, |count: usize, (_, list)| count.saturating_mul(list.len()));
+    if index >= count {
+        let message = format!("the sweep `{name}` has no member number {}", index + 1);
+        let first = member_name(name, 0);
+        let last = member_name(name, count.saturating_sub(1));
+        return Err(Problem::whole(message).help(format!("its members are `{first}` to `{last}`")));
+    }
+    let mut rest = index;
+    let mut values = Vec::new();
+    for (path, list) in keys.into_iter().rev() {
+        values.push((path, list[rest % list.len()].clone()));
+        rest /= list.len();
+    }
+    values.reverse();
+    Ok(Member { sweep: sweep.clone(), values })
+}
+
+/// The keys of a sweep with their values at a setting. What is no list is left out.
+fn keys_of(sweep: &Table, coarse: bool) -> Vec<(Located<String>, Vec<Node>)> {
+    let table = |key: &str| match sweep.get(key).map(|node| &node.value) {
+        Some(Value::Table(table)) => keys_with_values(table),
+        _ => Vec::new(),
+    };
+    let instead = if coarse { table("coarse") } else { Vec::new() };
+    let each = table("over").into_iter().filter_map(|(path, node)| {
+        let other = instead.iter().find(|(other, _)| other.value == path.value);
+        match &other.map_or(node, |(_, other)| other).value {
+            Value::List(list) if !list.is_empty() => Some((path, list.clone())),
+            _ => None,
+        }
+    });
+    each.collect()
+}
+
+/// The values of a table whose keys are paths, or nested tables that make paths.
+pub(super) fn keys_with_values(table: &Table) -> Vec<(Located<String>, &Node)> {
+    let mut found = Vec::new();
+    for entry in &table.entries {
+        let path = Located::new(entry.key.clone(), entry.key_place);
+        match &entry.node.value {
+            Value::Table(inner) => {
+                for (mut below, node) in keys_with_values(inner) {
+                    below.value = format!("{}.{}", path.value, below.value);
+                    found.push((below, node));
+                }
+            }
+            _ => found.push((path, &entry.node)),
+        }
+    }
+    found
+}
+
+/// The tables of a list that have a name.
+fn named<'t>(tree: &'t Table, key: &str) -> impl Iterator<Item = (&'t str, &'t Table)> {
+    let list: &[Node] = match tree.get(key).map(|node| &node.value) {
         Some(Value::List(list)) => list,
         _ => &[],
     };
-    let named = list.iter().filter_map(|node| match &node.value {
-        Value::Table(table) => match table.get("name").map(|name| &name.value) {
-            Some(Value::Text(name)) => Some((name.as_str(), table)),
-            _ => None,
-        },
+    list.iter().filter_map(|node| match &node.value {
+        Value::Table(table) => text(table, "name").map(|name| (name, table)),
         _ => None,
-    });
-    let found = named.clone().find(|(known, _)| *known == name);
+    })
+}
+
+fn text<'t>(table: &'t Table, key: &str) -> Option<&'t str> {
+    match table.get(key).map(|node| &node.value) {
+        Some(Value::Text(text)) => Some(text),
+        _ => None,
+    }
+}
+
+fn find<'t>(tree: &'t Table, name: &str) -> Result<&'t Table, Problem> {
+    let found = named(tree, "variant").find(|(known, _)| *known == name);
     found.map(|(_, table)| table).ok_or_else(|| {
         let problem = Problem::whole(format!("the case has no variant `{name}`"));
-        match list.is_empty() {
+        let names: Vec<&str> = named(tree, "variant").map(|(name, _)| name).collect();
+        if let Some((_, sweep)) = named(tree, "sweep").find(|(known, _)| *known == name) {
+            let keys = keys_of(sweep, false);
+            let count = keys.iter().fold(1, |count: usize, key| count.saturating_mul(key.1.len()));
+            let (first, last) = (member_name(name, 0), member_name(name, count.saturating_sub(1)));
+            return problem.help(format!("it is a sweep, with members `{first}` to `{last}`"));
+        }
+        match names.is_empty() {
             true => problem.help("it has no variants at all"),
-            false => problem.help(suggestion(name, named.map(|(known, _)| known))),
+            false => problem.help(suggestion(name, names)),
         }
     })
 }
 
 /// What is added to a problem that is found in a setting that was not asked for.
 pub(super) fn remark(setting: Setting<'_>) -> String {
-    match (setting.variant, setting.coarse) {
+    let variant = setting.variant;
+    if let Some((sweep, index)) = variant.and_then(member_of) {
+        let coarse = if setting.coarse { "the coarse setting of " } else { "" };
+        return format!(" (in {coarse}member {} of the sweep `{sweep}`)", index + 1);
+    }
+    match (variant, setting.coarse) {
         (None, false) => " (in the base case)".to_owned(),
         (None, true) => " (in the coarse setting)".to_owned(),
         (Some(name), false) => format!(" (in the variant `{name}`)"),

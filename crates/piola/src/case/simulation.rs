@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::build::{self, Built};
 use super::model::Case;
 use super::outputs::Outputs;
+use super::report;
 use super::resume;
 use crate::observe::{Recorder, Series, Tables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
@@ -54,7 +55,7 @@ pub enum RunError {
         newest: CheckpointError,
     },
     /// A checkpoint is of a run with other outputs.
-    #[error("{0}; start anew without `--resume`")]
+    #[error("{0}; nothing was changed; start anew without `--resume`")]
     Misfit(#[from] Misfit),
 }
 
@@ -117,11 +118,8 @@ impl Simulation {
         let columns = Recorder::columns(built.scheme.as_ref(), &built.probes);
         let most = resume::most_bytes(&case, &columns, length);
         let found = old.map(|folder| resume::find(&folder, &identity, most)).transpose()?.flatten();
-        let outputs = match (folder, &found) {
-            (Some(folder), Some(found)) => Some(Outputs::go_on(&case, &built, folder, found)?),
-            (Some(folder), None) => Some(Outputs::new(&case, &built, folder)?),
-            (None, _) => None,
-        };
+        let (checkpoint, resumed) = found.unzip();
+        let mut outputs = folder.map(|folder| Outputs::new(&case, &built, folder));
         let recorder = Recorder::new(
             built.scheme.as_ref(),
             built.probes,
@@ -147,11 +145,19 @@ impl Simulation {
             Checkpoints::new(build::checkpoint_policy(&case), Box::new(store))
         });
         let mut warnings = built.warnings;
-        if let Some(found) = found {
-            warnings.extend(found.warnings);
-            executor.resume(found.checkpoint)?;
-        } else if resume {
-            warnings.push("there was no checkpoint to resume from: started at t = 0".into());
+        match (checkpoint, &resumed) {
+            (Some(checkpoint), Some(resumed)) => {
+                warnings.extend(resumed.warnings.iter().cloned());
+                executor.resume(checkpoint)?;
+            }
+            _ if resume => {
+                warnings.push("there was no checkpoint to resume from: started at t = 0".into());
+            }
+            _ => {}
+        }
+        // From here on the folder is this run's: what could be refused has been.
+        if let Some(outputs) = &mut outputs {
+            outputs.begin(resumed.as_ref())?;
         }
         let summary = executor.run(stop, progress)?;
         warnings.extend(summary.warnings.iter().cloned());
@@ -160,6 +166,13 @@ impl Simulation {
         let mut finished = Finished { summary, tables, files: Vec::new(), warnings, particles };
         if let Some(outputs) = outputs {
             finished.files = outputs.finish(&case, &finished, build_seconds)?;
+        }
+        if let Some(folder) = folder.filter(|_| case.output.report) {
+            // The results are whole without it.
+            match report::write(folder) {
+                Ok(file) => finished.files.push(file),
+                Err(error) => finished.warnings.push(format!("there is no report: {error}")),
+            }
         }
         Ok(finished)
     }

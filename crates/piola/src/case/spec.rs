@@ -103,6 +103,10 @@ pub enum Kind {
     Tagged(&'static TaggedSpec),
     /// Names with numbers or expressions.
     Parameters,
+    /// Paths of keys of the case file, each with a list of values.
+    KeysWithValues,
+    /// Paths of keys of the case file, each with one value.
+    KeysWithValue,
 }
 
 /// The variables that an expression may use.

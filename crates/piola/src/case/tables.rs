@@ -7,6 +7,7 @@ use super::spec::{
     Variables,
 };
 
+mod checks;
 mod fluids;
 mod geometry;
 mod observers;
@@ -113,8 +114,15 @@ pub static CASE: TableSpec = TableSpec {
             "the same case with other settings, each a table `[[variant]]`",
         ),
         key(
+            "sweep",
+            Kind::List(&Kind::Table(&checks::SWEEP)),
+            "",
+            Optional,
+            "the same case with every value of one or two keys, each a table `[[sweep]]`",
+        ),
+        key(
             "check",
-            Kind::List(&Kind::Table(&observers::CHECK)),
+            Kind::List(&Kind::Table(&checks::CHECK)),
             "",
             Optional,
             "what `piola verify` evaluates, each a table `[[check]]`",

@@ -9,6 +9,7 @@ use super::*;
 mod faults;
 mod hostile;
 mod overrides;
+mod sweeps;
 
 /// A case that uses every table and nearly every key.
 pub(super) const FULL: &str = include_str!("tests/full.toml");
@@ -137,6 +138,7 @@ fn reads_observers() {
     assert_eq!((case.output.every.value, case.output.table_every.value), (0.1, 0.01));
     assert_eq!(case.output.fields.len(), 2);
     assert_eq!(case.output.compression, Compression::None);
+    assert!(!case.output.report);
     let [pressure, speed, shear] = &case.pictures[..] else { panic!("three pictures") };
     assert_eq!(pressure.field.component, Component::Whole);
     assert_eq!(pressure.times.iter().map(|time| time.value).collect::<Vec<_>>(), [0.1, 0.5]);

@@ -4,30 +4,63 @@
 //! that cannot be evaluated fails with a reason: nothing passes by being skipped.
 
 use std::fmt;
+use std::rc::Rc;
 
-use super::model::{Case, Check, Expectation, Quantity, Reduction, When};
+use super::model::{Case, Check, Expectation};
 use super::simulation::Finished;
 use crate::observe::Series;
-use crate::output::Curve;
 use crate::time::Outcome;
 pub use format::significant;
+use runs::Runs;
 
 mod format;
+mod runs;
 #[cfg(test)]
 mod tests;
+pub mod trends;
+
+/// Results that several variants share, because they are the same case in the end.
+impl<Run: RunResults> RunResults for Rc<Run> {
+    fn ending(&self) -> Ending {
+        self.as_ref().ending()
+    }
+
+    fn quantity(&self, name: &str) -> Option<Series> {
+        self.as_ref().quantity(name)
+    }
+}
+
+/// How a run ended, in words: all that the record of a run keeps of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ending {
+    /// [`Outcome::summary`]: `completed`, `interrupted` or `failed: KIND`.
+    pub summary: String,
+    /// The message of a failure.
+    pub message: Option<String>,
+}
+
+impl From<&Outcome> for Ending {
+    fn from(outcome: &Outcome) -> Self {
+        let message = match outcome {
+            Outcome::Failed(failure) => Some(failure.to_string()),
+            _ => None,
+        };
+        Self { summary: outcome.summary(), message }
+    }
+}
 
 /// A run that is over, as checks see it.
 pub trait RunResults {
     /// How it ended.
-    fn outcome(&self) -> &Outcome;
+    fn ending(&self) -> Ending;
 
     /// The quantity called `name`: a column of its tables or a number of the run as a whole.
     fn quantity(&self, name: &str) -> Option<Series>;
 }
 
 impl RunResults for Finished {
-    fn outcome(&self) -> &Outcome {
-        &self.summary.outcome
+    fn ending(&self) -> Ending {
+        Ending::from(&self.summary.outcome)
     }
 
     fn quantity(&self, name: &str) -> Option<Series> {
@@ -43,16 +76,20 @@ pub struct VariantRun<Run> {
     pub run: Run,
 }
 
-/// Runs the variant of this name (`None`: the case itself), or says why it cannot.
+/// Runs the variant or member of a sweep of this name (`None`: the case itself), or says why it
+/// cannot.
 pub type RunVariant<'a, Run> = dyn FnMut(Option<&str>) -> Result<VariantRun<Run>, String> + 'a;
 
 /// One line of the table of `piola verify`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckRow {
+    /// Number of the check in the case, from 0. A check of a sweep may have several rows.
+    pub check: usize,
     /// The case's row of the reproduction list.
     pub id: Option<String>,
-    /// The variant that was run, `None` for the case itself.
-    pub variant: Option<String>,
+    /// What was run, `None` for the case itself: the name of a variant, or a sweep and the values
+    /// that tell its members apart.
+    pub run: Option<String>,
     /// The quantity with its reduction: `top.displacement.y maximum`.
     pub quantity: String,
     /// What the run gave, `None` if there is no such thing.
@@ -61,12 +98,44 @@ pub struct CheckRow {
     pub expected: String,
     /// How far off the result may be: `1 %`, `0.01 m`; empty for bounds and comparisons.
     pub tolerance: String,
+    /// How far off it is, in the terms of the tolerance; empty for bounds and comparisons.
+    pub deviation: String,
     /// Where the expected value comes from.
     pub source: String,
     /// Whether the check passes.
     pub pass: bool,
     /// Why it could not be evaluated, or how the run failed; `None` if only the number is off.
     pub reason: Option<String>,
+    /// For checks of how members of a sweep follow each other, what each gave.
+    pub trend: Option<TrendData>,
+}
+
+/// What the members along a key of a sweep gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrendData {
+    /// Path of the key.
+    pub key: String,
+    /// Unit of the quantity.
+    pub unit: String,
+    /// Whether errors are looked at, not the quantity itself.
+    pub of_error: bool,
+    /// The members in their order.
+    pub points: Vec<TrendPoint>,
+}
+
+/// What one member of a sweep gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrendPoint {
+    /// Name of the member.
+    pub member: String,
+    /// The value of the key as the case writes it.
+    pub text: String,
+    /// The value of the key, if it is a number.
+    pub key: Option<f64>,
+    /// The quantity.
+    pub value: f64,
+    /// Its distance to what it should be, if that is known.
+    pub error: Option<f64>,
 }
 
 /// A result that a check looks at.
@@ -87,24 +156,34 @@ impl fmt::Display for Got {
     }
 }
 
-/// The variants that the checks of `case` look at in its setting, in the order in which they are
-/// needed; `None` is the case itself.
+/// The variants and members of sweeps that the checks of `case` look at in its setting, in the
+/// order in which they are needed; `None` is the case itself.
 pub fn needed_variants(case: &Case) -> Vec<Option<String>> {
     let mut needed = Vec::new();
     for check in applicable(case).map(|(_, check)| check) {
-        let own = check.variant.as_ref();
-        let other = match &check.expectation {
-            Expectation::LessThan(other) | Expectation::MoreThan(other) => Some(other.as_ref()),
-            _ => None,
-        };
-        for variant in [Some(own), other].into_iter().flatten() {
-            let name = variant.map(|name| name.value.clone());
+        let mut names = own_runs(case, check);
+        if let Expectation::LessThan(other) | Expectation::MoreThan(other) = &check.expectation {
+            names.push(other.as_ref().map(|name| name.value.clone()));
+        }
+        for name in names {
             if !needed.contains(&name) {
                 needed.push(name);
             }
         }
     }
     needed
+}
+
+/// The runs that a check is about, without those that it compares with.
+fn own_runs(case: &Case, check: &Check) -> Vec<Option<String>> {
+    match &check.members {
+        None => vec![check.variant.as_ref().map(|name| name.value.clone())],
+        Some(members) => {
+            let sweep = &case.sweeps[*members.sweep];
+            let indices = members.indices(sweep, case.is_coarse).into_iter();
+            indices.map(|index| Some(sweep.member(index))).collect()
+        }
+    }
 }
 
 /// Evaluates the checks of `base` that apply in its setting, coarse or full, in their order.
@@ -120,189 +199,11 @@ pub fn verify<Run: RunResults>(base: &Case, run: &mut RunVariant<'_, Run>) -> Ve
         let result = run(variant.as_deref());
         (variant, result)
     });
-    let runs = Runs(runs.collect());
-    applicable(base).map(|(index, check)| runs.row(base, index, check)).collect()
+    let runs = Runs::new(base, runs.collect());
+    applicable(base).flat_map(|(index, check)| runs.rows(index, check)).collect()
 }
 
 /// The checks that apply in the setting of `case`, with their numbers.
 fn applicable(case: &Case) -> impl Iterator<Item = (usize, &Check)> {
-    case.checks.iter().enumerate().filter(|(_, check)| match check.when {
-        When::Always => true,
-        When::Coarse => case.is_coarse,
-        When::Full => !case.is_coarse,
-    })
-}
-
-/// A variant's name with what came of it.
-type NamedRun<Run> = (Option<String>, Result<VariantRun<Run>, String>);
-
-struct Runs<Run>(Vec<NamedRun<Run>>);
-
-impl<Run: RunResults> Runs<Run> {
-    fn find(&self, variant: Option<&str>) -> Result<&VariantRun<Run>, String> {
-        match self.0.iter().find(|(name, _)| name.as_deref() == variant) {
-            Some((_, Ok(run))) => Ok(run),
-            Some((_, Err(reason))) => Err(reason.clone()),
-            None => Err(format!("there is no run of {}", variant_text(variant))),
-        }
-    }
-
-    fn row(&self, base: &Case, index: usize, check: &Check) -> CheckRow {
-        let variant = check.variant.as_ref().map(|name| name.value.as_str());
-        let found = self.find(variant);
-        // A variant may change parameters that its expected values are computed from.
-        let check = match found {
-            Ok(run) => run.case.checks.get(index).unwrap_or(check),
-            Err(_) => check,
-        };
-        let (expected, tolerance) = format::expectation(&check.expectation, "");
-        let mut row = CheckRow {
-            id: base.id.clone(),
-            variant: variant.map(str::to_owned),
-            quantity: label(check),
-            got: None,
-            expected,
-            tolerance,
-            source: check.source.clone(),
-            pass: false,
-            reason: None,
-        };
-        let verdict = found.and_then(|run| {
-            let got = measure(run, check)?;
-            let unit = match &got {
-                Got::Number(_, unit) => unit,
-                Got::Text(_) => "",
-            };
-            (row.expected, row.tolerance) = format::expectation(&check.expectation, unit);
-            row.got = Some(got.clone());
-            self.compare(&mut row, run, check, &got)
-        });
-        match verdict {
-            Ok(pass) => row.pass = pass,
-            Err(reason) => row.reason = Some(reason),
-        }
-        row
-    }
-
-    /// Whether `got` is as expected, or why that cannot be said.
-    fn compare(
-        &self,
-        row: &mut CheckRow,
-        run: &VariantRun<Run>,
-        check: &Check,
-        got: &Got,
-    ) -> Result<bool, String> {
-        let number = match got {
-            Got::Number(value, _) if value.is_finite() => Ok(*value),
-            Got::Number(value, _) => Err(format!("the result is {value}, no finite number")),
-            Got::Text(_) => Err("the quantity is a text, and a number is expected".to_owned()),
-        };
-        match &check.expectation {
-            Expectation::Outcome(expected) => {
-                let Got::Text(text) = got else {
-                    return Err("the quantity is a number, and a text is expected".to_owned());
-                };
-                let pass = text == expected;
-                if let (false, Outcome::Failed(failure)) = (pass, run.run.outcome()) {
-                    row.reason = Some(failure.to_string());
-                }
-                Ok(pass)
-            }
-            Expectation::Value { expected, tolerance, absolute } => {
-                let number = number?;
-                if !absolute && *expected == 0.0 {
-                    return Err("a tolerance relative to 0 allows nothing: set `absolute = true`"
-                        .to_owned());
-                }
-                let allowed = if *absolute { *tolerance } else { tolerance * expected.abs() };
-                Ok((number - expected).abs() <= allowed)
-            }
-            Expectation::Bounds { at_least, at_most } => {
-                let number = number?;
-                Ok(at_least.is_none_or(|least| number >= least)
-                    && at_most.is_none_or(|most| number <= most))
-            }
-            Expectation::LessThan(other) => {
-                Ok(number? < self.other(row, check, "less than", other.as_deref())?)
-            }
-            Expectation::MoreThan(other) => {
-                Ok(number? > self.other(row, check, "more than", other.as_deref())?)
-            }
-        }
-    }
-
-    /// The same quantity of another variant, which is shown in the row.
-    fn other(
-        &self,
-        row: &mut CheckRow,
-        check: &Check,
-        relation: &str,
-        variant: Option<&String>,
-    ) -> Result<f64, String> {
-        let variant = variant.map(String::as_str);
-        let explain = |reason| format!("{}: {reason}", variant_text(variant));
-        let run = self.find(variant).map_err(explain)?;
-        match measure(run, check).map_err(explain)? {
-            Got::Number(value, unit) if value.is_finite() => {
-                let name = variant.unwrap_or("base");
-                row.expected = format!("{relation} {name} ({})", format::with_unit(value, &unit));
-                Ok(value)
-            }
-            got => Err(explain(format!("the result is {got}, no finite number"))),
-        }
-    }
-}
-
-/// What the run gives for `check`.
-fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got, String> {
-    let name = check.quantity.name();
-    let outcome = run.run.outcome();
-    let about_outcome = matches!(&check.quantity.value, Quantity::Run(name) if name == "outcome");
-    if !about_outcome && !is_as_announced(run) {
-        return Err(match outcome {
-            Outcome::Failed(failure) => format!("the run failed: {failure}"),
-            _ => "the run was interrupted".to_owned(),
-        });
-    }
-    match run.run.quantity(&name) {
-        None => Err(format!("the run has no quantity `{name}`")),
-        Some(Series::Text(text)) => Ok(Got::Text(text)),
-        Some(Series::Number { value, unit }) => Ok(Got::Number(value, unit.to_owned())),
-        Some(Series::Curve { time, values, unit }) => {
-            let reduction = check
-                .reduce
-                .try_map(|file| Curve::read_csv(file))
-                .map_err(|error| format!("the reference curve cannot be used: {error}"))?;
-            let value = reduction.apply(&time, &values).map_err(|error| error.to_string())?;
-            Ok(Got::Number(value, reduction.unit(&unit).to_owned()))
-        }
-    }
-}
-
-/// Whether the run is complete, or failed in the way that a check of the same variant expects.
-fn is_as_announced<Run: RunResults>(run: &VariantRun<Run>) -> bool {
-    let summary = match run.run.outcome() {
-        Outcome::Completed => return true,
-        Outcome::Interrupted => return false,
-        failed => failed.summary(),
-    };
-    applicable(&run.case).any(|(_, check)| {
-        let own = check.variant.as_ref().map(|name| &name.value) == run.case.variant.as_ref();
-        own && check.expectation == Expectation::Outcome(summary.clone())
-    })
-}
-
-/// The quantity with its reduction. The numbers of a run have no history.
-fn label(check: &Check) -> String {
-    match (&check.quantity.value, &check.reduce) {
-        (Quantity::Run(_), _) => check.quantity.name(),
-        (quantity, reduce) => format!("{} {}", quantity.name(), Reduction::label(reduce)),
-    }
-}
-
-fn variant_text(variant: Option<&str>) -> String {
-    match variant {
-        Some(name) => format!("the variant `{name}`"),
-        None => "the case itself".to_owned(),
-    }
+    case.checks.iter().enumerate().filter(|(_, check)| check.when.includes(case.is_coarse))
 }

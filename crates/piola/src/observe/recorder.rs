@@ -41,7 +41,7 @@ pub fn energy_columns(energies: &[&'static str], mechanisms: &[&'static str]) ->
 
 /// Names and units of the columns of the momentum table, after the time: the components of
 /// momentum, the impulse so far of each way in, and what momentum has gained beyond these impulses,
-/// which by theory (18) is the error of the integrator.
+/// which by theory (19) is the error of the integrator.
 pub fn momentum_columns(
     components: &[MomentumComponent],
     impulses: &[&'static str],

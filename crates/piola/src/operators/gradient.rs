@@ -60,9 +60,6 @@ pub struct GradientOperator<const D: usize> {
 }
 
 impl<const D: usize> GradientOperator<D> {
-    /// Bytes that an entry of the list costs in memory and in a pass that uses both directions.
-    pub const BYTES_PER_PAIR: usize = 2 * size_of::<[f64; D]>();
-
     /// Builds the coefficients with kernel weights `particles.weight`.
     ///
     /// # Errors

@@ -5,6 +5,7 @@
 //! are gathered: particle a sums over its own neighbours in a fixed order. [`MovingSupport`] is for
 //! particles that move: it shows the neighbours of the moment to the sums of a scheme.
 
+mod areas;
 mod error;
 mod gradient;
 mod interpolation;
@@ -12,9 +13,10 @@ mod least_squares;
 mod moving;
 mod support;
 
+pub use areas::{Block, LANES, Lanes, PairAreas};
 pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
 pub use least_squares::LeastSquares;
-pub use moving::{Block, Candidates, MovingSupport, Needs, Neighbor};
+pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock};
 pub use support::Support;

@@ -10,7 +10,7 @@ pub const BLOCK: usize = 64;
 
 /// Some neighbours b of one particle a, all inside its support, in arrays over neighbours.
 #[derive(Clone, Debug)]
-pub struct Block<const D: usize> {
+pub struct NeighborBlock<const D: usize> {
     length: usize,
     places: [u32; BLOCK],
     separations: [[f64; BLOCK]; D],
@@ -19,7 +19,7 @@ pub struct Block<const D: usize> {
     slopes: [f64; BLOCK],
 }
 
-impl<const D: usize> Default for Block<D> {
+impl<const D: usize> Default for NeighborBlock<D> {
     fn default() -> Self {
         Self {
             length: 0,
@@ -48,7 +48,7 @@ pub struct Neighbor<const D: usize> {
     pub slope: f64,
 }
 
-impl<const D: usize> Block<D> {
+impl<const D: usize> NeighborBlock<D> {
     /// The neighbours in order.
     #[inline]
     pub fn iter(&self) -> impl Iterator<Item = Neighbor<D>> {
@@ -178,7 +178,12 @@ impl<const D: usize> MovingSupport<D> {
 
     /// Fills `block` with the next neighbours of a particle; false when there is none left.
     #[inline]
-    pub fn fill(&self, rest: &mut Candidates<'_>, needs: Needs, block: &mut Block<D>) -> bool {
+    pub fn fill(
+        &self,
+        rest: &mut Candidates<'_>,
+        needs: Needs,
+        block: &mut NeighborBlock<D>,
+    ) -> bool {
         block.length = 0;
         self.filter(rest, block);
         if rest.row.is_empty() && !rest.then.is_empty() {
@@ -196,7 +201,7 @@ impl<const D: usize> MovingSupport<D> {
     }
 
     /// Appends candidates that are inside the support to `block` until it is full.
-    fn filter(&self, rest: &mut Candidates<'_>, block: &mut Block<D>) {
+    fn filter(&self, rest: &mut Candidates<'_>, block: &mut NeighborBlock<D>) {
         let positions = self.list.positions();
         let here = positions[rest.place];
         let mut length = block.length;

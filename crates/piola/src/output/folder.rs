@@ -9,6 +9,8 @@
 //! checkpoints/step_000000000128 where the run can go on from
 //! pictures/NAME_000012.png      particles coloured by a field
 //! plots/NAME.png                curves against time
+//! references/0_NAME.csv         reference curves of the case's checks
+//! report.html                   all of it in one page
 //! ```
 
 use std::collections::BTreeSet;
@@ -16,7 +18,7 @@ use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use super::{OutputError, RunRecord, atomic};
+use super::{OutputError, RecordError, RunRecord, atomic};
 
 const RECORD: &str = "run.json";
 const SERIES: &str = "particles.pvd";
@@ -24,6 +26,8 @@ const TABLES: [&str; 5] = ["probes.csv", "energy.csv", "momentum.csv", "steps.cs
 const PARTICLES: &str = "particles";
 const PICTURES: &str = "pictures";
 const PLOTS: &str = "plots";
+const REFERENCES: &str = "references";
+const REPORT: &str = "report.html";
 const CHECKPOINTS: &str = "checkpoints";
 const CHECKPOINT_START: &str = "step_";
 
@@ -46,7 +50,7 @@ impl ResultsFolder {
     /// written.
     pub fn create(path: &Path, record: &RunRecord) -> Result<Self, OutputError> {
         let fail = |source| OutputError::from_io(path, source);
-        let folder = Self { path: path.into() };
+        let folder = Self::at(path);
         match fs::metadata(path) {
             Ok(metadata) if !metadata.is_dir() => {
                 return Err(OutputError::NotAFolder { path: path.into() });
@@ -60,10 +64,25 @@ impl ResultsFolder {
         Ok(folder)
     }
 
+    /// The folder `path` as it is, without looking at it.
+    pub fn at(path: &Path) -> Self {
+        Self { path: path.into() }
+    }
+
+    /// The folder `path` of an earlier run, with its record.
+    ///
+    /// # Errors
+    /// The folder holds no record of a run of piola.
+    pub fn of_run(path: &Path) -> Result<(Self, RunRecord), RecordError> {
+        let folder = Self { path: path.into() };
+        let record = RunRecord::read(&folder.record())?;
+        Ok((folder, record))
+    }
+
     /// Opens the folder `path` to go on with the run in it. `None` if there is none: the folder
     /// does not exist or holds no record.
     pub fn open(path: &Path) -> Option<Self> {
-        let folder = Self { path: path.into() };
+        let folder = Self::at(path);
         RunRecord::read(&folder.record()).is_ok().then_some(folder)
     }
 
@@ -177,6 +196,55 @@ impl ResultsFolder {
         Ok(self.below(PLOTS)?.join(format!("{}.png", file_name(name))))
     }
 
+    /// The copy of reference curve `number` of the case, which came from a file called `name`; its
+    /// folder is created if it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
+    pub fn reference(&self, number: usize, name: &str) -> Result<PathBuf, OutputError> {
+        Ok(self.below(REFERENCES)?.join(format!("{number}_{}", file_name(name))))
+    }
+
+    /// The page that shows the run.
+    pub fn report(&self) -> PathBuf {
+        self.path.join(REPORT)
+    }
+
+    /// The particle files that are there, in the order of their numbers.
+    pub fn all_particles(&self) -> Vec<PathBuf> {
+        self.numbered(PARTICLES, "vtp")
+    }
+
+    /// The pictures that are there, by name and number.
+    pub fn all_pictures(&self) -> Vec<PathBuf> {
+        self.numbered(PICTURES, "png")
+    }
+
+    /// The plain files `NAME_NUMBER.ending` of a folder, sorted by name and number. A folder that
+    /// cannot be read holds none.
+    fn numbered(&self, folder: &str, ending: &str) -> Vec<PathBuf> {
+        let path = self.path.join(folder);
+        let mut found: Vec<(String, u64)> = names(&path)
+            .unwrap_or_default()
+            .iter()
+            .filter(|name| is_known(folder, name))
+            .filter_map(|name| {
+                let (start, number) =
+                    name.strip_suffix(ending)?.strip_suffix('.')?.rsplit_once('_')?;
+                Some((start.to_owned(), number.parse().ok()?))
+            })
+            .collect();
+        found.sort();
+        let paths =
+            found.iter().map(|(name, number)| path.join(format!("{name}_{number:06}.{ending}")));
+        paths.filter(|path| fs::symlink_metadata(path).is_ok_and(|data| data.is_file())).collect()
+    }
+
+    /// The path of `file` of the record, relative to this folder; nothing if it would lead out.
+    pub fn inside(&self, file: &str) -> Option<PathBuf> {
+        Some(self.path.join(own(file)?))
+    }
+
     /// `file` relative to this folder with `/` between its parts, as series and records name it.
     pub fn relative(&self, file: &Path) -> String {
         let inside = file.strip_prefix(&self.path).unwrap_or(file);
@@ -211,7 +279,7 @@ impl ResultsFolder {
         let record = RunRecord::read(&self.record()).unwrap_or_default();
         let mut files: BTreeSet<PathBuf> =
             record.files.iter().filter_map(|file| own(file)).collect();
-        for folder in ["", PARTICLES, PICTURES, PLOTS, CHECKPOINTS] {
+        for folder in ["", PARTICLES, PICTURES, PLOTS, REFERENCES, CHECKPOINTS] {
             let path = self.path.join(folder);
             // A link could lead anywhere.
             if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
@@ -263,7 +331,7 @@ fn is_known(folder: &str, name: &str) -> bool {
         })
     };
     let by_name = match folder {
-        "" => name == SERIES || TABLES.contains(&name),
+        "" => name == SERIES || name == REPORT || TABLES.contains(&name),
         PARTICLES => name.starts_with("frame_") && numbered(".vtp"),
         PICTURES => numbered(".png"),
         CHECKPOINTS => is_checkpoint(name),

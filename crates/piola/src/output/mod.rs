@@ -12,6 +12,7 @@
 //! | reference curves, read | [`Curve::read_csv`] |
 //! | particles coloured by a number | [`Picture::write_png`] |
 //! | curves against time | [`Plot::write_png`] |
+//! | all of a run in one page | [`report::write`] |
 //! | where a run can go on from | [`checkpoint::write`] |
 //! | what was run and how it went | [`RunRecord::write`] |
 //! | where all that lies | [`ResultsFolder`] |
@@ -27,8 +28,10 @@ mod picture;
 mod plot;
 pub mod pvd;
 mod record;
+pub mod report;
 mod table;
 pub mod vtp;
+pub mod vtp_reader;
 
 pub use checkpoint::CheckpointError;
 pub use csv_reader::{Curve, TableError};
@@ -36,6 +39,9 @@ pub use error::OutputError;
 pub use folder::ResultsFolder;
 pub use picture::{Bounds, Picture};
 pub use plot::{Plot, Series, Style};
-pub use record::{BodyRecord, RecordError, RetryRecord, RunRecord, StageRecord, timestamp};
+pub use record::{
+    BodyRecord, FigureRecord, RecordError, ReferenceRecord, RetryRecord, RunRecord, StageRecord,
+    timestamp,
+};
 pub use table::{Column, Table};
 pub use vtp::Compression;

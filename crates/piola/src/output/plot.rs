@@ -116,15 +116,10 @@ impl Plot {
 
     /// The curves by unit, each with its looks; one empty panel if there is no curve.
     fn panels(&self) -> Vec<Vec<Styled<'_>>> {
-        let mut panels: Vec<Vec<Styled>> = Vec::new();
-        for series in &self.series {
-            let unit = &series.column.unit;
-            let same = |panel: &&mut Vec<Styled>| panel[0].series.column.unit == *unit;
-            match panels.iter_mut().find(same) {
-                Some(panel) => panel.push(Styled { series, pen: Pen::new(LINE, INK) }),
-                None => panels.push(vec![Styled { series, pen: Pen::new(LINE, INK) }]),
-            }
-        }
+        let styled = |series| Styled { series, pen: Pen::new(LINE, INK) };
+        let panels = by_unit(&self.series).into_iter();
+        let mut panels: Vec<Vec<Styled>> =
+            panels.map(|panel| panel.into_iter().map(styled).collect()).collect();
         for panel in &mut panels {
             for style in [Style::Line, Style::Marks] {
                 let alike = panel.iter_mut().filter(|styled| styled.series.style == style);
@@ -138,6 +133,19 @@ impl Plot {
         }
         panels
     }
+}
+
+/// The curves by unit, in the order in which the units appear.
+pub(super) fn by_unit(series: &[Series]) -> Vec<Vec<&Series>> {
+    let mut panels: Vec<Vec<&Series>> = Vec::new();
+    for one in series {
+        let same = |panel: &&mut Vec<&Series>| panel[0].column.unit == one.column.unit;
+        match panels.iter_mut().find(same) {
+            Some(panel) => panel.push(one),
+            None => panels.push(vec![one]),
+        }
+    }
+    panels
 }
 
 /// The looks of the curve `number` of its style: lines take the colours from the first on and then
@@ -159,23 +167,29 @@ fn pen(style: Style, number: usize) -> Pen {
 
 /// Axis and range of the ordinates of `panel`.
 fn y_axis(panel: &[Styled], height: f32) -> (Axis, [f64; 2]) {
-    let all = panel.iter().flat_map(|styled| &styled.series.points);
+    let panel: Vec<&Series> = panel.iter().map(|styled| styled.series).collect();
+    let y = ordinates(&panel);
+    let unit = panel.first().map_or("", |series| &series.column.unit);
+    (Axis::vertical(y, height, &common_name(&panel), unit), y)
+}
+
+/// The range of the ordinates of `panel`, and a little around it.
+pub(super) fn ordinates(panel: &[&Series]) -> [f64; 2] {
+    let all = panel.iter().flat_map(|series| &series.points);
     let drawn = all.filter(|point| point[0].is_finite());
     let [low, high] = ticks::usable_range(ticks::range_of(drawn.map(|point| point[1])));
     let around = 0.05 * (high - low);
-    let y = [low - around, high + around];
-    let unit = panel.first().map_or("", |styled| &styled.series.column.unit);
-    (Axis::vertical(y, height, &common_name(panel), unit), y)
+    [low - around, high + around]
 }
 
 /// What the names of `panel` have in common: `displacement.y` of `top.displacement.y` and
 /// `tip.displacement.y`, `energy` of `energy.kinetic` and `energy.strain`. References over curves
 /// may be called anything.
-fn common_name(panel: &[Styled]) -> String {
-    let is_line = |styled: &&Styled| styled.series.style == Style::Line;
-    let only_marks = !panel.iter().any(|styled| is_line(&styled));
-    let counted = || panel.iter().filter(|styled| only_marks || is_line(styled));
-    let names = || counted().map(|styled| styled.series.column.name.split('.'));
+pub(super) fn common_name(panel: &[&Series]) -> String {
+    let is_line = |series: &Series| series.style == Style::Line;
+    let only_marks = !panel.iter().any(|series| is_line(series));
+    let counted = || panel.iter().filter(|series| only_marks || is_line(series));
+    let names = || counted().map(|series| series.column.name.split('.'));
     let mut end = common_start(names().map(Iterator::rev));
     end.reverse();
     if end.is_empty() { common_start(names()).join(".") } else { end.join(".") }
@@ -222,7 +236,7 @@ fn ring(canvas: &mut Canvas, at: (f32, f32), colour: Colour) {
 
 /// The same line with four points at most in each column of pixels: first, lowest, highest, last.
 /// A point that is not finite is kept, as it breaks the line.
-fn thinned(points: impl Iterator<Item = (f32, f32)>) -> Vec<(f32, f32)> {
+pub(super) fn thinned(points: impl Iterator<Item = (f32, f32)>) -> Vec<(f32, f32)> {
     let mut kept: Vec<(f32, f32)> = Vec::new();
     let mut column: Vec<(f32, f32)> = Vec::new();
     let flush = |column: &mut Vec<(f32, f32)>, kept: &mut Vec<(f32, f32)>| {

@@ -62,6 +62,10 @@ pub struct RunRecord {
     pub time_reached: f64,
     /// Where the time went.
     pub stages: Vec<StageRecord>,
+    /// Figures of the run as a whole, by the names that checks use after `run.`.
+    pub figures: Vec<FigureRecord>,
+    /// The reference curves of the case's checks.
+    pub references: Vec<ReferenceRecord>,
     /// Files written, relative to the folder of the record, with `/` between their parts.
     pub files: Vec<String>,
     /// What the user was warned of.
@@ -76,6 +80,31 @@ pub struct BodyRecord {
     pub name: String,
     /// Number of its particles.
     pub particles: usize,
+    /// Spacing of its particles along each axis in m.
+    pub spacing: Vec<f64>,
+}
+
+/// One figure of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FigureRecord {
+    /// Name, for example `first_step`.
+    pub name: String,
+    /// Its value.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub value: f64,
+    /// Its SI unit, `1` for a pure number.
+    pub unit: String,
+}
+
+/// A reference curve, copied so that the folder explains itself.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReferenceRecord {
+    /// The file as the case names it.
+    pub path: String,
+    /// The copy, relative to the folder of the record.
+    pub file: String,
 }
 
 /// One failure after which a run went on with smaller steps.
@@ -160,6 +189,8 @@ impl Default for RunRecord {
             end_time: 0.0,
             time_reached: 0.0,
             stages: Vec::new(),
+            figures: Vec::new(),
+            references: Vec::new(),
             files: Vec::new(),
             warnings: Vec::new(),
         }

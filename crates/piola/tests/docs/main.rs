@@ -5,4 +5,6 @@ mod citations;
 mod generated;
 mod pages;
 mod paths;
+mod promises;
 mod rooms;
+mod validation;

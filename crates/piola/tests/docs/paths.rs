@@ -6,7 +6,8 @@ use std::path::Path;
 use super::pages::{Page, all, page, root};
 
 /// First parts of paths that a run or a build makes.
-const MADE: [&str; 5] = ["results", "target", "particles", "pictures", "plots"];
+const MADE: [&str; 7] =
+    ["results", "target", "particles", "pictures", "plots", "checkpoints", "references"];
 /// Endings of files that are paths even without a folder in front.
 const SOURCES: [&str; 3] = [".rs", ".md", ".bib"];
 /// Folders that commands between fences name.

@@ -153,7 +153,7 @@ fn a_record_reads_back_whole() {
         seeds: vec![u64::MAX],
         threads: 8,
         dimension: 2,
-        bodies: vec![BodyRecord { name: "column".into(), particles: 273 }],
+        bodies: vec![BodyRecord { name: "column".into(), particles: 273, spacing: vec![0.1, 0.2] }],
         finished: Some(timestamp(UNIX_EPOCH)),
         outcome: "failed: inverted".into(),
         steps: 12,

@@ -4,6 +4,7 @@
 mod folders;
 mod image;
 mod particle_files;
+mod particle_reader;
 mod pictures;
 mod plots;
 mod tables;

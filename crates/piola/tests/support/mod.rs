@@ -8,10 +8,10 @@ use piola::boundaries::{PrescribedVelocity, SpaceTime, Traction};
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{Correction, Support};
-use piola::schemes::Scheme;
 use piola::schemes::upwind::{
     BodyForce, Initial, Material, Settings, Upwind, UpwindInput, WaveSpeed,
 };
+use piola::schemes::{Ledger, Scheme};
 use piola::time::IntegratorKind;
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::VolumetricLaw;
@@ -220,13 +220,12 @@ pub fn energy(scheme: &dyn Scheme, state: &[f64]) -> f64 {
 pub fn work(scheme: &dyn Scheme, state: &[f64], mechanism: &str) -> f64 {
     let names = scheme.mechanisms();
     let position = names.iter().position(|name| *name == mechanism).expect("a known mechanism");
-    state[state.len() - names.len() + position]
+    Ledger::of(scheme, state).work[position]
 }
 
 /// Energy less the start's and less all work: what the integrator has added.
 pub fn imbalance(scheme: &dyn Scheme, start: f64, state: &[f64]) -> f64 {
-    let all: f64 = state[state.len() - scheme.mechanisms().len()..].iter().sum();
-    energy(scheme, state) - start - all
+    energy(scheme, state) - start - Ledger::of(scheme, state).work.iter().sum::<f64>()
 }
 
 /// A seeded number in (-1, 1) for each index: a hash, so that tests need no generator.

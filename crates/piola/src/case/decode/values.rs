@@ -3,6 +3,7 @@
 use super::{Context, Datum, Located, Node, Problem, Table, Value, one_of, suggestion};
 use crate::case::expression::{Expression, ExpressionError, Scope, constants, functions};
 use crate::case::overrides::start_of_content;
+use crate::case::settings::keys_with_values;
 use crate::case::source::Place;
 use crate::case::spec::{Interval, Kind, Length, Variables};
 
@@ -63,6 +64,9 @@ impl Context<'_> {
                 // All are read before one that fails ends it, so that every problem is found.
                 let each: Vec<_> = each.collect();
                 each.into_iter().collect::<Option<_>>().map(Datum::List)
+            }
+            (Kind::KeysWithValues | Kind::KeysWithValue, Value::Table(table)) => {
+                self.keys(name, matches!(kind, Kind::KeysWithValues), table, node.place)
             }
             (Kind::PerAxis(inner), Value::Table(table)) => {
                 self.axes(name, inner, table, node.place)
@@ -246,6 +250,40 @@ impl Context<'_> {
         Some(Datum::Axes(each.collect()))
     }
 
+    /// Paths of keys with their values, which are lists if there have to be several.
+    fn keys(&mut self, name: &str, several: bool, table: &Table, place: Place) -> Option<Datum> {
+        let found = keys_with_values(table);
+        if found.is_empty() {
+            let message = format!("`{name}` must have at least one key");
+            self.report(Problem::new(place, message, "empty"));
+        }
+        let mut kept = Vec::new();
+        for (path, node) in found {
+            let list = match (&node.value, several) {
+                (Value::Broken, _) => continue,
+                (Value::List(list), true) => list,
+                (_, false) => std::slice::from_ref(node),
+                (value, true) => {
+                    let key = &path.value;
+                    let message =
+                        format!("the values of `{key}` must be a list, got {}", value.describe());
+                    self.report(
+                        Problem::new(node.place, message, "expected a list")
+                            .help("write brackets around the values: [1, 2, 4]"),
+                    );
+                    continue;
+                }
+            };
+            if list.is_empty() {
+                let message = format!("`{}` needs at least one value", path.value);
+                self.report(Problem::new(node.place, message, "empty"));
+                continue;
+            }
+            kept.push((path, list.to_vec()));
+        }
+        Some(Datum::Keys(kept))
+    }
+
     /// What a value should be, with an article.
     pub(super) fn expected(&self, kind: &Kind) -> String {
         let bounded = |what: &str, interval: &Interval| match interval.describe() {
@@ -281,6 +319,12 @@ impl Context<'_> {
             Kind::Table(_) => "a table".to_owned(),
             Kind::Tagged(_) => "a table with the key `kind`".to_owned(),
             Kind::Parameters => "a table of numbers".to_owned(),
+            Kind::KeysWithValues => {
+                "a table like { \"time.cfl\" = [0.1, 0.2] }, keys with lists of values".to_owned()
+            }
+            Kind::KeysWithValue => {
+                "a table like { \"time.cfl\" = 0.1 }, keys with a value each".to_owned()
+            }
         }
     }
 }

@@ -1,41 +1,83 @@
 //! Checks.
 
+use super::members::is_error;
+use super::sweeps::when;
 use super::*;
-use crate::case::model::{Check, Expectation, Probe, Quantity, Reduction, When};
+use crate::case::model::{
+    Check, Expectation, Probe, Quantity, Reduction, Sweep, Trend, When, member_of,
+};
 
-/// The four ways to say what is expected, each with the keys that belong to it.
-const WAYS: [&[&str]; 4] =
-    [&["expected"], &["at_least", "at_most"], &["less_than"], &["more_than"]];
+/// The ways to say what is expected, each with the keys that belong to it.
+const WAYS: [&[&str]; 7] = [
+    &["expected"],
+    &["at_least", "at_most"],
+    &["less_than"],
+    &["more_than"],
+    &["order"],
+    &["monotone"],
+    &["ratio"],
+];
+/// Those of them that say how the members of a sweep follow each other.
+const TRENDS: [&str; 3] = ["order", "monotone", "ratio"];
+
+/// What a check may refer to, as far as it could be read.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    /// The probes of the case.
+    pub probes: Option<&'a [Probe]>,
+    /// The sweeps of the case.
+    pub sweeps: Option<&'a [Sweep]>,
+    /// The time at which the run ends.
+    pub end: Option<f64>,
+}
 
 impl Reader<'_, '_> {
-    pub(super) fn check(
-        &mut self,
-        record: &Record,
-        probes: Option<&[Probe]>,
-        end: Option<f64>,
-    ) -> Option<Check> {
+    pub(super) fn check(&mut self, record: &Record, known: Known<'_>) -> Option<Check> {
         let variant = record.text("variant").map(|name| self.variant_called(name));
-        let quantity = record.text("quantity").and_then(|text| self.quantity(&text, probes));
-        let when = match record.text("when")?.as_str() {
-            "coarse" => When::Coarse,
-            "full" => When::Full,
-            _ => When::Always,
+        let quantity = record.text("quantity").and_then(|text| self.quantity(&text, known.probes));
+        let mut when = when(record)?;
+        let trend = TRENDS.into_iter().find(|key| record.has(key));
+        let members = match record.text("sweep") {
+            None if record.has("sweep") => return None,
+            None => {
+                self.only_for_sweeps(record);
+                None
+            }
+            Some(name) => {
+                let sweep = self.sweep_called(&name, known.sweeps?)?;
+                when = self.common_setting(record, when, &known.sweeps?[*sweep])?;
+                Some(self.members(record, sweep, known.sweeps?, trend, when)?)
+            }
         };
         // The end of another variant or setting may be another one.
-        let of_this_run = match &variant {
-            Some(Some(Some(name))) => self.setting.variant == Some(name.as_str()),
+        let of_this_run = match (&members, &variant) {
+            (Some(members), _) => {
+                let own = self.setting.variant.and_then(member_of);
+                let sweep = &known.sweeps?[*members.sweep];
+                own.is_some_and(|(name, index)| {
+                    name == *sweep.name && members.includes(sweep, index, self.setting.coarse)
+                })
+            }
+            (None, Some(Some(Some(name)))) => self.setting.variant == Some(name.as_str()),
             _ => self.setting.variant.is_none(),
         };
         let at_this_setting = match when {
             When::Coarse => self.setting.coarse,
             When::Always | When::Full => !self.setting.coarse,
         };
-        let end = end.filter(|_| of_this_run && at_this_setting);
+        let end = known.end.filter(|_| of_this_run && at_this_setting);
         let reduce = self.reduction(record, end);
         let is_outcome = quantity.as_deref() == Some(&Quantity::Run("outcome".to_owned()));
         let expectation = self.expectation(record, is_outcome);
+        if let (Some(members), Some(reduce), Some(expectation)) = (&members, &reduce, &expectation)
+            && when.includes(self.setting.coarse)
+        {
+            let is_error = is_error(reduce, expectation);
+            self.enough_members(record, members, known.sweeps?, trend, is_error)?;
+        }
         Some(Check {
             variant: variant??,
+            members,
             quantity: quantity?,
             reduce: reduce?,
             expectation: expectation?,
@@ -45,7 +87,10 @@ impl Reader<'_, '_> {
     }
 
     /// A variant by its name, `Some(None)` for the base case, `None` for an unknown one.
-    fn variant_called(&mut self, name: Located<String>) -> Option<Option<Located<String>>> {
+    pub(super) fn variant_called(
+        &mut self,
+        name: Located<String>,
+    ) -> Option<Option<Located<String>>> {
         if *name == "base" {
             return Some(None);
         }
@@ -106,11 +151,16 @@ impl Reader<'_, '_> {
 
     fn expectation(&mut self, record: &Record, is_outcome: bool) -> Option<Expectation> {
         let used = |keys: &&[&str]| keys.iter().any(|key| record.has(key));
-        let ways: Vec<&[&str]> = WAYS.into_iter().filter(used).collect();
+        let mut ways: Vec<&[&str]> = WAYS.into_iter().filter(used).collect();
+        // A trend may be that of the error to an expected value.
+        if ways.iter().any(|way| TRENDS.contains(&way[0])) {
+            ways.retain(|way| way[0] != "expected");
+        }
         let Some(way) = ways.first() else {
             let message = "the check says nothing of what is expected";
             return self.refuse(Problem::new(record.place, message, "nothing expected").help(
-                "give `expected` and `tolerance`, `at_least`, `at_most`, `less_than` or `more_than`",
+                "give `expected` and `tolerance`, `at_least`, `at_most`, `less_than` or `more_than`, \
+                 or of a sweep `order`, `monotone` or `ratio`",
             ));
         };
         if let Some(second) = ways.get(1) {
@@ -135,6 +185,7 @@ impl Reader<'_, '_> {
                 Some(Expectation::Bounds { at_least: bound("at_least"), at_most: bound("at_most") })
             }
             "less_than" => self.other(record, "less_than").map(Expectation::LessThan),
+            "order" | "monotone" | "ratio" => self.trend(record, way[0]),
             _ => self.other(record, "more_than").map(Expectation::MoreThan),
         }
     }
@@ -147,12 +198,32 @@ impl Reader<'_, '_> {
         self.refuse(Problem::new(record.value_place("expected"), message, "expected text"))
     }
 
+    fn trend(&mut self, record: &Record, key: &str) -> Option<Expectation> {
+        let trend = match key {
+            "order" => Trend::Order(record.ends("order")?.value),
+            "ratio" => Trend::Ratio(record.ends("ratio")?.value),
+            _ => match record.text("monotone")?.as_str() {
+                "increasing" => Trend::Increasing,
+                _ => Trend::Decreasing,
+            },
+        };
+        let expected = match record.has("expected") {
+            true => Some(self.expected_number(record)?),
+            false => None,
+        };
+        Some(Expectation::Trend { trend, expected })
+    }
+
+    fn expected_number(&mut self, record: &Record) -> Option<f64> {
+        match record.text("expected") {
+            Some(text) => self.context.constant(&text, record.value_place("expected")),
+            None => record.number("expected").map(|number| number.value),
+        }
+    }
+
     fn expected(&mut self, record: &Record) -> Option<Expectation> {
         let place = record.value_place("expected");
-        let expected = match record.text("expected") {
-            Some(text) => self.context.constant(&text, place),
-            None => record.number("expected").map(|number| number.value),
-        };
+        let expected = self.expected_number(record);
         if !record.has("tolerance") {
             let message = "`expected` needs `tolerance` beside it";
             let problem = Problem::new(place, message, "`tolerance` is missing");
@@ -173,7 +244,7 @@ impl Reader<'_, '_> {
     fn other(&mut self, record: &Record, key: &str) -> Option<Option<Located<String>>> {
         let name = record.text(key)?;
         let own = record.text("variant")?;
-        if name.value == own.value {
+        if name.value == own.value && !record.has("sweep") {
             let message = format!("`{key}` compares the variant `{}` with itself", own.value);
             return self.refuse(Problem::new(name.place, message, "the same variant"));
         }

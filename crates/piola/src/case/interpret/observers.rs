@@ -87,7 +87,8 @@ impl Reader<'_, '_> {
             Some("none") => Compression::None,
             _ => Compression::Zlib,
         };
-        Some(Output { every, table_every, fields, compression })
+        let report = record.and_then(|record| record.boolean("report")).unwrap_or(true);
+        Some(Output { every, table_every, fields, compression, report })
     }
 
     fn not_too_often(&mut self, every: &Located<f64>, end: f64, most: f64, what: &str) {
@@ -109,17 +110,23 @@ impl Reader<'_, '_> {
             let Datum::Number(time) = item.value else { continue };
             if time <= end {
                 times.push(Located::new(time, item.place));
-            } else if self.setting.variant.is_none() && !self.setting.coarse {
+            } else if self.is_plain() {
                 let message = format!("the run ends at {end} s, before the picture at {time} s");
                 self.report(Problem::new(item.place, message, "after the end"));
             }
-            // A variant or the coarse setting may end earlier: it has fewer pictures then.
+            // A variant, the coarse setting or an override may end earlier: fewer pictures then.
         }
         if !record.has("times") {
             times.push(Located::new(end, record.place));
         }
         let range = record.ends("range").map(|range| range.value);
         Some(Picture { field: field?, times, range })
+    }
+
+    /// Whether the case is read as its file has it, without any overrides.
+    fn is_plain(&self) -> bool {
+        let Setting { variant, coarse, .. } = self.setting;
+        variant.is_none() && !coarse && self.context.sources.len() == 1
     }
 
     pub(super) fn plot(&mut self, record: &Record, probes: Option<&[Probe]>) -> Option<Plot> {

@@ -7,8 +7,10 @@ use crate::case::source::Located;
 /// One line of the table that `piola verify` prints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// The variant that is run, `None` for the base case.
+    /// The variant that is run, `None` for the base case or where a sweep is looked at.
     pub variant: Option<Located<String>>,
+    /// The members of a sweep that are run instead.
+    pub members: Option<Members>,
     /// What is looked at.
     pub quantity: Located<Quantity>,
     /// How its history becomes one number.
@@ -26,6 +28,17 @@ impl Check {
     pub fn file(&self) -> Option<&Located<PathBuf>> {
         self.reduce.reference()
     }
+}
+
+/// Members of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Members {
+    /// Number of the sweep in the case.
+    pub sweep: Located<usize>,
+    /// For each key of the sweep the number of its value, `None` for all values.
+    pub fixed: Vec<Option<usize>>,
+    /// Number of the key along which members follow each other, for trends.
+    pub along: Option<usize>,
 }
 
 /// A column of the tables, or a number of the run as a whole.
@@ -89,6 +102,26 @@ pub enum Expectation {
     MoreThan(Option<Located<String>>),
     /// The text of `run.outcome`.
     Outcome(String),
+    /// How the members of a sweep follow each other.
+    Trend {
+        /// In which way.
+        trend: Trend,
+        /// The value that each should have: its error is looked at instead of the quantity.
+        expected: Option<f64>,
+    },
+}
+
+/// How the numbers along a key of a sweep follow each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trend {
+    /// Bounds of the order of convergence in the value of the key.
+    Order([f64; 2]),
+    /// Each is above the one before.
+    Increasing,
+    /// Each is below the one before.
+    Decreasing,
+    /// Bounds of each over the one before.
+    Ratio([f64; 2]),
 }
 
 /// At which setting a check is evaluated.
@@ -100,4 +133,15 @@ pub enum When {
     Coarse,
     /// At the setting of the paper only.
     Full,
+}
+
+impl When {
+    /// Whether it includes the coarse setting, or the full one.
+    pub fn includes(self, coarse: bool) -> bool {
+        match self {
+            Self::Always => true,
+            Self::Coarse => coarse,
+            Self::Full => !coarse,
+        }
+    }
 }

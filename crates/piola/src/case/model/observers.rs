@@ -82,6 +82,8 @@ pub struct Output {
     pub fields: Vec<FieldDescription>,
     /// How the particle files are packed.
     pub compression: Compression,
+    /// Whether the run ends with a report.
+    pub report: bool,
 }
 
 /// How particle files are packed.

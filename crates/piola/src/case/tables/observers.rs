@@ -1,4 +1,4 @@
-//! Probes, output, pictures, plots and checks.
+//! Probes, output, pictures and plots.
 
 use super::*;
 
@@ -158,6 +158,13 @@ pub(super) static OUTPUT: TableSpec = TableSpec {
             Default("\"zlib\""),
             "how the particle files are packed",
         ),
+        key(
+            "report",
+            Kind::Boolean,
+            "",
+            Default("true"),
+            "whether the run ends with `report.html`, one page with all of its results",
+        ),
     ],
 };
 
@@ -205,91 +212,3 @@ pub(super) static PLOT: TableSpec = TableSpec {
         ),
     ],
 };
-
-pub(super) static CHECK: TableSpec = TableSpec {
-    title: "[[check]]",
-    meaning: "A quantity of a run and what is expected of it: `expected` with `tolerance`, or `at_least` and `at_most`, or `less_than` or `more_than`.",
-    keys: &[
-        key(
-            "variant",
-            Kind::Text,
-            "",
-            Default("\"base\""),
-            "the variant that is run, `base` for the case itself",
-        ),
-        key(
-            "quantity",
-            Kind::Text,
-            "",
-            Required,
-            "column of a table: PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, momentum.NAME, step.NAME, run.NAME",
-        ),
-        key(
-            "reduce",
-            Kind::Name(Choices::Registry(catalogue::reductions)),
-            "",
-            Default("\"final\""),
-            "how its history becomes one number; no meaning for run.NAME",
-        ),
-        key(
-            "at",
-            Kind::Number(Interval::NOT_NEGATIVE),
-            "s",
-            Optional,
-            "the time, for the reduction `at`",
-        ),
-        key(
-            "number",
-            Kind::Integer(Interval::at_least(1.0)),
-            "1",
-            Default("1"),
-            "which one, counted from 1, for `extremum`, `extremum_time` and `zero_time`",
-        ),
-        key(
-            "reference",
-            Kind::File,
-            "",
-            Optional,
-            "CSV file with the columns time and value, for `curve` and `curve_rms`",
-        ),
-        key(
-            "expected",
-            Kind::NumberOrText,
-            "",
-            Optional,
-            "the value, in the unit of the quantity; text for run.outcome",
-        ),
-        key(
-            "tolerance",
-            Kind::Number(Interval::NOT_NEGATIVE),
-            "1",
-            Optional,
-            "largest difference as a share of `expected`",
-        ),
-        key(
-            "absolute",
-            Kind::Boolean,
-            "",
-            Default("false"),
-            "whether `tolerance` has the unit of the quantity instead",
-        ),
-        key("at_least", Kind::Number(Interval::ANY), "", Optional, "smallest value that passes"),
-        key("at_most", Kind::Number(Interval::ANY), "", Optional, "largest value that passes"),
-        key("less_than", Kind::Text, "", Optional, "name of a variant whose value is larger"),
-        key("more_than", Kind::Text, "", Optional, "name of a variant whose value is smaller"),
-        key("source", Kind::Text, "", Required, "where the expected value comes from"),
-        key(
-            "when",
-            Kind::Name(SETTINGS),
-            "",
-            Default("\"always\""),
-            "at which setting it is evaluated",
-        ),
-    ],
-};
-
-const SETTINGS: Choices = choices(&[
-    choice("always", "at both settings"),
-    choice("coarse", "at the coarse setting only"),
-    choice("full", "at the full setting only"),
-]);

@@ -30,7 +30,7 @@ fn overrides_set_keys_of_tables_and_elements_of_lists() {
     assert_eq!(case.bodies[2].spacing.value, [0.1, 0.2]);
     assert_eq!(case.title, "A new title, unquoted");
     assert_eq!(case.parameter("twice"), Some(3.0));
-    assert_eq!((case.output.every.value, case.checks.len()), (0.5, 5));
+    assert_eq!((case.output.every.value, case.checks.len()), (0.5, 9));
     let Scheme::Upwind(upwind) = &case.scheme.value else { panic!("the scheme is upwind") };
     assert_eq!((upwind.smoothing_length.value, upwind.tau_velocity), (1.2, 0.0));
 }
@@ -190,9 +190,9 @@ fn problems_of_settings_underline_the_string_in_the_file() {
         shown,
         "\
 error: [scheme] of kind `upwind` has no key `tau_velocty` (in the variant `no-upwinding`)
-    --> case.toml:128:16
+    --> case.toml:129:16
     |
-128 | set = [\"scheme.tau_velocty=0\"]
+129 | set = [\"scheme.tau_velocty=0\"]
     |                ^^^^^^^^^^^ unknown key
     = help: did you mean `tau_velocity`?
 "

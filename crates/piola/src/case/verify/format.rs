@@ -1,6 +1,6 @@
 //! Numbers and expectations as text for people.
 
-use crate::case::model::Expectation;
+use crate::case::model::{Expectation, Trend};
 
 /// Digits of a result that are shown.
 const DIGITS: usize = 6;
@@ -55,6 +55,43 @@ pub(super) fn expectation(expectation: &Expectation, unit: &str) -> (String, Str
         Expectation::LessThan(other) => (comparison("less than", other.as_deref()), String::new()),
         Expectation::MoreThan(other) => (comparison("more than", other.as_deref()), String::new()),
         Expectation::Outcome(text) => (text.clone(), String::new()),
+        Expectation::Trend { trend, .. } => (trend_text(trend), String::new()),
+    }
+}
+
+fn trend_text(trend: &Trend) -> String {
+    let bounds = |[lower, upper]: &[f64; 2]| {
+        [lower, upper].map(|bound| significant(*bound, DIGITS)).join(" to ")
+    };
+    match trend {
+        Trend::Order(ends) => format!("order {}", bounds(ends)),
+        Trend::Ratio(ends) => format!("ratios {}", bounds(ends)),
+        Trend::Increasing => "increasing".to_owned(),
+        Trend::Decreasing => "decreasing".to_owned(),
+    }
+}
+
+/// How far `got` is off `expected`: a share like the tolerance, or in `unit` if it is `absolute`.
+pub(super) fn deviation(got: f64, expected: f64, absolute: bool, unit: &str) -> String {
+    let digits = 3;
+    // Round-off differs from machine to machine.
+    let difference = got - expected;
+    let is_round_off = difference.abs() <= 1e-11 * expected.abs();
+    match (if is_round_off { 0.0 } else { difference }, unit) {
+        (difference, "" | "1") if absolute => significant(difference, digits),
+        (difference, unit) if absolute => format!("{} {unit}", significant(difference, digits)),
+        (difference, _) => {
+            format!("{} %", significant(100.0 * difference / expected.abs(), digits))
+        }
+    }
+}
+
+/// Numbers of one unit as a list: `0.31, 0.28 m`.
+pub(super) fn list(values: &[f64], unit: &str) -> String {
+    let texts: Vec<String> = values.iter().map(|value| significant(*value, DIGITS)).collect();
+    match unit {
+        "" | "1" => texts.join(", "),
+        unit => format!("{} {unit}", texts.join(", ")),
     }
 }
 

@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 
 use super::{DensityRule, PressureRule, TransportVelocity};
-use crate::operators::{Block, Needs};
+use crate::operators::{Needs, NeighborBlock};
 use crate::parallel;
 
 impl<const D: usize> TransportVelocity<D> {
@@ -12,7 +12,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut densities = std::mem::take(&mut self.densities);
         let (support, sides, centre) = (&self.support, &self.sides, self.support.centre());
         parallel::for_each_chunk(&mut densities, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, density) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 let mut sum = sides[place].mass * centre;

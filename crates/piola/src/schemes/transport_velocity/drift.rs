@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 
 use super::{DensityRule, Divergence, PressureRule, Side, TransportVelocity};
-use crate::operators::{Block, Needs};
+use crate::operators::{Needs, NeighborBlock};
 use crate::parallel;
 
 /// Rates of change of a particle's density and pressure, term by term, see
@@ -26,7 +26,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut rates = std::mem::take(&mut self.rates);
         let list = self.support.list();
         parallel::for_each_chunk(&mut rates, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 if !list.is_passive(place) {
@@ -38,7 +38,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     #[inline]
-    fn rates_at(&self, place: usize, block: &mut Block<D>) -> Rates {
+    fn rates_at(&self, place: usize, block: &mut NeighborBlock<D>) -> Rates {
         let me = &self.sides[place];
         let h = self.support.smoothing_length();
         let softening = fluid::softening(h);

@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 
 use super::{Dilatation, Shifting, Side, TransportVelocity};
-use crate::operators::{Block, Needs, Neighbor};
+use crate::operators::{Needs, Neighbor, NeighborBlock};
 use crate::{Vector, parallel};
 
 /// Accelerations of a particle in m/s^2, term by term, and sums that the same pass gathers.
@@ -105,7 +105,7 @@ impl<const D: usize> TransportVelocity<D> {
         };
         let list = self.support.list();
         parallel::for_each_chunk(&mut forces, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 *row = match list.is_passive(place) {
@@ -117,7 +117,12 @@ impl<const D: usize> TransportVelocity<D> {
         self.forces = forces;
     }
 
-    fn forces_at(&self, place: usize, constants: &Constants, block: &mut Block<D>) -> Forces<D> {
+    fn forces_at(
+        &self,
+        place: usize,
+        constants: &Constants,
+        block: &mut NeighborBlock<D>,
+    ) -> Forces<D> {
         let me = &self.sides[place];
         let needs = if constants.crowding.is_some() { Needs::Both } else { Needs::Slope };
         let mut sum = Forces::default();
@@ -163,7 +168,12 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The force of the fluid on a wall particle, over its mass: what it does to the fluid, turned
     /// round.
-    fn reaction_at(&self, place: usize, constants: &Constants, block: &mut Block<D>) -> Forces<D> {
+    fn reaction_at(
+        &self,
+        place: usize,
+        constants: &Constants,
+        block: &mut NeighborBlock<D>,
+    ) -> Forces<D> {
         let (me, mut sum) = (&self.sides[place], Forces::default());
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, Needs::Slope, block) {

@@ -2,7 +2,7 @@
 
 use super::{Forces, Rates, Row, TransportVelocity};
 use crate::Vector;
-use crate::operators::{Block, Needs};
+use crate::operators::{Needs, NeighborBlock};
 
 impl<const D: usize> TransportVelocity<D> {
     /// All passes at a state as it is: sides, rates and forces are those of `state` afterwards.
@@ -86,7 +86,7 @@ impl<const D: usize> TransportVelocity<D> {
     pub(super) fn neighbors_of(&self, number: usize) -> Vec<u32> {
         let list = self.support.list();
         let place = list.places()[number] as usize;
-        let (mut found, mut block) = (Vec::new(), Block::default());
+        let (mut found, mut block) = (Vec::new(), NeighborBlock::default());
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
             found.extend(block.iter().map(|neighbor| list.numbers()[neighbor.place]));
@@ -96,7 +96,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     fn neighbor_count(&self, place: usize) -> usize {
         let mut count = 0;
-        let mut block = Block::default();
+        let mut block = NeighborBlock::default();
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
             count += block.iter().count();
@@ -106,7 +106,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     fn summed_density(&self, place: usize) -> f64 {
         let mut sum = self.sides[place].mass * self.support.centre();
-        let mut block = Block::default();
+        let mut block = NeighborBlock::default();
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Value, &mut block) {
             sum += block.iter().map(|b| self.sides[b.place].mass * b.value).sum::<f64>();
@@ -123,7 +123,7 @@ impl<const D: usize> TransportVelocity<D> {
     fn velocity_gradient(&self, place: usize, which: impl Fn(usize, usize) -> bool) -> f64 {
         let me = &self.sides[place];
         let mut sum = 0.0;
-        let mut block = Block::default();
+        let mut block = NeighborBlock::default();
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Slope, &mut block) {
             for neighbor in block.iter() {

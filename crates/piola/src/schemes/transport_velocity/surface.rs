@@ -1,7 +1,7 @@
 //! Free surfaces: normals, the particles on them, and how far they are, CTVF section 3.4.
 
 use super::TransportVelocity;
-use crate::operators::{Block, Needs};
+use crate::operators::{Needs, NeighborBlock};
 use crate::{Vector, parallel};
 
 /// Cosine of the half-angle of the cone around the outward normal in which a particle of the
@@ -45,7 +45,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut forces = std::mem::take(&mut self.forces);
         let (support, list, sides) = (&self.support, self.support.list(), &self.sides);
         parallel::for_each_chunk(&mut forces, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 if list.is_passive(place) {
@@ -83,7 +83,7 @@ impl<const D: usize> TransportVelocity<D> {
         let sharp: &[Opening<D>] = &openings;
         let mut found = std::mem::take(&mut self.found);
         parallel::for_each_chunk(&mut found, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 if !list.is_passive(first + offset) {
                     *row = self.surface_at(first + offset, sharp, &mut block);
@@ -95,7 +95,7 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let mut reaches = std::mem::take(&mut self.densities);
         parallel::for_each_chunk(&mut reaches, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 if !list.is_passive(first + offset) {
                     *row = self.reach_at(first + offset, &found, &mut block);
@@ -114,7 +114,7 @@ impl<const D: usize> TransportVelocity<D> {
         &self,
         place: usize,
         openings: &[Opening<D>],
-        block: &mut Block<D>,
+        block: &mut NeighborBlock<D>,
     ) -> (Vector<D>, bool) {
         let (support, me) = (&self.support, &self.sides[place]);
         let mut density = me.mass * support.centre();
@@ -143,7 +143,12 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// `h_b` of CTVF algorithm 1, with the kernel's own support for the paper's 3.
-    fn reach_at(&self, place: usize, found: &[(Vector<D>, bool)], block: &mut Block<D>) -> f64 {
+    fn reach_at(
+        &self,
+        place: usize,
+        found: &[(Vector<D>, bool)],
+        block: &mut NeighborBlock<D>,
+    ) -> f64 {
         if found[place].1 {
             return 0.0;
         }

@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 
 use super::{Slip, TransportVelocity};
-use crate::operators::{Block, Needs};
+use crate::operators::{Needs, NeighborBlock};
 use crate::{Vector, parallel};
 
 /// A particle of a wall.
@@ -54,7 +54,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut values = std::mem::take(&mut self.wall_values);
         self.move_surfaces(time, &mut values);
         parallel::for_each_chunk(&mut values, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 self.extrapolate(&self.walls[first + offset], time, row, &mut block);
             }
@@ -92,7 +92,7 @@ impl<const D: usize> TransportVelocity<D> {
         wall: &WallParticle<D>,
         time: f64,
         values: &mut WallValues<D>,
-        block: &mut Block<D>,
+        block: &mut NeighborBlock<D>,
     ) {
         let place = self.support.list().places()[wall.number as usize] as usize;
         let (mut weight, mut pressure) = (0.0, 0.0);

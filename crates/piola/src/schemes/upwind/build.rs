@@ -11,7 +11,7 @@ use super::{Initial, Loaded, Material, Powers, Reference, Settings, Upwind};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction, padded};
 use crate::geometry::Particles;
-use crate::operators::{GradientOperator, LeastSquares, OperatorError, Support};
+use crate::operators::{GradientOperator, LeastSquares, OperatorError, PairAreas, Support};
 use crate::{Vector, parallel};
 
 /// All that the formulation is bound to.
@@ -126,6 +126,7 @@ impl<const D: usize> Upwind<D> {
         });
         let mut scheme = Self {
             nearest,
+            areas: PairAreas::new(&gradient, &support.list, &particles.volume),
             largest_exchange: largest_exchange(&particles, &support, &gradient),
             fastest_reference: reference.iter().map(|r| r.wave_speed).fold(0.0, f64::max),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
@@ -133,14 +134,13 @@ impl<const D: usize> Upwind<D> {
             body_acceleration: vec![Vector::zeros(); count],
             loaded: loaded.collect(),
             sides: vec![Side::default(); count],
-            slopes: vec![Slope::default(); if settings.reconstruction { count } else { 0 }],
+            slopes: vec![Slope::ZERO; if settings.reconstruction { count } else { 0 }],
             chunk_powers: vec![Powers::default(); chunks],
             chunk_figures: vec![ChunkFigures::NEUTRAL; chunks],
             body_forces: input.body_forces,
             initial_velocity: initial.velocity,
             particles,
             support,
-            gradient,
             least_squares,
             settings,
             materials,

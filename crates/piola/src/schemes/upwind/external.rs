@@ -1,5 +1,5 @@
-//! What acts on the body from outside: tractions and prescribed motion, and the momentum that
-//! enters with them and with body forces.
+//! What acts on the body from outside: tractions and prescribed motion, with the work and the
+//! momentum that enter with them.
 
 use super::{BOUNDARY_MOTION, IMPULSES, MECHANISMS, Row, TRACTION, Upwind};
 use crate::Vector;
@@ -20,9 +20,8 @@ impl<const D: usize> Upwind<D> {
         debug_assert_eq!(tail.len(), Self::tail_length());
         let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
         let components = momentum_components(D).len();
-        let (body_force, impulses) = impulses.split_at_mut(components);
-        let (traction, boundary) = impulses.split_at_mut(components);
-        body_force.copy_from_slice(&self.body_force_moments()[..components]);
+        // The first are those of body forces, which the pair pass has added up.
+        let (traction, boundary) = impulses[components..].split_at_mut(components);
         for load in &self.loaded {
             let a = load.particle;
             let force = Vector::<D>::from_fn(|component, _| {
@@ -46,17 +45,6 @@ impl<const D: usize> Upwind<D> {
             force[component] = reaction;
             add_moments(&self.sides[a].position, &force, boundary);
         }
-    }
-
-    /// Force and moment of the body forces on all particles together.
-    fn body_force_moments(&self) -> [f64; MOST_COMPONENTS] {
-        if self.body_forces.is_empty() {
-            return [0.0; MOST_COMPONENTS];
-        }
-        parallel::sums(self.particles.len(), |a, sum| {
-            let weight = self.body_acceleration[a] * self.mass(a);
-            add_moments(&self.sides[a].position, &weight, sum);
-        })
     }
 
     /// Momentum of all particles together.

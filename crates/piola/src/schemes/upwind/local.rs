@@ -7,8 +7,9 @@ use super::{Row, Upwind, WaveSpeed};
 use crate::{Tensor, Vector, parallel};
 
 /// What the pass over pairs gathers of a particle, in one place so that a neighbour costs one
-/// stretch of memory.
+/// stretch of memory, which begins with a cache line so that it takes as few of them as can be.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(super) struct Side<const D: usize> {
     /// Current position x in m.
     pub position: Vector<D>,
@@ -20,8 +21,6 @@ pub(super) struct Side<const D: usize> {
     pub cofactor: Tensor<D>,
     /// Pressure p(J) of the evolved J in Pa.
     pub pressure: f64,
-    /// Quadrature volume V in m^D.
-    pub volume: f64,
     /// Reference density in kg/m^3.
     pub density: f64,
     /// Speed of the shock in the dissipation in m/s.
@@ -36,7 +35,6 @@ impl<const D: usize> Default for Side<D> {
             velocity: Vector::zeros(),
             cofactor: Tensor::zeros(),
             pressure: 0.0,
-            volume: 0.0,
             density: 0.0,
             wave_speed: 0.0,
         }
@@ -81,7 +79,6 @@ impl<const D: usize> Upwind<D> {
             velocity: Vector::from_column_slice(&row[..D]),
             cofactor: tensor::cofactor(&gradient),
             pressure: self.law(a).pressure(row[Row::<D>::VOLUME_RATIO]),
-            volume: self.particles.volume[a],
             density: reference.density,
             wave_speed,
         }

@@ -19,8 +19,10 @@
 mod build;
 mod check;
 mod external;
+mod gather;
 mod inspect;
 mod local;
+mod pair;
 mod pairs;
 mod passes;
 mod reconstruction;
@@ -32,7 +34,8 @@ use piola_formulas::volumetric::{Prestressed, VolumetricLaw};
 use crate::Vector;
 use crate::boundaries::{SpaceTime, prescribed::PrescribedComponents};
 use crate::geometry::Particles;
-use crate::operators::{GradientOperator, LeastSquares, Support};
+use crate::operators::{LeastSquares, PairAreas, Support};
+use crate::schemes::momentum::MOST_COMPONENTS;
 
 pub use build::{UpwindError, UpwindInput};
 pub use passes::PASSES;
@@ -50,7 +53,7 @@ use reconstruction::Slope;
 pub struct Upwind<const D: usize> {
     particles: Particles<D>,
     support: Support<D>,
-    gradient: GradientOperator<D>,
+    areas: PairAreas<D>,
     least_squares: Option<LeastSquares<D>>,
     settings: Settings,
     /// One a body.
@@ -106,9 +109,14 @@ pub const MECHANISMS: [&str; 5] =
 /// forces and dissipation are not among them.
 pub const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
 
-/// Power of each mechanism in W.
+/// What the pair pass adds up of some particles.
 #[derive(Clone, Copy, Debug, Default)]
-struct Powers([f64; MECHANISMS.len()]);
+struct Powers {
+    /// Power of each mechanism in W.
+    work: [f64; MECHANISMS.len()],
+    /// Force and moment of the body forces.
+    body_force: [f64; MOST_COMPONENTS],
+}
 
 const BODY_FORCE: usize = 0;
 const TRACTION: usize = 1;

@@ -1,33 +1,33 @@
 //! The pass over pairs: forces, deformation rates and upwind dissipation in one gather.
 
-use piola_formulas::riemann::Interface;
+use multiversion::multiversion;
 use rayon::prelude::*;
 
-use super::local::Side;
-use super::{BODY_FORCE, Powers, Row, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
+use super::gather::Sums;
+use super::{BODY_FORCE, MECHANISMS, Powers, Row, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
 use crate::parallel::CHUNK;
+use crate::schemes::momentum::{add_moments, momentum_components};
 use crate::{Tensor, Vector};
-
-/// What a particle gathers from its neighbours.
-struct Gathered<const D: usize> {
-    /// Internal force in N.
-    internal: Vector<D>,
-    /// Force of the velocity dissipation in N.
-    upwind_force: Vector<D>,
-    /// Rate of the deformation gradient in 1/s.
-    deformation_rate: Tensor<D>,
-    /// Volume rate of the pressure dissipation in m^D/s.
-    upwind_volume_rate: f64,
-}
 
 impl<const D: usize> Upwind<D> {
     /// Writes the rates of all rows and the powers at their end.
     pub(super) fn pair_pass(&mut self, rate: &mut [f64]) {
+        let settings = &self.settings;
+        let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure > 0.0);
+        let rate_rows = match (velocity, pressure, settings.reconstruction) {
+            (false, false, _) => rate_rows::<D, false, false, false>,
+            (true, false, false) => rate_rows::<D, true, false, false>,
+            (false, true, false) => rate_rows::<D, false, true, false>,
+            (true, true, false) => rate_rows::<D, true, true, false>,
+            (true, false, true) => rate_rows::<D, true, false, true>,
+            (false, true, true) => rate_rows::<D, false, true, true>,
+            (true, true, true) => rate_rows::<D, true, true, true>,
+        };
         let (rows, tail) = rate.split_at_mut(self.particles.len() * Row::<D>::LENGTH);
         let mut powers = std::mem::take(&mut self.chunk_powers);
         let chunk_length = CHUNK * Row::<D>::LENGTH;
         let body = |(chunk, (rows, powers)): (usize, (&mut [f64], &mut Powers))| {
-            *powers = self.rate_rows(chunk * CHUNK, rows);
+            *powers = rate_rows(self, chunk * CHUNK, rows);
         };
         if powers.len() <= 1 {
             rows.chunks_mut(chunk_length).zip(&mut powers).enumerate().for_each(body);
@@ -35,106 +35,62 @@ impl<const D: usize> Upwind<D> {
             rows.par_chunks_mut(chunk_length).zip(&mut powers).enumerate().for_each(body);
         }
         tail.fill(0.0);
+        let (work, impulses) = tail.split_at_mut(MECHANISMS.len());
+        let body_force = &mut impulses[..momentum_components(D).len()];
         for chunk in &powers {
-            tail.iter_mut().zip(chunk.0).for_each(|(total, part)| *total += part);
+            work.iter_mut().zip(chunk.work).for_each(|(total, part)| *total += part);
+            body_force.iter_mut().zip(chunk.body_force).for_each(|(total, part)| *total += part);
         }
         self.chunk_powers = powers;
     }
 
-    fn rate_rows(&self, first: usize, rows: &mut [f64]) -> Powers {
-        let mut powers = Powers::default();
-        for (offset, row) in rows.chunks_exact_mut(Row::<D>::LENGTH).enumerate() {
-            let a = first + offset;
-            let me = &self.sides[a];
-            let sum = self.gather(a, me);
-            let gravity = self.body_acceleration[a];
-            let mass = self.mass(a);
-            let acceleration = (sum.internal + sum.upwind_force) / mass + gravity;
-            row[..D].copy_from_slice(acceleration.as_slice());
-            let dilatation = me.cofactor.dot(&sum.deformation_rate);
-            row[Row::<D>::VOLUME_RATIO] = dilatation + sum.upwind_volume_rate / me.volume;
-            row[Row::<D>::POSITION..Row::<D>::DEFORMATION].copy_from_slice(me.velocity.as_slice());
-            for i in 0..D {
-                for j in 0..D {
-                    row[Row::<D>::DEFORMATION + i * D + j] = sum.deformation_rate[(i, j)];
-                }
-            }
-            powers.0[BODY_FORCE] += mass * gravity.dot(&me.velocity);
-            powers.0[UPWIND_VELOCITY] += sum.upwind_force.dot(&me.velocity);
-            powers.0[UPWIND_PRESSURE] -= me.pressure * sum.upwind_volume_rate;
-        }
-        powers
-    }
-
-    /// The sums over neighbours of theory (8) to (10), with b = a in the first.
+    /// Turns the sums of particle a into its rates.
     #[inline]
-    fn gather(&self, a: usize, me: &Side<D>) -> Gathered<D> {
-        let (list, settings) = (&self.support.list, &self.settings);
-        let entries = list.range(a);
-        let forward = self.gradient.forward(entries.clone());
-        let adjoint = self.gradient.adjoint(entries);
-        let mut sum = Gathered {
-            internal: me.cofactor * self.gradient.diagonal(a) * (me.pressure * me.volume),
-            upwind_force: Vector::zeros(),
-            deformation_rate: Tensor::zeros(),
-            upwind_volume_rate: 0.0,
-        };
-        let dissipates = settings.tau_velocity > 0.0 || settings.tau_pressure > 0.0;
-        for ((&b, g), transposed) in list.row(a).iter().zip(forward).zip(adjoint) {
-            let other = &self.sides[b as usize];
-            let (g, transposed) = (Vector::from(*g), Vector::from(*transposed));
-            let jump = other.velocity - me.velocity;
-            let other_area = other.cofactor * transposed * other.volume;
-            sum.internal += other_area * other.pressure;
-            sum.deformation_rate += jump * g.transpose();
-            if dissipates {
-                let area = Areas { g, transposed, other_area };
-                self.dissipate(a, b as usize, jump, &area, &mut sum);
+    fn write_row(&self, a: usize, sums: &Sums<f64, D>, row: &mut [f64], powers: &mut Powers) {
+        let me = &self.sides[a];
+        let (settings, volume) = (&self.settings, self.particles.volume[a]);
+        let own = me.cofactor * self.areas.diagonal(a) * me.pressure;
+        let upwind_force = Vector::from(sums.upwind_force) * settings.tau_velocity;
+        let upwind_volume_rate = sums.upwind_volume_rate * settings.tau_pressure;
+        let gravity = self.body_acceleration[a];
+        let mass = self.mass(a);
+        let acceleration =
+            (Vector::from(sums.internal_force) + own + upwind_force) / mass + gravity;
+        row[..D].copy_from_slice(acceleration.as_slice());
+        let deformation_rate =
+            Tensor::<D>::from_fn(|i, j| sums.volume_deformation_rate[i][j] / volume);
+        let dilatation = me.cofactor.dot(&deformation_rate);
+        row[Row::<D>::VOLUME_RATIO] = dilatation + upwind_volume_rate / volume;
+        row[Row::<D>::POSITION..Row::<D>::DEFORMATION].copy_from_slice(me.velocity.as_slice());
+        for i in 0..D {
+            for j in 0..D {
+                row[Row::<D>::DEFORMATION + i * D + j] = deformation_rate[(i, j)];
             }
         }
-        sum
-    }
-
-    /// Adds the exchange with one neighbour, theory (12) and (13), with the antisymmetric areas
-    /// that let b lose what a receives.
-    #[inline]
-    fn dissipate(
-        &self,
-        a: usize,
-        b: usize,
-        mut velocity_jump: Vector<D>,
-        area: &Areas<D>,
-        sum: &mut Gathered<D>,
-    ) {
-        let (me, other, settings) = (&self.sides[a], &self.sides[b], &self.settings);
-        let domain = &self.support.domain;
-        let reference = domain.separation(&me.reference, &other.reference);
-        let interface = Interface::new(domain.separation(&me.position, &other.position), reference);
-        let impedance = 0.5 * (me.density + other.density) * me.wave_speed.max(other.wave_speed);
-        let mut pressure_jump = other.pressure - me.pressure;
-        if settings.reconstruction {
-            let (mine, theirs) = (&self.slopes[a], &self.slopes[b]);
-            velocity_jump -= (mine.velocity + theirs.velocity) * reference * 0.5;
-            pressure_jump -= (mine.pressure + theirs.pressure).dot(&reference) * 0.5;
-        }
-        if settings.tau_velocity > 0.0 {
-            let area = area.g * me.volume - area.transposed * other.volume;
-            sum.upwind_force +=
-                interface.force(impedance, &velocity_jump, &area) * settings.tau_velocity;
-        }
-        if settings.tau_pressure > 0.0 {
-            let average = (me.cofactor + other.cofactor) * 0.5;
-            let area = me.cofactor * area.g * me.volume - area.other_area;
-            let rate = interface.volume_rate(impedance, pressure_jump, &average, &area);
-            sum.upwind_volume_rate += rate * settings.tau_pressure;
-        }
+        let weight = gravity * mass;
+        powers.work[BODY_FORCE] += weight.dot(&me.velocity);
+        powers.work[UPWIND_VELOCITY] += upwind_force.dot(&me.velocity);
+        powers.work[UPWIND_PRESSURE] -= me.pressure * upwind_volume_rate;
+        add_moments(&me.position, &weight, &mut powers.body_force);
     }
 }
 
-/// The areas of a pair that the internal force has formed already.
-struct Areas<const D: usize> {
-    g: Vector<D>,
-    transposed: Vector<D>,
-    /// `V_b H_b G_ba`.
-    other_area: Vector<D>,
+#[multiversion(targets("x86_64+avx2"))]
+fn rate_rows<
+    const D: usize,
+    const VELOCITY: bool,
+    const PRESSURE: bool,
+    const RECONSTRUCTION: bool,
+>(
+    scheme: &Upwind<D>,
+    first: usize,
+    rows: &mut [f64],
+) -> Powers {
+    let mut powers = Powers::default();
+    for (offset, row) in rows.chunks_exact_mut(Row::<D>::LENGTH).enumerate() {
+        let a = first + offset;
+        let sums = scheme.gather::<VELOCITY, PRESSURE, RECONSTRUCTION>(a);
+        scheme.write_row(a, &sums.total(), row, &mut powers);
+    }
+    powers
 }

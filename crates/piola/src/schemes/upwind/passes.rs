@@ -1,7 +1,6 @@
 //! One evaluation of the rates as a row of passes, and what they move through memory.
 
 use super::{Row, Side, Slope, Upwind};
-use crate::operators::GradientOperator;
 use crate::schemes::Scheme;
 use crate::{Tensor, Vector};
 
@@ -38,14 +37,14 @@ impl<const D: usize> Upwind<D> {
         let (count, pairs) = (self.particle_count(), self.support.list.pairs());
         let row = Row::<D>::LENGTH * size_of::<f64>();
         let vector = size_of::<Vector<D>>();
-        let reference = size_of::<super::Reference>() + size_of::<f64>();
+        let reference = size_of::<super::Reference>();
         let (side, slope) = (size_of::<Side<D>>(), size_of::<Slope<D>>());
         let entry = size_of::<u32>();
         let local = count * (row + vector + reference + entry + side);
-        let pass = count * (size_of::<usize>() + side) + pairs * entry;
-        let slopes = pass + count * (slope + size_of::<Tensor<D>>());
-        let gathered = pass + count * (2 * vector + reference + row);
-        let pairwise = gathered + pairs * GradientOperator::<D>::BYTES_PER_PAIR;
+        let list = count * size_of::<usize>() + pairs * entry;
+        let slopes = list + count * (side + slope + size_of::<Tensor<D>>());
+        let volume = size_of::<f64>();
+        let pairwise = self.areas.memory() + count * (side + vector + reference + volume + row);
         match self.settings.reconstruction {
             true => [local, slopes, pairwise + count * slope, 0],
             false => [local, 0, pairwise, 0],

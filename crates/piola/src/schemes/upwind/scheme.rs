@@ -163,18 +163,26 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn memory(&self) -> usize {
-        let (count, pairs) = (self.particles.len(), self.support.list.pairs());
-        let slope = size_of::<super::Slope<D>>() + size_of::<crate::Tensor<D>>();
-        let particle = 2 * size_of::<crate::Vector<D>>()
-            + 7 * size_of::<f64>()
-            + 2 * size_of::<u32>()
-            + size_of::<super::Side<D>>()
-            + 2 * size_of::<crate::Vector<D>>()
-            + size_of::<super::Reference>()
-            + if self.slopes.is_empty() { 0 } else { slope };
-        // An entry of the list, its reverse, and its coefficients.
-        let pair = 2 * size_of::<u32>() + 2 * size_of::<[f64; D]>();
-        count * particle + pairs * pair
+        let (particles, support) = (&self.particles, &self.support);
+        let inverse = self.least_squares.as_ref().map_or(0, |_| size_of::<crate::Tensor<D>>());
+        size_of_val(particles.position.as_slice())
+            + size_of_val(particles.volume.as_slice())
+            + size_of_val(particles.weight.as_slice())
+            + size_of_val(particles.spacing.as_slice())
+            + size_of_val(particles.body.as_slice())
+            + size_of_val(particles.id.as_slice())
+            + size_of_val(support.smoothing_length.as_slice())
+            + size_of_val(support.list.offsets())
+            + size_of_val(support.list.indices())
+            + size_of_val(support.reverse.as_slice())
+            + size_of_val(self.reference.as_slice())
+            + size_of_val(self.initial_velocity.as_slice())
+            + size_of_val(self.nearest.as_slice())
+            + size_of_val(self.body_acceleration.as_slice())
+            + size_of_val(self.sides.as_slice())
+            + size_of_val(self.slopes.as_slice())
+            + inverse * particles.len()
+            + self.areas.memory()
     }
 }
 

@@ -1,6 +1,6 @@
 //! IPST: displacements iterated until particles are even.
 
-use crate::operators::{Block, Needs};
+use crate::operators::{Needs, NeighborBlock};
 use crate::schemes::transport_velocity::{Opening, Row, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
@@ -104,7 +104,7 @@ impl<const D: usize> TransportVelocity<D> {
         let h = support.smoothing_length();
         let scale = h.powi(D as i32);
         parallel::for_each_chunk(found, |first, rows| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 let (mut sum, mut direction) = (support.centre(), Vector::zeros());

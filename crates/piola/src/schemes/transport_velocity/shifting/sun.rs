@@ -2,7 +2,7 @@
 
 use piola_formulas::fluid;
 
-use crate::operators::{Block, Needs};
+use crate::operators::{Needs, NeighborBlock};
 use crate::schemes::transport_velocity::{Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
@@ -30,7 +30,7 @@ impl<const D: usize> TransportVelocity<D> {
         volumes.extend(sides.iter().map(|side| side.volume));
         let (list, h) = (self.support.list(), self.support.smoothing_length());
         parallel::for_each_chunk(&mut sides, |first, sides| {
-            let mut block = Block::default();
+            let mut block = NeighborBlock::default();
             for (offset, side) in sides.iter_mut().enumerate() {
                 let place = first + offset;
                 if list.is_passive(place) {
@@ -62,7 +62,7 @@ impl<const D: usize> TransportVelocity<D> {
     ///
     /// The gradients keep the size that they have with the full support: a kernel that is scaled
     /// down to a unit integral pushes without bounds once it holds but a neighbour or two.
-    fn crowding_within(&self, place: usize, h: f64, block: &mut Block<D>) -> Vector<D> {
+    fn crowding_within(&self, place: usize, h: f64, block: &mut NeighborBlock<D>) -> Vector<D> {
         let kernel = self.support.kernel();
         let full = self.support.smoothing_length();
         let inverse = 1.0 / self.value_at_spacing(full);

@@ -1,0 +1,91 @@
+use std::fs;
+
+use crate::support::{BAR, Place, assert_contains};
+
+/// Checks of a sweep beside those of the tiny bar, of which one fails.
+const CHECKS: &str = r#"
+[[plot]]
+name = "tip"
+curves = ["tip.displacement.x"]
+
+[[sweep]]
+name = "mesh"
+over = { body.bar.spacing = [0.2, 0.1] }
+
+[[check]]
+sweep = "mesh"
+quantity = "run.first_step"
+ratio = [0.49, 0.51]
+source = "the step follows the spacing | Upwind (4.3)"
+
+[[check]]
+variant = "fast"
+quantity = "tip.displacement.x"
+at_most = 0.0
+source = "wrong on purpose"
+"#;
+
+#[test]
+fn a_page_of_a_coarse_case_is_as_expected() {
+    let place = Place::new();
+    place.write("cases/bar/case.toml", BAR.to_owned() + CHECKS);
+    place.write("cases/bar/README.md", "# T1");
+    let (stdout, _) = place.run("verify cases --page docs/page.md", 1);
+    assert_contains(&stdout, &["3 checks of 1 case", "wrote docs/page.md with 3 charts"]);
+    let page = place.read("docs/page.md");
+    let version = env!("CARGO_PKG_VERSION");
+    assert_contains(
+        &page,
+        &[
+            "# Validation\n",
+            &format!(
+                "as `piola verify --page` of version {version} wrote it, at the coarse setting"
+            ),
+            "2 of 3 results in 1 cases are as expected.",
+            "| T1 | bar | 3 | 2 |",
+            "## CTVF: Adepu and Ramachandran (2021)",
+            "### T1: A tiny bar",
+            "[bar](../cases/bar/README.md), 4 runs of 6 to 11 particles.",
+            "| tip.displacement.x initial | 0 m | 1e-15 m | 0 m | 0 m | it starts at rest | yes |",
+            // Half the step, as spacing and step are proportional.
+            "| sweep mesh: run.first_step | ratios 0.49 to 0.51 along body.bar.spacing |  | 0.5 |  \
+             | the step follows the spacing \\| Upwind (4.3) | yes |",
+            "| fast: tip.displacement.x final | at most 0 m |  | 0.0",
+            "| wrong on purpose | **no** |",
+            "![bar, tip](page/bar-tip.png)",
+            "![bar, mesh-run-first_step](page/bar-mesh-run-first_step.png)",
+        ],
+    );
+    // A second time it is the same to the byte, charts too.
+    let chart = || fs::read(place.path("docs/page/bar-tip.png")).unwrap();
+    let first = chart();
+    place.run("verify cases --page docs/page.md --threads 1", 1);
+    assert_eq!((place.read("docs/page.md"), chart()), (page, first));
+}
+
+#[test]
+fn charts_that_are_no_longer_shown_are_removed_and_nothing_else() {
+    let place = Place::new();
+    place.write("bar/case.toml", BAR.to_owned() + CHECKS);
+    place.run("verify bar --page page.md", 1);
+    place.write("page/other.png", "mine");
+    assert!(place.path("page/bar-tip.png").exists());
+    place.write("bar/case.toml", BAR);
+    place.run("verify bar --page page.md", 0);
+    assert!(!place.path("page/bar-tip.png").exists());
+    assert_eq!(place.read("page/other.png"), "mine");
+    assert!(!place.read("page.md").contains(".png"));
+}
+
+#[test]
+fn a_page_needs_a_place_to_be() {
+    let place = Place::with_bar();
+    let (_, stderr) = place.run("verify bar --page page", 2);
+    assert_contains(&stderr, &["needs an ending"]);
+    place.write("file", "");
+    place.run("verify bar --page file/page.md", 4);
+    // A case that cannot be read is in the page, as failed.
+    place.write("cases/bad/case.toml", "version = 7");
+    place.run("verify cases --page page.md", 1);
+    assert_contains(&place.read("page.md"), &["### bad: ", "| the case file |", "**no**"]);
+}

@@ -1,0 +1,146 @@
+//! Sweeps: the same case with every value of one or two keys.
+
+use super::{Members, When};
+use crate::case::source::Located;
+
+/// The same case with every value of one key, or every pair of values of two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// Unique name, the first part of the names of its members.
+    pub name: Located<String>,
+    /// What it shows, in one line.
+    pub title: Option<String>,
+    /// The variant that the members start from, `None` for the case itself.
+    pub variant: Option<Located<String>>,
+    /// Overrides of all members, each `path.to.key=value`.
+    pub set: Vec<String>,
+    /// One or two keys with their values at the full setting.
+    pub full: Vec<SweepKey>,
+    /// The same keys at the coarse setting.
+    pub coarse: Vec<SweepKey>,
+    /// At which setting there is the sweep.
+    pub when: When,
+}
+
+/// A key of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepKey {
+    /// Its path in the case file.
+    pub path: Located<String>,
+    /// The values, at least one.
+    pub values: Vec<Located<SweepValue>>,
+}
+
+/// A value of a key of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepValue {
+    /// As TOML, texts without quotes.
+    pub text: String,
+    /// Its value where it is a number, or an expression of the parameters of the case that was
+    /// read: those of a member may differ from those of another.
+    pub number: Option<f64>,
+}
+
+impl Sweep {
+    /// The keys with their values at a setting.
+    pub fn keys(&self, coarse: bool) -> &[SweepKey] {
+        if coarse { &self.coarse } else { &self.full }
+    }
+
+    /// Whether there is the sweep at a setting.
+    pub fn exists(&self, coarse: bool) -> bool {
+        self.when.includes(coarse)
+    }
+
+    /// Number of members at a setting, none where the sweep does not exist.
+    pub fn count(&self, coarse: bool) -> usize {
+        if !self.exists(coarse) {
+            return 0;
+        }
+        let counts = self.keys(coarse).iter().map(|key| key.values.len());
+        counts.fold(1, usize::saturating_mul)
+    }
+
+    /// The name of member number `index`, from 0: `NAME.1` is that of the first.
+    pub fn member(&self, index: usize) -> String {
+        member_name(&self.name, index)
+    }
+
+    /// What tells member number `index` apart: `time.cfl=0.1, scheme.kernel=lucy`.
+    pub fn label(&self, index: usize, coarse: bool) -> String {
+        let each = self.values(index, coarse);
+        let each = each.iter().map(|(key, value)| format!("{}={}", key.path.value, value.text));
+        each.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The keys with the values that member number `index` has.
+    pub fn values(&self, index: usize, coarse: bool) -> Vec<(&SweepKey, &SweepValue)> {
+        let keys = self.keys(coarse);
+        let each = keys.iter().zip(coordinates(keys, index));
+        each.filter_map(|(key, number)| Some((key, &key.values.get(number)?.value))).collect()
+    }
+}
+
+/// The numbers of the values that member number `index` has, the last key fastest.
+pub fn coordinates(keys: &[SweepKey], index: usize) -> Vec<usize> {
+    let mut rest = index;
+    let mut numbers: Vec<usize> = keys
+        .iter()
+        .rev()
+        .map(|key| {
+            let count = key.values.len().max(1);
+            let number = rest % count;
+            rest /= count;
+            number
+        })
+        .collect();
+    numbers.reverse();
+    numbers
+}
+
+/// The name of member number `index`, from 0, of the sweep called `sweep`.
+pub(in crate::case) fn member_name(sweep: &str, index: usize) -> String {
+    format!("{sweep}.{}", index + 1)
+}
+
+/// The sweep and the number from 0 that the name of a member means.
+pub(in crate::case) fn member_of(name: &str) -> Option<(&str, usize)> {
+    let (sweep, number) = name.split_once('.')?;
+    Some((sweep, number.parse::<usize>().ok()?.checked_sub(1)?))
+}
+
+impl Members {
+    /// Whether member number `index` of `sweep` is among them.
+    pub fn includes(&self, sweep: &Sweep, index: usize, coarse: bool) -> bool {
+        let numbers = coordinates(sweep.keys(coarse), index);
+        index < sweep.count(coarse)
+            && self
+                .fixed
+                .iter()
+                .zip(numbers)
+                .all(|(fixed, number)| fixed.is_none_or(|f| f == number))
+    }
+
+    /// The numbers of the members, in order.
+    pub fn indices(&self, sweep: &Sweep, coarse: bool) -> Vec<usize> {
+        (0..sweep.count(coarse)).filter(|index| self.includes(sweep, *index, coarse)).collect()
+    }
+
+    /// The members in lines along their key, one for each value of the other key; one line with a
+    /// single member each where there is no such key.
+    pub fn lines(&self, sweep: &Sweep, coarse: bool) -> Vec<Vec<usize>> {
+        let keys = sweep.keys(coarse);
+        let mut lines: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
+        for index in self.indices(sweep, coarse) {
+            let mut others = coordinates(keys, index);
+            if let Some(along) = self.along {
+                others.remove(along);
+            }
+            match lines.iter_mut().find(|(known, _)| *known == others) {
+                Some((_, line)) => line.push(index),
+                None => lines.push((others, vec![index])),
+            }
+        }
+        lines.into_iter().map(|(_, line)| line).collect()
+    }
+}

@@ -1,0 +1,181 @@
+//! Sweeps and checks.
+
+use super::*;
+
+pub(super) static SWEEP: TableSpec = TableSpec {
+    title: "[[sweep]]",
+    meaning: "The same case with every value of one key, or every pair of values of two. The members are runs like variants, called `NAME.1`, `NAME.2` and so on, the last key fastest.",
+    keys: &[
+        key("name", Kind::Text, "", Required, "unique name"),
+        key("title", Kind::Text, "", Optional, "what it shows, in one line"),
+        key(
+            "over",
+            Kind::KeysWithValues,
+            "",
+            Required,
+            "the keys, as paths, with their values: `{ \"body.bar.spacing\" = [0.2, 0.1] }`",
+        ),
+        key(
+            "coarse",
+            Kind::KeysWithValues,
+            "",
+            Optional,
+            "other values of some of these keys in the coarse setting",
+        ),
+        key(
+            "variant",
+            Kind::Text,
+            "",
+            Default("\"base\""),
+            "the variant that the members start from",
+        ),
+        key(
+            "set",
+            Kind::List(&Kind::Text),
+            "",
+            Default("[]"),
+            "overrides of all members, each `path.to.key=value`",
+        ),
+        key(
+            "when",
+            Kind::Name(SETTINGS),
+            "",
+            Default("\"always\""),
+            "at which setting there is the sweep, and what is checked of it",
+        ),
+    ],
+};
+
+pub(super) static CHECK: TableSpec = TableSpec {
+    title: "[[check]]",
+    meaning: "A quantity of a run and what is expected of it: `expected` with `tolerance`, or `at_least` and `at_most`, or `less_than` or `more_than`. A check of a sweep holds for each of its members, or says with `order`, `monotone` or `ratio` how they follow each other.",
+    keys: &[
+        key(
+            "variant",
+            Kind::Text,
+            "",
+            Default("\"base\""),
+            "the variant that is run, `base` for the case itself",
+        ),
+        key(
+            "sweep",
+            Kind::Text,
+            "",
+            Optional,
+            "the sweep whose members are run, instead of `variant`",
+        ),
+        key(
+            "member",
+            Kind::KeysWithValue,
+            "",
+            Derived("all members of the sweep"),
+            "only members that have these values, for example `{ \"time.cfl\" = 0.1 }`",
+        ),
+        key(
+            "along",
+            Kind::Text,
+            "",
+            Derived("the only key that `member` leaves free"),
+            "the key of the sweep along which `order`, `monotone` or `ratio` is taken, for each value of the other",
+        ),
+        key(
+            "quantity",
+            Kind::Text,
+            "",
+            Required,
+            "column of a table: PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, momentum.NAME, step.NAME, run.NAME",
+        ),
+        key(
+            "reduce",
+            Kind::Name(Choices::Registry(catalogue::reductions)),
+            "",
+            Default("\"final\""),
+            "how its history becomes one number; no meaning for run.NAME",
+        ),
+        key(
+            "at",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "s",
+            Optional,
+            "the time, for the reduction `at`",
+        ),
+        key(
+            "number",
+            Kind::Integer(Interval::at_least(1.0)),
+            "1",
+            Default("1"),
+            "which one, counted from 1, for `extremum`, `extremum_time` and `zero_time`",
+        ),
+        key(
+            "reference",
+            Kind::File,
+            "",
+            Optional,
+            "CSV file with the columns time and value, for `curve` and `curve_rms`",
+        ),
+        key(
+            "expected",
+            Kind::NumberOrText,
+            "",
+            Optional,
+            "the value, in the unit of the quantity, with the parameters of the variant or member; text for run.outcome",
+        ),
+        key(
+            "tolerance",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Optional,
+            "largest difference as a share of `expected`",
+        ),
+        key(
+            "absolute",
+            Kind::Boolean,
+            "",
+            Default("false"),
+            "whether `tolerance` has the unit of the quantity instead",
+        ),
+        key("at_least", Kind::Number(Interval::ANY), "", Optional, "smallest value that passes"),
+        key("at_most", Kind::Number(Interval::ANY), "", Optional, "largest value that passes"),
+        key("less_than", Kind::Text, "", Optional, "name of a variant whose value is larger"),
+        key("more_than", Kind::Text, "", Optional, "name of a variant whose value is smaller"),
+        key(
+            "order",
+            Kind::Numbers(Length::Ends, Interval::ANY),
+            "1",
+            Optional,
+            "bounds of the order of convergence along a sweep: the slope, by least squares, of log error against log value of the key. The error is the difference to `expected`, or the quantity itself for `curve` and `curve_rms`; without either, members are compared with the next (Richardson). Negative for keys that grow with refinement",
+        ),
+        key(
+            "monotone",
+            Kind::Name(DIRECTIONS),
+            "",
+            Optional,
+            "the way the quantity, or with `expected` its error, goes from member to member in the order of the values",
+        ),
+        key(
+            "ratio",
+            Kind::Numbers(Length::Ends, Interval::ANY),
+            "1",
+            Optional,
+            "bounds of the quantity, or with `expected` of its error, over that of the member before, for all members but the first",
+        ),
+        key("source", Kind::Text, "", Required, "where the expected value comes from"),
+        key(
+            "when",
+            Kind::Name(SETTINGS),
+            "",
+            Default("\"always\""),
+            "at which setting it is evaluated",
+        ),
+    ],
+};
+
+const DIRECTIONS: Choices = choices(&[
+    choice("increasing", "each is above the one before"),
+    choice("decreasing", "each is below the one before"),
+]);
+const SETTINGS: Choices = choices(&[
+    choice("always", "at both settings"),
+    choice("coarse", "at the coarse setting only"),
+    choice("full", "at the full setting only"),
+]);
