@@ -133,15 +133,14 @@ impl<const D: usize> TransportVelocity<D> {
         if !is_wall.contains(&false) {
             return Err(TransportVelocityError::NoFluid);
         }
-        let mut wall_index = vec![None; count];
         let mut walls = Vec::new();
-        for number in 0..count {
-            if let Some(wall) = wall_of(number) {
-                wall_index[number] = Some(walls.len() as u32);
-                let normal = input.normals[number];
-                walls.push(WallParticle { number: number as u32, normal, slip: wall.slip });
-            }
-        }
+        let mut index = |number: usize| {
+            let slip = wall_of(number)?.slip;
+            let normal = input.normals[number];
+            walls.push(WallParticle { number: number as u32, normal, slip });
+            Some(walls.len() as u32 - 1)
+        };
+        let wall_index: Vec<Option<u32>> = (0..count).map(&mut index).collect();
         let of_walls = |conditions: &[PrescribedVelocity]| {
             components(conditions, &wall_index, &walls, &particles)
         };
