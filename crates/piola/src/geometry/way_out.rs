@@ -109,7 +109,8 @@ mod tests {
         for angle in [0.1_f64, 0.9, 2.0, 4.0] {
             let radial = Vector::<2>::new(angle.cos(), angle.sin());
             let way = ball.way_out(&(center + radial * 0.4), &bounds).expect("there is a way");
-            assert!((way - radial).norm() < 1e-4, "{way} for {radial}");
+            // Lengths are found to 1e-8 m of 0.1 m, and grow with the square of the turn.
+            assert!((way - radial).norm() < 2e-3, "{way} for {radial}");
         }
         // On the bounds there is no way out.
         assert_eq!(ball.way_out(&center, &(center, center)), None);
