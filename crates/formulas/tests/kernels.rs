@@ -342,3 +342,19 @@ proptest! {
         ));
     }
 }
+
+#[test]
+fn many_distances_are_the_single_ones() {
+    let (h, squares): (f64, Vec<f64>) = (0.3, (1..200).map(|k| f64::from(k) * 5e-3).collect());
+    let (mut values, mut slopes) = (vec![0.0; squares.len()], vec![0.0; squares.len()]);
+    for &kernel in Kernel::ALL {
+        let many = kernel.many::<2>(h);
+        many.values(&squares, &mut values);
+        many.slopes(&squares, &mut slopes);
+        for (k, square) in squares.iter().enumerate() {
+            let r = square.sqrt();
+            assert_eq!(values[k], kernel.value(2, r, h), "{}", kernel.name());
+            assert_eq!(slopes[k], kernel.derivative_over_r(2, r, h), "{}", kernel.name());
+        }
+    }
+}

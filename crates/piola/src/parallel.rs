@@ -47,3 +47,29 @@ pub fn sums<const N: usize>(count: usize, add: impl Fn(usize, &mut [f64; N]) + S
         sums
     })
 }
+
+/// The largest `term(i)` over `0..count`, at least `least`. A term that is not a number makes the
+/// result infinite.
+pub fn maximum(count: usize, least: f64, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let larger = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
+    let largest = |range: std::ops::Range<usize>| range.map(&term).fold(least, larger);
+    if count <= CHUNK {
+        return largest(0..count);
+    }
+    let chunks = (0..count.div_ceil(CHUNK)).into_par_iter();
+    chunks
+        .map(|chunk| largest(chunk * CHUNK..((chunk + 1) * CHUNK).min(count)))
+        .reduce(|| least, f64::max)
+}
+
+/// Calls `body(number, row)` for each row of `length` numbers, in chunks as [`for_each_chunk`].
+pub fn for_each_row<T: Send>(rows: &mut [T], length: usize, body: impl Fn(usize, &mut [T]) + Sync) {
+    let chunk = |first: usize, rows: &mut [T]| {
+        rows.chunks_exact_mut(length).enumerate().for_each(|(k, row)| body(first + k, row));
+    };
+    if rows.len() <= CHUNK * length {
+        return chunk(0, rows);
+    }
+    let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
+    chunks.for_each(|(number, rows)| chunk(number * CHUNK, rows));
+}

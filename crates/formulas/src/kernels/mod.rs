@@ -13,6 +13,7 @@
 //! its row to the references in `tests/kernels.rs`; all other tests run over the registry.
 
 mod gaussian;
+mod many;
 mod mollifier;
 mod polynomial;
 mod registry;
@@ -21,6 +22,7 @@ mod splines;
 mod wendland;
 
 pub use gaussian::Gaussian;
+pub use many::ManyDistances;
 pub use mollifier::{ModifiedMollifier, Mollifier};
 pub use polynomial::{Linear, Lucy, Quadratic};
 pub use registry::{Kernel, KernelVisitor};

@@ -85,38 +85,32 @@ impl KernelShape for QuinticSpline {
 
     #[inline]
     fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < 1.0 {
-            let square = q * q;
-            square * (square * (-q + 3.0) * 10.0 - 60.0) + 66.0
-        } else {
-            outer_terms(q, 5)
-        }
+        let square = q * q;
+        let inner = square * (square * (-q + 3.0) * 10.0 - 60.0) + 66.0;
+        let outer = outer_terms(q, 5);
+        if q.re() < 1.0 { inner } else { outer }
     }
 
     #[inline]
     fn derivative_over_q<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < 1.0 {
-            q * q * (q * -50.0 + 120.0) - 120.0
-        } else {
-            outer_terms(q, 4) * -5.0 / q
-        }
+        let inner = q * q * (q * -50.0 + 120.0) - 120.0;
+        let outer = outer_terms(q, 4) * -5.0 / q;
+        if q.re() < 1.0 { inner } else { outer }
     }
 
     #[inline]
     fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < 1.0 { q * q * (q * -200.0 + 360.0) - 120.0 } else { outer_terms(q, 3) * 20.0 }
+        let inner = q * q * (q * -200.0 + 360.0) - 120.0;
+        let outer = outer_terms(q, 3) * 20.0;
+        if q.re() < 1.0 { inner } else { outer }
     }
 }
 
-/// `(3 - q)^n - 6 (2 - q)^n`, each term only where its base is positive.
+/// `(3 - q)^n - 6 (2 - q)^n`, each term only where its base is positive. Both are computed and
+/// one is chosen, here and above, so that loops over distances fill vector registers.
 #[inline]
 fn outer_terms<T: Scalar>(q: T, exponent: u32) -> T {
-    if q.re() >= 3.0 {
-        return T::zero();
-    }
-    let outer = integer_power(-q + 3.0, exponent);
-    if q.re() >= 2.0 {
-        return outer;
-    }
-    outer - integer_power(-q + 2.0, exponent) * 6.0
+    let positive = |base: T| if base.re() > 0.0 { base } else { T::zero() };
+    let far = integer_power(positive(-q + 3.0), exponent);
+    far - integer_power(positive(-q + 2.0), exponent) * 6.0
 }

@@ -17,13 +17,12 @@ const SUPPORT: f64 = 2.0;
 /// `(1 - s)^exponent` times the polynomial of these coefficients, lowest order first.
 #[inline]
 fn truncated<T: Scalar, const N: usize>(q: T, exponent: u32, coefficients: [f64; N]) -> T {
-    if q.re() >= SUPPORT {
-        return T::zero();
-    }
     let s = q * (1.0 / SUPPORT);
     let polynomial =
         coefficients.iter().rev().fold(T::zero(), |sum, &coefficient| sum * s + coefficient);
-    integer_power(-s + 1.0, exponent) * polynomial
+    // A choice instead of an early return lets loops over distances fill vector registers.
+    let inside = integer_power(-s + 1.0, exponent) * polynomial;
+    if q.re() < SUPPORT { inside } else { T::zero() }
 }
 
 /// Normalisation of a smoothing length from that of the support radius.

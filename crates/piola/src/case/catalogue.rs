@@ -9,7 +9,7 @@ use super::spec::Choice;
 use crate::fields::FieldDescription;
 use crate::observe;
 use crate::observe::reduce::{REDUCTIONS, ReductionEntry};
-use crate::schemes::{momentum_components, upwind};
+use crate::schemes::{momentum_components, transport_velocity, upwind};
 use crate::time::IntegratorKind;
 
 /// The kernels.
@@ -30,6 +30,7 @@ pub fn kernels() -> Vec<Choice> {
 pub fn integrators() -> Vec<Choice> {
     let meaning = |kind: IntegratorKind| match kind {
         IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
+        IntegratorKind::KickDriftKick => "kick-drift-kick, CTVF (54) to (60)",
     };
     IntegratorKind::ALL.map(|kind| Choice { name: kind.name(), meaning: meaning(kind) }).to_vec()
 }
@@ -44,6 +45,7 @@ pub fn reductions() -> Vec<Choice> {
 pub fn fields(scheme: &str) -> &'static [FieldDescription] {
     match scheme {
         "upwind" => &upwind::FIELDS,
+        "transport_velocity" => &transport_velocity::FIELDS,
         _ => &[],
     }
 }
@@ -52,14 +54,18 @@ pub fn fields(scheme: &str) -> &'static [FieldDescription] {
 pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
     match scheme {
         "upwind" => observe::energy_columns(&upwind::ENERGIES, &upwind::MECHANISMS),
+        "transport_velocity" => {
+            observe::energy_columns(&transport_velocity::ENERGIES, &transport_velocity::MECHANISMS)
+        }
         _ => Vec::new(),
     }
 }
 
 /// Columns of the momentum table in `dimension` dimensions, after `momentum.`.
 pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
-    let impulses = match scheme {
+    let impulses: &[&str] = match scheme {
         "upwind" => &upwind::IMPULSES,
+        "transport_velocity" => &transport_velocity::IMPULSES,
         _ => return Vec::new(),
     };
     let columns = observe::momentum_columns(momentum_components(dimension), impulses);

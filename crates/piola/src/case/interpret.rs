@@ -9,10 +9,12 @@ use super::model::{Case, Checkpoint, Domain, Parameter, Scheme, StepControl, Tim
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
 use super::suggest::suggestion;
+use crate::time::IntegratorKind;
 
 mod bodies;
 mod checks;
 mod fields;
+mod fluids;
 mod members;
 mod observers;
 mod physics;
@@ -50,6 +52,11 @@ pub(super) fn case(
     };
     let loads: Vec<_> = record.records("load").map(|load| reader.load(load)).collect();
     let boundaries: Vec<_> = record.records("boundary").map(|wall| reader.boundary(wall)).collect();
+    let bodies: Option<Vec<_>> = bodies.into_iter().collect();
+    let boundaries: Option<Vec<_>> = boundaries.into_iter().collect();
+    if let (Some(bodies), Some(boundaries)) = (&bodies, &boundaries) {
+        reader.fits_scheme(bodies, boundaries);
+    }
     let probes: Vec<_> = record.records("probe").map(|probe| reader.probe(probe)).collect();
     let probes: Option<Vec<_>> = probes.into_iter().collect();
     let output = reader.output(record, end);
@@ -74,12 +81,12 @@ pub(super) fn case(
             .map(|(name, value)| Some(Parameter { name: name.clone(), value: (*value)? }))
             .collect::<Option<_>>()?,
         domain: domain?,
-        bodies: bodies.into_iter().collect::<Option<_>>()?,
+        bodies: bodies?,
         scheme: scheme?,
         time: time?,
         checkpoint: checkpoint?,
         loads: loads.into_iter().collect::<Option<_>>()?,
-        boundaries: boundaries.into_iter().collect::<Option<_>>()?,
+        boundaries: boundaries?,
         probes: probes?,
         output: output?,
         pictures: pictures.into_iter().collect::<Option<_>>()?,
@@ -196,6 +203,7 @@ impl Reader<'_, '_> {
     }
 
     fn time(&mut self, record: &Record) -> Option<Time> {
+        let splits = self.names.scheme == "transport_velocity";
         let (cfl, step) = (record.number("cfl"), record.number("step"));
         if let (Some(_), Some(place)) = (record.key_place("cfl"), record.key_place("step")) {
             let message = "`cfl` and `step` cannot be given both";
@@ -207,11 +215,33 @@ impl Reader<'_, '_> {
         let step = match (cfl, step) {
             (_, Some(step)) => step.map(StepControl::Fixed),
             (Some(cfl), None) => cfl.map(StepControl::Cfl),
-            (None, None) => Located::new(StepControl::Cfl(0.3), record.place),
+            (None, None) => {
+                Located::new(StepControl::Cfl(if splits { 0.25 } else { 0.3 }), record.place)
+            }
         };
+        let natural = if splits { IntegratorKind::KickDriftKick } else { IntegratorKind::TvdRk2 };
+        let integrator = match record.text("integrator") {
+            Some(name) => name,
+            None => Located::new(natural.name().to_owned(), record.place),
+        };
+        if !splits && integrator.value == IntegratorKind::KickDriftKick.name() {
+            let message =
+                format!("the scheme `{}` cannot be split for this integrator", self.names.scheme);
+            self.report(
+                Problem::new(integrator.place, message, "of another scheme").help("use `tvd_rk2`"),
+            );
+        }
+        if splits && integrator.value != IntegratorKind::KickDriftKick.name() {
+            let message =
+                format!("the scheme `{}` keeps its accelerations in its state", self.names.scheme);
+            self.report(
+                Problem::new(integrator.place, message, "of another scheme")
+                    .help("use `kick_drift_kick`"),
+            );
+        }
         Some(Time {
             end: record.number("end")?,
-            integrator: record.text("integrator")?,
+            integrator,
             step,
             max_steps: record.whole("max_steps").map(|steps| steps.value),
             min_step: record.number("min_step").map(|step| step.value),
@@ -258,8 +288,11 @@ impl Reader<'_, '_> {
     }
 
     fn scheme(&mut self, record: &Record) -> Option<Located<Scheme>> {
-        let upwind = physics::upwind(record)?;
-        Some(Located::new(Scheme::Upwind(upwind), record.place))
+        let scheme = match record.kind {
+            "transport_velocity" => Scheme::TransportVelocity(fluids::transport_velocity(record)?),
+            _ => Scheme::Upwind(physics::upwind(record)?),
+        };
+        Some(Located::new(scheme, record.place))
     }
 
     /// Reports that a key has no meaning beside others, if it is there.

@@ -22,7 +22,7 @@ pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, R
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
     Boundary, Checkpoint, Correction, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed,
-    Scheme, StepControl, Stiffness, Time, Upwind, Weights,
+    Scheme, StepControl, Stiffness, Time, TransportVelocity, Upwind, Wall, Weights,
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
 pub(super) use sweeps::{member_name, member_of};
@@ -188,6 +188,8 @@ impl Case {
         });
         let loads = self.loads.iter().flat_map(|load| load.kind.components());
         let boundaries = self.boundaries.iter().flat_map(|wall| wall.velocity.iter().flatten());
-        initial.chain(loads).chain(boundaries)
+        let walls = self.bodies.iter().filter_map(|body| body.wall.as_ref());
+        let sliding = walls.flat_map(|wall| wall.sliding.iter().flatten());
+        initial.chain(loads).chain(boundaries).chain(sliding)
     }
 }

@@ -8,6 +8,7 @@ use super::spec::{
 };
 
 mod checks;
+mod fluids;
 mod geometry;
 mod observers;
 
@@ -133,69 +134,71 @@ static SCHEME: TaggedSpec = TaggedSpec {
     title: "[scheme]",
     meaning: "The formulation and its settings.",
     common: &[],
-    kinds: &[KindSpec {
-        name: "upwind",
-        meaning: "total Lagrangian mixed formulation with Riemann upwinding",
-        dimensions: &[1, 2, 3],
-        keys: &[
-            key(
-                "kernel",
-                Kind::Name(Choices::Registry(catalogue::kernels)),
-                "",
-                Default("\"cubic_spline\""),
-                "smoothing kernel",
-            ),
-            key(
-                "smoothing_length",
-                Kind::Number(Interval::POSITIVE),
-                "spacings",
-                Required,
-                "smoothing length h in units of the particle spacing; the support radius is the kernel's multiple of it",
-            ),
-            key(
-                "correction",
-                Kind::Name(CORRECTIONS),
-                "",
-                Default("\"gradient\""),
-                "correction of the kernel",
-            ),
-            key(
-                "weights",
-                Kind::Name(WEIGHTS),
-                "",
-                Default("\"lattice\""),
-                "what is summed under the kernel",
-            ),
-            key(
-                "tau_velocity",
-                Kind::Number(Interval::NOT_NEGATIVE),
-                "1",
-                Default("0.0"),
-                "share of the upwinding of velocity",
-            ),
-            key(
-                "tau_pressure",
-                Kind::Number(Interval::NOT_NEGATIVE),
-                "1",
-                Default("0.0"),
-                "share of the upwinding of pressure",
-            ),
-            key(
-                "reconstruction",
-                Kind::Boolean,
-                "",
-                Default("false"),
-                "whether states at mid-edges are reconstructed linearly, Upwind (3.53)",
-            ),
-            key(
-                "wave_speed",
-                Kind::Name(WAVE_SPEEDS),
-                "",
-                Default("\"constant\""),
-                "the wave speed of the upwinding",
-            ),
-        ],
-    }],
+    kinds: &[UPWIND, fluids::TRANSPORT_VELOCITY],
+};
+
+const UPWIND: KindSpec = KindSpec {
+    name: "upwind",
+    meaning: "total Lagrangian mixed formulation with Riemann upwinding",
+    dimensions: &[1, 2, 3],
+    keys: &[
+        key(
+            "kernel",
+            Kind::Name(Choices::Registry(catalogue::kernels)),
+            "",
+            Default("\"cubic_spline\""),
+            "smoothing kernel",
+        ),
+        key(
+            "smoothing_length",
+            Kind::Number(Interval::POSITIVE),
+            "spacings",
+            Required,
+            "smoothing length h in units of the particle spacing; the support radius is the kernel's multiple of it",
+        ),
+        key(
+            "correction",
+            Kind::Name(CORRECTIONS),
+            "",
+            Default("\"gradient\""),
+            "correction of the kernel",
+        ),
+        key(
+            "weights",
+            Kind::Name(WEIGHTS),
+            "",
+            Default("\"lattice\""),
+            "what is summed under the kernel",
+        ),
+        key(
+            "tau_velocity",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("0.0"),
+            "share of the upwinding of velocity",
+        ),
+        key(
+            "tau_pressure",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("0.0"),
+            "share of the upwinding of pressure",
+        ),
+        key(
+            "reconstruction",
+            Kind::Boolean,
+            "",
+            Default("false"),
+            "whether states at mid-edges are reconstructed linearly, Upwind (3.53)",
+        ),
+        key(
+            "wave_speed",
+            Kind::Name(WAVE_SPEEDS),
+            "",
+            Default("\"constant\""),
+            "the wave speed of the upwinding",
+        ),
+    ],
 };
 
 const CORRECTIONS: Choices = choices(&[
@@ -221,14 +224,14 @@ static TIME: TableSpec = TableSpec {
             "integrator",
             Kind::Name(Choices::Registry(catalogue::integrators)),
             "",
-            Default("\"tvd_rk2\""),
+            Derived("`tvd_rk2`; `kick_drift_kick` for the scheme `transport_velocity`"),
             "time integrator",
         ),
         key(
             "cfl",
             Kind::Number(Interval::POSITIVE),
             "1",
-            Derived("0.3 unless `step` is given"),
+            Derived("0.3 (`transport_velocity`: 0.25) unless `step` is given"),
             "share of the time that a wave needs from particle to particle",
         ),
         key(

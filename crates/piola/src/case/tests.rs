@@ -50,7 +50,7 @@ fn reads_the_frame_of_a_case() {
     assert_eq!((time.end.value, time.integrator.as_str()), (3.0, "tvd_rk2"));
     assert_eq!(time.step.value, StepControl::Cfl(0.3));
     assert_eq!((time.max_steps, time.min_step), (Some(1_000_000), Some(1e-9)));
-    let Scheme::Upwind(upwind) = &case.scheme.value;
+    let Scheme::Upwind(upwind) = &case.scheme.value else { panic!("the scheme is upwind") };
     assert_eq!((upwind.kernel.as_str(), upwind.smoothing_length.value), ("cubic_spline", 0.7));
     assert_eq!(upwind.correction.value, Correction::Gradient);
     assert_eq!(upwind.weights, Weights::Lattice);

@@ -9,6 +9,7 @@ mod particles;
 mod points;
 mod region;
 mod shape;
+mod way_out;
 
 pub use error::GeometryError;
 pub use fill::{FillReport, fill};

@@ -85,6 +85,11 @@ impl NeighborList {
         Self { offsets, indices }
     }
 
+    /// The offsets and the indices.
+    pub(super) fn into_arrays(self) -> (Vec<usize>, Vec<u32>) {
+        (self.offsets, self.indices)
+    }
+
     /// A list of `count` rows, each appended to the vector by `append(state, row, vector)` in
     /// ascending order. Every chunk of rows starts with a state of its own from `start`.
     ///

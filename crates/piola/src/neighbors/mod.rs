@@ -1,8 +1,8 @@
 //! Neighbour lists, periodic boxes and the order of particles in memory.
 //!
 //! [`search`] lists who is in whose support; [`NeighborList::dual`] and
-//! [`NeighborList::symmetric_closure`] turn such a list into that of who sees whom. All results are
-//! the same to the bit for any number of threads.
+//! [`NeighborList::symmetric_closure`] turn such a list into that of who sees whom. [`SkinList`] is
+//! for particles that move. All results are the same to the bit for any number of threads.
 
 mod axis;
 mod domain;
@@ -13,12 +13,14 @@ mod list;
 mod order;
 mod retain;
 mod search;
+mod skin;
 
 pub use domain::Domain;
 pub use error::NeighborError;
 pub use list::{NeighborList, NeighborStatistics};
 pub use order::spatial_order;
 pub use search::{refuse_coincident, search};
+pub use skin::SkinList;
 
 /// Least support radius in m: its square must be a normal number.
 const LEAST_SUPPORT: f64 = 1e-150;

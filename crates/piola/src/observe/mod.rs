@@ -1,18 +1,22 @@
 //! What is recorded of a run while it goes (probes, energies, steps, particle files, pictures),
 //! and how histories become single numbers.
 
+mod comparison;
 mod files;
 mod frames;
 mod memory;
 mod pictures;
+mod point;
 mod probe;
 mod recorder;
 pub mod reduce;
 mod tables;
 
+pub use comparison::Deviation;
 pub use files::WrittenFiles;
 pub use frames::FrameWriter;
 pub use pictures::{PictureRequest, PictureWriter};
+pub use point::Interpolated;
 pub use probe::{Probe, ProbeKind};
 pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns, momentum_columns};
 pub use tables::{Series, Tables};

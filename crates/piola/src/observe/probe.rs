@@ -1,11 +1,13 @@
 //! Numbers of chosen particles against time.
 
+use super::comparison::Deviation;
+use super::point::Interpolated;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
 use crate::schemes::Scheme;
 
 /// A probe bound to the particles of a run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub struct Probe {
     /// First part of the names of its columns.
     pub name: String,
@@ -14,7 +16,7 @@ pub struct Probe {
 }
 
 /// What a probe records.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub enum ProbeKind {
     /// Whole fields of one particle.
     Particle {
@@ -32,28 +34,43 @@ pub enum ProbeKind {
         /// Their indices in memory, at least one.
         particles: Vec<u32>,
     },
+    /// The sum of a field over a set of particles, with all its components.
+    Sum {
+        /// The field.
+        field: FieldDescription,
+        /// Their indices in memory, at least one.
+        particles: Vec<u32>,
+    },
+    /// Whole fields interpolated at a fixed point of space.
+    Point(Interpolated),
+    /// How far a field is from a function of place and time.
+    Error(Deviation),
 }
 
 impl Probe {
     /// The columns that it fills, in `dimension` dimensions.
     pub fn columns(&self, dimension: usize) -> Vec<Column> {
         match &self.kind {
-            ProbeKind::Particle { fields, .. } => fields
-                .iter()
-                .flat_map(|field| {
-                    (0..field.kind.components(dimension)).map(move |number| {
-                        let component = component_name(field.kind, number, dimension);
-                        let dot = if component.is_empty() { "" } else { "." };
-                        let name = format!("{}.{}{dot}{component}", self.name, field.name);
-                        Column::new(name, field.unit)
-                    })
-                })
-                .collect(),
+            ProbeKind::Particle { fields, .. } | ProbeKind::Point(Interpolated { fields, .. }) => {
+                fields.iter().flat_map(|field| self.components(field, dimension)).collect()
+            }
+            ProbeKind::Sum { field, .. } => self.components(field, dimension),
+            ProbeKind::Error(_) => vec![Column::new(format!("{}.error", self.name), "1")],
             ProbeKind::Extremum { field, .. } => {
                 let name = format!("{}.{}", self.name, field.name(dimension));
                 vec![Column::new(name, field.field.unit)]
             }
         }
+    }
+
+    /// A column for each component of a field.
+    fn components(&self, field: &FieldDescription, dimension: usize) -> Vec<Column> {
+        let column = |number: usize| {
+            let component = component_name(field.kind, number, dimension);
+            let dot = if component.is_empty() { "" } else { "." };
+            Column::new(format!("{}.{}{dot}{component}", self.name, field.name), field.unit)
+        };
+        (0..field.kind.components(dimension)).map(column).collect()
     }
 
     /// Appends its numbers to `row`. `scratch` is overwritten.
@@ -82,6 +99,16 @@ impl Probe {
                     values.fold(f64::INFINITY, f64::min)
                 });
             }
+            ProbeKind::Sum { field, particles } => {
+                scratch.clear();
+                scheme.sample(time, state, field.name, particles, scratch);
+                let components = field.kind.components(scheme.dimension());
+                row.extend((0..components).map(|component| {
+                    scratch.iter().skip(component).step_by(components).sum::<f64>()
+                }));
+            }
+            ProbeKind::Point(point) => point.record(scheme, time, state, scratch, row),
+            ProbeKind::Error(error) => row.push(error.record(scheme, time, state, scratch)),
         }
     }
 }

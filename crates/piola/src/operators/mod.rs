@@ -2,13 +2,15 @@
 //! corrections, and the least-squares gradient.
 //!
 //! An operator is built once from the reference positions and then applied every step. Its rows
-//! are gathered: particle a sums over its own neighbours in a fixed order.
+//! are gathered: particle a sums over its own neighbours in a fixed order. [`MovingSupport`] is for
+//! particles that move: it shows the neighbours of the moment to the sums of a scheme.
 
 mod areas;
 mod error;
 mod gradient;
 mod interpolation;
 mod least_squares;
+mod moving;
 mod support;
 
 pub use areas::{Block, LANES, Lanes, PairAreas};
@@ -16,4 +18,5 @@ pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
 pub use least_squares::LeastSquares;
+pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock};
 pub use support::Support;

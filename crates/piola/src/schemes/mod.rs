@@ -1,8 +1,13 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
+mod initial;
 pub mod momentum;
 mod scheme;
+mod split;
+pub mod transport_velocity;
 pub mod upwind;
 
+pub use initial::Initial;
 pub use momentum::{MomentumComponent, momentum_components};
 pub use scheme::{Health, Ledger, Particle, Scheme, StepLimit, snapshot};
+pub use split::SplitScheme;

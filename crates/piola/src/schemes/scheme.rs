@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::SplitScheme;
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
@@ -85,6 +86,11 @@ pub trait Scheme: Send {
 
     /// Bytes that the scheme holds, without states.
     fn memory(&self) -> usize;
+
+    /// The formulation as one whose steps can be split, if it is one.
+    fn split(&mut self) -> Option<&mut dyn SplitScheme> {
+        None
+    }
 }
 
 /// The running integrals at the end of a state.
@@ -100,8 +106,10 @@ impl<'a> Ledger<'a> {
     /// The integrals of `state`.
     pub fn of(scheme: &dyn Scheme, state: &'a [f64]) -> Self {
         let tail = &state[scheme.particle_count() * scheme.row_length()..];
-        let (work, impulses) = tail.split_at(scheme.mechanisms().len());
-        Self { work, impulses }
+        let (work, rest) = tail.split_at(scheme.mechanisms().len());
+        let components = super::momentum_components(scheme.dimension()).len();
+        // What a scheme keeps behind its ledger is its own.
+        Self { work, impulses: &rest[..scheme.impulses().len() * components] }
     }
 }
 

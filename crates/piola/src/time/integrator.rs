@@ -1,5 +1,6 @@
 //! Time integration of a state that it knows only as numbers.
 
+use super::kick_drift_kick::KickDriftKick;
 use super::tvd_rk2::TvdRk2;
 use crate::schemes::Scheme;
 
@@ -21,16 +22,19 @@ pub trait Integrator: Send {
 pub enum IntegratorKind {
     /// Two-stage TVD Runge-Kutta, Upwind (4.1).
     TvdRk2,
+    /// Kick-drift-kick, CTVF (54) to (60), for schemes that can be split.
+    KickDriftKick,
 }
 
 impl IntegratorKind {
     /// All integrators.
-    pub const ALL: [Self; 1] = [Self::TvdRk2];
+    pub const ALL: [Self; 2] = [Self::TvdRk2, Self::KickDriftKick];
 
     /// Name in a case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::TvdRk2 => "tvd_rk2",
+            Self::KickDriftKick => "kick_drift_kick",
         }
     }
 
@@ -43,6 +47,7 @@ impl IntegratorKind {
     pub fn build(self, length: usize) -> Box<dyn Integrator> {
         match self {
             Self::TvdRk2 => Box::new(TvdRk2::new(length)),
+            Self::KickDriftKick => Box::new(KickDriftKick),
         }
     }
 }

@@ -128,7 +128,7 @@ fn lattice<const D: usize>(
     })
 }
 
-fn shape<const D: usize>(
+pub(super) fn shape<const D: usize>(
     case: &Case,
     body: &Body,
     located: &Located<model::Shape>,

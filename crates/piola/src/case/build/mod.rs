@@ -1,6 +1,7 @@
 //! From a case to a simulation: the one place where names become types.
 
 pub(super) mod bodies;
+mod fluids;
 mod functions;
 mod probes;
 mod selections;
@@ -13,6 +14,7 @@ use piola_formulas::volumetric::VolumetricLaw;
 use super::diagnostics::{Problem, Problems};
 use super::model::{self, Case};
 use super::simulation::Simulation;
+use super::source::Located;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::observe::Probe;
@@ -55,11 +57,31 @@ pub(super) struct Built {
 
 fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
     let domain = domain::<D>(case)?;
-    let (mut particles, bodies) = bodies::particles::<D>(case, &domain)?;
-    let model::Scheme::Upwind(settings) = &case.scheme.value;
-    let kernel = Kernel::from_name(&settings.kernel).ok_or_else(|| {
-        vec![case.problem_at(settings.kernel.place, "unknown kernel", "not registered", None)]
-    })?;
+    let (particles, bodies) = bodies::particles::<D>(case, &domain)?;
+    let built = match &case.scheme.value {
+        model::Scheme::Upwind(settings) => build_upwind(case, settings, particles, bodies, domain)?,
+        model::Scheme::TransportVelocity(settings) => {
+            fluids::build(case, settings, particles, bodies, domain)?
+        }
+    };
+    Ok(Simulation::new(case, built))
+}
+
+/// The kernel of a name.
+fn kernel(case: &Case, name: &Located<String>) -> Result<Kernel, Vec<Problem>> {
+    Kernel::from_name(name)
+        .ok_or_else(|| vec![case.problem_at(name.place, "unknown kernel", "not registered", None)])
+}
+
+/// Builds the scheme `upwind`.
+fn build_upwind<const D: usize>(
+    case: &Case,
+    settings: &model::Upwind,
+    mut particles: Particles<D>,
+    bodies: Vec<BodyReport>,
+    domain: Domain<D>,
+) -> Result<Built, Vec<Problem>> {
+    let kernel = kernel(case, &settings.kernel)?;
     let ratio = *settings.smoothing_length;
     if settings.weights == model::Weights::Volume {
         particles.weight.clone_from(&particles.volume);
@@ -82,17 +104,14 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
     let probes = probes::probes(case, &particles, &mut problems);
     let scheme = upwind(case, settings, particles, support, &mut problems);
     match scheme {
-        Some(scheme) if problems.is_empty() => Ok(Simulation::new(
-            case,
-            Built {
-                scheme: Box::new(scheme),
-                probes,
-                bodies,
-                neighbors,
-                poorly_supported,
-                warnings,
-            },
-        )),
+        Some(scheme) if problems.is_empty() => Ok(Built {
+            scheme: Box::new(scheme),
+            probes,
+            bodies,
+            neighbors,
+            poorly_supported,
+            warnings,
+        }),
         _ => Err(problems),
     }
 }
@@ -168,7 +187,10 @@ fn materials(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material> {
     let law = |material: &model::Material| {
         let bulk_modulus = material.bulk_modulus(case.dimension);
         match *material {
-            model::Material::Linear { .. } => VolumetricLaw::linear(bulk_modulus),
+            // The reader of cases has refused a fluid for this scheme.
+            model::Material::Linear { .. } | model::Material::WeaklyCompressible { .. } => {
+                VolumetricLaw::linear(bulk_modulus)
+            }
             model::Material::GammaLaw { gamma, .. } => {
                 VolumetricLaw::gamma_law(bulk_modulus, gamma)
             }

@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use super::bodies::vector;
-use crate::boundaries::{PrescribedVelocity, SpaceTime, Traction};
+use crate::boundaries::{BodyForce, PrescribedVelocity, SpaceTime, Traction};
 use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
 use crate::case::model::{self, Case, LoadKind};
 use crate::case::source::Located;
 use crate::geometry::{Particles, Region};
 use crate::operators::{Correction, GradientOperator, Support};
-use crate::schemes::upwind::BodyForce;
 
 /// The particles of `body` (all bodies if `None`) in a region, by index in memory; a problem if
 /// there is none.
@@ -62,7 +61,7 @@ fn corner<const D: usize>(particles: &Particles<D>, pick: fn(f64, f64) -> f64) -
     format!("{:?}", corner.as_slice())
 }
 
-fn function(expression: &Expression) -> Arc<dyn SpaceTime> {
+pub(super) fn function(expression: &Expression) -> Arc<dyn SpaceTime> {
     match expression.as_constant() {
         Some(value) => Arc::new(value),
         None => Arc::new(expression.clone()),

@@ -23,6 +23,7 @@ impl Reader<'_, '_> {
             lattice: lattice?,
             material: material?,
             initial: initial?,
+            wall: record.record("wall").and_then(fluids::wall),
         })
     }
 
@@ -143,6 +144,11 @@ impl Reader<'_, '_> {
                 density: density?,
                 gamma: number(record, "gamma")?,
                 stiffness: stiffness?,
+            },
+            "weakly_compressible" => Material::WeaklyCompressible {
+                density: density?,
+                stiffness: stiffness?,
+                viscosity: number(record, "viscosity")?,
             },
             _ => return None,
         };

@@ -127,8 +127,11 @@ impl Reader<'_, '_> {
             return self.refuse(Problem::new(text.place, message, "unknown probe").help(help));
         };
         match &probe.kind {
-            ProbeKind::Extremum { field, .. } => {
-                let own = field.name(self.dimension);
+            ProbeKind::Extremum { .. } | ProbeKind::Error { .. } => {
+                let own = match &probe.kind {
+                    ProbeKind::Extremum { field, .. } => field.name(self.dimension),
+                    _ => "error".to_owned(),
+                };
                 if own == column {
                     return Some(());
                 }
@@ -136,23 +139,37 @@ impl Reader<'_, '_> {
                 let problem = Problem::new(text.place, message, "not recorded");
                 self.refuse(problem.help(format!("its column is `{name}.{own}`")))
             }
-            ProbeKind::Particle { fields, .. } => {
-                let (field, component) = match column.split_once('.') {
-                    Some((field, component)) => (field, Some(component)),
-                    None => (column, None),
-                };
-                let Some(found) = fields.iter().find(|known| known.name == field) else {
-                    let message = format!("the probe `{name}` does not record `{field}`");
-                    let help = suggestion(field, fields.iter().map(|field| field.name));
-                    let problem = Problem::new(text.place, message, "not recorded");
-                    return self.refuse(problem.help(help));
-                };
-                if found.kind == FieldKind::Scalar && component.is_none() {
-                    return Some(());
-                }
-                self.entry(&found.value.clone(), component, false, text.place).map(|_| ())
+            ProbeKind::Particle { fields, .. } | ProbeKind::Point { fields, .. } => {
+                self.whole_column(text, name, column, fields)
+            }
+            ProbeKind::Sum { field, .. } => {
+                self.whole_column(text, name, column, std::slice::from_ref(field))
             }
         }
+    }
+
+    /// Checks a column of a probe that records whole fields.
+    fn whole_column(
+        &mut self,
+        text: &Located<String>,
+        name: &str,
+        column: &str,
+        fields: &[Located<FieldDescription>],
+    ) -> Option<()> {
+        let (field, component) = match column.split_once('.') {
+            Some((field, component)) => (field, Some(component)),
+            None => (column, None),
+        };
+        let Some(found) = fields.iter().find(|known| known.name == field) else {
+            let message = format!("the probe `{name}` does not record `{field}`");
+            let help = suggestion(field, fields.iter().map(|field| field.name));
+            let problem = Problem::new(text.place, message, "not recorded");
+            return self.refuse(problem.help(help));
+        };
+        if found.kind == FieldKind::Scalar && component.is_none() {
+            return Some(());
+        }
+        self.entry(&found.value.clone(), component, false, text.place).map(|_| ())
     }
 }
 

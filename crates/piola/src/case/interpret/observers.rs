@@ -3,6 +3,7 @@
 use super::*;
 use crate::case::catalogue;
 use crate::case::model::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
+use crate::fields::FieldDescription;
 
 /// Particle files that a run may write at most.
 const MAX_FILES: f64 = 1e5;
@@ -13,14 +14,28 @@ impl Reader<'_, '_> {
     pub(super) fn probe(&mut self, record: &Record) -> Option<Probe> {
         let body = self.body_of(record);
         let kind = match record.kind {
-            "particle" => {
-                let fields: Vec<_> = record
-                    .texts("fields")
-                    .iter()
-                    .map(|name| Some(Located::new(self.field(name, name.place)?, name.place)))
-                    .collect();
-                let fields = fields.into_iter().collect::<Option<_>>()?;
-                ProbeKind::Particle { at: record.numbers("at")?, fields }
+            "particle" => ProbeKind::Particle {
+                fields: self.whole_fields(record)?,
+                at: record.numbers("at")?,
+            },
+            "point" => {
+                ProbeKind::Point { fields: self.whole_fields(record)?, at: record.numbers("at")? }
+            }
+            "sum" => {
+                let name = record.text("field")?;
+                let field = Located::new(self.field(&name, name.place)?, name.place);
+                let region = record.record("where").and_then(|region| self.region(region));
+                ProbeKind::Sum { field, region: region? }
+            }
+            "error" => {
+                let field = record.text("field").and_then(|field| self.selector(&field));
+                let region = record.record("where").and_then(|region| self.region(region));
+                ProbeKind::Error {
+                    field: field?,
+                    exact: record.expression("exact")?,
+                    without_mean: record.boolean("without_mean")?,
+                    region: region?,
+                }
             }
             "extremum" => {
                 let field = record.text("field").and_then(|field| self.selector(&field));
@@ -34,6 +49,16 @@ impl Reader<'_, '_> {
             _ => return None,
         };
         Some(Probe { name: record.text("name")?, body, kind })
+    }
+
+    /// The fields that the key `fields` names.
+    fn whole_fields(&mut self, record: &Record) -> Option<Vec<Located<FieldDescription>>> {
+        let names = record.texts("fields");
+        let fields: Vec<_> = names
+            .iter()
+            .map(|name| Some(Located::new(self.field(name, name.place)?, name.place)))
+            .collect();
+        fields.into_iter().collect()
     }
 
     /// `end` is the time at which the run ends, as far as it is known.

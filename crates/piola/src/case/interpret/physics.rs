@@ -1,6 +1,7 @@
 //! The scheme, loads and boundaries.
 
 use super::*;
+use crate::case::expression::Expression;
 use crate::case::model::{
     Boundary, Correction, Load, LoadKind, ReferenceWaveSpeed, Upwind, Weights,
 };
@@ -30,6 +31,15 @@ pub(super) fn upwind(record: &Record) -> Option<Upwind> {
     })
 }
 
+/// The expressions of a table with one key an axis, `None` for axes without.
+pub(super) fn expressions_per_axis(record: &Record, key: &str) -> Vec<Option<Expression>> {
+    let expression = |item: &Option<Located<Datum>>| match &item.as_ref()?.value {
+        Datum::Expression(expression) => Some(expression.clone()),
+        _ => None,
+    };
+    record.axes(key).iter().map(expression).collect()
+}
+
 impl Reader<'_, '_> {
     pub(super) fn load(&mut self, record: &Record) -> Option<Load> {
         let body = self.body_of(record);
@@ -56,13 +66,7 @@ impl Reader<'_, '_> {
     pub(super) fn boundary(&mut self, record: &Record) -> Option<Boundary> {
         let body = self.body_of(record);
         let region = record.record("where").and_then(|region| self.region(region));
-        let axes = record.axes("velocity").iter().map(|axis| {
-            axis.as_ref().and_then(|item| match &item.value {
-                Datum::Expression(expression) => Some(expression.clone()),
-                _ => None,
-            })
-        });
-        let velocity = axes.collect();
+        let velocity = expressions_per_axis(record, "velocity");
         Some(Boundary { name: record.text("name")?, body, region: region?, velocity })
     }
 }

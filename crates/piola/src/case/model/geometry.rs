@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::Material;
+use super::{Material, Wall};
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 
@@ -28,6 +28,8 @@ pub struct Body {
     pub material: Located<Material>,
     /// Its state at the start.
     pub initial: Initial,
+    /// What makes it a wall, if it is one.
+    pub wall: Option<Located<Wall>>,
 }
 
 /// A region that particles fill.

@@ -1,11 +1,12 @@
 //! Probes, output, pictures and plots.
 
 use super::Region;
+use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::fields::{FieldDescription, FieldSelector};
 
 /// Something recorded against time in the tables.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Probe {
     /// Unique name, the first part of its columns.
     pub name: Located<String>,
@@ -16,7 +17,7 @@ pub struct Probe {
 }
 
 /// The kinds of probe.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum ProbeKind {
     /// The particle that is nearest to a point in the reference state.
     Particle {
@@ -31,6 +32,31 @@ pub enum ProbeKind {
         field: Located<FieldSelector>,
         /// Which one.
         of: Extremum,
+        /// The particles.
+        region: Located<Region>,
+    },
+    /// The sum over a selection.
+    Sum {
+        /// A field, with all its components.
+        field: Located<FieldDescription>,
+        /// The particles.
+        region: Located<Region>,
+    },
+    /// Fields interpolated at a fixed point.
+    Point {
+        /// The point in m.
+        at: Located<Vec<f64>>,
+        /// The fields that are recorded, with all their components.
+        fields: Vec<Located<FieldDescription>>,
+    },
+    /// The difference of a field from what it should be.
+    Error {
+        /// A single number of each particle.
+        field: Located<FieldSelector>,
+        /// What it should be, of the current position and time.
+        exact: Expression,
+        /// Whether the means of both are taken away first.
+        without_mean: bool,
         /// The particles.
         region: Located<Region>,
     },

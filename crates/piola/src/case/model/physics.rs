@@ -5,6 +5,7 @@ use piola_formulas::volumetric::{self, StressState};
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
+use crate::schemes::transport_velocity;
 
 /// What a body is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,13 +26,24 @@ pub enum Material {
         /// How its bulk modulus is given, never by Young's modulus.
         stiffness: Stiffness,
     },
+    /// A fluid with `p = kappa (rho / rho0 - 1)`, CTVF (8).
+    WeaklyCompressible {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// How its bulk modulus is given, never by Young's modulus.
+        stiffness: Stiffness,
+        /// Kinematic viscosity in m^2/s.
+        viscosity: f64,
+    },
 }
 
 impl Material {
     /// Reference density in kg/m^3.
     pub fn density(&self) -> f64 {
         match *self {
-            Self::Linear { density, .. } | Self::GammaLaw { density, .. } => density,
+            Self::Linear { density, .. }
+            | Self::GammaLaw { density, .. }
+            | Self::WeaklyCompressible { density, .. } => density,
         }
     }
 
@@ -43,6 +55,7 @@ impl Material {
         let (density, gamma, stiffness) = match *self {
             Self::Linear { density, stiffness } => (density, 1.0, stiffness),
             Self::GammaLaw { density, gamma, stiffness } => (density, gamma, stiffness),
+            Self::WeaklyCompressible { density, stiffness, .. } => (density, 1.0, stiffness),
         };
         match stiffness {
             Stiffness::BulkModulus(modulus) => modulus,
@@ -103,6 +116,8 @@ impl PlaneState {
 pub enum Scheme {
     /// Total Lagrangian mixed formulation with Riemann upwinding.
     Upwind(Upwind),
+    /// Weakly compressible fluids with a corrected transport velocity.
+    TransportVelocity(TransportVelocity),
 }
 
 impl Scheme {
@@ -110,6 +125,7 @@ impl Scheme {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Upwind(_) => "upwind",
+            Self::TransportVelocity(_) => "transport_velocity",
         }
     }
 }
@@ -133,6 +149,26 @@ pub struct Upwind {
     pub reconstruction: bool,
     /// The wave speed of the upwinding.
     pub wave_speed: ReferenceWaveSpeed,
+}
+
+/// Settings of the scheme `transport_velocity`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransportVelocity {
+    /// Name in the kernel registry.
+    pub kernel: Located<String>,
+    /// Smoothing length in particle spacings.
+    pub smoothing_length: Located<f64>,
+    /// All that the formulation itself knows.
+    pub settings: transport_velocity::Settings,
+}
+
+/// What makes a body a wall.
+#[derive(Clone, Debug)]
+pub struct Wall {
+    /// What viscosity does along it.
+    pub slip: transport_velocity::Slip,
+    /// Velocity of its surface where it is, by component, in m/s.
+    pub sliding: Vec<Option<Expression>>,
 }
 
 /// Correction of kernel and gradient.

@@ -36,6 +36,7 @@ pub(super) static BODY: TableSpec = TableSpec {
         key("lattice", Kind::Table(&LATTICE), "", Default("{}"), "how the particles are laid out"),
         key("material", Kind::Tagged(&MATERIAL), "", Required, "what it is made of"),
         key("initial", Kind::Table(&INITIAL), "", Default("{}"), "its state at the start"),
+        key("wall", Kind::Table(&fluids::WALL), "", Optional, "makes it a wall"),
     ],
 };
 
@@ -258,6 +259,18 @@ static MATERIAL: TaggedSpec = TaggedSpec {
             meaning: "p = kappa (J^-gamma - 1), Upwind (6.30); give `bulk_modulus` or `wave_speed`",
             dimensions: &[1, 2, 3],
             keys: &[key("gamma", Kind::Number(Interval::at_least(1.0)), "1", Required, "exponent")],
+        },
+        KindSpec {
+            name: "weakly_compressible",
+            meaning: "a fluid with p = kappa (rho / rho0 - 1), CTVF (8); give `wave_speed`, ten times the largest speed, or `bulk_modulus`",
+            dimensions: &[1, 2, 3],
+            keys: &[key(
+                "viscosity",
+                Kind::Number(Interval::NOT_NEGATIVE),
+                "m^2/s",
+                Default("0.0"),
+                "kinematic viscosity",
+            )],
         },
     ],
 };

@@ -53,8 +53,75 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                 ),
             ],
         },
+        KindSpec {
+            name: "sum",
+            meaning: "the sum of a field over a selection, for example of `force` over a wall",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key("field", Kind::Text, "", Required, "a field, summed with all its components"),
+                WHERE,
+            ],
+        },
+        KindSpec {
+            name: "point",
+            meaning: "fields interpolated at a fixed point of space",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "at",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "the point",
+                ),
+                key(
+                    "fields",
+                    Kind::List(&Kind::Text),
+                    "",
+                    Required,
+                    "names of fields, recorded with all their components",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "error",
+            meaning: "the sum of the differences of a field from what it should be, over the sum of what it should be",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "field",
+                    Kind::Text,
+                    "",
+                    Required,
+                    "a field with one number a particle, or FIELD.COMPONENT, or FIELD.magnitude",
+                ),
+                key(
+                    "exact",
+                    Kind::Expression(Variables::PositionAndTime),
+                    "",
+                    Required,
+                    "what it should be, of the current position and time",
+                ),
+                key(
+                    "without_mean",
+                    Kind::Boolean,
+                    "",
+                    Default("false"),
+                    "whether the means of both are taken away first, as of a pressure without a zero",
+                ),
+                WHERE,
+            ],
+        },
     ],
 };
+
+const WHERE: KeySpec = key(
+    "where",
+    Kind::Tagged(&super::geometry::REGION),
+    "",
+    Default("{ kind = \"all\" }"),
+    "the particles, selected in the reference state",
+);
 
 const EXTREMA: Choices =
     choices(&[choice("largest", "the largest value"), choice("smallest", "the smallest value")]);

@@ -31,7 +31,7 @@ fn overrides_set_keys_of_tables_and_elements_of_lists() {
     assert_eq!(case.title, "A new title, unquoted");
     assert_eq!(case.parameter("twice"), Some(3.0));
     assert_eq!((case.output.every.value, case.checks.len()), (0.5, 9));
-    let Scheme::Upwind(upwind) = &case.scheme.value;
+    let Scheme::Upwind(upwind) = &case.scheme.value else { panic!("the scheme is upwind") };
     assert_eq!((upwind.smoothing_length.value, upwind.tau_velocity), (1.2, 0.0));
 }
 

@@ -37,7 +37,7 @@ fn a_member_is_the_case_with_its_values() {
         ("steps.4", true, 0.2, "lucy", 2.0),
     ] {
         let case = read(Some(name), coarse);
-        let Scheme::Upwind(upwind) = &case.scheme.value;
+        let Scheme::Upwind(upwind) = &case.scheme.value else { panic!("the scheme is upwind") };
         assert_eq!(case.time.step.value, StepControl::Cfl(cfl), "{name}");
         assert_eq!((upwind.kernel.as_str(), upwind.tau_velocity), (kernel, 0.0));
         assert_eq!((case.time.end.value, case.variant.as_deref()), (end, Some(name)));

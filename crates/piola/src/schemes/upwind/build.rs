@@ -7,9 +7,9 @@ use super::check::check;
 use super::inspect::ChunkFigures;
 use super::local::Side;
 use super::reconstruction::Slope;
-use super::{BodyForce, Initial, Loaded, Material, Powers, Reference, Settings, Upwind};
+use super::{Initial, Loaded, Material, Powers, Reference, Settings, Upwind};
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{PrescribedVelocity, Traction, padded};
+use crate::boundaries::{BodyForce, PrescribedVelocity, Traction, padded};
 use crate::geometry::Particles;
 use crate::operators::{GradientOperator, LeastSquares, OperatorError, PairAreas, Support};
 use crate::{Vector, parallel};
@@ -124,14 +124,13 @@ impl<const D: usize> Upwind<D> {
                 value: traction.value.clone(),
             })
         });
-        let steady = |force: &BodyForce<D>| force.acceleration.iter().all(|g| g.is_steady());
         let mut scheme = Self {
             nearest,
             areas: PairAreas::new(&gradient, &support.list, &particles.volume),
             largest_exchange: largest_exchange(&particles, &support, &gradient),
             fastest_reference: reference.iter().map(|r| r.wave_speed).fold(0.0, f64::max),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
-            steady_body_force: input.body_forces.iter().all(steady),
+            steady_body_force: input.body_forces.iter().all(BodyForce::is_steady),
             body_acceleration: vec![Vector::zeros(); count],
             loaded: loaded.collect(),
             sides: vec![Side::default(); count],
@@ -156,15 +155,9 @@ impl<const D: usize> Upwind<D> {
         let (forces, particles) = (&self.body_forces, &self.particles);
         parallel::for_each_chunk(&mut self.body_acceleration, |first, rows| {
             for (offset, acceleration) in rows.iter_mut().enumerate() {
-                let a = first + offset;
-                let place = padded(&particles.position[a]);
-                let acting = |body: Option<u32>| body.is_none_or(|b| b == particles.body[a]);
-                *acceleration = Vector::zeros();
-                for force in forces.iter().filter(|force| acting(force.body)) {
-                    for (component, value) in force.acceleration.iter().enumerate() {
-                        acceleration[component] += value.value(place, time);
-                    }
-                }
+                let (body, x) =
+                    (particles.body[first + offset], &particles.position[first + offset]);
+                *acceleration = BodyForce::sum(forces, body, x, time);
             }
         });
     }

@@ -20,7 +20,6 @@ mod build;
 mod check;
 mod external;
 mod gather;
-mod initial;
 mod inspect;
 mod local;
 mod pair;
@@ -39,10 +38,12 @@ use crate::operators::{LeastSquares, PairAreas, Support};
 use crate::schemes::momentum::MOST_COMPONENTS;
 
 pub use build::{UpwindError, UpwindInput};
-pub use initial::Initial;
 pub use passes::PASSES;
 pub use scheme::FIELDS;
-pub use settings::{BodyForce, Material, Settings, WaveSpeed};
+pub use settings::{Material, Settings, WaveSpeed};
+
+pub use crate::boundaries::BodyForce;
+pub use crate::schemes::Initial;
 
 use inspect::ChunkFigures;
 use local::Side;

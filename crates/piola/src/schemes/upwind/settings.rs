@@ -1,10 +1,7 @@
 //! The choices of the upwind formulation.
 
-use std::sync::Arc;
-
 use piola_formulas::volumetric::VolumetricLaw;
 
-use crate::boundaries::SpaceTime;
 use crate::operators::Correction;
 
 /// Speed of the shock in the dissipation.
@@ -39,13 +36,4 @@ pub struct Material {
     pub density: f64,
     /// Energy of volume change.
     pub law: VolumetricLaw,
-}
-
-/// A force on the mass of a body, as an acceleration in m/s^2.
-#[derive(Clone)]
-pub struct BodyForce<const D: usize> {
-    /// The body it acts on; all if `None`.
-    pub body: Option<u32>,
-    /// Its components.
-    pub acceleration: [Arc<dyn SpaceTime>; D],
 }

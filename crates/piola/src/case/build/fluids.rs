@@ -1,0 +1,179 @@
+//! Particles turned into a weakly compressible fluid between walls.
+
+use super::bodies::{self, BodyReport};
+use super::{Built, initial, kernel, probes, selections};
+use crate::Vector;
+use crate::boundaries::PrescribedVelocity;
+use crate::case::diagnostics::Problem;
+use crate::case::model::{self, Case};
+use crate::geometry::{Particles, Shape};
+use crate::neighbors::{Domain, NeighborStatistics, spatial_order};
+use crate::schemes::Scheme;
+use crate::schemes::transport_velocity::{
+    Fluid, TransportVelocity, TransportVelocityError, TransportVelocityInput, Wall,
+};
+
+/// Builds the scheme `transport_velocity`.
+pub(super) fn build<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    mut particles: Particles<D>,
+    reports: Vec<BodyReport>,
+    domain: Domain<D>,
+) -> Result<Built, Vec<Problem>> {
+    let kernel = kernel(case, &settings.kernel)?;
+    let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
+    let smoothing_length = *settings.smoothing_length * spacing;
+    let order = spatial_order(&particles.position, kernel.support_radius(smoothing_length));
+    let place = settings.smoothing_length.place;
+    particles.reorder(&order.map_err(|error| {
+        vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
+    })?);
+    let fluid = fluid(case)?;
+    let normals = normals(case, &particles)?;
+    let mut problems = Vec::new();
+    let probes = probes::probes(case, &particles, &mut problems);
+    let motion = selections::prescribed(case, &particles, &mut problems);
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let walls = walls(case);
+    let mut warnings = Vec::new();
+    if normals.iter().zip(&particles.body).any(|(normal, &body)| {
+        walls.iter().any(|wall| wall.body == body) && normal.norm_squared() == 0.0
+    }) {
+        warnings.push(
+            "some particles of walls have no way to the fluid inside the box around all bodies, \
+             so that they have no normal: they do not hold back what flows through them"
+                .into(),
+        );
+    }
+    let initial = initial(case, &particles);
+    let sliding = sliding(case, &particles);
+    let built = TransportVelocity::new(TransportVelocityInput {
+        domain,
+        kernel,
+        smoothing_length,
+        settings: settings.settings,
+        fluid,
+        initial,
+        walls,
+        normals,
+        motion,
+        sliding,
+        body_forces: selections::body_forces(case),
+        particles,
+    });
+    let scheme = built.map_err(|error| {
+        let (place, label) = match &error {
+            TransportVelocityError::Start { .. } => {
+                (case.bodies[0].name.place, "initial values of a body")
+            }
+            TransportVelocityError::Spacing { .. } => (case.bodies[0].spacing.place, "spacing"),
+            _ => (place, "with this smoothing length"),
+        };
+        vec![case.problem_at(place, error.to_string(), label, None)]
+    })?;
+    let (neighbors, poorly_supported) = statistics(&scheme);
+    Ok(Built {
+        scheme: Box::new(scheme),
+        probes,
+        bodies: reports,
+        neighbors,
+        poorly_supported,
+        warnings,
+    })
+}
+
+/// The one fluid of the case: its bodies and walls must agree on it.
+fn fluid(case: &Case) -> Result<Fluid, Vec<Problem>> {
+    let mut found: Option<Fluid> = None;
+    for body in &case.bodies {
+        let model::Material::WeaklyCompressible { density, viscosity, .. } = body.material.value
+        else {
+            continue;
+        };
+        let wave_speed = (body.material.bulk_modulus(case.dimension) / density).sqrt();
+        let fluid = Fluid { density, wave_speed, viscosity };
+        if *found.get_or_insert(fluid) != fluid {
+            let message = "fluid and walls must all have the same material in this scheme";
+            let place = body.material.place;
+            return Err(vec![case.problem_at(place, message, "another material", None)]);
+        }
+    }
+    found.ok_or_else(|| vec![case.problem_at(case.scheme.place, "no fluid", "needs one", None)])
+}
+
+fn walls(case: &Case) -> Vec<Wall> {
+    let bodies = (0u32..).zip(&case.bodies);
+    let wall = |(number, body): (u32, &model::Body)| {
+        body.wall.as_ref().map(|wall| Wall { body: number, slip: wall.slip })
+    };
+    bodies.filter_map(wall).collect()
+}
+
+/// Normals of wall particles: the shortest way out of all walls together, inside the box around
+/// all bodies, so that the outer faces of a tank do not count. In a periodic box the box itself is
+/// no wall either.
+fn normals<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+) -> Result<Vec<Vector<D>>, Vec<Problem>> {
+    let mut normals = vec![Vector::zeros(); particles.len()];
+    let is_wall: Vec<bool> = case.bodies.iter().map(|body| body.wall.is_some()).collect();
+    if !is_wall.contains(&true) {
+        return Ok(normals);
+    }
+    let (mut shapes, mut bounds) = (Vec::new(), None::<(Vector<D>, Vector<D>)>);
+    for (body, is_wall) in case.bodies.iter().zip(&is_wall) {
+        let shape: Shape<D> =
+            bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
+        let (low, high) = shape.bounding_box();
+        let (least, most) = bounds.unwrap_or((low, high));
+        bounds = Some((least.inf(&low), most.sup(&high)));
+        if *is_wall {
+            shapes.push(shape);
+        }
+    }
+    let (Some(bounds), Ok(walls)) = (bounds, Shape::union(shapes)) else { return Ok(normals) };
+    crate::parallel::for_each_chunk(&mut normals, |first, rows| {
+        for (offset, normal) in rows.iter_mut().enumerate() {
+            let number = first + offset;
+            if is_wall[particles.body[number] as usize] {
+                let way = walls.way_out(&particles.position[number], &bounds);
+                *normal = way.unwrap_or_else(Vector::zeros);
+            }
+        }
+    });
+    Ok(normals)
+}
+
+/// The velocities of surfaces that slide.
+fn sliding<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<PrescribedVelocity> {
+    let mut conditions = Vec::new();
+    for (number, body) in case.bodies.iter().enumerate() {
+        let Some(wall) = &body.wall else { continue };
+        for (component, value) in wall.sliding.iter().enumerate() {
+            let Some(value) = value else { continue };
+            let of_body = |&a: &u32| particles.body[a as usize] as usize == number;
+            conditions.push(PrescribedVelocity {
+                name: body.name.value.clone(),
+                particles: (0..particles.len() as u32).filter(of_body).collect(),
+                component,
+                value: selections::function(value),
+            });
+        }
+    }
+    conditions
+}
+
+fn statistics<const D: usize>(scheme: &TransportVelocity<D>) -> (NeighborStatistics, Vec<u32>) {
+    let counts: Vec<usize> =
+        (0..scheme.particle_count()).map(|a| scheme.neighborhood(a).len()).collect();
+    let mean = counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64;
+    let least = counts.iter().copied().min().unwrap_or(0);
+    let most = counts.iter().copied().max().unwrap_or(0);
+    let poor = (0u32..).zip(&counts).filter(|(a, count)| **count < D && !scheme.is_wall(*a));
+    let poor = poor.map(|(a, _)| a).collect();
+    (NeighborStatistics { least, mean, most }, poor)
+}

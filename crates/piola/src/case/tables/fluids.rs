@@ -1,0 +1,141 @@
+//! The scheme `transport_velocity` and walls.
+
+use super::*;
+
+pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
+    name: "transport_velocity",
+    meaning: "weakly compressible fluids that move with a corrected transport velocity",
+    dimensions: &[1, 2, 3],
+    keys: &[
+        key(
+            "kernel",
+            Kind::Name(Choices::Registry(catalogue::kernels)),
+            "",
+            Default("\"quintic_spline\""),
+            "smoothing kernel",
+        ),
+        key(
+            "smoothing_length",
+            Kind::Number(Interval::POSITIVE),
+            "spacings",
+            Default("1.0"),
+            "smoothing length h in units of the particle spacing",
+        ),
+        key(
+            "density",
+            Kind::Name(DENSITIES),
+            "",
+            Default("\"continuity\""),
+            "how the density is found",
+        ),
+        key(
+            "density_drift",
+            Kind::Number(Interval::POSITIVE),
+            "1",
+            Default("0.02"),
+            "with `continuity` and `edac`, the relative departure of a density from that of its pressure, CTVF (8), beyond which it is set to it",
+        ),
+        key(
+            "pressure",
+            Kind::Name(PRESSURES),
+            "",
+            Default("\"edac\""),
+            "how the pressure is found",
+        ),
+        key(
+            "pressure_diffusion",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("0.5"),
+            "factor of the diffusivity of the pressure, CTVF (24); for `edac`",
+        ),
+        key(
+            "corrections",
+            Kind::Name(CORRECTIONS),
+            "",
+            Default("\"full\""),
+            "what makes up for particles that do not move with their velocity",
+        ),
+        key(
+            "shifting",
+            Kind::Name(SHIFTINGS),
+            "",
+            Default("\"spst\""),
+            "how particles are kept evenly spread",
+        ),
+        key(
+            "shifting_factor",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("1.0"),
+            "factor of the velocity deviation of `spst`, CTVF (35)",
+        ),
+        key(
+            "shifting_tolerance",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("0.001"),
+            "where the passes of `ipst` stop, CTVF (39)",
+        ),
+        key(
+            "shifting_passes",
+            Kind::Integer(Interval::between(1.0, 100.0)),
+            "1",
+            Default("5"),
+            "most passes of `ipst` a step",
+        ),
+        key(
+            "artificial_viscosity",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("0.0"),
+            "factor alpha of the artificial viscosity, CTVF (28)",
+        ),
+        key(
+            "free_surface",
+            Kind::Boolean,
+            "",
+            Default("false"),
+            "whether free surfaces are looked for, near which shifting is limited, CTVF (44), (45)",
+        ),
+    ],
+};
+
+const DENSITIES: Choices = choices(&[
+    choice("continuity", "by integration of the continuity equation, CTVF (25) corrected"),
+    choice("summation", "as the sum over masses"),
+]);
+const PRESSURES: Choices = choices(&[
+    choice("edac", "by integration with diffusion, CTVF (26) corrected"),
+    choice("state_equation", "from the density, CTVF (8)"),
+]);
+const CORRECTIONS: Choices = choices(&[
+    choice("full", "all terms of CTVF (12), (19), (23)"),
+    choice("paper", "all terms, the momentum equation as CTVF (27) is printed"),
+    choice("none", "no term, the divergence is that of the velocity"),
+    choice("transport_divergence", "no term, the divergence is that of the transport velocity"),
+    choice("stress", "the stress of the momentum equation alone"),
+]);
+const SHIFTINGS: Choices = choices(&[
+    choice("spst", "by a velocity deviation, CTVF (35)"),
+    choice("ipst", "by an iterated displacement, CTVF (37) to (41)"),
+    choice("none", "not at all"),
+]);
+
+pub(super) static WALL: TableSpec = TableSpec {
+    title: "wall",
+    meaning: "Makes a body a wall of ghost particles, for the scheme `transport_velocity`.",
+    keys: &[
+        key("slip", Kind::Name(SLIPS), "", Default("\"no\""), "what viscosity does along it"),
+        key(
+            "sliding",
+            Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
+            "m/s",
+            Optional,
+            "velocity of its surface where it is, as of a belt, on top of its motion",
+        ),
+    ],
+};
+
+const SLIPS: Choices =
+    choices(&[choice("no", "the fluid sticks to it"), choice("free", "the fluid slides along it")]);

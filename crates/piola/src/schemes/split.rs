@@ -1,0 +1,19 @@
+//! What a formulation offers to integrators that take velocities and places in turn.
+
+use super::Scheme;
+
+/// A formulation whose state holds the accelerations that belong to it, so that a step can be
+/// split into kicks, which change velocities only, and drifts, which change all the rest.
+///
+/// The state that [`Scheme::initial_state`] gives holds them already.
+pub trait SplitScheme: Scheme {
+    /// Changes velocities by their stored accelerations times `duration` s, CTVF (54) and (60).
+    fn kick(&mut self, duration: f64, state: &mut [f64]);
+
+    /// Moves places, densities and pressures from `time` to `time + step` with the velocities as
+    /// they are, which are those of the middle of the step, CTVF (55) to (59).
+    fn drift(&mut self, time: f64, step: f64, state: &mut [f64]);
+
+    /// Finds the accelerations of `state` at `time` and stores them in it.
+    fn accelerate(&mut self, time: f64, state: &mut [f64]);
+}

@@ -1,0 +1,291 @@
+//! From particles and settings to a scheme that is ready to run.
+
+use piola_formulas::fluid;
+use piola_formulas::kernels::Kernel;
+use thiserror::Error;
+
+use super::inspect::ChunkFigures;
+use super::ledger::Tail;
+use super::shifting::Iteration;
+use super::{
+    DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip,
+    TransportVelocity, WallParticle, WallValues,
+};
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::boundaries::{BodyForce, PrescribedVelocity};
+use crate::geometry::Particles;
+use crate::neighbors::{Domain, NeighborError};
+use crate::operators::MovingSupport;
+use crate::schemes::{Initial, SplitScheme};
+use crate::{Vector, parallel};
+
+/// A body that is a wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wall {
+    /// Its number.
+    pub body: u32,
+    /// What it does to the fluid along it.
+    pub slip: Slip,
+}
+
+/// All that the formulation is bound to.
+pub struct TransportVelocityInput<const D: usize> {
+    /// The particles of fluid and walls, all of the same spacing.
+    pub particles: Particles<D>,
+    /// The box and its periodic axes.
+    pub domain: Domain<D>,
+    /// The smoothing kernel.
+    pub kernel: Kernel,
+    /// Smoothing length h in m.
+    pub smoothing_length: f64,
+    /// Numerical settings.
+    pub settings: Settings,
+    /// The fluid.
+    pub fluid: Fluid,
+    /// Initial velocity and pressure.
+    pub initial: Initial<D>,
+    /// The bodies that are walls.
+    pub walls: Vec<Wall>,
+    /// Unit normal of each particle towards the fluid; not used but of walls.
+    pub normals: Vec<Vector<D>>,
+    /// Velocity components with which particles of walls move; those of others are at rest.
+    pub motion: Vec<PrescribedVelocity>,
+    /// Velocity components with which the surface of walls slides where it is.
+    pub sliding: Vec<PrescribedVelocity>,
+    /// Body forces, which add up.
+    pub body_forces: Vec<BodyForce<D>>,
+}
+
+/// Input that the formulation cannot work with.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum TransportVelocityError {
+    /// The neighbours cannot be found.
+    #[error(transparent)]
+    Neighbors(#[from] NeighborError),
+    /// There is no particle of fluid.
+    #[error("there is no particle of fluid: every body is a wall")]
+    NoFluid,
+    /// Particles of different sizes.
+    #[error(
+        "particle {id} has a spacing of {got} m, expected {expected} m: all particles of fluid and \
+         walls share one spacing in this scheme"
+    )]
+    Spacing {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// The spacing of the first particle in m.
+        expected: f64,
+        /// Its own in m.
+        got: f64,
+    },
+    /// An array that does not have one entry for each particle.
+    #[error("{what} has {got} entries, expected one for each of the {expected} particles")]
+    Length {
+        /// The array.
+        what: &'static str,
+        /// Number of particles.
+        expected: usize,
+        /// Its length.
+        got: usize,
+    },
+    /// A constant that must be positive.
+    #[error("{what} is {got}, expected a positive number")]
+    NotPositive {
+        /// The constant.
+        what: &'static str,
+        /// Its value.
+        got: f64,
+    },
+    /// A velocity prescribed for the fluid.
+    #[error(
+        "`{name}` prescribes the velocity of particle {particle}, which is fluid; only walls move as \
+         prescribed"
+    )]
+    PrescribedFluid {
+        /// Name of the condition.
+        name: String,
+        /// Index of the particle in memory.
+        particle: u32,
+    },
+    /// A start that is no number, or has no density.
+    #[error("the initial velocity or pressure of particle {id} at {position:?} is not usable")]
+    Start {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its position in m.
+        position: Vec<f64>,
+    },
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Finds neighbours and the accelerations of the start.
+    ///
+    /// # Errors
+    /// [`TransportVelocityError`] for parts that do not fit together.
+    pub fn new(input: TransportVelocityInput<D>) -> Result<Self, TransportVelocityError> {
+        check(&input)?;
+        let TransportVelocityInput { particles, settings, fluid, initial, .. } = input;
+        let count = particles.len();
+        let wall_of =
+            |number: usize| input.walls.iter().find(|wall| wall.body == particles.body[number]);
+        let is_wall: Vec<bool> = (0..count).map(|number| wall_of(number).is_some()).collect();
+        if !is_wall.contains(&false) {
+            return Err(TransportVelocityError::NoFluid);
+        }
+        let mut walls = Vec::new();
+        let mut index = |number: usize| {
+            let slip = wall_of(number)?.slip;
+            let normal = input.normals[number];
+            walls.push(WallParticle { number: number as u32, normal, slip });
+            Some(walls.len() as u32 - 1)
+        };
+        let wall_index: Vec<Option<u32>> = (0..count).map(&mut index).collect();
+        let of_walls = |conditions: &[PrescribedVelocity]| {
+            components(conditions, &wall_index, &walls, &particles)
+        };
+        let (motion, sliding) = (of_walls(&input.motion)?, of_walls(&input.sliding)?);
+        let support = MovingSupport::new(
+            &particles.position,
+            is_wall.clone(),
+            input.kernel,
+            input.smoothing_length,
+            input.domain,
+        )?;
+        let densities: Vec<f64> = (0..count)
+            .map(|number| start_density(&settings, &fluid, initial.pressure[number]))
+            .collect();
+        let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
+        let mut scheme = Self {
+            mass: mass.collect(),
+            sides: vec![Side::default(); count],
+            densities,
+            rates: vec![Rates::default(); count],
+            forces: vec![Forces::default(); count],
+            shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],
+            wall_values: vec![WallValues::default(); walls.len()],
+            openings: vec![Opening::default(); if settings.free_surface { count } else { 0 }],
+            found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
+            iteration: Iteration::default(),
+            chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
+            lost: None,
+            start: Vec::new(),
+            body_forces: input.body_forces,
+            particles,
+            support,
+            settings,
+            fluid,
+            is_wall,
+            walls,
+            motion,
+            sliding,
+        };
+        scheme.begin(&initial)?;
+        Ok(scheme)
+    }
+
+    /// Makes the state of the start, with its accelerations and deviations.
+    fn begin(&mut self, initial: &Initial<D>) -> Result<(), TransportVelocityError> {
+        let count = self.particles.len();
+        let mut state = vec![0.0; count * Row::<D>::LENGTH + Tail::new(D).length()];
+        for (number, row) in state.chunks_exact_mut(Row::<D>::LENGTH).take(count).enumerate() {
+            let position = self.particles.position[number];
+            let (velocity, pressure) = (initial.velocity[number], initial.pressure[number]);
+            let usable = velocity.iter().all(|v| v.is_finite())
+                && pressure.is_finite()
+                && self.mass[number] > 0.0;
+            if !usable {
+                let position = position.iter().copied().collect();
+                let id = self.particles.id[number];
+                return Err(TransportVelocityError::Start { id, position });
+            }
+            if !self.is_wall[number] {
+                row[..D].copy_from_slice(velocity.as_slice());
+                row[Row::<D>::PRESSURE] = pressure;
+            }
+            let position = self.support.list().domain().wrap(&position);
+            row[Row::<D>::POSITION..][..D].copy_from_slice(position.as_slice());
+            row[Row::<D>::DENSITY] = self.densities[number];
+        }
+        self.load(&state);
+        self.note_evenness();
+        self.accelerate(0.0, &mut state);
+        Self::clear_bookings(&mut state[count * Row::<D>::LENGTH..]);
+        self.start = state;
+        Ok(())
+    }
+
+    /// The state of the start.
+    pub(super) fn start(&self) -> &[f64] {
+        &self.start
+    }
+}
+
+/// The density that belongs to a pressure: by the law of state if that rules, otherwise rho0.
+fn start_density(settings: &Settings, fluid: &Fluid, pressure: f64) -> f64 {
+    match settings.pressure {
+        PressureRule::StateEquation if settings.density == DensityRule::Continuity => {
+            fluid::density(pressure, fluid.density, fluid.wave_speed)
+        }
+        _ => fluid.density,
+    }
+}
+
+fn check<const D: usize>(input: &TransportVelocityInput<D>) -> Result<(), TransportVelocityError> {
+    let (particles, initial) = (&input.particles, &input.initial);
+    let expected = particles.len();
+    for (what, got) in [
+        ("the list of volumes", particles.volume.len()),
+        ("the list of spacings", particles.spacing.len()),
+        ("the list of bodies", particles.body.len()),
+        ("the list of ids", particles.id.len()),
+        ("the list of normals", input.normals.len()),
+        ("the initial velocity", initial.velocity.len()),
+        ("the initial pressure", initial.pressure.len()),
+    ] {
+        if got != expected {
+            return Err(TransportVelocityError::Length { what, expected, got });
+        }
+    }
+    let positive = [
+        ("the smoothing length", input.smoothing_length),
+        ("the density of the fluid", input.fluid.density),
+        ("the wave speed of the fluid", input.fluid.wave_speed),
+    ];
+    for (what, got) in positive {
+        if !(got > 0.0 && got.is_finite()) {
+            return Err(TransportVelocityError::NotPositive { what, got });
+        }
+    }
+    let spacing = particles.spacing.first().copied().unwrap_or_default();
+    let other = |got: &f64| !((got - spacing).abs() <= 1e-9 * spacing);
+    if let Some(number) = particles.spacing.iter().position(other) {
+        let (id, got) = (particles.id[number], particles.spacing[number]);
+        return Err(TransportVelocityError::Spacing { id, expected: spacing, got });
+    }
+    Ok(())
+}
+
+/// Prescribed components of wall particles, numbered among these.
+fn components<const D: usize>(
+    conditions: &[PrescribedVelocity],
+    wall_index: &[Option<u32>],
+    walls: &[WallParticle<D>],
+    particles: &Particles<D>,
+) -> Result<PrescribedComponents, TransportVelocityError> {
+    let mut renumbered = Vec::new();
+    for condition in conditions {
+        let index = |&particle: &u32| {
+            let (name, found) = (&condition.name, wall_index.get(particle as usize));
+            found.copied().flatten().ok_or_else(|| TransportVelocityError::PrescribedFluid {
+                name: name.clone(),
+                particle,
+            })
+        };
+        let particles = condition.particles.iter().map(index).collect::<Result<_, _>>()?;
+        renumbered.push(PrescribedVelocity { particles, ..condition.clone() });
+    }
+    let positions: Vec<Vector<D>> =
+        walls.iter().map(|wall| particles.position[wall.number as usize]).collect();
+    Ok(PrescribedComponents::new(&renumbered, &positions))
+}

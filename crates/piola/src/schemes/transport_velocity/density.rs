@@ -1,0 +1,61 @@
+//! The density as a sum over masses.
+
+use piola_formulas::fluid;
+
+use super::{DensityRule, PressureRule, TransportVelocity};
+use crate::operators::{Needs, NeighborBlock};
+use crate::parallel;
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Fills `densities` with `rho_a = sum_b m_b W_ab`, walls and a itself included.
+    pub(super) fn sum_densities(&mut self) {
+        let mut densities = std::mem::take(&mut self.densities);
+        let (support, sides, centre) = (&self.support, &self.sides, self.support.centre());
+        parallel::for_each_chunk(&mut densities, |first, rows| {
+            let mut block = NeighborBlock::default();
+            for (offset, density) in rows.iter_mut().enumerate() {
+                let place = first + offset;
+                let mut sum = sides[place].mass * centre;
+                let mut rest = support.all(place);
+                while support.fill(&mut rest, Needs::Value, &mut block) {
+                    for neighbor in block.iter() {
+                        sum += sides[neighbor.place].mass * neighbor.value;
+                    }
+                }
+                *density = sum;
+            }
+        });
+        self.densities = densities;
+    }
+
+    /// Gives the fluid the density and pressure that are functions of where particles are, or of
+    /// each other, and ties a density that has drifted to its pressure again.
+    pub(super) fn update_density_and_pressure(&mut self) {
+        let sums = self.settings.density == DensityRule::Summation;
+        let algebraic = self.settings.pressure == PressureRule::StateEquation;
+        if sums {
+            self.sum_densities();
+        }
+        let drift = self.settings.density_drift * self.fluid.density;
+        let (densities, list, fluid) = (&self.densities, self.support.list(), self.fluid);
+        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+            for (offset, side) in sides.iter_mut().enumerate() {
+                let place = first + offset;
+                if list.is_passive(place) {
+                    continue;
+                }
+                let tied = fluid::density(side.pressure, fluid.density, fluid.wave_speed);
+                let density = match (sums, algebraic) {
+                    (true, _) => densities[place],
+                    (false, false) if (side.density - tied).abs() > drift => tied,
+                    (false, _) => side.density,
+                };
+                let pressure = match algebraic {
+                    true => fluid::pressure(density, fluid.density, fluid.wave_speed),
+                    false => side.pressure,
+                };
+                side.set(density, pressure);
+            }
+        });
+    }
+}

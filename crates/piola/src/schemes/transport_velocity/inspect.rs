@@ -1,0 +1,89 @@
+//! One look over a state: is it sound, and how large may the next step be.
+
+use rayon::prelude::*;
+
+use super::{Row, TransportVelocity};
+use crate::parallel::CHUNK;
+use crate::schemes::{Health, StepLimit};
+
+/// Figures of one chunk of particles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ChunkFigures {
+    health: Health,
+    /// Squares of the largest speed and acceleration, with their particles.
+    speed: (f64, usize),
+    acceleration: (f64, usize),
+}
+
+impl ChunkFigures {
+    pub const NEUTRAL: Self =
+        Self { health: Health::NEUTRAL, speed: (0.0, 0), acceleration: (0.0, 0) };
+
+    fn worse(self, other: Self) -> Self {
+        let larger = |a: (f64, usize), b: (f64, usize)| if b.0 > a.0 { b } else { a };
+        Self {
+            health: self.health.worse(other.health),
+            speed: larger(self.speed, other.speed),
+            acceleration: larger(self.acceleration, other.acceleration),
+        }
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// The health of `state` and the bounds on the step, CTVF (61) corrected:
+    ///
+    /// - `acoustic`: `h / (c + |u|)` of the largest speed;
+    /// - `viscous`: `h^2 / nu`;
+    /// - `acceleration`: `sqrt(h / |du/dt|)` of the largest acceleration, where the paper has
+    ///   that of gravity.
+    ///
+    /// All are scaled by the CFL number, which the paper has as 0.25.
+    pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        let mut figures = std::mem::take(&mut self.chunk_figures);
+        let rows = &state[..self.particles.len() * Row::<D>::LENGTH];
+        rows.par_chunks(CHUNK * Row::<D>::LENGTH)
+            .zip(&mut figures)
+            .enumerate()
+            .for_each(|(chunk, (rows, figures))| *figures = self.look_at_rows(chunk * CHUNK, rows));
+        let worst = figures.iter().copied().fold(ChunkFigures::NEUTRAL, ChunkFigures::worse);
+        self.chunk_figures = figures;
+
+        let h = self.support.smoothing_length();
+        let limit = |name, step, particle| StepLimit { name, step, particle, scaled: true };
+        limits.clear();
+        let fastest = self.fluid.wave_speed + worst.speed.0.sqrt();
+        limits.push(limit("acoustic", h / fastest, worst.speed.1));
+        if self.fluid.viscosity > 0.0 {
+            limits.push(limit("viscous", h * h / self.fluid.viscosity, worst.speed.1));
+        }
+        if worst.acceleration.0 > 0.0 {
+            let step = (h / worst.acceleration.0.sqrt()).sqrt();
+            limits.push(limit("acceleration", step, worst.acceleration.1));
+        }
+        worst.health
+    }
+
+    fn look_at_rows(&self, first: usize, rows: &[f64]) -> ChunkFigures {
+        let mut worst = ChunkFigures::NEUTRAL;
+        for (offset, row) in rows.chunks_exact(Row::<D>::LENGTH).enumerate() {
+            let number = first + offset;
+            if row.iter().any(|value| !value.is_finite()) {
+                worst.health.first_not_finite.get_or_insert(number);
+                continue;
+            }
+            let speed = Row::<D>::velocity(row).norm_squared();
+            let mut figures = ChunkFigures { speed: (speed, number), ..ChunkFigures::NEUTRAL };
+            if !self.is_wall[number] {
+                // The inverse has the sign of the density, and is the volume ratio.
+                figures.health.smallest_ratio = self.fluid.density / row[Row::<D>::DENSITY];
+                figures.health.smallest_ratio_particle = number;
+                figures.acceleration = (Row::<D>::acceleration(row).norm_squared(), number);
+            }
+            worst = worst.worse(figures);
+        }
+        worst.health.largest_speed = worst.speed.0.sqrt();
+        worst.health.largest_speed_particle = worst.speed.1;
+        worst.health.largest_wave_speed = self.fluid.wave_speed;
+        worst
+    }
+}

@@ -1,0 +1,178 @@
+//! Energies and momentum, and what each mechanism does to them.
+//!
+//! A kick of duration s with the acceleration `a = sum_k a_k` changes the kinetic energy by
+//! `sum_k s (P_k + s/2 Q_k)` with `P_k = sum m a_k . u` and `Q_k = sum m a_k . a`, and the momentum
+//! by `s sum m a_k`: exactly, and mechanism by mechanism. These sums stand at the end of the state.
+
+use std::ops::Range;
+
+use super::{
+    ACCELERATING, IMPULSES, MECHANISMS, PRESSURE, PRESSURE_DIFFUSION, Row, TRANSPORT,
+    TransportVelocity,
+};
+use crate::parallel;
+use crate::schemes::momentum::{self, MOST_COMPONENTS};
+use crate::schemes::momentum_components;
+
+/// Where the sums over all particles stand behind the rows of a state.
+pub(super) struct Tail {
+    /// Components of momentum.
+    components: usize,
+}
+
+/// Numbers that a kick needs of each particle.
+const KICK: usize = 2 * ACCELERATING + IMPULSES.len() * MOST_COMPONENTS;
+
+impl Tail {
+    pub fn new(dimension: usize) -> Self {
+        Self { components: momentum_components(dimension).len() }
+    }
+
+    fn after(start: usize, length: usize) -> Range<usize> {
+        start..start + length
+    }
+
+    /// Impulse so far, by way in and component.
+    fn impulses(&self) -> Range<usize> {
+        Self::after(MECHANISMS.len(), IMPULSES.len() * self.components)
+    }
+
+    /// `P_k`, then `Q_k`, then the force of each way in by component.
+    fn kick(&self) -> Range<usize> {
+        Self::after(self.impulses().end, 2 * ACCELERATING + IMPULSES.len() * self.components)
+    }
+
+    /// Numbers behind the rows.
+    pub fn length(&self) -> usize {
+        self.kick().end
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Kinetic energy of the fluid in J.
+    pub(super) fn kinetic_energy(&self, state: &[f64]) -> f64 {
+        parallel::sum(self.particles.len(), |number| match self.is_wall[number] {
+            true => 0.0,
+            false => {
+                let velocity = Row::<D>::velocity(Row::<D>::of(state, number));
+                0.5 * self.mass[number] * velocity.norm_squared()
+            }
+        })
+    }
+
+    /// Energy of compression in J: `sum m p^2 / (2 rho0^2 c^2)`.
+    pub(super) fn compression_energy(&self, state: &[f64]) -> f64 {
+        let stiffness = self.compliance();
+        parallel::sum(self.particles.len(), |number| match self.is_wall[number] {
+            true => 0.0,
+            false => {
+                let pressure = Row::<D>::of(state, number)[Row::<D>::PRESSURE];
+                0.5 * self.mass[number] * stiffness * pressure * pressure
+            }
+        })
+    }
+
+    /// Momentum of the fluid, by component.
+    pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        parallel::sums(self.particles.len(), |number, sums| {
+            if !self.is_wall[number] {
+                let row = Row::<D>::of(state, number);
+                let momentum = Row::<D>::velocity(row) * self.mass[number];
+                momentum::add_moments(&Row::<D>::position(row), &momentum, sums);
+            }
+        })
+    }
+
+    /// `1 / (rho0 c)^2`.
+    fn compliance(&self) -> f64 {
+        (self.fluid.density * self.fluid.wave_speed).powi(-2)
+    }
+
+    /// Books a kick of `duration` s in the tail of a state.
+    pub(super) fn book_kick(duration: f64, tail: &mut [f64]) {
+        let layout = Tail::new(D);
+        let (booked, kick) = tail.split_at_mut(layout.kick().start);
+        let (powers, rest) = kick.split_at_mut(ACCELERATING);
+        let (squares, forces) = rest.split_at_mut(ACCELERATING);
+        for ((power, square), work) in powers.iter_mut().zip(squares).zip(&mut *booked) {
+            *work += duration * (*power + 0.5 * duration * *square);
+            *power += duration * *square;
+        }
+        for (impulse, force) in booked[layout.impulses()].iter_mut().zip(forces) {
+            *impulse += duration * *force;
+        }
+    }
+
+    /// Puts power and force of all accelerations into the tail, for the kicks to come.
+    pub(super) fn book_powers(&self, rows: &[f64], tail: &mut [f64]) {
+        let (forces, places) = (&self.forces, self.support.list().places());
+        let sums = parallel::sums::<KICK>(self.particles.len(), |number, sums| {
+            if self.is_wall[number] {
+                return;
+            }
+            let forces = &forces[places[number] as usize];
+            let row = Row::<D>::of(rows, number);
+            let (velocity, position) = (Row::<D>::velocity(row), Row::<D>::position(row));
+            let (mass, total) = (self.mass[number], forces.total());
+            for (k, term) in forces.terms().into_iter().enumerate() {
+                sums[k] += mass * term.dot(&velocity);
+                sums[ACCELERATING + k] += mass * term.dot(&total);
+            }
+            let ways = sums[2 * ACCELERATING..].chunks_exact_mut(MOST_COMPONENTS);
+            for (way, term) in ways.zip(forces.ways_in()) {
+                momentum::add_moments(&position, &(term * mass), way);
+            }
+        });
+        let layout = Tail::new(D);
+        let (energy, momentum) = tail[layout.kick()].split_at_mut(2 * ACCELERATING);
+        energy.copy_from_slice(&sums[..2 * ACCELERATING]);
+        let ways = sums[2 * ACCELERATING..].chunks_exact(MOST_COMPONENTS);
+        for (kept, way) in momentum.chunks_exact_mut(layout.components).zip(ways) {
+            kept.copy_from_slice(&way[..layout.components]);
+        }
+    }
+
+    /// Books what a drift from `rows` by `step` s does to the energy of compression, if the
+    /// pressure drifts, and to angular momentum, by particles that move across their velocity.
+    pub(super) fn book_drift(&self, step: f64, diffuses: bool, rows: &[f64], tail: &mut [f64]) {
+        let (places, compliance) = (self.support.list().places(), self.compliance());
+        let sums =
+            parallel::sums::<{ 3 + MOST_COMPONENTS }>(self.particles.len(), |number, sums| {
+                if self.is_wall[number] {
+                    return;
+                }
+                let (row, mass) = (Row::<D>::of(rows, number), self.mass[number]);
+                if diffuses {
+                    let rates = self.pressure_rates(places[number] as usize);
+                    let mean = row[Row::<D>::PRESSURE] + 0.5 * step * rates.iter().sum::<f64>();
+                    for (sum, rate) in sums.iter_mut().zip(rates) {
+                        *sum += step * mass * compliance * mean * rate;
+                    }
+                }
+                let momentum = Row::<D>::velocity(row) * (step * mass);
+                let (moments, count) = momentum::moments(&Row::<D>::deviation(row), &momentum);
+                for component in D..count {
+                    sums[3 + component] += moments[component];
+                }
+            });
+        tail[PRESSURE] += sums[0];
+        tail[TRANSPORT] += sums[1];
+        tail[PRESSURE_DIFFUSION] += sums[2];
+        let layout = Tail::new(D);
+        // The corrections are the last way in.
+        let last = (IMPULSES.len() - 1) * layout.components;
+        for (kept, sum) in tail[layout.impulses()][last..].iter_mut().zip(&sums[3..]) {
+            *kept += sum;
+        }
+    }
+
+    /// Books a change of the energy of compression that belongs to the law of state.
+    pub(super) fn book_pressure(gained: f64, tail: &mut [f64]) {
+        tail[PRESSURE] += gained;
+    }
+
+    /// Sets what has been booked so far to nothing.
+    pub(super) fn clear_bookings(tail: &mut [f64]) {
+        tail[..Tail::new(D).kick().start].fill(0.0);
+    }
+}

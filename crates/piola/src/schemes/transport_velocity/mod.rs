@@ -1,0 +1,173 @@
+//! The corrected transport-velocity formulation of weakly compressible fluids with a diffused
+//! (EDAC) or algebraic pressure. Paper: CTVF, sections 2 and 3.
+//!
+//! Particles carry a momentum velocity u and move with the transport velocity uhat = u + d, whose
+//! deviation d keeps them evenly spread. With `r_ab = r_a - r_b`, `u_ab = u_a - u_b`,
+//! `V = m / rho` and the kernel gradient `grad W_ab` at a, the equations solved are
+//!
+//! ```text
+//! drho_a/dt = rho_a sum V_b u_ab . grad W_ab + sum V_b (rho_b - rho_a) d_b . grad W_ab
+//!   dp_a/dt = rho_a c^2 sum V_b u_ab . grad W_ab + sum V_b (p_b - p_a) d_b . grad W_ab + E_a
+//!   du_a/dt = - sum m_b (p_a / rho_a^2 + p_b / rho_b^2 + Pi_ab) grad W_ab + N_a + g
+//!             + sum m_b (u_a d_a / rho_a + u_b d_b / rho_b) . grad W_ab
+//!             + u_a / rho_a sum V_b (rho d)_ab . grad W_ab
+//! ```
+//!
+//! with the exchange of pressure E, of momentum N and the artificial viscosity Pi of
+//! [`piola_formulas::fluid`]. They follow from CTVF (12), (19) and (23); the printed (25), (26),
+//! (27) have other signs. The first two lines are theirs with the terms of uhat collected:
+//! `rho_a uhat_ab - (rho d)_ab = rho_a u_ab + (rho_b - rho_a) d_b`, and likewise for p.
+//!
+//! Walls are layers of ghost particles, CTVF (46) to (52). Everything that a state needs to go on
+//! is in its rows: u, r, rho, p, du/dt and d of each particle.
+
+mod build;
+mod density;
+mod drift;
+mod forces;
+mod inspect;
+mod ledger;
+mod sample;
+mod scheme;
+mod settings;
+mod shifting;
+mod sides;
+mod split;
+mod surface;
+mod walls;
+
+use crate::Vector;
+use crate::boundaries::{BodyForce, prescribed::PrescribedComponents};
+use crate::geometry::Particles;
+use crate::operators::MovingSupport;
+
+pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
+pub use drift::Rates;
+pub use forces::Forces;
+pub use scheme::FIELDS;
+pub use settings::{
+    Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings, Shifting, Slip,
+};
+
+use inspect::ChunkFigures;
+use shifting::Iteration;
+use sides::Side;
+use surface::Opening;
+use walls::{WallParticle, WallValues};
+
+/// The formulation bound to its particles.
+pub struct TransportVelocity<const D: usize> {
+    /// Reference state; the number of a particle is its index here.
+    particles: Particles<D>,
+    support: MovingSupport<D>,
+    settings: Settings,
+    fluid: Fluid,
+    /// Mass by number, kg.
+    mass: Vec<f64>,
+    is_wall: Vec<bool>,
+    walls: Vec<WallParticle<D>>,
+    wall_values: Vec<WallValues<D>>,
+    /// Velocity with which walls move, and with which their surface slides where it is.
+    motion: PrescribedComponents,
+    sliding: PrescribedComponents,
+    body_forces: Vec<BodyForce<D>>,
+    /// The state at the start, with its accelerations.
+    start: Vec<f64>,
+    // Scratch, by place.
+    sides: Vec<Side<D>>,
+    densities: Vec<f64>,
+    rates: Vec<Rates>,
+    forces: Vec<Forces<D>>,
+    /// Velocity of each wall particle that viscous forces see.
+    shear: Vec<Vector<D>>,
+    /// Where free surfaces are, if they are looked for, and scratch of the search.
+    openings: Vec<Opening<D>>,
+    found: Vec<(Vector<D>, bool)>,
+    iteration: Iteration<D>,
+    chunk_figures: Vec<ChunkFigures>,
+    /// The first particle whose place was no number, if the neighbours could not be found.
+    lost: Option<usize>,
+}
+
+/// The energies of the formulation.
+pub const ENERGIES: [&str; 2] = ["kinetic", "compression"];
+
+/// The mechanisms of its ledger, in the order of the state's tail.
+///
+/// `pressure` is what the exchange between kinetic energy and that of compression fails to
+/// conserve: the discrete force and divergence are not exact adjoints.
+pub const MECHANISMS: [&str; 7] = [
+    "pressure",
+    "viscosity",
+    "artificial_viscosity",
+    "transport",
+    "walls",
+    "body_force",
+    "pressure_diffusion",
+];
+
+/// The ways in which momentum enters, in the order of the state's tail. Viscous forces act along
+/// `u_ab` and turn the fluid; the corrections neither come in pairs, nor do particles move along
+/// their velocity.
+pub const IMPULSES: [&str; 4] = ["walls", "body_force", "viscosity", "corrections"];
+
+const PRESSURE: usize = 0;
+const TRANSPORT: usize = 3;
+const PRESSURE_DIFFUSION: usize = 6;
+/// The mechanisms that accelerate, which stand first.
+const ACCELERATING: usize = 6;
+
+/// Where the unknowns stand in a row of the state.
+struct Row<const D: usize>;
+
+impl<const D: usize> Row<D> {
+    const POSITION: usize = D;
+    const DENSITY: usize = 2 * D;
+    const PRESSURE: usize = 2 * D + 1;
+    const ACCELERATION: usize = 2 * D + 2;
+    const DEVIATION: usize = 3 * D + 2;
+    const LENGTH: usize = 4 * D + 2;
+
+    #[inline]
+    fn velocity(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[..D])
+    }
+
+    #[inline]
+    fn position(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[Self::POSITION..Self::POSITION + D])
+    }
+
+    #[inline]
+    fn acceleration(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[Self::ACCELERATION..Self::ACCELERATION + D])
+    }
+
+    #[inline]
+    fn deviation(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[Self::DEVIATION..Self::DEVIATION + D])
+    }
+
+    /// Row `number` of a state.
+    #[inline]
+    fn of(state: &[f64], number: usize) -> &[f64] {
+        &state[number * Self::LENGTH..][..Self::LENGTH]
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// How often the neighbour list has been made, for those who watch its cost.
+    pub fn list_builds(&self) -> u64 {
+        self.support.list().builds()
+    }
+
+    /// Whether a particle (index in memory) belongs to a wall.
+    pub fn is_wall(&self, index: u32) -> bool {
+        self.is_wall.get(index as usize).copied().unwrap_or(false)
+    }
+
+    /// Splits a state into its rows and its tail.
+    fn parts<'a>(&self, state: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
+        state.split_at_mut(self.particles.len() * Row::<D>::LENGTH)
+    }
+}

@@ -1,0 +1,160 @@
+//! The transport-velocity formulation as integrators, clock and output see it.
+
+use super::{ENERGIES, IMPULSES, MECHANISMS, Row, TransportVelocity};
+use crate::fields::{FieldDescription, FieldKind};
+use crate::schemes::{Health, Particle, Scheme, SplitScheme, StepLimit};
+
+const fn field(
+    name: &'static str,
+    unit: &'static str,
+    kind: FieldKind,
+    meaning: &'static str,
+) -> FieldDescription {
+    FieldDescription { name, unit, kind, meaning }
+}
+
+/// The fields of the formulation.
+pub const FIELDS: [FieldDescription; 16] = [
+    field("position", "m", FieldKind::Vector, "current position, inside the periodic box"),
+    field("velocity", "m/s", FieldKind::Vector, "momentum velocity u"),
+    field("transport_velocity", "m/s", FieldKind::Vector, "velocity uhat of the particle itself"),
+    field("acceleration", "m/s2", FieldKind::Vector, "rate of the momentum velocity"),
+    field("force", "N", FieldKind::Vector, "total force; on a wall that of the fluid"),
+    field("pressure", "Pa", FieldKind::Scalar, "pressure p, positive in compression"),
+    field("density", "kg/m3", FieldKind::Scalar, "density rho as the scheme has it"),
+    field("summed_density", "kg/m3", FieldKind::Scalar, "density as the sum over masses"),
+    field("vorticity", "1/s", FieldKind::Scalar, "curl of u, in 3D its magnitude"),
+    field("divergence", "1/s", FieldKind::Scalar, "divergence of u"),
+    field("surface", "1", FieldKind::Scalar, "1 on a free surface, if they are looked for"),
+    field("surface_normal", "1", FieldKind::Vector, "unit normal near a free surface"),
+    field("wall", "1", FieldKind::Scalar, "1 for particles of walls, 0 for fluid"),
+    field("normal", "1", FieldKind::Vector, "unit normal of walls, towards the fluid"),
+    field("neighbors", "1", FieldKind::Scalar, "number of neighbours inside the support"),
+    field("mass", "kg", FieldKind::Scalar, "mass, for 1 m in missing dimensions"),
+];
+
+impl<const D: usize> Scheme for TransportVelocity<D> {
+    fn name(&self) -> &'static str {
+        "transport_velocity"
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn particle_count(&self) -> usize {
+        self.particles.len()
+    }
+
+    fn row_length(&self) -> usize {
+        Row::<D>::LENGTH
+    }
+
+    fn fields(&self) -> &'static [FieldDescription] {
+        &FIELDS
+    }
+
+    fn mechanisms(&self) -> &'static [&'static str] {
+        &MECHANISMS
+    }
+
+    fn impulses(&self) -> &'static [&'static str] {
+        &IMPULSES
+    }
+
+    fn energy_names(&self) -> &'static [&'static str] {
+        &ENERGIES
+    }
+
+    fn initial_state(&self) -> Vec<f64> {
+        self.start().to_vec()
+    }
+
+    /// Rates with the deviations of the state. The stored accelerations and deviations are not
+    /// unknowns and have none.
+    fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
+        self.all_passes(time, state);
+        rate.fill(0.0);
+        for number in 0..self.particles.len() {
+            let place = self.support.list().places()[number] as usize;
+            let row = &mut rate[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            let side = &self.sides[place];
+            if self.is_wall[number] {
+                continue;
+            }
+            row[..D].copy_from_slice(self.forces[place].total().as_slice());
+            let moving = side.velocity + side.deviation;
+            row[Row::<D>::POSITION..][..D].copy_from_slice(moving.as_slice());
+            row[Row::<D>::DENSITY] = self.density_rate(place);
+            row[Row::<D>::PRESSURE] = self.pressure_rates(place).iter().sum();
+        }
+    }
+
+    fn constrain(&self, time: f64, state: &mut [f64]) {
+        for entry in self.motion.iter() {
+            let number = self.walls[entry.particle].number as usize;
+            state[number * Row::<D>::LENGTH + entry.component] =
+                entry.value.value(entry.place, time);
+        }
+    }
+
+    fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        self.look(state, limits)
+    }
+
+    fn energies(&self, state: &[f64], energies: &mut [f64]) {
+        energies[0] = self.kinetic_energy(state);
+        energies[1] = self.compression_energy(state);
+    }
+
+    fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        let count = momentum.len();
+        momentum.copy_from_slice(&self.momentum_of(state)[..count]);
+    }
+
+    fn sample(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    ) {
+        self.sample_field(time, state, field, particles, values);
+    }
+
+    fn bodies(&self) -> &[u32] {
+        &self.particles.body
+    }
+
+    fn ids(&self) -> &[u32] {
+        &self.particles.id
+    }
+
+    fn particle(&self, index: usize) -> Particle {
+        Particle {
+            id: self.particles.id[index],
+            reference: self.particles.position[index].iter().copied().collect(),
+        }
+    }
+
+    fn neighborhood(&self, index: usize) -> Vec<u32> {
+        self.neighbors_of(index)
+    }
+
+    fn collapse_advice(&self, _index: usize) -> String {
+        "the density has lost its meaning there: lower `time.cfl`, raise the wave speed of the \
+         fluid to ten times the speeds that occur, or raise `scheme.artificial_viscosity`"
+            .into()
+    }
+
+    fn memory(&self) -> usize {
+        let side = size_of::<super::Side<D>>() + size_of::<super::Forces<D>>();
+        let particle = side + size_of::<super::Rates>() + 4 * size_of::<f64>();
+        self.support.memory() + self.particles.len() * particle + size_of_val(self.start.as_slice())
+    }
+
+    fn split(&mut self) -> Option<&mut dyn SplitScheme> {
+        Some(self)
+    }
+}

@@ -1,0 +1,160 @@
+//! The choices of the transport-velocity formulation.
+
+/// How the density is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DensityRule {
+    /// By integration of the continuity equation, CTVF (25) corrected.
+    Continuity,
+    /// As the sum of the kernel over all masses.
+    Summation,
+}
+
+/// How the pressure is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PressureRule {
+    /// By integration of CTVF (26) corrected, with the diffusivity of (24).
+    Edac {
+        /// The factor of (24).
+        alpha: f64,
+    },
+    /// From the density, CTVF (8).
+    StateEquation,
+}
+
+/// The velocity in the divergences of continuity and pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Divergence {
+    /// The momentum velocity u.
+    Momentum,
+    /// The transport velocity uhat.
+    Transport,
+}
+
+/// The second term of the momentum equation.
+///
+/// The stress is that of CTVF (27), `div(rho u (x) d) / rho`, which conserves momentum. What belongs
+/// to it is the second term of (18), `- u div(rho d) / rho`; `- u div d` of (19), which (27) takes
+/// instead, belongs to `div(u (x) d)` and differs by `u (d . grad rho) / rho`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dilatation {
+    /// Left away.
+    None,
+    /// `- u div(rho d) / rho`, so that both terms together are `(d . grad) u`.
+    Deviation,
+    /// `- u div uhat`, as CTVF (27) is printed: the same where the flow is incompressible.
+    Transport,
+}
+
+/// What makes up for particles that do not move with their velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Corrections {
+    /// The velocity in the divergences; with their corrections it must be that of momentum.
+    pub divergence: Divergence,
+    /// `(uhat - u) . grad rho` in the continuity equation.
+    pub density: bool,
+    /// `(uhat - u) . grad p` in the pressure equation.
+    pub pressure: bool,
+    /// The divergence of `A = rho u (x) (uhat - u)` in the momentum equation.
+    pub stress: bool,
+    /// The other term of the momentum equation.
+    pub dilatation: Dilatation,
+}
+
+impl Corrections {
+    /// All terms as derived from CTVF (12), (19) and (23).
+    pub const FULL: Self = Self {
+        divergence: Divergence::Momentum,
+        density: true,
+        pressure: true,
+        stress: true,
+        dilatation: Dilatation::Deviation,
+    };
+    /// All terms, with the momentum equation as CTVF (27) is printed.
+    pub const PAPER: Self = Self { dilatation: Dilatation::Transport, ..Self::FULL };
+    /// No term, u in the divergences.
+    pub const NONE: Self = Self {
+        divergence: Divergence::Momentum,
+        density: false,
+        pressure: false,
+        stress: false,
+        dilatation: Dilatation::None,
+    };
+    /// No term, uhat in the divergences: the baseline against which the paper's gain shows.
+    pub const TRANSPORT_DIVERGENCE: Self = Self { divergence: Divergence::Transport, ..Self::NONE };
+    /// The stress alone, which is what earlier transport-velocity formulations have.
+    pub const STRESS: Self = Self { stress: true, ..Self::NONE };
+
+    /// The sets of corrections by their names in a case file.
+    pub const ALL: [(&'static str, Self); 5] = [
+        ("full", Self::FULL),
+        ("paper", Self::PAPER),
+        ("none", Self::NONE),
+        ("transport_divergence", Self::TRANSPORT_DIVERGENCE),
+        ("stress", Self::STRESS),
+    ];
+
+    /// The corrections of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, corrections)| *corrections)
+    }
+}
+
+/// How particles are kept evenly spread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shifting {
+    /// Not at all: particles move with their velocity.
+    None,
+    /// SPST: a velocity deviation, CTVF (35).
+    Sun {
+        /// Its factor; 1 is the whole of (35), 0.5 what (36) and (55) make of it.
+        factor: f64,
+    },
+    /// IPST: an iterated displacement, CTVF (37) to (41).
+    Iterative {
+        /// Iteration stops where (39) falls below.
+        tolerance: f64,
+        /// Most passes a step.
+        most_passes: u32,
+    },
+}
+
+/// Numerical settings of the formulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// How the density is found.
+    pub density: DensityRule,
+    /// How the pressure is found.
+    pub pressure: PressureRule,
+    /// What makes up for the shifting.
+    pub corrections: Corrections,
+    /// How particles are kept evenly spread.
+    pub shifting: Shifting,
+    /// The factor alpha of the artificial viscosity, CTVF (28).
+    pub artificial_viscosity: f64,
+    /// Whether free surfaces are looked for, CTVF (42) to (45).
+    pub free_surface: bool,
+    /// Largest relative departure of an integrated density from that of an integrated pressure.
+    /// Nothing else ties the two to each other, and the density drifts; beyond this it is set to
+    /// the density that the law of state gives for the pressure.
+    pub density_drift: f64,
+}
+
+/// The one fluid of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fluid {
+    /// Reference density rho0 in kg/m^3.
+    pub density: f64,
+    /// Artificial speed of sound c in m/s.
+    pub wave_speed: f64,
+    /// Kinematic viscosity in m^2/s.
+    pub viscosity: f64,
+}
+
+/// What a wall does to the fluid that moves along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slip {
+    /// Viscous forces see the velocity of CTVF (50).
+    No,
+    /// Viscous forces see the velocity of CTVF (48), whose tangential part is the fluid's own.
+    Free,
+}

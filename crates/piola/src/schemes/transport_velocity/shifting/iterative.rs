@@ -1,0 +1,140 @@
+//! IPST: displacements iterated until particles are even.
+
+use crate::operators::{Needs, NeighborBlock};
+use crate::schemes::transport_velocity::{Opening, Row, Shifting, TransportVelocity};
+use crate::{Vector, parallel};
+
+/// Scratch and figures of the iteration.
+#[derive(Clone, Debug)]
+pub(in super::super) struct Iteration<const D: usize> {
+    /// `chi` of CTVF (40) in the configuration at the start: its mean, or at free surfaces its
+    /// largest value.
+    pub even: f64,
+    /// Positions in m by number.
+    positions: Vec<Vector<D>>,
+    /// Free surfaces at the start of the step, by number.
+    openings: Vec<Opening<D>>,
+    /// Displacement in m and `chi` by place.
+    found: Vec<(Vector<D>, f64)>,
+}
+
+impl<const D: usize> Default for Iteration<D> {
+    fn default() -> Self {
+        let (positions, openings, found) = (Vec::new(), Vec::new(), Vec::new());
+        Self { even: f64::NAN, positions, openings, found }
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Puts the deviations into `state` that move particles in a step of `step` s by the iterated
+    /// displacement `sum_m max |u| dt sum_b V_b r_ab / |r_ab| W_ab`, CTVF (37) to (41), beyond
+    /// their own velocity.
+    ///
+    /// The whole displacement is made in the step: (41) has the acceleration that does so by half
+    /// a kick. Fields are not corrected for it, as the transport terms are there for that.
+    pub(in super::super) fn iterate_positions(&mut self, step: f64, state: &mut [f64]) {
+        let Shifting::Iterative { tolerance, most_passes } = self.settings.shifting else { return };
+        let mut iteration = std::mem::take(&mut self.iteration);
+        let count = self.particles.len();
+        let rows = |number| Row::<D>::of(state, number);
+        iteration.positions.clear();
+        iteration.positions.extend((0..count).map(|number| Row::<D>::position(rows(number))));
+        self.load(state);
+        let reach = self.largest_speed() * step;
+        if self.settings.free_surface {
+            self.opening_pass();
+            self.find_surfaces();
+            iteration.openings.clear();
+            let places = self.support.list().places().iter();
+            iteration.openings.extend(places.map(|&place| self.openings[place as usize]));
+        }
+        for _ in 0..most_passes {
+            let positions = &iteration.positions;
+            // Places that are lost are noticed when the state is loaded.
+            if self.support.update(|number| positions[number]).is_err() {
+                break;
+            }
+            let found = &mut iteration.found;
+            let largest = self.displacements(reach, &iteration.openings, found);
+            if (largest - iteration.even).abs() <= tolerance {
+                break;
+            }
+            let (found, places) = (&iteration.found, self.support.list().places());
+            parallel::for_each_chunk(&mut iteration.positions, |first, rows| {
+                for (row, &place) in rows.iter_mut().zip(&places[first..]) {
+                    *row += found[place as usize].0;
+                }
+            });
+        }
+        let positions = &iteration.positions;
+        let rows = &mut state[..count * Row::<D>::LENGTH];
+        parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
+            let deviation = (positions[number] - Row::<D>::position(row)) / step;
+            row[Row::<D>::DEVIATION..][..D].copy_from_slice(deviation.as_slice());
+        });
+        self.iteration = iteration;
+    }
+
+    /// Notes how even the particles are at the places loaded last.
+    pub(in super::super) fn note_evenness(&mut self) {
+        let mut iteration = std::mem::take(&mut self.iteration);
+        let largest = self.displacements(0.0, &[], &mut iteration.found);
+        iteration.even = match self.settings.free_surface {
+            true => largest,
+            false => {
+                let (found, list) = (&iteration.found, self.support.list());
+                let fluid = (0..found.len()).filter(|&place| !list.is_passive(place));
+                let count = fluid.clone().count();
+                fluid.map(|place| found[place].1).sum::<f64>() / count as f64
+            }
+        };
+        self.iteration = iteration;
+    }
+
+    /// Fills the displacements and `chi` of the fluid, and returns the largest `chi`.
+    /// `openings` by number tell where surfaces are, if there are any.
+    fn displacements(
+        &self,
+        reach: f64,
+        openings: &[Opening<D>],
+        found: &mut Vec<(Vector<D>, f64)>,
+    ) -> f64 {
+        found.resize(self.sides.len(), (Vector::zeros(), 0.0));
+        let (support, list) = (&self.support, self.support.list());
+        let h = support.smoothing_length();
+        let scale = h.powi(D as i32);
+        parallel::for_each_chunk(found, |first, rows| {
+            let mut block = NeighborBlock::default();
+            for (offset, row) in rows.iter_mut().enumerate() {
+                let place = first + offset;
+                let (mut sum, mut direction) = (support.centre(), Vector::zeros());
+                let opening = openings.get(list.numbers()[place] as usize);
+                let within = opening.map(|opening| opening.reach).filter(|&reach| reach < h);
+                let mut rest = match list.is_passive(place) {
+                    true => continue,
+                    false => support.all(place),
+                };
+                while support.fill(&mut rest, Needs::Value, &mut block) {
+                    for neighbor in block.iter() {
+                        sum += neighbor.value;
+                        let distance = neighbor.square.sqrt();
+                        let value = match within {
+                            Some(h) if h > 0.0 => support.kernel().value(D, distance, h),
+                            Some(_) => 0.0,
+                            None => neighbor.value,
+                        };
+                        if distance > 0.0 {
+                            let weight = self.sides[neighbor.place].volume * value / distance;
+                            direction += neighbor.separation * weight;
+                        }
+                    }
+                }
+                if let (Some(opening), Some(_)) = (opening, within) {
+                    direction = opening.along_surface(direction);
+                }
+                *row = (direction * reach, scale * sum);
+            }
+        });
+        parallel::maximum(found.len(), 0.0, |place| found[place].1)
+    }
+}

@@ -1,0 +1,132 @@
+//! Walls of ghost particles, CTVF (46) to (52).
+
+use piola_formulas::fluid;
+
+use super::{Slip, TransportVelocity};
+use crate::operators::{Needs, NeighborBlock};
+use crate::{Vector, parallel};
+
+/// A particle of a wall.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WallParticle<const D: usize> {
+    pub number: u32,
+    /// Unit normal towards the fluid, or zero.
+    pub normal: Vector<D>,
+    pub slip: Slip,
+}
+
+/// What a wall particle takes from the fluid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WallValues<const D: usize> {
+    /// Velocity with which the wall moves in m/s.
+    motion: Vector<D>,
+    /// Velocity with which its surface slides besides, in m/s.
+    sliding: Vector<D>,
+    /// Acceleration of the wall in m/s^2.
+    acceleration: Vector<D>,
+    velocity: Vector<D>,
+    deviation: Vector<D>,
+    shear: Vector<D>,
+    pressure: f64,
+}
+
+impl<const D: usize> Default for WallValues<D> {
+    fn default() -> Self {
+        let zero = Vector::zeros();
+        Self {
+            motion: zero,
+            sliding: zero,
+            acceleration: zero,
+            velocity: zero,
+            deviation: zero,
+            shear: zero,
+            pressure: 0.0,
+        }
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Completes the sides of wall particles from those of the fluid around them.
+    pub(super) fn wall_pass(&mut self, time: f64) {
+        if self.walls.is_empty() {
+            return;
+        }
+        let mut values = std::mem::take(&mut self.wall_values);
+        self.move_surfaces(time, &mut values);
+        parallel::for_each_chunk(&mut values, |first, rows| {
+            let mut block = NeighborBlock::default();
+            for (offset, row) in rows.iter_mut().enumerate() {
+                self.extrapolate(&self.walls[first + offset], time, row, &mut block);
+            }
+        });
+        for (wall, values) in self.walls.iter().zip(&values) {
+            let place = self.support.list().places()[wall.number as usize] as usize;
+            let side = &mut self.sides[place];
+            side.velocity = values.velocity;
+            side.deviation = values.deviation;
+            let pressure = values.pressure;
+            side.set(fluid::density(pressure, self.fluid.density, self.fluid.wave_speed), pressure);
+            self.shear[place] = values.shear;
+        }
+        self.wall_values = values;
+    }
+
+    /// Sets velocity and acceleration of the walls themselves.
+    fn move_surfaces(&self, time: f64, values: &mut [WallValues<D>]) {
+        values.fill(WallValues::default());
+        for entry in self.motion.iter() {
+            let wall = &mut values[entry.particle];
+            wall.motion[entry.component] = entry.value.value(entry.place, time);
+            wall.acceleration[entry.component] = entry.value.rate(entry.place, time);
+        }
+        for entry in self.sliding.iter() {
+            let wall = &mut values[entry.particle];
+            wall.sliding[entry.component] = entry.value.value(entry.place, time);
+        }
+    }
+
+    /// Interpolates the fluid at a wall particle, CTVF (46), (47), (52), and reflects its velocities,
+    /// CTVF (48) to (51). Without fluid around it moves with the wall and bears no pressure.
+    fn extrapolate(
+        &self,
+        wall: &WallParticle<D>,
+        time: f64,
+        values: &mut WallValues<D>,
+        block: &mut NeighborBlock<D>,
+    ) {
+        let place = self.support.list().places()[wall.number as usize] as usize;
+        let (mut weight, mut pressure) = (0.0, 0.0);
+        let zero = Vector::zeros();
+        let (mut velocity, mut deviation, mut arm) = (zero, zero, zero);
+        let mut rest = self.support.active(place);
+        while self.support.fill(&mut rest, Needs::Value, block) {
+            for neighbor in block.iter() {
+                let side = &self.sides[neighbor.place];
+                weight += neighbor.value;
+                velocity += side.velocity * neighbor.value;
+                deviation += side.deviation * neighbor.value;
+                pressure += side.pressure * neighbor.value;
+                arm += neighbor.separation * (side.density * neighbor.value);
+            }
+        }
+        let surface = values.motion + values.sliding;
+        if !(weight > 0.0) {
+            values.velocity = values.motion;
+            values.shear = surface;
+            return;
+        }
+        let (velocity, deviation) = (velocity / weight, deviation / weight);
+        let gravity = self.body_force_at(wall.number as usize, place, time);
+        values.pressure = (pressure + (gravity - values.acceleration).dot(&arm)) / weight;
+        let normal = &wall.normal;
+        // A surface that slides goes nowhere: at corners, where the normal is between two faces,
+        // it must not push.
+        values.velocity = velocity + normal * (2.0 * (values.motion - velocity).dot(normal));
+        // The reflected uhat less the reflected u, CTVF (49) less (48).
+        values.deviation = deviation - normal * (2.0 * deviation.dot(normal));
+        values.shear = match wall.slip {
+            Slip::No => surface * 2.0 - velocity,
+            Slip::Free => values.velocity,
+        };
+    }
+}

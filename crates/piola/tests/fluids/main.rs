@@ -1,0 +1,7 @@
+//! The transport-velocity formulation.
+
+mod operators;
+mod runs;
+mod support;
+mod surfaces;
+mod taylor_green;

@@ -1,0 +1,76 @@
+//! Fluids that several tests build.
+
+use piola::Vector;
+use piola::geometry::Particles;
+use piola::neighbors::Domain;
+use piola::schemes::Initial;
+use piola::schemes::transport_velocity::{
+    Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, TransportVelocity,
+    TransportVelocityInput,
+};
+use piola_formulas::kernels::Kernel;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// The settings of CTVF section 4.1.
+pub const SETTINGS: Settings = Settings {
+    density: DensityRule::Summation,
+    pressure: PressureRule::Edac { alpha: 0.5 },
+    corrections: Corrections::FULL,
+    shifting: Shifting::Sun { factor: 1.0 },
+    artificial_viscosity: 0.0,
+    free_surface: false,
+    density_drift: 0.02,
+};
+
+/// `side^D` particles in the unit box, each coordinate displaced by up to `jitter` spacings.
+pub fn unit_box<const D: usize>(side: usize, jitter: f64, seed: u64) -> Particles<D> {
+    let spacing = 1.0 / side as f64;
+    let mut source = Pcg64::seed_from_u64(seed);
+    let mut particles = Particles::default();
+    for number in 0..side.pow(D as u32) {
+        particles.position.push(Vector::from_fn(|axis, _| {
+            let index = number / side.pow(axis as u32) % side;
+            let shift = if jitter > 0.0 { source.random_range(-jitter..jitter) } else { 0.0 };
+            (index as f64 + 0.5 + shift) * spacing
+        }));
+        particles.volume.push(spacing.powi(D as i32));
+        particles.weight.push(spacing.powi(D as i32));
+        particles.spacing.push(spacing);
+        particles.body.push(0);
+        particles.id.push(number as u32);
+    }
+    particles
+}
+
+/// The box that is periodic between 0 and 1 along each axis.
+pub fn periodic<const D: usize>() -> Domain<D> {
+    Domain::new([Some([0.0, 1.0]); D]).expect("the bounds are in order")
+}
+
+/// A fluid in the periodic unit box, `h` in spacings.
+pub fn fluid_in_box<const D: usize>(
+    particles: Particles<D>,
+    settings: Settings,
+    fluid: Fluid,
+    h: f64,
+    start: impl Fn(&Vector<D>) -> (Vector<D>, f64),
+) -> TransportVelocity<D> {
+    let values = particles.position.iter().map(start);
+    let (velocity, pressure) = values.unzip();
+    TransportVelocity::new(TransportVelocityInput {
+        smoothing_length: h * particles.spacing[0],
+        normals: vec![Vector::zeros(); particles.len()],
+        particles,
+        domain: periodic(),
+        kernel: Kernel::QuinticSpline,
+        settings,
+        fluid,
+        initial: Initial { velocity, pressure },
+        walls: Vec::new(),
+        motion: Vec::new(),
+        sliding: Vec::new(),
+        body_forces: Vec::new(),
+    })
+    .expect("the fluid can be built")
+}
