@@ -4,7 +4,7 @@
 
 use crate::Scalar;
 
-/// Pressure in Pa of the isothermal law `K (rho / rho0 - 1)`, `K = rho0 c^2`, CTVF (8).
+/// Pressure in Pa of the isothermal law `K (rho / rho0 - 1)`, `K = rho0 c^2`, CTVF (8), theory (25).
 #[inline]
 pub fn pressure<T: Scalar>(density: T, reference_density: f64, wave_speed: f64) -> T {
     (density - reference_density) * (wave_speed * wave_speed)
@@ -35,14 +35,14 @@ pub fn exchange_scale<T: Scalar>(densities: T, square: T, softening: f64) -> T {
 }
 
 /// Diffusion between two particles: `4 nu (r_ab . grad W_ab) scale` with [`exchange_scale`],
-/// CTVF (26), (27). Times `m_b` and the difference of a field between a and b it is the rate at
+/// CTVF (26), (27), theory (23). Times `m_b` and the difference of a field between a and b it is the rate at
 /// a of `nu lap`. Negative: what is larger at a than around it falls.
 #[inline]
 pub fn diffusion<T: Scalar>(diffusivity: f64, square: T, slope: T, scale: T) -> T {
     square * slope * scale * (4.0 * diffusivity)
 }
 
-/// Artificial viscosity `Pi_ab` of particles that approach each other, CTVF (28) with (29), for
+/// Artificial viscosity `Pi_ab` of particles that approach each other, CTVF (28) with (29), theory (24), for
 /// `approach = u_ab . r_ab` and [`exchange_scale`]; zero for those that part.
 ///
 /// It adds to the pressure: `- sum_b m_b Pi_ab grad W_ab`.

@@ -30,7 +30,7 @@ impl ChunkFigures {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// The health of `state` and the bounds on the step, CTVF (61) corrected:
+    /// The health of `state` and the bounds on the step, CTVF (61) corrected, theory (34):
     ///
     /// - `acoustic`: `h / (c + |u|)` of the largest speed;
     /// - `viscous`: `h^2 / nu`;

@@ -2,7 +2,7 @@
 //!
 //! A kick of duration s with the acceleration `a = sum_k a_k` changes the kinetic energy by
 //! `sum_k s (P_k + s/2 Q_k)` with `P_k = sum m a_k . u` and `Q_k = sum m a_k . a`, and the momentum
-//! by `s sum m a_k`: exactly, and mechanism by mechanism. These sums stand at the end of the state.
+//! by `s sum m a_k`: exactly, and mechanism by mechanism, theory (35). These sums stand at the end of the state.
 
 use std::ops::Range;
 

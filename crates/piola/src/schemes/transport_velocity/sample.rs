@@ -104,6 +104,7 @@ impl<const D: usize> TransportVelocity<D> {
         count
     }
 
+    /// The sum of masses, theory (26).
     fn summed_density(&self, place: usize) -> f64 {
         let mut sum = self.sides[place].mass * self.support.centre();
         let mut block = NeighborBlock::default();

@@ -1,6 +1,6 @@
 //! The choices of the transport-velocity formulation.
 
-/// How the density is found.
+/// How the density is found, theory (20) and (26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DensityRule {
     /// By integration of the continuity equation, CTVF (25) corrected.
@@ -9,7 +9,7 @@ pub enum DensityRule {
     Summation,
 }
 
-/// How the pressure is found.
+/// How the pressure is found, theory (21) and (25).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PressureRule {
     /// By integration of CTVF (26) corrected, with the diffusivity of (24).

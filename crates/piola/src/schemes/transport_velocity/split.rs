@@ -1,4 +1,4 @@
-//! The formulation as kick-drift-kick integrators see it.
+//! The formulation as kick-drift-kick integrators see it, theory (33).
 
 use super::{DensityRule, PressureRule, Row, Shifting, TransportVelocity};
 use crate::boundaries::BodyForce;

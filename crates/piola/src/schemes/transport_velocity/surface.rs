@@ -30,7 +30,7 @@ impl<const D: usize> Default for Opening<D> {
 }
 
 impl<const D: usize> Opening<D> {
-    /// Takes from a displacement what leads into or out of a surface, CTVF (44), (45).
+    /// Takes from a displacement what leads into or out of a surface, CTVF (44), (45), theory (30).
     pub fn along_surface(&self, displacement: Vector<D>) -> Vector<D> {
         if self.is_surface {
             return Vector::zeros();
@@ -40,7 +40,7 @@ impl<const D: usize> Opening<D> {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// Fills the sums of CTVF (42), where no pass over forces has done so.
+    /// Fills the sums of CTVF (42), theory (29), where no pass over forces has done so.
     pub(super) fn opening_pass(&mut self) {
         let mut forces = std::mem::take(&mut self.forces);
         let (support, list, sides) = (&self.support, self.support.list(), &self.sides);

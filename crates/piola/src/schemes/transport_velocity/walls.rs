@@ -1,4 +1,4 @@
-//! Walls of ghost particles, CTVF (46) to (52).
+//! Walls of ghost particles, CTVF (46) to (52), theory (31), (32).
 
 use piola_formulas::fluid;
 

@@ -28,7 +28,7 @@ impl<const D: usize> Default for Iteration<D> {
 impl<const D: usize> TransportVelocity<D> {
     /// Puts the deviations into `state` that move particles in a step of `step` s by the iterated
     /// displacement `sum_m max |u| dt sum_b V_b r_ab / |r_ab| W_ab`, CTVF (37) to (41), beyond
-    /// their own velocity.
+    /// their own velocity, theory (28).
     ///
     /// The whole displacement is made in the step: (41) has the acceleration that does so by half
     /// a kick. Fields are not corrected for it, as the transport terms are there for that.
