@@ -4,6 +4,7 @@
 //! ([`Scalar`]), so that dual numbers give exact derivatives through the same body.
 //! There are no loops over particles, no threads and no files in this crate.
 
+pub mod hyperelastic;
 pub mod kernels;
 mod power;
 pub mod riemann;
