@@ -5,13 +5,19 @@
 //! are gathered: particle a sums over its own neighbours in a fixed order.
 
 mod areas;
+mod directed;
+mod dual_gradient;
 mod error;
 mod gradient;
 mod interpolation;
 mod least_squares;
+mod patch;
 mod support;
 
 pub use areas::{Block, LANES, Lanes, PairAreas};
+pub use directed::{DirectedSupport, nearest_radii};
+pub use dual_gradient::DualGradient;
+pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;

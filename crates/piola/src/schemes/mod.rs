@@ -1,5 +1,6 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
+pub mod dual_support;
 pub mod momentum;
 mod scheme;
 pub mod upwind;
