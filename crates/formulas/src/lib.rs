@@ -5,6 +5,7 @@
 //! There are no loops over particles, no threads and no files in this crate.
 
 pub mod fluid;
+pub mod hyperelastic;
 pub mod kernels;
 mod power;
 pub mod riemann;

@@ -68,6 +68,20 @@ pub enum MaterialError {
         /// Whether 0.5 itself would have been possible.
         incompressible_allowed: bool,
     },
+    /// Lame's first constant belongs to a body without resistance to a change of volume.
+    #[error("`lame_lambda` must be above -2/3 of the shear modulus, which is {least}, got {value}")]
+    LameLambda {
+        /// What was given, Pa.
+        value: f64,
+        /// The bound that it has to exceed, Pa.
+        least: f64,
+    },
+    /// Ogden's law has one to three terms.
+    #[error("`ogden` takes one to three pairs of modulus and exponent, got {count}")]
+    OgdenTerms {
+        /// How many there are.
+        count: usize,
+    },
 }
 
 impl VolumetricLaw {

@@ -17,6 +17,31 @@ pub enum StressState {
     ThreeDimensional,
 }
 
+impl StressState {
+    /// All states.
+    pub const ALL: [Self; 5] = [
+        Self::UniaxialStress,
+        Self::UniaxialStrain,
+        Self::PlaneStress,
+        Self::PlaneStrain,
+        Self::ThreeDimensional,
+    ];
+
+    /// How many dimensions are resolved.
+    pub fn dimension(self) -> usize {
+        match self {
+            Self::UniaxialStress | Self::UniaxialStrain => 1,
+            Self::PlaneStress | Self::PlaneStrain => 2,
+            Self::ThreeDimensional => 3,
+        }
+    }
+
+    /// Whether there are directions that are not resolved, in which the material is free.
+    pub fn is_free_across(self) -> bool {
+        matches!(self, Self::UniaxialStress | Self::PlaneStress)
+    }
+}
+
 /// Modulus `kappa` of the linear law, Pa: the equal normal stress in all resolved directions over
 /// the change of length, area or volume that it goes with.
 ///

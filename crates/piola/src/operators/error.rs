@@ -39,4 +39,31 @@ pub enum OperatorError {
         /// Where they lie, in m.
         position: Vec<f64>,
     },
+    /// Boundary areas that do not enclose the volumes of the particles.
+    #[error(
+        "the boundary areas of body {body} do not enclose its volume: they sum to {sum:?} m^(D-1) \
+         instead of zero, and their moment misses the volume by a factor of {misfit:.1e}; correct \
+         areas or volumes, or use plain gradients"
+    )]
+    Areas {
+        /// Number of the body.
+        body: u32,
+        /// Sum of its area vectors in m^(D-1).
+        sum: Vec<f64>,
+        /// Largest entry of `sum_b N_b (x) X_b / V - I`.
+        misfit: f64,
+    },
+    /// No patch-consistent gradients were found.
+    #[error(
+        "patch-consistent gradients were not found in {steps} steps: areas are {left:.1e} m^(D-1) \
+         off, {tolerance:.1e} are allowed; enlarge the supports, or use plain gradients"
+    )]
+    NoConvergence {
+        /// Steps taken.
+        steps: usize,
+        /// Largest misfit of an area left, in m^(D-1).
+        left: f64,
+        /// What is allowed, in m^(D-1).
+        tolerance: f64,
+    },
 }

@@ -6,14 +6,20 @@
 //! particles that move: it shows the neighbours of the moment to the sums of a scheme.
 
 mod areas;
+mod directed;
+mod dual_gradient;
 mod error;
 mod gradient;
 mod interpolation;
 mod least_squares;
 mod moving;
+mod patch;
 mod support;
 
 pub use areas::{Block, LANES, Lanes, PairAreas};
+pub use directed::{DirectedSupport, nearest_radii};
+pub use dual_gradient::DualGradient;
+pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;

@@ -1,5 +1,6 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
+pub mod dual_support;
 mod initial;
 pub mod momentum;
 mod scheme;

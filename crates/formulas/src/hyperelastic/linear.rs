@@ -1,0 +1,66 @@
+//! Stress linear in a strain.
+
+use nalgebra::Matrix3;
+
+use super::kinematics::{Kinematics, scaled, square, trace};
+use super::{HyperelasticResponse, LameConstants};
+use crate::Scalar;
+
+/// Hooke's law, `psi = lambda/2 (tr eps)^2 + mu eps : eps` with the small strain
+/// `eps = (F + F^T)/2 - I`: theory (37), Dual-support (44), Elastodynamics (3.54).
+///
+/// Not objective: a rotation strains it. Its tangent is that of Dual-support (45) with the
+/// misprinted rows 4 and 6 set right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearElastic(pub LameConstants);
+
+/// St. Venant and Kirchhoff's law, `psi = lambda/2 (tr E)^2 + mu E : E` with the strain of Green
+/// and Lagrange: theory (38), Elastodynamics (3.50).
+///
+/// Objective, but it softens in compression: a bar loses its stiffness at a stretch of
+/// `1/sqrt(3)` and its resistance to being turned inside out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SaintVenantKirchhoff(pub LameConstants);
+
+#[inline]
+fn quadratic<T: Scalar>(constants: &LameConstants, strain: &Matrix3<T>) -> T {
+    let trace = trace(strain);
+    trace * trace * (0.5 * constants.lambda) + square(strain) * constants.mu
+}
+
+/// `lambda (tr strain) I + 2 mu strain`.
+#[inline]
+fn derivative<T: Scalar>(constants: &LameConstants, strain: &Matrix3<T>) -> Matrix3<T> {
+    let pressure = scaled(&Matrix3::identity(), trace(strain) * constants.lambda);
+    pressure + strain.map(|entry| entry * (2.0 * constants.mu))
+}
+
+#[inline]
+fn small_strain<T: Scalar>(a: &Matrix3<T>) -> Matrix3<T> {
+    (a + a.transpose()).map(|entry| entry * 0.5)
+}
+
+impl HyperelasticResponse for LinearElastic {
+    #[inline]
+    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+        quadratic(&self.0, &small_strain(a))
+    }
+
+    #[inline]
+    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+        derivative(&self.0, &small_strain(a))
+    }
+}
+
+impl HyperelasticResponse for SaintVenantKirchhoff {
+    #[inline]
+    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+        quadratic(&self.0, &Kinematics::new(a).strain)
+    }
+
+    #[inline]
+    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+        let Kinematics { gradient, strain, .. } = Kinematics::new(a);
+        gradient * derivative(&self.0, &strain)
+    }
+}

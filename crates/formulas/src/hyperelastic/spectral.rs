@@ -1,0 +1,63 @@
+//! Powers of the right Cauchy-Green tensor that stay differentiable where stretches coincide.
+
+use nalgebra::{Matrix3, SymmetricEigen};
+
+use crate::Scalar;
+
+/// `C = I + 2 E` in the principal frame of its real part.
+///
+/// In that frame the real part is diagonal, and off-diagonal entries of dual numbers are
+/// infinitesimal. Perturbation theory to second order is then exact for numbers that carry first
+/// and second derivatives, and its divided differences exist for equal eigenvalues too.
+pub(super) struct Spectral<T> {
+    rotation: Matrix3<T>,
+    /// `2 E` in the rotated frame.
+    excess: Matrix3<T>,
+}
+
+impl<T: Scalar> Spectral<T> {
+    pub fn new(strain: &Matrix3<T>) -> Self {
+        let real = strain.map(|entry| entry.re());
+        // A strain that is not finite has no frame; any will carry the NaN on.
+        let rotation = SymmetricEigen::try_new(real, f64::EPSILON, 1000)
+            .map_or_else(Matrix3::identity, |eigen| eigen.eigenvectors)
+            .map(T::from);
+        let excess = rotation.tr_mul(&(strain * rotation)).map(|entry| entry * 2.0);
+        Self { rotation, excess }
+    }
+
+    /// `ln` of the three eigenvalues of C, to second order but for the coupling of frames.
+    fn logarithm(&self, k: usize) -> T {
+        self.excess[(k, k)].ln_1p()
+    }
+
+    /// `tr(C^exponent) - 3`, exact with its first and second derivatives.
+    pub fn trace_power_less_three(&self, exponent: f64) -> T {
+        let diagonal = |k: usize| (self.logarithm(k) * exponent).exp_m1();
+        let mut sum = diagonal(0) + diagonal(1) + diagonal(2);
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            let slope = exponent * self.divided_difference(i, j, exponent - 1.0);
+            sum += self.excess[(i, j)] * self.excess[(i, j)] * slope;
+        }
+        sum
+    }
+
+    /// `C^exponent`, exact with its first derivatives.
+    pub fn power(&self, exponent: f64) -> Matrix3<T> {
+        let rotated = Matrix3::from_fn(|i, j| match i == j {
+            true => (self.logarithm(i) * exponent).exp(),
+            false => self.excess[(i, j)] * self.divided_difference(i, j, exponent),
+        });
+        self.rotation * rotated * self.rotation.transpose()
+    }
+
+    /// `(a^q - b^q)/(a - b)` of two eigenvalues, `q a^(q-1)` where they are equal.
+    fn divided_difference(&self, i: usize, j: usize, q: f64) -> f64 {
+        let (a, b) = (1.0 + self.excess[(i, i)].re(), 1.0 + self.excess[(j, j)].re());
+        let relative = (self.excess[(i, i)].re() - self.excess[(j, j)].re()) / b;
+        if relative == 0.0 {
+            return q * a.powf(q - 1.0);
+        }
+        b.powf(q - 1.0) * (q * relative.ln_1p()).exp_m1() / relative
+    }
+}

@@ -1,0 +1,118 @@
+//! Supports that differ from particle to particle, and their duals.
+
+use piola_formulas::kernels::Kernel;
+
+use crate::Vector;
+use crate::geometry::Particles;
+use crate::neighbors::{Domain, NeighborError, NeighborList, search};
+
+/// Which particles lie in whose support, Dual-support (5), and in whose support a particle lies,
+/// its dual support (6) there.
+///
+/// Unlike [`Support`](super::Support) the list is not symmetric: b in the support of a need not
+/// have a in its own. What a takes from b acts on b as a reaction, which the dual support gathers.
+#[derive(Clone, Debug)]
+pub struct DirectedSupport<const D: usize> {
+    /// The smoothing kernel.
+    pub kernel: Kernel,
+    /// Support radius of each particle in m.
+    pub radius: Vec<f64>,
+    /// Support of each particle, without itself.
+    pub list: NeighborList,
+    /// Dual support of each particle.
+    pub dual: NeighborList,
+    /// For each entry of the dual list, b in the dual row of a, the entry of a in the row of b.
+    pub dual_entries: Vec<u32>,
+    /// The box and its periodic axes.
+    pub domain: Domain<D>,
+}
+
+impl<const D: usize> DirectedSupport<D> {
+    /// Supports of the given radii in m. Particles of different bodies do not see each other.
+    ///
+    /// # Errors
+    /// When the search refuses positions or radii.
+    pub fn new(
+        particles: &Particles<D>,
+        kernel: Kernel,
+        radius: Vec<f64>,
+        domain: Domain<D>,
+    ) -> Result<Self, NeighborError> {
+        let mut list = search(&particles.position, &radius, &domain)?;
+        let body = &particles.body;
+        if body.windows(2).any(|pair| pair[0] != pair[1]) {
+            list = list.retain(|a, b| body[a as usize] == body[b as usize]);
+        }
+        let dual = list.dual();
+        let mut next = dual.offsets().to_vec();
+        let mut dual_entries = vec![0; dual.pairs()];
+        // The dual list is made in the same order, so that its rows are met from their starts.
+        for (entry, &b) in list.indices().iter().enumerate() {
+            dual_entries[next[b as usize]] = entry as u32;
+            next[b as usize] += 1;
+        }
+        Ok(Self { kernel, radius, list, dual, dual_entries, domain })
+    }
+
+    /// Reference separation `X_b - X_a`, the nearest image in a periodic box.
+    #[inline]
+    pub fn separation(&self, positions: &[Vector<D>], a: usize, b: u32) -> Vector<D> {
+        self.domain.separation(&positions[a], &positions[b as usize])
+    }
+
+    /// Smoothing length of a particle in m.
+    pub fn smoothing_length(&self, a: usize) -> f64 {
+        self.radius[a] / self.kernel.support_over_h()
+    }
+
+    /// Bytes of both lists.
+    pub fn memory(&self) -> usize {
+        let lists = [&self.list, &self.dual]
+            .map(|list| size_of_val(list.offsets()) + size_of_val(list.indices()));
+        lists.iter().sum::<usize>()
+            + size_of_val(self.dual_entries.as_slice())
+            + size_of_val(self.radius.as_slice())
+    }
+}
+
+/// Distance in m from each particle to the `count`-th nearest other one of its body, which as a
+/// support radius gives each particle the same number of neighbours. The last of them lies on the
+/// edge of the support, where kernels are zero. A particle of a body of fewer takes the farthest.
+///
+/// # Errors
+/// When the search refuses the positions.
+pub fn nearest_radii<const D: usize>(
+    particles: &Particles<D>,
+    count: usize,
+    domain: &Domain<D>,
+) -> Result<Vec<f64>, NeighborError> {
+    let mut wanted = vec![count; particles.body.iter().max().map_or(0, |&b| b as usize + 1)];
+    let mut sizes = vec![0_usize; wanted.len()];
+    particles.body.iter().for_each(|&body| sizes[body as usize] += 1);
+    wanted.iter_mut().zip(sizes).for_each(|(wanted, size)| *wanted = (*wanted).min(size - 1));
+    let mut radius: Vec<f64> = particles.spacing.iter().map(|spacing| 2.0 * spacing).collect();
+    let mut found = vec![0.0; particles.len()];
+    let mut pending: Vec<bool> = vec![true; particles.len()];
+    while pending.contains(&true) {
+        let list = search(&particles.position, &radius, domain)?;
+        for a in
+            (0..particles.len()).filter(|&a| std::mem::take(&mut pending[a])).collect::<Vec<_>>()
+        {
+            let own =
+                list.row(a).iter().filter(|&&b| particles.body[b as usize] == particles.body[a]);
+            let separation = |&b: &u32| {
+                domain.separation(&particles.position[a], &particles.position[b as usize]).norm()
+            };
+            let mut distances: Vec<f64> = own.map(separation).collect();
+            let wanted = wanted[particles.body[a] as usize];
+            if distances.len() >= wanted {
+                distances.sort_by(f64::total_cmp);
+                found[a] = wanted.checked_sub(1).map_or(radius[a], |last| distances[last]);
+            } else {
+                pending[a] = true;
+                radius[a] *= 1.5;
+            }
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,102 @@
+//! What acts on the body from outside, with the work and the momentum that enter with it.
+
+use std::sync::Arc;
+
+use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, IMPULSES, MECHANISMS, Row, TRACTION};
+use crate::boundaries::{SpaceTime, padded};
+use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
+use crate::{Vector, parallel};
+
+/// A traction at one particle.
+pub(super) struct Loaded<const D: usize> {
+    pub particle: usize,
+    /// Reference area in m^(D-1).
+    pub area: f64,
+    pub place: [f64; 3],
+    pub value: [Arc<dyn SpaceTime>; D],
+}
+
+/// Power, force and moment of the body forces.
+const BODY_SUMS: usize = 1 + MOST_COMPONENTS;
+
+impl<const D: usize> DualSupport<D> {
+    /// Numbers at the end of a state: the work of each mechanism, then the impulse of each way
+    /// in which momentum enters, component by component.
+    pub(super) fn tail_length() -> usize {
+        MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len()
+    }
+
+    /// Current position of particle a in m, of its row of a state.
+    #[inline]
+    pub(super) fn position(&self, a: usize, row: &[f64]) -> Vector<D> {
+        self.discrete.particles.position[a] + Row::<D>::displacement(row)
+    }
+
+    /// Body forces at particle a in m/s^2.
+    #[inline]
+    fn body_acceleration(&self, a: usize, time: f64) -> Vector<D> {
+        let particles = &self.discrete.particles;
+        let place = padded(&particles.position[a]);
+        let acts = |body: Option<u32>| body.is_none_or(|body| body == particles.body[a]);
+        let mut sum = Vector::zeros();
+        for force in self.body_forces.iter().filter(|force| acts(force.body)) {
+            for (component, value) in force.acceleration.iter().enumerate() {
+                sum[component] += value.value(place, time);
+            }
+        }
+        sum
+    }
+
+    /// Writes the rates of `state`, of which the internal forces are known.
+    pub(super) fn external_pass(&self, time: f64, state: &[f64], rate: &mut [f64]) {
+        let length = Row::<D>::LENGTH;
+        let (rows, tail) = rate.split_at_mut(self.mass.len() * length);
+        for (a, row) in rows.chunks_exact_mut(length).enumerate() {
+            let acceleration = self.force[a] / self.mass[a] + self.body_acceleration(a, time);
+            row[..D].copy_from_slice(acceleration.as_slice());
+            row[D..].copy_from_slice(&state[a * length..][..D]);
+        }
+        let components = momentum_components(D).len();
+        let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
+        powers.fill(0.0);
+        impulses.fill(0.0);
+        let of = |a: usize| &state[a * length..][..length];
+        let body = parallel::sums::<BODY_SUMS>(self.mass.len(), |a, sums| {
+            let force = self.body_acceleration(a, time) * self.mass[a];
+            sums[0] += force.dot(&Row::<D>::velocity(of(a)));
+            add_moments(&self.position(a, of(a)), &force, &mut sums[1..]);
+        });
+        powers[BODY_FORCE] = body[0];
+        impulses[..components].copy_from_slice(&body[1..][..components]);
+        let (traction, boundary) = impulses[components..].split_at_mut(components);
+        for load in &self.loaded {
+            let (a, value) = (load.particle, &load.value);
+            let force = Vector::<D>::from_fn(|i, _| load.area * value[i].value(load.place, time));
+            for (component, force) in force.iter().enumerate() {
+                rows[a * length + component] += force / self.mass[a];
+            }
+            powers[TRACTION] += force.dot(&Row::<D>::velocity(of(a)));
+            add_moments(&self.position(a, of(a)), &force, traction);
+        }
+        for entry in self.prescribed.iter() {
+            let (a, component) = (entry.particle, entry.component);
+            let acceleration = &mut rows[a * length + component];
+            let wanted = entry.value.rate(entry.place, time);
+            let reaction = self.mass[a] * (wanted - *acceleration);
+            *acceleration = wanted;
+            let mut force = Vector::<D>::zeros();
+            force[component] = reaction;
+            powers[BOUNDARY_MOTION] += force.dot(&Row::<D>::velocity(of(a)));
+            add_moments(&self.position(a, of(a)), &force, boundary);
+        }
+    }
+
+    /// Momentum of all particles together.
+    pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        parallel::sums(self.mass.len(), |a, sum| {
+            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            let momentum = Row::<D>::velocity(row) * self.mass[a];
+            add_moments(&self.position(a, row), &momentum, sum);
+        })
+    }
+}

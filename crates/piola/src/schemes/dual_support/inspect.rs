@@ -1,0 +1,141 @@
+//! One look over a state: is it sound, and how large may the next step be.
+
+use piola_formulas::hyperelastic::Reduced;
+use piola_formulas::tensor;
+
+use super::{Discrete, DualSupport, Row};
+use crate::parallel::CHUNK;
+use crate::schemes::{Health, StepLimit};
+use crate::{Tensor, Vector, parallel};
+
+/// Steps of the power method: enough for a few percent of the largest frequency.
+const POWER_STEPS: usize = 60;
+
+/// By how much the power method may have missed the largest frequency.
+const SAFETY: f64 = 1.05;
+
+/// Figures of some particles.
+#[derive(Clone, Copy)]
+struct Figures {
+    health: Health,
+    /// Largest ratio of the wave speed to that at rest.
+    stiffening: f64,
+}
+
+impl<const D: usize> DualSupport<D> {
+    /// The health of `state` and the bound on the step.
+    ///
+    /// `eigenvalue`: `2/omega` with the largest frequency of the whole discrete body at rest,
+    /// hourglass term included, over the largest stiffening of a particle since, theory (50).
+    pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        self.load(state);
+        let mut worst = Figures { health: Health::NEUTRAL, stiffening: 0.0 };
+        for first in (0..self.mass.len()).step_by(CHUNK) {
+            for a in first..(first + CHUNK).min(self.mass.len()) {
+                let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+                if row.iter().any(|value| !value.is_finite()) {
+                    worst.health.first_not_finite.get_or_insert(a);
+                    continue;
+                }
+                let figures = self.look_at(a, row);
+                worst.health = worst.health.worse(figures.health);
+                worst.stiffening = worst.stiffening.max(figures.stiffening);
+            }
+        }
+        limits.clear();
+        limits.push(StepLimit {
+            name: "eigenvalue",
+            step: self.stable_step / worst.stiffening,
+            particle: self.stiffest,
+            scaled: true,
+        });
+        worst.health
+    }
+
+    fn look_at(&self, a: usize, row: &[f64]) -> Figures {
+        let gradient = self.discrete.displacement_gradient(&self.displacement, a);
+        let material = self.discrete.material(a);
+        let law = &material.law;
+        let at_rest = self.modulus_at_rest[self.discrete.particles.body[a] as usize];
+        let modulus = match law.law().is_objective() {
+            true => largest_wave_modulus(law, &gradient),
+            false => at_rest,
+        };
+        Figures {
+            health: Health {
+                largest_speed: Row::<D>::velocity(row).norm(),
+                largest_speed_particle: a,
+                largest_wave_speed: (modulus.max(0.0) / material.density).sqrt(),
+                smallest_ratio: tensor::determinant(&(gradient + Tensor::identity())),
+                smallest_ratio_particle: a,
+                ratio_mismatch: 0.0,
+                first_not_finite: None,
+            },
+            stiffening: (modulus / at_rest).max(0.0).sqrt(),
+        }
+    }
+}
+
+/// Largest eigenvalue of the acoustic tensors `N . dP/dF . N` in the principal directions N of the
+/// deformation, Pa.
+pub(super) fn largest_wave_modulus<const D: usize>(
+    law: &Reduced<D>,
+    displacement_gradient: &Tensor<D>,
+) -> f64 {
+    let tangent = law.tangent(displacement_gradient);
+    let strain = tensor::right_cauchy_green(&(displacement_gradient + Tensor::identity()));
+    let directions = principal_directions(&strain);
+    let modulus = |n: Vector<D>| {
+        let acoustic = Tensor::<D>::from_fn(|i, k| {
+            (0..D * D)
+                .map(|m| (m / D, m % D))
+                .map(|(j, l)| n[j] * n[l] * tangent[k][l][(i, j)])
+                .sum()
+        });
+        tensor::largest_eigenvalue(&acoustic)
+    };
+    directions.into_iter().map(modulus).fold(0.0, f64::max)
+}
+
+/// Principal directions of a symmetric tensor; the axes where they cannot be found.
+fn principal_directions<const D: usize>(tensor: &Tensor<D>) -> [Vector<D>; D] {
+    // The directions that are not resolved get an eigenvalue apart from all others.
+    let apart = 2.0 * (tensor.trace() + 1.0);
+    let mut padded = nalgebra::Matrix3::<f64>::identity() * apart;
+    padded.view_mut((0, 0), (D, D)).copy_from(tensor);
+    let Some(eigen) = nalgebra::SymmetricEigen::try_new(padded, f64::EPSILON, 1000) else {
+        return std::array::from_fn(|axis| Vector::from_fn(|i, _| f64::from(u8::from(i == axis))));
+    };
+    let mut all: Vec<Vector<D>> = Vec::with_capacity(3);
+    for column in eigen.eigenvectors.column_iter() {
+        let resolved = Vector::<D>::from_fn(|i, _| column[i]);
+        if resolved.norm() > 0.5 {
+            all.push(resolved);
+        }
+    }
+    std::array::from_fn(|axis| all.get(axis).copied().unwrap_or_else(Vector::zeros))
+}
+
+/// Largest step of central differences at rest, `2/omega`, theory (50), and the particle that moves
+/// most in the mode it belongs to: by the power method on `M^-1 K` with a fixed start.
+pub(super) fn stable_step<const D: usize>(discrete: &Discrete<D>, mass: &[f64]) -> (f64, usize) {
+    let rest = vec![Vector::<D>::zeros(); mass.len()];
+    let mut mode: Vec<Vector<D>> =
+        (0..mass.len()).map(|a| Vector::from_fn(|i, _| alternating(a * D + i))).collect();
+    let mut square = 0.0;
+    for _ in 0..POWER_STEPS {
+        let norm = parallel::sum(mass.len(), |a| mass[a] * mode[a].norm_squared()).sqrt();
+        mode.iter_mut().for_each(|mode| *mode /= norm);
+        let product = discrete.stiffness_product(&rest, &mode);
+        square = parallel::sum(mass.len(), |a| mode[a].dot(&product[a]));
+        mode = product.iter().zip(mass).map(|(force, mass)| force / *mass).collect();
+    }
+    let fastest = |best: usize, a: usize| if mode[a].norm() > mode[best].norm() { a } else { best };
+    (2.0 / (SAFETY * square.max(0.0).sqrt()), (0..mass.len()).fold(0, fastest))
+}
+
+/// A number in (-1, 1) for each index, of no regular pattern.
+fn alternating(index: usize) -> f64 {
+    let turned = (index as f64 + 1.0) * 0.618_033_988_749_894_9;
+    2.0 * turned.fract() - 1.0
+}

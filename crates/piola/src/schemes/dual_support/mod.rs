@@ -1,0 +1,84 @@
+//! The dual-support formulation of elastic solids: total Lagrangian, from one discrete energy.
+//! Paper: Dual-support.
+//!
+//! Unknowns of a particle are v and the displacement u. With the coefficients `G_ab` of
+//! [`crate::operators::DualGradient`] on supports of any size, theory (44) to (49):
+//!
+//! ```text
+//! E   = sum_a V_a psi(A_a) + sum_a sum_b c_ab |A_a X_ab - u_ab|^2,   A_a = sum_b u_ab (x) G_ab
+//! m_a dv_a/dt = - dE/du_a + A_a t_a + m_a g,   du_a/dt = v_a
+//! ```
+//!
+//! Forces are the exact gradient of E, whatever the supports, the weights and the correction, so
+//! that energy and momentum are kept by construction; dual supports come out of the derivative by
+//! themselves. Displacements instead of positions keep the digits of small strains.
+
+mod build;
+mod discrete;
+mod external;
+mod inspect;
+mod sample;
+mod scheme;
+mod settings;
+
+pub use build::{DualSupportError, DualSupportInput};
+pub use discrete::{Discrete, Side};
+pub use sample::FIELDS;
+pub use settings::{Gradients, Material, Settings};
+
+use crate::Vector;
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::schemes::upwind::BodyForce;
+use external::Loaded;
+
+/// The dual-support formulation bound to its particles.
+pub struct DualSupport<const D: usize> {
+    discrete: Discrete<D>,
+    /// Mass of each particle in kg (per unit of the missing dimensions).
+    mass: Vec<f64>,
+    initial_velocity: Vec<Vector<D>>,
+    /// Largest stable step of central differences at rest, s, and where it is felt most.
+    stable_step: f64,
+    stiffest: usize,
+    /// Modulus of the fastest wave at rest of each material, Pa.
+    modulus_at_rest: Vec<f64>,
+    body_forces: Vec<BodyForce<D>>,
+    loaded: Vec<Loaded<D>>,
+    prescribed: PrescribedComponents,
+    displacement: Vec<Vector<D>>,
+    sides: Vec<Side<f64, D>>,
+    force: Vec<Vector<D>>,
+}
+
+/// The energies of the formulation.
+pub const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
+
+/// The mechanisms of its ledger, in the order of the state's tail.
+pub const MECHANISMS: [&str; 3] = ["body_force", "traction", "boundary_motion"];
+
+/// The ways in which momentum enters: all mechanisms, since forces between particles cancel.
+pub const IMPULSES: [&str; 3] = MECHANISMS;
+
+const BODY_FORCE: usize = 0;
+const TRACTION: usize = 1;
+const BOUNDARY_MOTION: usize = 2;
+
+/// Where the unknowns stand in a row of the state: v, u.
+struct Row<const D: usize>;
+
+impl<const D: usize> Row<D> {
+    const DISPLACEMENT: usize = D;
+    const LENGTH: usize = 2 * D;
+
+    /// Velocity of a row.
+    #[inline]
+    fn velocity(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[..D])
+    }
+
+    /// Displacement of a row.
+    #[inline]
+    fn displacement(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[Self::DISPLACEMENT..Self::LENGTH])
+    }
+}

@@ -1,0 +1,110 @@
+//! The fields of the formulation.
+
+use nalgebra::Matrix3;
+use piola_formulas::hyperelastic::HyperelasticResponse;
+use piola_formulas::tensor;
+
+use super::{DualSupport, Row};
+use crate::Tensor;
+use crate::fields::{FieldDescription, FieldKind};
+use crate::schemes::Scheme;
+
+const fn field(
+    name: &'static str,
+    unit: &'static str,
+    kind: FieldKind,
+    meaning: &'static str,
+) -> FieldDescription {
+    FieldDescription { name, unit, kind, meaning }
+}
+
+/// The fields of the formulation.
+pub const FIELDS: [FieldDescription; 14] = [
+    field("position", "m", FieldKind::Vector, "current position x"),
+    field("displacement", "m", FieldKind::Vector, "displacement u = x - X"),
+    field("velocity", "m/s", FieldKind::Vector, "velocity v"),
+    field("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
+    field("internal_force", "N", FieldKind::Vector, "force of the strain energy on the particle"),
+    field("deformation_gradient", "1", FieldKind::Tensor, "deformation gradient F, row by row"),
+    field("determinant", "1", FieldKind::Scalar, "determinant of F in the resolved dimensions"),
+    field("stress", "Pa", FieldKind::Tensor, "first Piola-Kirchhoff stress P, row by row"),
+    field("cauchy_stress", "Pa", FieldKind::Tensor, "Cauchy stress, row by row"),
+    field("von_mises", "Pa", FieldKind::Scalar, "von Mises stress of all three dimensions"),
+    field("strain_energy", "J/m3", FieldKind::Scalar, "strain energy per reference volume"),
+    field("hourglass_energy", "J/m3", FieldKind::Scalar, "hourglass energy per reference volume"),
+    field("neighbors", "1", FieldKind::Scalar, "number of particles in the support"),
+    field("volume", "m3", FieldKind::Scalar, "reference quadrature volume V"),
+];
+
+impl<const D: usize> DualSupport<D> {
+    /// Appends a field of some particles.
+    pub(super) fn sample_field(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    ) {
+        let mut rate = Vec::new();
+        match field {
+            "acceleration" | "internal_force" => {
+                rate.resize(state.len(), 0.0);
+                self.rates(time, state, &mut rate);
+            }
+            _ => self.load(state),
+        }
+        for &particle in particles {
+            let a = particle as usize;
+            let start = a * Row::<D>::LENGTH;
+            let row = &state[start..][..Row::<D>::LENGTH];
+            match field {
+                "position" => values.extend_from_slice(self.position(a, row).as_slice()),
+                "displacement" => values.extend_from_slice(&row[Row::<D>::DISPLACEMENT..]),
+                "velocity" => values.extend_from_slice(&row[..D]),
+                "acceleration" => values.extend_from_slice(&rate[start..][..D]),
+                "internal_force" => values.extend_from_slice(self.force[a].as_slice()),
+                "neighbors" => values.push(self.discrete.support.list.row(a).len() as f64),
+                "volume" => values.push(self.discrete.particles.volume[a]),
+                _ => self.sample_material(field, a, values),
+            }
+        }
+    }
+
+    /// Appends a field that belongs to the deformation of one particle.
+    fn sample_material(&self, field: &str, a: usize, values: &mut Vec<f64>) {
+        let gradient = self.discrete.displacement_gradient(&self.displacement, a);
+        let deformation = gradient + Tensor::identity();
+        let law = &self.discrete.material(a).law;
+        let cauchy = || {
+            let all = law.in_three(&gradient);
+            let (stress, f): (Matrix3<f64>, _) =
+                (law.law().stress(&all), all + Matrix3::identity());
+            stress * f.transpose() / tensor::determinant(&f)
+        };
+        let per_volume = |part: usize| {
+            self.discrete.energy_of(&self.displacement, a)[part] / self.discrete.particles.volume[a]
+        };
+        // nalgebra stores columns, fields are written row by row.
+        let mut rows = |tensor: &Tensor<D>| {
+            values.extend((0..D * D).map(|k| tensor[(k / D, k % D)]));
+        };
+        match field {
+            "deformation_gradient" => rows(&deformation),
+            "stress" => rows(&law.stress(&gradient)),
+            "cauchy_stress" => {
+                let cauchy = cauchy();
+                rows(&Tensor::from_fn(|i, j| cauchy[(i, j)]));
+            }
+            "determinant" => values.push(tensor::determinant(&deformation)),
+            "von_mises" => {
+                let cauchy = cauchy();
+                let deviator = cauchy - Matrix3::identity() * (cauchy.trace() / 3.0);
+                values.push((1.5 * deviator.norm_squared()).sqrt());
+            }
+            "strain_energy" => values.push(per_volume(0)),
+            "hourglass_energy" => values.push(per_volume(1)),
+            _ => {}
+        }
+    }
+}

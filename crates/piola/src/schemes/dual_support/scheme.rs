@@ -1,0 +1,165 @@
+//! The dual-support formulation as integrators, clock and output see it.
+
+use super::{DualSupport, ENERGIES, FIELDS, IMPULSES, MECHANISMS, Row};
+use crate::fields::FieldDescription;
+use crate::parallel;
+use crate::schemes::{Health, Particle, Scheme, StepLimit};
+
+impl<const D: usize> Scheme for DualSupport<D> {
+    fn name(&self) -> &'static str {
+        "dual_support"
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn particle_count(&self) -> usize {
+        self.mass.len()
+    }
+
+    fn row_length(&self) -> usize {
+        Row::<D>::LENGTH
+    }
+
+    fn fields(&self) -> &'static [FieldDescription] {
+        &FIELDS
+    }
+
+    fn mechanisms(&self) -> &'static [&'static str] {
+        &MECHANISMS
+    }
+
+    fn impulses(&self) -> &'static [&'static str] {
+        &IMPULSES
+    }
+
+    fn energy_names(&self) -> &'static [&'static str] {
+        &ENERGIES
+    }
+
+    fn initial_state(&self) -> Vec<f64> {
+        let mut state = vec![0.0; self.mass.len() * Row::<D>::LENGTH + Self::tail_length()];
+        let rows = state.chunks_exact_mut(Row::<D>::LENGTH);
+        for (row, velocity) in rows.zip(&self.initial_velocity) {
+            row[..D].copy_from_slice(velocity.as_slice());
+        }
+        state
+    }
+
+    fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
+        self.load(state);
+        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.force);
+        self.external_pass(time, state, rate);
+    }
+
+    fn constrain(&self, time: f64, state: &mut [f64]) {
+        for entry in self.prescribed.iter() {
+            state[entry.particle * Row::<D>::LENGTH + entry.component] =
+                entry.value.value(entry.place, time);
+        }
+    }
+
+    fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        self.look(state, limits)
+    }
+
+    fn energies(&self, state: &[f64], energies: &mut [f64]) {
+        let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+        let displacement: Vec<_> =
+            (0..self.mass.len()).map(|a| Row::<D>::displacement(row(a))).collect();
+        let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
+            sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
+            let [strain, hourglass] = self.discrete.energy_of(&displacement, a);
+            sums[1] += strain;
+            sums[2] += hourglass;
+        });
+        energies.copy_from_slice(&sums);
+    }
+
+    fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        let all = self.momentum_of(state);
+        momentum.copy_from_slice(&all[..momentum.len()]);
+    }
+
+    fn sample(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    ) {
+        self.sample_field(time, state, field, particles, values);
+    }
+
+    fn bodies(&self) -> &[u32] {
+        &self.discrete.particles.body
+    }
+
+    fn ids(&self) -> &[u32] {
+        &self.discrete.particles.id
+    }
+
+    fn particle(&self, index: usize) -> Particle {
+        let particles = &self.discrete.particles;
+        Particle {
+            id: particles.id[index],
+            reference: particles.position[index].iter().copied().collect(),
+        }
+    }
+
+    /// Those in its support and those in whose support it is.
+    fn neighborhood(&self, index: usize) -> Vec<u32> {
+        let support = &self.discrete.support;
+        let mut all = [support.list.row(index), support.dual.row(index)].concat();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    fn collapse_advice(&self, index: usize) -> String {
+        let law = self.discrete.material(index).law.law();
+        match law.name() {
+            "linear_elastic" | "saint_venant_kirchhoff" => format!(
+                "`{}` does not resist being turned inside out: use a neo-Hookean law, or a \
+                 smaller load",
+                law.name()
+            ),
+            _ => "the law resists collapse, so the step or the stabilisation is at fault: lower \
+                  `time.cfl`, or raise `scheme.hourglass`"
+                .into(),
+        }
+    }
+
+    fn memory(&self) -> usize {
+        let discrete = &self.discrete;
+        let particles = &discrete.particles;
+        discrete.support.memory()
+            + discrete.gradient.memory()
+            + size_of_val(discrete.hourglass.as_slice())
+            + size_of_val(particles.position.as_slice())
+            + size_of_val(particles.volume.as_slice())
+            + size_of_val(particles.weight.as_slice())
+            + size_of_val(particles.spacing.as_slice())
+            + size_of_val(particles.body.as_slice())
+            + size_of_val(particles.id.as_slice())
+            + size_of_val(self.mass.as_slice())
+            + size_of_val(self.initial_velocity.as_slice())
+            + size_of_val(self.displacement.as_slice())
+            + size_of_val(self.sides.as_slice())
+            + size_of_val(self.force.as_slice())
+    }
+}
+
+impl<const D: usize> DualSupport<D> {
+    /// Takes the displacements out of a state.
+    pub(super) fn load(&mut self, state: &[f64]) {
+        parallel::for_each_chunk(&mut self.displacement, |first, rows| {
+            for (offset, displacement) in rows.iter_mut().enumerate() {
+                let row = &state[(first + offset) * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+                *displacement = Row::<D>::displacement(row);
+            }
+        });
+    }
+}

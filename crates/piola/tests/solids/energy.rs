@@ -1,0 +1,195 @@
+//! Forces and stiffness as exact derivatives of the discrete energy.
+
+use nalgebra::SVector;
+use num_dual::{Dual64, HyperDual64};
+use piola::schemes::dual_support::{Discrete, Gradients, Material, Settings, Side};
+use piola::{Tensor, Vector};
+use piola_formulas::Scalar;
+use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
+use piola_formulas::volumetric::StressState;
+
+use crate::clouds::{Cloud, disorder, some_gradient};
+use crate::support::noise;
+
+const DENSITY: f64 = 1000.0;
+
+fn laws() -> [HyperelasticLaw; 5] {
+    let constants = LameConstants::from_young(1e6, 0.3).expect("parameters in range");
+    let (mu, kappa) = (constants.mu, constants.bulk_modulus());
+    [
+        HyperelasticLaw::linear_elastic(constants),
+        HyperelasticLaw::saint_venant_kirchhoff(constants),
+        HyperelasticLaw::neo_hookean(constants),
+        HyperelasticLaw::neo_hookean_logarithmic(constants),
+        HyperelasticLaw::ogden(&[(mu / 3.0, 3.0), (-mu, -1.0)], kappa).expect("in range"),
+    ]
+}
+
+fn discrete<const D: usize>(
+    cloud: &Cloud<D>,
+    law: HyperelasticLaw,
+    state: StressState,
+    (patch, hourglass): (bool, f64),
+) -> Discrete<D> {
+    let gradients = match patch {
+        true => Gradients::PatchConsistent { areas: cloud.areas.clone() },
+        false => Gradients::Plain,
+    };
+    let law = Reduced::new(law, state).expect("the state fits");
+    let settings = Settings { gradients, hourglass };
+    let materials = vec![Material { density: DENSITY, law }];
+    Discrete::new(cloud.particles.clone(), cloud.support(), &settings, materials)
+        .expect("the body exists")
+}
+
+fn forces<const D: usize>(body: &Discrete<D>, displacement: &[Vector<D>]) -> Vec<Vector<D>> {
+    let zero = Vector::zeros();
+    let side = Side { gradient: Tensor::zeros(), tension: Tensor::zeros(), pull: zero };
+    let mut sides = vec![side; body.len()];
+    let mut force = vec![zero; body.len()];
+    body.forces(displacement, &mut sides, &mut force);
+    force
+}
+
+/// Displacements as dual numbers of some type, `seed` being applied to each component.
+fn seeded<T: Scalar, const D: usize>(
+    displacement: &[Vector<D>],
+    seed: impl Fn(usize, usize, T) -> T,
+) -> Vec<SVector<T, D>> {
+    let vector = |(a, u): (usize, &Vector<D>)| SVector::from_fn(|i, _| seed(a, i, T::from(u[i])));
+    displacement.iter().enumerate().map(vector).collect()
+}
+
+fn sum<T: Scalar>([strain, hourglass]: [T; 2]) -> T {
+    strain + hourglass
+}
+
+fn check_force<const D: usize>(cloud: &Cloud<D>, state: StressState) {
+    for law in laws() {
+        for choice in [(false, 0.0), (false, 1.0), (true, 0.1)] {
+            let body = discrete(cloud, law, state, choice);
+            let displacement = disorder(&cloud.particles, 0.05);
+            let force = forces(&body, &displacement);
+            let scale = force.iter().map(Vector::amax).fold(0.0, f64::max);
+            for (a, force) in force.iter().enumerate() {
+                for (i, force) in force.iter().enumerate() {
+                    let along = |b, j, u: Dual64| if (b, j) == (a, i) { u.derivative() } else { u };
+                    let energy = sum(body.total_energy(&seeded(&displacement, along)));
+                    let error = (force + energy.eps).abs() / scale;
+                    assert!(error < 1e-12, "{law:?} {choice:?} {a} {i}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn forces_are_the_negative_gradient_of_the_energy() {
+    check_force(&Cloud::simplices([1.0], [12], 0.3), StressState::UniaxialStress);
+    check_force(&Cloud::simplices([1.0, 1.0], [5, 5], 0.25), StressState::PlaneStrain);
+    check_force(&Cloud::simplices([1.0, 1.0], [4, 4], 0.25), StressState::PlaneStress);
+    check_force(&Cloud::simplices([1.0; 3], [2; 3], 0.15), StressState::ThreeDimensional);
+}
+
+#[test]
+fn the_stiffness_is_the_second_derivative_of_the_energy() {
+    let cloud = Cloud::simplices([1.0, 1.0], [5, 5], 0.25);
+    for law in laws() {
+        let body = discrete(&cloud, law, StressState::PlaneStrain, (true, 0.1));
+        let displacement = disorder(&cloud.particles, 0.05);
+        let direction = |shift: usize| -> Vec<Vector<2>> {
+            let vector = |a: usize| Vector::from_fn(|i, _| noise(shift + 2 * a + i));
+            (0..body.len()).map(vector).collect()
+        };
+        let (first, second) = (direction(0), direction(5000));
+        let dot = |a: &[Vector<2>], b: &[Vector<2>]| -> f64 {
+            a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
+        };
+        let product = dot(&second, &body.stiffness_product(&displacement, &first));
+        let other = dot(&first, &body.stiffness_product(&displacement, &second));
+        let along = |a: usize, i: usize, u: HyperDual64| {
+            HyperDual64::new(u.re, first[a][i], second[a][i], 0.0)
+        };
+        let energy = sum(body.total_energy(&seeded(&displacement, along)));
+        let bound = 1e-12 * dot(&first, &body.stiffness_product(&displacement, &first)).abs();
+        assert!((product - other).abs() < bound, "{law:?}: {product} {other}");
+        assert!((product - energy.eps1eps2).abs() < bound, "{law:?}: {product} {energy}");
+    }
+}
+
+/// Dual-support (21), last line: with plain gradients the sum of squares has a closed form.
+#[test]
+fn hourglass_energy_is_that_of_the_source_and_positive() {
+    let cloud = Cloud::simplices([1.0, 1.0], [7, 7], 0.25);
+    let law = laws()[3];
+    let body = discrete(&cloud, law, StressState::PlaneStrain, (false, 2.0));
+    let support = cloud.support();
+    let displacement = disorder(&cloud.particles, 0.2);
+    let mu = law.small_strain().mu;
+    for a in 0..body.len() {
+        let mut moment = Tensor::<2>::zeros();
+        let mut squares = 0.0;
+        for &b in support.list.row(a) {
+            let x = support.separation(&cloud.particles.position, a, b);
+            let current = x + displacement[b as usize] - displacement[a];
+            let h = support.smoothing_length(a);
+            let slope = support.kernel.derivative_over_r(2, x.norm(), h);
+            let weight = cloud.particles.weight[b as usize] * slope;
+            moment += x * x.transpose() * weight;
+            squares += weight * current.norm_squared();
+        }
+        let f = body.displacement_gradient(&displacement, a) + Tensor::<2>::identity();
+        let closed = mu / moment.trace() * (squares - f.dot(&(f * moment)));
+        let [_, energy] = body.energy_of(&displacement, a);
+        let expected = 2.0 * closed * cloud.particles.volume[a];
+        assert!(energy > 0.0 && (energy / expected - 1.0).abs() < 1e-10, "{energy} {expected}");
+    }
+}
+
+/// The patch test: a constant stress is in equilibrium with its tractions on any cloud.
+fn check_patch<const D: usize>(cloud: &Cloud<D>, state: StressState) {
+    for law in laws() {
+        for (patch, hourglass) in [(true, 0.0), (true, 0.1), (false, 0.1)] {
+            let body = discrete(cloud, law, state, (patch, hourglass));
+            let slope = some_gradient::<D>();
+            let places = &cloud.particles.position;
+            let displacement: Vec<Vector<D>> = places.iter().map(|x| slope * x).collect();
+            let stress = Reduced::<D>::new(law, state).unwrap().stress(&slope);
+            let tractions = || cloud.areas.iter().map(|area| stress * area);
+            let force = forces(&body, &displacement);
+            let scale = tractions().map(|t| t.amax()).fold(0.0, f64::max);
+            let left = force.iter().zip(tractions()).map(|(f, t)| (f + t).amax());
+            let left = left.fold(0.0, f64::max) / scale;
+            assert_eq!(left < 1e-8, patch, "{law:?} {hourglass}: {left:e}");
+            let [strain, deviating] = body.total_energy(&displacement);
+            assert!(deviating.abs() < 1e-20 * strain, "{deviating} of {strain}");
+        }
+    }
+}
+
+#[test]
+fn constant_stress_is_in_equilibrium_on_any_cloud() {
+    check_patch(&Cloud::simplices([2.0], [24], 0.3), StressState::UniaxialStrain);
+    check_patch(&Cloud::simplices([2.0, 1.0], [14, 7], 0.25), StressState::PlaneStrain);
+    check_patch(&Cloud::simplices([2.0, 1.0], [14, 7], 0.25), StressState::PlaneStress);
+    check_patch(&Cloud::simplices([1.0; 3], [5; 3], 0.2), StressState::ThreeDimensional);
+}
+
+/// Forces neither push nor turn a body as a whole, whatever the supports.
+#[test]
+fn forces_have_no_sum_and_no_moment() {
+    let cloud = Cloud::simplices([1.0; 3], [4; 3], 0.2);
+    for law in laws() {
+        for choice in [(false, 1.0), (true, 0.1)] {
+            let body = discrete(&cloud, law, StressState::ThreeDimensional, choice);
+            let displacement = disorder(&cloud.particles, 0.05);
+            let force = forces(&body, &displacement);
+            let total: f64 = force.iter().map(Vector::norm).sum();
+            let sum: Vector<3> = force.iter().sum();
+            assert!(sum.norm() < 1e-14 * total, "{law:?}: {sum}");
+            let places = cloud.particles.position.iter().zip(&displacement).map(|(x, u)| x + u);
+            let moment: Vector<3> = places.zip(&force).map(|(x, f)| x.cross(f)).sum();
+            assert_eq!(moment.norm() < 1e-13 * total, law.is_objective(), "{law:?}: {moment}");
+        }
+    }
+}

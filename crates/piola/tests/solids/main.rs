@@ -1,0 +1,10 @@
+//! Elastic solids by the dual-support formulation.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod clouds;
+mod energy;
+mod gradients;
+mod runs;
