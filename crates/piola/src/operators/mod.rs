@@ -13,10 +13,11 @@ mod least_squares;
 mod moving;
 mod support;
 
+pub(crate) use areas::total;
 pub use areas::{Block, LANES, Lanes, PairAreas};
 pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
 pub use least_squares::LeastSquares;
-pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock};
+pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock, NeighborGroup};
 pub use support::Support;
