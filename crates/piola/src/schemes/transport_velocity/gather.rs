@@ -59,6 +59,7 @@ impl<const D: usize> TransportVelocity<D> {
         while self.support.fill(&mut rest, needs, block) {
             for group in block.groups() {
                 let others = group.places.map(|b| &self.sides[b as usize]);
+                #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
                 for lane in 0..LANES {
                     let neighbor = group.neighbor(lane);
                     sums.add_fluid::<ARTIFICIAL>(lane, me, others[lane], &neighbor, constants);
