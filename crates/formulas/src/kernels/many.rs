@@ -1,5 +1,7 @@
 //! A kernel at many distances at once, chosen once for all of them.
 
+use multiversion::multiversion;
+
 use super::{Kernel, KernelShape, KernelVisitor, ScaledKernel};
 
 /// A kernel of a smoothing length that fills arrays: one indirect call for many neighbours.
@@ -12,19 +14,58 @@ pub trait ManyDistances: Send + Sync {
 
     /// Writes `W'(r) / r` in m^-(D+2) for each square.
     fn slopes(&self, squares: &[f64], slopes: &mut [f64]);
+
+    /// Writes both, with one root a square.
+    fn both(&self, squares: &[f64], values: &mut [f64], slopes: &mut [f64]);
 }
 
 impl<K: KernelShape, const D: usize> ManyDistances for ScaledKernel<K, D> {
     fn values(&self, squares: &[f64], values: &mut [f64]) {
-        for (value, square) in values.iter_mut().zip(squares) {
-            *value = self.value(square.sqrt());
-        }
+        fill_values(self, squares, values);
     }
 
     fn slopes(&self, squares: &[f64], slopes: &mut [f64]) {
-        for (slope, square) in slopes.iter_mut().zip(squares) {
-            *slope = self.derivative_over_r(square.sqrt());
-        }
+        fill_slopes(self, squares, slopes);
+    }
+
+    fn both(&self, squares: &[f64], values: &mut [f64], slopes: &mut [f64]) {
+        fill_both(self, squares, values, slopes);
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn fill_values<K: KernelShape, const D: usize>(
+    kernel: &ScaledKernel<K, D>,
+    squares: &[f64],
+    values: &mut [f64],
+) {
+    for (value, square) in values.iter_mut().zip(squares) {
+        *value = kernel.value(square.sqrt());
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn fill_slopes<K: KernelShape, const D: usize>(
+    kernel: &ScaledKernel<K, D>,
+    squares: &[f64],
+    slopes: &mut [f64],
+) {
+    for (slope, square) in slopes.iter_mut().zip(squares) {
+        *slope = kernel.derivative_over_r(square.sqrt());
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn fill_both<K: KernelShape, const D: usize>(
+    kernel: &ScaledKernel<K, D>,
+    squares: &[f64],
+    values: &mut [f64],
+    slopes: &mut [f64],
+) {
+    for ((value, slope), square) in values.iter_mut().zip(slopes).zip(squares) {
+        let distance = square.sqrt();
+        *value = kernel.value(distance);
+        *slope = kernel.derivative_over_r(distance);
     }
 }
 

@@ -30,6 +30,45 @@ pub fn search<const D: usize>(
     support: &[f64],
     domain: &Domain<D>,
 ) -> Result<NeighborList, NeighborError> {
+    rows(points, support, domain, |found, a, rows| {
+        found.sort_unstable();
+        let own = found.binary_search(&(a as u32)).expect("a particle is near to itself");
+        rows.extend_from_slice(&found[..own]);
+        rows.extend_from_slice(&found[own + 1..]);
+    })
+}
+
+/// The list of [`search`] for particles that all have the same support, with rows in ascending
+/// order of `ranks`, the rank of each particle, whose inverse is `ranked`. A particle whose rank is
+/// at least `seen` sees only those with lower ones.
+pub(super) fn search_ranked<const D: usize>(
+    points: &[Vector<D>],
+    support: f64,
+    domain: &Domain<D>,
+    [ranks, ranked]: [&[u32]; 2],
+    seen: u32,
+) -> Result<NeighborList, NeighborError> {
+    rows(points, &vec![support; points.len()], domain, |found, a, rows| {
+        found.iter_mut().for_each(|b| *b = ranks[*b as usize]);
+        found.sort_unstable();
+        let own = ranks[a];
+        let count = match own < seen {
+            true => found.len(),
+            false => found.partition_point(|&rank| rank < seen),
+        };
+        let others = found[..count].iter().filter(|&&rank| rank != own);
+        rows.extend(others.map(|&rank| ranked[rank as usize]));
+    })
+}
+
+/// Finds all that are near to each particle, itself included, and has `append(found, a, rows)`
+/// append them to the rows.
+fn rows<const D: usize>(
+    points: &[Vector<D>],
+    support: &[f64],
+    domain: &Domain<D>,
+    append: impl Fn(&mut [u32], usize, &mut Vec<u32>) + Sync,
+) -> Result<NeighborList, NeighborError> {
     check(points, support, domain)?;
     let points = &*wrap(points, domain);
     let grids = Grids::new(points, support, domain)?;
@@ -37,12 +76,13 @@ pub fn search<const D: usize>(
         let (group, grid) = grids.of(support[a]);
         let (center, limit) = (points[a], support[a] * support[a]);
         state.collect(group, grid, &center);
-        if domain.is_open() {
-            state.append_near(grid, a, |b| (b - center).norm_squared() < limit, rows);
+        let found = if domain.is_open() {
+            state.near(grid, |b| (b - center).norm_squared() < limit)
         } else {
             let square = |b: &Vector<D>| domain.separation(&center, b).norm_squared();
-            state.append_near(grid, a, |b| square(b) < limit, rows);
-        }
+            state.near(grid, |b| square(b) < limit)
+        };
+        append(found, a, rows);
     };
     let (particles, most) = (points.len(), MOST_ENTRIES);
     NeighborList::from_rows(particles, most, Candidates::default, row)
@@ -215,15 +255,9 @@ impl<const D: usize> Candidates<D> {
         }
     }
 
-    /// Appends the candidates that are `near`, but not particle `a` itself, in ascending order.
+    /// The candidates that are `near`.
     #[inline]
-    fn append_near(
-        &mut self,
-        grid: &CellGrid<D>,
-        a: usize,
-        near: impl Fn(&Vector<D>) -> bool,
-        rows: &mut Vec<u32>,
-    ) {
+    fn near(&mut self, grid: &CellGrid<D>, near: impl Fn(&Vector<D>) -> bool) -> &mut [u32] {
         let found = self.near.as_mut_slice();
         let mut count = 0;
         for range in &self.ranges {
@@ -235,10 +269,6 @@ impl<const D: usize> Candidates<D> {
                 count += usize::from(near(point));
             }
         }
-        let found = &mut found[..count];
-        found.sort_unstable();
-        let own = found.binary_search(&(a as u32)).expect("a particle is near to itself");
-        rows.extend_from_slice(&found[..own]);
-        rows.extend_from_slice(&found[own + 1..]);
+        &mut found[..count]
     }
 }

@@ -1,9 +1,7 @@
 //! Neighbour lists of moving particles, kept over many steps.
 
-use rayon::prelude::*;
-
-use super::{Domain, NeighborError, search, spatial_order};
-use crate::parallel::CHUNK;
+use super::search::search_ranked;
+use super::{Domain, NeighborError, spatial_order};
 use crate::{Vector, parallel};
 
 /// Candidates for the neighbours of moving particles: all that were closer than the support
@@ -19,6 +17,10 @@ pub struct SkinList<const D: usize> {
     support: f64,
     skin: f64,
     passive: Vec<bool>,
+    /// Place of each number in the order of rows: those that are not passive first, which are as
+    /// many as `active`.
+    ranks: Vec<u32>,
+    active: u32,
     /// Number of the particle at each place, and the reverse.
     numbers: Vec<u32>,
     places: Vec<u32>,
@@ -45,11 +47,21 @@ impl<const D: usize> SkinList<D> {
         domain: Domain<D>,
     ) -> Result<Self, NeighborError> {
         let numbers: Vec<u32> = (0..positions.len() as u32).collect();
+        let active = passive.iter().filter(|&&is_passive| !is_passive).count() as u32;
+        let mut next = [0, active];
+        let rank = |&is_passive: &bool| {
+            let next = &mut next[usize::from(is_passive)];
+            *next += 1;
+            *next - 1
+        };
+        let ranks = passive.iter().map(rank).collect();
         let mut list = Self {
             domain,
             support,
             skin,
             passive,
+            ranks,
+            active,
             places: numbers.clone(),
             numbers,
             positions: vec![Vector::zeros(); positions.len()],
@@ -100,25 +112,25 @@ impl<const D: usize> SkinList<D> {
         let reach = self.support + self.skin;
         let order = spatial_order(&self.positions, reach)?;
         let ordered: Vec<_> = order.iter().map(|&place| self.positions[place as usize]).collect();
-        let list = search(&ordered, &vec![reach; ordered.len()], &self.domain)?;
+        let at = |number: &u32| self.ranks[*number as usize];
+        let ranks: Vec<u32> =
+            order.iter().map(|&place| at(&self.numbers[place as usize])).collect();
+        let mut ranked = vec![0; ranks.len()];
+        for (place, &rank) in ranks.iter().enumerate() {
+            ranked[rank as usize] = place as u32;
+        }
+        let both = [ranks.as_slice(), ranked.as_slice()];
+        let list = search_ranked(&ordered, reach, &self.domain, both, self.active)?;
         self.numbers = order.iter().map(|&place| self.numbers[place as usize]).collect();
         for (place, &number) in self.numbers.iter().enumerate() {
             self.places[number as usize] = place as u32;
         }
-        let (numbers, passive) = (&self.numbers, &self.passive);
-        let is_passive = |place: u32| passive[numbers[place as usize] as usize];
-        let list = match passive.contains(&true) {
-            true => list.retain(|a, b| !(is_passive(a) && is_passive(b))),
-            false => list,
-        };
-        let key =
-            |place: u32| u64::from(is_passive(place)) << 32 | u64::from(numbers[place as usize]);
         (self.offsets, self.entries) = list.into_arrays();
-        sort_rows(&self.offsets, &mut self.entries, key);
+        let active = self.active;
         self.passive_from = (self.offsets.windows(2))
             .map(|ends| {
                 let row = &self.entries[ends[0]..ends[1]];
-                ends[0] + row.partition_point(|&place| !is_passive(place))
+                ends[0] + row.partition_point(|&place| ranks[place as usize] < active)
             })
             .collect();
         Ok(())
@@ -183,29 +195,7 @@ impl<const D: usize> SkinList<D> {
 
     /// Bytes of all arrays.
     pub fn memory(&self) -> usize {
-        let particle = 2 * size_of::<Vector<D>>() + 2 * size_of::<usize>() + 2 * size_of::<u32>();
+        let particle = 2 * size_of::<Vector<D>>() + 2 * size_of::<usize>() + 3 * size_of::<u32>();
         self.len() * particle + self.entries.len() * size_of::<u32>()
     }
-}
-
-/// Sorts each row by a key, on all threads.
-fn sort_rows(offsets: &[usize], entries: &mut [u32], key: impl Fn(u32) -> u64 + Sync) {
-    let mut parts = Vec::new();
-    let mut rest = entries;
-    for ends in offsets.windows(CHUNK + 1).step_by(CHUNK).chain(last_window(offsets)) {
-        let (part, after) = rest.split_at_mut(ends[ends.len() - 1] - ends[0]);
-        parts.push((ends, part));
-        rest = after;
-    }
-    parts.into_par_iter().for_each(|(ends, part)| {
-        for row in ends.windows(2) {
-            part[row[0] - ends[0]..row[1] - ends[0]].sort_unstable_by_key(|&place| key(place));
-        }
-    });
-}
-
-/// The ends of the rows after the last whole chunk.
-fn last_window(offsets: &[usize]) -> Option<&[usize]> {
-    let whole = (offsets.len() - 1) / CHUNK * CHUNK;
-    (whole + 1 < offsets.len()).then(|| &offsets[whole..])
 }

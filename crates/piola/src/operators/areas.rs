@@ -13,6 +13,19 @@ pub const LANES: usize = 8;
 /// A number of each neighbour of a block.
 pub type Lanes = [f64; LANES];
 
+/// The sum over the lanes, by halves: the same order on every machine.
+#[inline(always)]
+pub(crate) fn total(mut lanes: Lanes) -> f64 {
+    let mut half = LANES / 2;
+    while half > 0 {
+        for lane in 0..half {
+            lanes[lane] += lanes[lane + half];
+        }
+        half /= 2;
+    }
+    lanes[0]
+}
+
 /// Some neighbours of a particle with the areas between them, component by component, so that
 /// one operation acts on all lanes.
 #[derive(Clone, Copy, Debug)]

@@ -16,6 +16,7 @@ mod moving;
 mod patch;
 mod support;
 
+pub(crate) use areas::total;
 pub use areas::{Block, LANES, Lanes, PairAreas};
 pub use directed::{DirectedSupport, nearest_radii};
 pub use dual_gradient::DualGradient;
@@ -24,5 +25,5 @@ pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
 pub use least_squares::LeastSquares;
-pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock};
+pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock, NeighborGroup};
 pub use support::Support;

@@ -1,11 +1,13 @@
 //! Neighbours of moving particles, gathered in blocks.
 
+use multiversion::multiversion;
 use piola_formulas::kernels::{Kernel, ManyDistances};
 
+use super::{LANES, Lanes};
 use crate::Vector;
 use crate::neighbors::{Domain, NeighborError, SkinList};
 
-/// Neighbours a block.
+/// Neighbours a block, a multiple of the lanes.
 pub const BLOCK: usize = 64;
 
 /// Some neighbours b of one particle a, all inside its support, in arrays over neighbours.
@@ -48,7 +50,66 @@ pub struct Neighbor<const D: usize> {
     pub slope: f64,
 }
 
+/// Some neighbours of a block, one a lane.
+///
+/// The last group is filled up with its last neighbour, and with values and slopes of zero.
+#[derive(Clone, Copy, Debug)]
+pub struct NeighborGroup<'a, const D: usize> {
+    /// Places in memory.
+    pub places: &'a [u32; LANES],
+    /// `r_ab = x_a - x_b` in m, component by component.
+    pub separations: [&'a Lanes; D],
+    /// `r_ab^2` in m^2.
+    pub squares: &'a Lanes,
+    /// `W_ab` in m^-D, if it was asked for.
+    pub values: &'a Lanes,
+    /// `W'_ab / r_ab` in m^-(D+2), if it was asked for.
+    pub slopes: &'a Lanes,
+}
+
+impl<const D: usize> NeighborGroup<'_, D> {
+    /// The neighbour of one lane.
+    #[inline(always)]
+    pub fn neighbor(&self, lane: usize) -> Neighbor<D> {
+        Neighbor {
+            place: self.places[lane] as usize,
+            separation: Vector::from_fn(|axis, _| self.separations[axis][lane]),
+            square: self.squares[lane],
+            value: self.values[lane],
+            slope: self.slopes[lane],
+        }
+    }
+}
+
 impl<const D: usize> NeighborBlock<D> {
+    /// The neighbours in order, by groups.
+    #[inline(always)]
+    pub fn groups(&self) -> impl Iterator<Item = NeighborGroup<'_, D>> {
+        (0..self.length.min(BLOCK).div_ceil(LANES)).map(|group| NeighborGroup {
+            places: &self.places.as_chunks().0[group],
+            separations: std::array::from_fn(|axis| &self.separations[axis].as_chunks().0[group]),
+            squares: &self.squares.as_chunks().0[group],
+            values: &self.values.as_chunks().0[group],
+            slopes: &self.slopes.as_chunks().0[group],
+        })
+    }
+
+    /// Fills the last group up with the last neighbour, and returns the length with it.
+    #[inline]
+    fn fill_up(&mut self) -> usize {
+        let (length, whole) = (self.length, self.length.next_multiple_of(LANES));
+        if let Some(last) = length.checked_sub(1) {
+            let (place, square) = (self.places[last], self.squares[last]);
+            self.places[length..whole].fill(place);
+            self.squares[length..whole].fill(square);
+            for separations in &mut self.separations {
+                let separation = separations[last];
+                separations[length..whole].fill(separation);
+            }
+        }
+        whole
+    }
+
     /// The neighbours in order.
     #[inline]
     pub fn iter(&self) -> impl Iterator<Item = Neighbor<D>> {
@@ -184,55 +245,66 @@ impl<const D: usize> MovingSupport<D> {
         needs: Needs,
         block: &mut NeighborBlock<D>,
     ) -> bool {
+        let (positions, periods) = (self.list.positions(), &self.periods);
         block.length = 0;
-        self.filter(rest, block);
+        filter(positions, periods, self.limit, rest, block);
         if rest.row.is_empty() && !rest.then.is_empty() {
             rest.row = std::mem::take(&mut rest.then);
-            self.filter(rest, block);
+            filter(positions, periods, self.limit, rest, block);
         }
-        let squares = &block.squares[..block.length.min(BLOCK)];
-        if matches!(needs, Needs::Value | Needs::Both) {
-            self.many.values(squares, &mut block.values[..squares.len()]);
+        let (length, whole) = (block.length, block.fill_up());
+        let squares = &block.squares[..whole];
+        let (values, slopes) = (&mut block.values[..whole], &mut block.slopes[..whole]);
+        match needs {
+            Needs::Nothing => (),
+            Needs::Value => self.many.values(squares, values),
+            Needs::Slope => self.many.slopes(squares, slopes),
+            Needs::Both => self.many.both(squares, values, slopes),
         }
-        if matches!(needs, Needs::Slope | Needs::Both) {
-            self.many.slopes(squares, &mut block.slopes[..squares.len()]);
-        }
-        block.length > 0
-    }
-
-    /// Appends candidates that are inside the support to `block` until it is full.
-    fn filter(&self, rest: &mut Candidates<'_>, block: &mut NeighborBlock<D>) {
-        let positions = self.list.positions();
-        let here = positions[rest.place];
-        let mut length = block.length;
-        let mut taken = 0;
-        for &b in rest.row {
-            if length == BLOCK {
-                break;
-            }
-            // Every candidate is written and kept by the step of the counter, as a branch would be
-            // guessed wrong every fifth time.
-            let k = length % BLOCK;
-            let there = &positions[b as usize];
-            let mut square = 0.0;
-            for axis in 0..D {
-                let distance = shortest(here[axis] - there[axis], self.periods[axis]);
-                block.separations[axis][k] = distance;
-                square += distance * distance;
-            }
-            block.places[k] = b;
-            block.squares[k] = square;
-            length += usize::from(square < self.limit);
-            taken += 1;
-        }
-        rest.row = &rest.row[taken..];
-        block.length = length;
+        values[length..].fill(0.0);
+        slopes[length..].fill(0.0);
+        length > 0
     }
 
     /// Bytes of lists and positions.
     pub fn memory(&self) -> usize {
         self.list.memory()
     }
+}
+
+/// Appends candidates whose distance has a square below `limit` to `block` until it is full.
+#[multiversion(targets("x86_64+avx2"))]
+fn filter<const D: usize>(
+    positions: &[Vector<D>],
+    periods: &[f64; D],
+    limit: f64,
+    rest: &mut Candidates<'_>,
+    block: &mut NeighborBlock<D>,
+) {
+    let here = positions[rest.place];
+    let mut length = block.length;
+    let mut taken = 0;
+    for &b in rest.row {
+        if length == BLOCK {
+            break;
+        }
+        // Every candidate is written and kept by the step of the counter, as a branch would be
+        // guessed wrong every fifth time.
+        let k = length % BLOCK;
+        let there = &positions[b as usize];
+        let mut square = 0.0;
+        for axis in 0..D {
+            let distance = shortest(here[axis] - there[axis], periods[axis]);
+            block.separations[axis][k] = distance;
+            square += distance * distance;
+        }
+        block.places[k] = b;
+        block.squares[k] = square;
+        length += usize::from(square < limit);
+        taken += 1;
+    }
+    rest.row = &rest.row[taken..];
+    block.length = length;
 }
 
 /// The shorter way between points inside a period, without a branch.

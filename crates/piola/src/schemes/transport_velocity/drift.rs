@@ -1,9 +1,10 @@
 //! The rates of density and pressure.
 
+use multiversion::multiversion;
 use piola_formulas::fluid;
 
 use super::{DensityRule, Divergence, PressureRule, Side, TransportVelocity};
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, total};
 use crate::parallel;
 
 /// Rates of change of a particle's density and pressure, term by term, see
@@ -20,68 +21,140 @@ pub struct Rates {
     pub pressure_diffusion: f64,
 }
 
+/// Constants of one pass.
+struct Constants {
+    softening: f64,
+    diffusivity: f64,
+    /// 1 where `div uhat` is asked for, 0 for `div u`.
+    moves: f64,
+}
+
+/// Sums over neighbours, a lane each.
+struct Sums {
+    divergence: Lanes,
+    density_transport: Lanes,
+    pressure_transport: Lanes,
+    pressure_diffusion: Lanes,
+}
+
 impl<const D: usize> TransportVelocity<D> {
     /// Fills `rates` from the sides, for the fluid.
     pub(super) fn rate_pass(&mut self) {
         let mut rates = std::mem::take(&mut self.rates);
-        let list = self.support.list();
-        parallel::for_each_chunk(&mut rates, |first, rows| {
-            let mut block = NeighborBlock::default();
-            for (offset, row) in rows.iter_mut().enumerate() {
-                let place = first + offset;
-                if !list.is_passive(place) {
-                    *row = self.rates_at(place, &mut block);
+        let h = self.support.smoothing_length();
+        let corrections = self.settings.corrections;
+        let constants = Constants {
+            softening: fluid::softening(h),
+            diffusivity: match self.settings.pressure {
+                PressureRule::Edac { alpha } => {
+                    fluid::pressure_diffusivity(alpha, h, self.fluid.wave_speed)
                 }
-            }
-        });
+                PressureRule::StateEquation => 0.0,
+            },
+            moves: f64::from(u8::from(corrections.divergence == Divergence::Transport)),
+        };
+        let fill = match corrections.density || corrections.pressure {
+            true => fill::<D, true>,
+            false => fill::<D, false>,
+        };
+        parallel::for_each_chunk(&mut rates, |first, rows| fill(self, &constants, first, rows));
         self.rates = rates;
     }
 
-    #[inline]
-    fn rates_at(&self, place: usize, block: &mut NeighborBlock<D>) -> Rates {
+    /// The sums of the particle at `place`, returned by value as those of the accelerations.
+    #[inline(always)]
+    fn gather_rates<const CORRECTS: bool>(
+        &self,
+        place: usize,
+        constants: &Constants,
+        block: &mut NeighborBlock<D>,
+    ) -> Sums {
         let me = &self.sides[place];
-        let h = self.support.smoothing_length();
-        let softening = fluid::softening(h);
-        let diffusivity = match self.settings.pressure {
-            PressureRule::Edac { alpha } => {
-                fluid::pressure_diffusivity(alpha, h, self.fluid.wave_speed)
-            }
-            PressureRule::StateEquation => 0.0,
+        let zero = [0.0; LANES];
+        let mut sums = Sums {
+            divergence: zero,
+            density_transport: zero,
+            pressure_transport: zero,
+            pressure_diffusion: zero,
         };
-        let moves = self.settings.corrections.divergence == Divergence::Transport;
-        let corrections = self.settings.corrections;
-        let corrects = corrections.density || corrections.pressure;
-        let flow = |side: &Side<D>| match moves {
-            true => side.velocity + side.deviation,
-            false => side.velocity,
-        };
-        let mine = flow(me);
-        let mut sum = Rates::default();
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Slope, block) {
-            for neighbor in block.iter() {
-                let other = &self.sides[neighbor.place];
-                let gradient = neighbor.separation * neighbor.slope;
-                sum.divergence -= other.volume * (mine - flow(other)).dot(&gradient);
-                let jump = other.pressure - me.pressure;
-                if corrects {
-                    let carried = other.volume * other.deviation.dot(&gradient);
-                    sum.density_transport += carried * (other.density - me.density);
-                    sum.pressure_transport += carried * jump;
+            for group in block.groups() {
+                let others = group.places.map(|b| &self.sides[b as usize]);
+                #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
+                for lane in 0..LANES {
+                    sums.add::<D, CORRECTS>(
+                        lane,
+                        me,
+                        others[lane],
+                        &group.neighbor(lane),
+                        constants,
+                    );
                 }
-                let scale =
-                    fluid::exchange_scale(me.density + other.density, neighbor.square, softening);
-                let exchange =
-                    fluid::diffusion(diffusivity, neighbor.square, neighbor.slope, scale);
-                sum.pressure_diffusion -= other.mass * exchange * jump;
             }
         }
-        if !corrections.density || self.settings.density == DensityRule::Summation {
-            sum.density_transport = 0.0;
+        sums
+    }
+
+    /// The rates of a particle with these sums.
+    #[inline(never)]
+    fn rates_of(&self, sums: &Sums) -> Rates {
+        let corrections = self.settings.corrections;
+        let evolves = self.settings.density != DensityRule::Summation;
+        let kept = |is_on: bool, lanes| if is_on { total(lanes) } else { 0.0 };
+        Rates {
+            divergence: total(sums.divergence),
+            density_transport: kept(corrections.density && evolves, sums.density_transport),
+            pressure_transport: kept(corrections.pressure, sums.pressure_transport),
+            pressure_diffusion: total(sums.pressure_diffusion),
         }
-        if !corrections.pressure {
-            sum.pressure_transport = 0.0;
+    }
+}
+
+impl Sums {
+    /// Adds the terms of one neighbour to those of its lane. Always inlined, for the compiler to
+    /// turn the loop over lanes into operations on vectors.
+    #[inline(always)]
+    fn add<const D: usize, const CORRECTS: bool>(
+        &mut self,
+        lane: usize,
+        me: &Side<D>,
+        other: &Side<D>,
+        neighbor: &Neighbor<D>,
+        constants: &Constants,
+    ) {
+        let gradient = neighbor.separation * neighbor.slope;
+        let flow =
+            (me.velocity - other.velocity) + (me.deviation - other.deviation) * constants.moves;
+        self.divergence[lane] -= other.volume * flow.dot(&gradient);
+        let jump = other.pressure - me.pressure;
+        if CORRECTS {
+            let carried = other.volume * other.deviation.dot(&gradient);
+            self.density_transport[lane] += carried * (other.density - me.density);
+            self.pressure_transport[lane] += carried * jump;
         }
-        sum
+        let densities = me.density + other.density;
+        let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
+        let exchange =
+            fluid::diffusion(constants.diffusivity, neighbor.square, neighbor.slope, scale);
+        self.pressure_diffusion[lane] -= other.mass * exchange * jump;
+    }
+}
+
+/// Fills some rows, with or without the transport terms.
+#[multiversion(targets("x86_64+avx2"))]
+fn fill<const D: usize, const CORRECTS: bool>(
+    scheme: &TransportVelocity<D>,
+    constants: &Constants,
+    first: usize,
+    rows: &mut [Rates],
+) {
+    let mut block = NeighborBlock::default();
+    for (offset, row) in rows.iter_mut().enumerate() {
+        let place = first + offset;
+        if !scheme.support.list().is_passive(place) {
+            let sums = scheme.gather_rates::<CORRECTS>(place, constants, &mut block);
+            *row = scheme.rates_of(&sums);
+        }
     }
 }

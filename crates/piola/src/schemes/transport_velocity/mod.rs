@@ -25,6 +25,7 @@ mod build;
 mod density;
 mod drift;
 mod forces;
+mod gather;
 mod inspect;
 mod ledger;
 mod sample;

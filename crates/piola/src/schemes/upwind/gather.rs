@@ -5,7 +5,7 @@ use super::local::Side;
 use super::pair::Pair;
 use super::reconstruction::Slope;
 use crate::Vector;
-use crate::operators::{Block, LANES, Lanes};
+use crate::operators::{Block, LANES, Lanes, total};
 
 /// The sums of a particle over its neighbours: `T` is `f64`, or [`Lanes`] while they grow.
 pub(super) struct Sums<T, const D: usize> {
@@ -123,17 +123,4 @@ impl<const D: usize> Sums<Lanes, D> {
             upwind_volume_rate: total(self.upwind_volume_rate),
         }
     }
-}
-
-/// The sum over the lanes, by halves: the same order on every machine.
-#[inline(always)]
-pub(super) fn total(mut lanes: Lanes) -> f64 {
-    let mut half = LANES / 2;
-    while half > 0 {
-        for lane in 0..half {
-            lanes[lane] += lanes[lane + half];
-        }
-        half /= 2;
-    }
-    lanes[0]
 }

@@ -3,8 +3,8 @@
 use multiversion::multiversion;
 
 use super::Upwind;
-use super::gather::{at, total};
-use crate::operators::{LANES, Lanes, LeastSquares};
+use super::gather::at;
+use crate::operators::{LANES, Lanes, LeastSquares, total};
 use crate::{Tensor, Vector, parallel};
 
 /// Least-squares gradients of the reconstructed fields with respect to X.
