@@ -38,7 +38,7 @@ impl<const D: usize> SkinList<D> {
     /// A list of particles at `positions` in m, by number, with one support radius and skin in m.
     ///
     /// # Errors
-    /// Those of [`search`] for the support with its skin.
+    /// Those of [`search`](fn@super::search::search) for the support with its skin.
     pub fn new(
         positions: &[Vector<D>],
         passive: Vec<bool>,
@@ -78,7 +78,7 @@ impl<const D: usize> SkinList<D> {
     /// Takes new positions in m by number, and makes the list anew where it no longer holds.
     ///
     /// # Errors
-    /// Those of [`search`]; the list then is as it was.
+    /// Those of [`search`](fn@super::search::search); the list then is as it was.
     pub fn update(
         &mut self,
         position: impl Fn(usize) -> Vector<D> + Sync,
