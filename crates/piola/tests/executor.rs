@@ -92,6 +92,10 @@ impl Scheme for Pendulum {
         Vec::new()
     }
 
+    fn stability_advice(&self) -> &'static str {
+        "oil the bearing"
+    }
+
     fn collapse_advice(&self, _index: usize) -> String {
         "shorten the rod".into()
     }

@@ -159,6 +159,20 @@ fn a_load_that_is_no_number() {
     assert!(trace.numbers.iter().any(|number| number.is_nan()));
 }
 
+/// What to change is a key of the scheme that runs, not of another.
+#[test]
+fn the_advice_is_that_of_the_scheme() {
+    let load = "load=[{ kind = 'body_force', acceleration = [0, 'sqrt(0.01 - t)'] }]";
+    for (case, key) in [
+        ("column-impact", "`scheme.tau_velocity`"),
+        ("../ctvf/couette", "`scheme.artificial_viscosity`"),
+    ] {
+        let text = failure(&run(&self::load(case, &[load]), None)).to_string();
+        assert!(text.contains("not finite") && text.contains(key), "{text}");
+        assert_eq!(text.matches("`scheme.").count(), 1, "{text}");
+    }
+}
+
 const RETRIED: [&str; 4] = [
     "body.water.spacing=0.1",
     "time.cfl=2",

@@ -114,10 +114,12 @@ impl Simulation {
         let particles = built.scheme.particle_count();
         let length = built.scheme.initial_state().len();
         let identity = resume::identity(&case, built.scheme.as_ref());
-        let old = folder.filter(|_| resume).and_then(ResultsFolder::open);
+        // Without a record there is nothing to go on from.
+        let old = folder.filter(|_| resume).and_then(|path| ResultsFolder::of_run(path).ok());
         let columns = Recorder::columns(built.scheme.as_ref(), &built.probes);
         let most = resume::most_bytes(&case, &columns, length);
-        let found = old.map(|folder| resume::find(&folder, &identity, most)).transpose()?.flatten();
+        let found =
+            old.map(|(folder, _)| resume::find(&folder, &identity, most)).transpose()?.flatten();
         let (checkpoint, resumed) = found.unzip();
         let mut outputs = folder.map(|folder| Outputs::new(&case, &built, folder));
         let recorder = Recorder::new(

@@ -79,13 +79,6 @@ impl ResultsFolder {
         Ok((folder, record))
     }
 
-    /// Opens the folder `path` to go on with the run in it. `None` if there is none: the folder
-    /// does not exist or holds no record.
-    pub fn open(path: &Path) -> Option<Self> {
-        let folder = Self::at(path);
-        RunRecord::read(&folder.record()).is_ok().then_some(folder)
-    }
-
     /// Removes the files of the run that are not among `kept` (relative paths), except the record
     /// and the checkpoints: what was written after the checkpoint that the run goes on from is
     /// written again.

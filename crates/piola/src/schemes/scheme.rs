@@ -81,6 +81,9 @@ pub trait Scheme: Send {
     /// The particles (indices in memory) that particle `index` interacts with, in a fixed order.
     fn neighborhood(&self, index: usize) -> Vec<u32>;
 
+    /// What to change so that a run is more robust, for example "raise `scheme.tau_velocity`".
+    fn stability_advice(&self) -> &'static str;
+
     /// The likely cause of the collapse of a particle (index in memory), and what to change.
     fn collapse_advice(&self, index: usize) -> String;
 

@@ -44,11 +44,6 @@ impl Checkpoint {
         self.clock.step
     }
 
-    /// The state.
-    pub fn state(&self) -> &[f64] {
-        &self.state
-    }
-
     /// Refuses what cannot be a checkpoint of a run with states of `length` numbers, `observers`
     /// observers and this `end`.
     pub(super) fn check(&self, length: usize, observers: usize, end: f64) -> Result<(), Misfit> {

@@ -12,7 +12,7 @@ pub enum Failure {
     #[error(
         "particle {} (reference position {:?} m) has a value that is not finite after step \
          {step}, t = {time:.6} s: the step was too large for the state or the state had broken up \
-         before; lower `time.cfl`, or raise `scheme.tau_velocity`",
+         before; lower `time.cfl`, or {advice}",
         particle.id,
         particle.reference
     )]
@@ -25,6 +25,8 @@ pub enum Failure {
         step: u64,
         /// Simulated time in s.
         time: f64,
+        /// What else makes the scheme more robust.
+        advice: &'static str,
     },
     /// A particle has lost its volume or turned inside out.
     #[error(
@@ -53,8 +55,8 @@ pub enum Failure {
          t = {time:.6} s, where at most {limit:.4e} m/s is expected (ten times the sum of the \
          largest speed and the wave speed at the start, unless `time.max_speed` says otherwise): \
          the state has broken up, or the material is far too soft for its loads; check the \
-         numbers of the material and their units, lower `time.cfl` or raise \
-         `scheme.tau_velocity`, or raise `time.max_speed` if such speeds are meant",
+         numbers of the material and their units, lower `time.cfl` or {advice}, or raise \
+         `time.max_speed` if such speeds are meant",
         particle.id,
         particle.reference
     )]
@@ -71,6 +73,8 @@ pub enum Failure {
         step: u64,
         /// Simulated time in s.
         time: f64,
+        /// What else makes the scheme more robust.
+        advice: &'static str,
     },
     /// A fixed step is larger than the state allows.
     #[error(

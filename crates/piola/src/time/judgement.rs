@@ -27,9 +27,10 @@ impl Executor {
     ) -> Option<Failure> {
         let (step, time) = (clock.step, clock.time);
         let speed_limit = self.speed_limit(start_speeds);
+        let advice = self.scheme.stability_advice();
         if let Some(index) = health.first_not_finite {
             let particle = self.scheme.particle(index);
-            return Some(Failure::NotFinite { index, particle, step, time });
+            return Some(Failure::NotFinite { index, particle, step, time, advice });
         }
         if !(health.smallest_ratio > 0.0) {
             let index = health.smallest_ratio_particle;
@@ -54,6 +55,7 @@ impl Executor {
                 limit: speed_limit,
                 step,
                 time,
+                advice,
             });
         }
         None
@@ -93,7 +95,7 @@ impl Executor {
             let advice = if ratio < Self::CRUSHED {
                 self.scheme.collapse_advice(smallest_ratio_particle)
             } else {
-                "raise `scheme.tau_velocity`, or lower `time.min_step`".into()
+                format!("{}, or lower `time.min_step`", self.scheme.stability_advice())
             };
             return Err(Failure::StepBelowFloor {
                 index,

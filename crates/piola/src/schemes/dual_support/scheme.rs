@@ -118,6 +118,10 @@ impl<const D: usize> Scheme for DualSupport<D> {
         all
     }
 
+    fn stability_advice(&self) -> &'static str {
+        "raise `scheme.hourglass`"
+    }
+
     fn collapse_advice(&self, index: usize) -> String {
         let law = self.discrete.material(index).law.law();
         match law.name() {

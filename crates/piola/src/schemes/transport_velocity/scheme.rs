@@ -142,6 +142,10 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         self.neighbors_of(index)
     }
 
+    fn stability_advice(&self) -> &'static str {
+        "raise `scheme.artificial_viscosity`"
+    }
+
     fn collapse_advice(&self, _index: usize) -> String {
         "the density has lost its meaning there: lower `time.cfl`, raise the wave speed of the \
          fluid to ten times the speeds that occur, or raise `scheme.artificial_viscosity`"

@@ -151,6 +151,10 @@ impl<const D: usize> Scheme for Upwind<D> {
         self.support.list.row(index).to_vec()
     }
 
+    fn stability_advice(&self) -> &'static str {
+        "raise `scheme.tau_velocity`"
+    }
+
     fn collapse_advice(&self, index: usize) -> String {
         match self.law(index).law {
             VolumetricLaw::Linear { .. } => "the linear law lets a volume vanish at finite \
