@@ -21,8 +21,8 @@ pub struct Rates {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// Fills `rates` from the sides, for the fluid.
-    pub(super) fn rate_pass(&mut self) {
+    /// Fills `rates` from the sides, for the fluid at a time in s.
+    pub(super) fn rate_pass(&mut self, time: f64) {
         let mut rates = std::mem::take(&mut self.rates);
         let list = self.support.list();
         parallel::for_each_chunk(&mut rates, |first, rows| {
@@ -30,7 +30,7 @@ impl<const D: usize> TransportVelocity<D> {
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 if !list.is_passive(place) {
-                    *row = self.rates_at(place, &mut block);
+                    *row = self.rates_at(place, time, &mut block);
                 }
             }
         });
@@ -38,7 +38,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     #[inline]
-    fn rates_at(&self, place: usize, block: &mut NeighborBlock<D>) -> Rates {
+    fn rates_at(&self, place: usize, time: f64, block: &mut NeighborBlock<D>) -> Rates {
         let me = &self.sides[place];
         let h = self.support.smoothing_length();
         let softening = fluid::softening(h);
@@ -48,6 +48,9 @@ impl<const D: usize> TransportVelocity<D> {
             }
             PressureRule::StateEquation => 0.0,
         };
+        // A fluid at rest has the gradient rho g, which must not diffuse out of a free surface.
+        let number = self.support.list().numbers()[place] as usize;
+        let at_rest = self.body_force_at(number, place, time) * self.fluid.density;
         let moves = self.settings.corrections.divergence == Divergence::Transport;
         let corrections = self.settings.corrections;
         let corrects = corrections.density || corrections.pressure;
@@ -73,7 +76,8 @@ impl<const D: usize> TransportVelocity<D> {
                     fluid::exchange_scale(me.density + other.density, neighbor.square, softening);
                 let exchange =
                     fluid::diffusion(diffusivity, neighbor.square, neighbor.slope, scale);
-                sum.pressure_diffusion -= other.mass * exchange * jump;
+                let excess = jump + at_rest.dot(&neighbor.separation);
+                sum.pressure_diffusion -= other.mass * exchange * excess;
             }
         }
         if !corrections.density || self.settings.density == DensityRule::Summation {
