@@ -5,7 +5,7 @@ use piola_formulas::fluid;
 
 use super::{DensityRule, Divergence, PressureRule, Side, TransportVelocity};
 use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, total};
-use crate::parallel;
+use crate::{Vector, parallel};
 
 /// Rates of change of a particle's density and pressure, term by term, see
 /// [`super`](crate::schemes::transport_velocity).
@@ -38,8 +38,8 @@ struct Sums {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// Fills `rates` from the sides, for the fluid.
-    pub(super) fn rate_pass(&mut self) {
+    /// Fills `rates` from the sides, for the fluid at a time in s.
+    pub(super) fn rate_pass(&mut self, time: f64) {
         let mut rates = std::mem::take(&mut self.rates);
         let h = self.support.smoothing_length();
         let corrections = self.settings.corrections;
@@ -57,8 +57,17 @@ impl<const D: usize> TransportVelocity<D> {
             true => fill::<D, true>,
             false => fill::<D, false>,
         };
-        parallel::for_each_chunk(&mut rates, |first, rows| fill(self, &constants, first, rows));
+        parallel::for_each_chunk(&mut rates, |first, rows| {
+            fill(self, &constants, time, first, rows);
+        });
         self.rates = rates;
+    }
+
+    /// Gradient of the pressure of a fluid at rest, `rho0 g` in Pa/m, which must not diffuse out of
+    /// a free surface.
+    fn gradient_at_rest(&self, place: usize, time: f64) -> Vector<D> {
+        let number = self.support.list().numbers()[place] as usize;
+        self.body_force_at(number, place, time) * self.fluid.density
     }
 
     /// The sums of the particle at `place`, returned by value as those of the accelerations.
@@ -67,6 +76,7 @@ impl<const D: usize> TransportVelocity<D> {
         &self,
         place: usize,
         constants: &Constants,
+        at_rest: &Vector<D>,
         block: &mut NeighborBlock<D>,
     ) -> Sums {
         let me = &self.sides[place];
@@ -89,6 +99,7 @@ impl<const D: usize> TransportVelocity<D> {
                         others[lane],
                         &group.neighbor(lane),
                         constants,
+                        at_rest,
                     );
                 }
             }
@@ -122,6 +133,7 @@ impl Sums {
         other: &Side<D>,
         neighbor: &Neighbor<D>,
         constants: &Constants,
+        at_rest: &Vector<D>,
     ) {
         let gradient = neighbor.separation * neighbor.slope;
         let flow =
@@ -137,7 +149,8 @@ impl Sums {
         let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
         let exchange =
             fluid::diffusion(constants.diffusivity, neighbor.square, neighbor.slope, scale);
-        self.pressure_diffusion[lane] -= other.mass * exchange * jump;
+        let excess = jump + at_rest.dot(&neighbor.separation);
+        self.pressure_diffusion[lane] -= other.mass * exchange * excess;
     }
 }
 
@@ -146,6 +159,7 @@ impl Sums {
 fn fill<const D: usize, const CORRECTS: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
+    time: f64,
     first: usize,
     rows: &mut [Rates],
 ) {
@@ -153,7 +167,8 @@ fn fill<const D: usize, const CORRECTS: bool>(
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         if !scheme.support.list().is_passive(place) {
-            let sums = scheme.gather_rates::<CORRECTS>(place, constants, &mut block);
+            let at_rest = scheme.gradient_at_rest(place, time);
+            let sums = scheme.gather_rates::<CORRECTS>(place, constants, &at_rest, &mut block);
             *row = scheme.rates_of(&sums);
         }
     }

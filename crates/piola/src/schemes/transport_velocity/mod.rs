@@ -18,6 +18,10 @@
 //! (27) have other signs. The first two lines are theirs with the terms of uhat collected:
 //! `rho_a uhat_ab - (rho d)_ab = rho_a u_ab + (rho_b - rho_a) d_b`, and likewise for p.
 //!
+//! E exchanges what pressures are beyond those of a fluid at rest,
+//! `p_b - p_a - rho0 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the same; at a
+//! free surface, which has neighbours below only, the pressure of depth would diffuse out without end.
+//!
 //! Walls are layers of ghost particles, CTVF (46) to (52). Everything that a state needs to go on
 //! is in its rows: u, r, rho, p, du/dt and d of each particle.
 

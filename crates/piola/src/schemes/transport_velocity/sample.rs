@@ -9,7 +9,7 @@ impl<const D: usize> TransportVelocity<D> {
     pub(super) fn all_passes(&mut self, time: f64, state: &[f64]) {
         self.load(state);
         self.wall_pass(time);
-        self.rate_pass();
+        self.rate_pass(time);
         self.force_pass();
         self.add_body_forces(time);
     }

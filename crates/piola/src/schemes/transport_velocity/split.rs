@@ -29,7 +29,7 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         let evolves = self.settings.density == DensityRule::Continuity;
         let diffuses = matches!(self.settings.pressure, PressureRule::Edac { .. });
         if evolves || diffuses {
-            self.rate_pass();
+            self.rate_pass(middle);
         }
         let (rows, tail) = self.parts(state);
         self.book_drift(step, diffuses, rows, tail);
