@@ -19,6 +19,10 @@ pub struct SkinList<const D: usize> {
     support: f64,
     skin: f64,
     passive: Vec<bool>,
+    /// Particles that nobody sees, by number; empty if there are none.
+    excluded: Vec<bool>,
+    /// Whether the list has to be made anew, whoever moved.
+    stale: bool,
     /// Number of the particle at each place, and the reverse.
     numbers: Vec<u32>,
     places: Vec<u32>,
@@ -50,6 +54,8 @@ impl<const D: usize> SkinList<D> {
             support,
             skin,
             passive,
+            excluded: Vec::new(),
+            stale: false,
             places: numbers.clone(),
             numbers,
             positions: vec![Vector::zeros(); positions.len()],
@@ -75,6 +81,7 @@ impl<const D: usize> SkinList<D> {
         let (positions, made_at, domain) = (&self.positions, &self.made_at, &self.domain);
         let moved = |k: usize| domain.separation(&made_at[k], &positions[k]).norm_squared();
         if self.builds > 0
+            && !self.stale
             && parallel::maximum(positions.len(), 0.0, moved) <= 0.25 * self.skin * self.skin
         {
             return Ok(());
@@ -83,7 +90,14 @@ impl<const D: usize> SkinList<D> {
         self.take(&position);
         self.made_at.clone_from(&self.positions);
         self.builds += 1;
+        self.stale = false;
         Ok(())
+    }
+
+    /// Sets which particles are passive, and which neither see nor are seen, by number, from the
+    /// next update on.
+    pub fn exclude(&mut self, passive: Vec<bool>, excluded: Vec<bool>) {
+        (self.passive, self.excluded, self.stale) = (passive, excluded, true);
     }
 
     fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) {
@@ -107,8 +121,14 @@ impl<const D: usize> SkinList<D> {
         }
         let (numbers, passive) = (&self.numbers, &self.passive);
         let is_passive = |place: u32| passive[numbers[place as usize] as usize];
+        let excluded = &self.excluded;
+        let is_out = |place: u32| {
+            excluded.get(numbers[place as usize] as usize).is_some_and(|excluded| *excluded)
+        };
         let list = match passive.contains(&true) {
-            true => list.retain(|a, b| !(is_passive(a) && is_passive(b))),
+            true => {
+                list.retain(|a, b| !(is_passive(a) && is_passive(b)) && !is_out(a) && !is_out(b))
+            }
             false => list,
         };
         let key =
