@@ -151,7 +151,12 @@ fn a_fixed_step_above_a_limit_is_refused_with_the_limit() {
 
 #[test]
 fn passes_of_the_iterated_shifting_are_counted() {
-    let set = ["parameters.speed=0.2", "scheme.shifting='ipst'", "scheme.shifting_passes=4"];
+    let set = [
+        "parameters.speed=0.4",
+        "time.end=0.5",
+        "scheme.shifting='ipst'",
+        "scheme.shifting_passes=4",
+    ];
     let passes = values(&run(BULLET, &set), "step.shifting_passes");
     assert!(passes.iter().all(|passes| (0.0..=4.0).contains(passes) && passes.fract() == 0.0));
     assert!(passes.iter().any(|passes| *passes >= 1.0), "{passes:?}");
