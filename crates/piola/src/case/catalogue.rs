@@ -73,8 +73,12 @@ pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
 }
 
 /// Columns of the table of steps, after `step.`.
-pub fn step_columns() -> Vec<&'static str> {
-    observe::STEP_COLUMNS.iter().map(|(name, _)| *name).collect()
+pub fn step_columns(scheme: &str) -> Vec<&'static str> {
+    let figures: &[(&str, &str)] = match scheme {
+        "transport_velocity" => &transport_velocity::FIGURES,
+        _ => &[],
+    };
+    observe::STEP_COLUMNS.iter().chain(figures).map(|(name, _)| *name).collect()
 }
 
 /// Numbers of the run as a whole, after `run.`.

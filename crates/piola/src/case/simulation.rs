@@ -165,6 +165,12 @@ impl Simulation {
         warnings.extend(summary.warnings.iter().cloned());
         let tables = tables.lock().clone();
         warnings.extend(unbalanced(&tables));
+        let gone = removed(&tables);
+        if gone > 0.0 {
+            warnings.push(format!(
+                "{gone} of {particles} particles escaped and were removed: `step.removed` has when"
+            ));
+        }
         let mut finished = Finished { summary, tables, files: Vec::new(), warnings, particles };
         if let Some(outputs) = outputs {
             finished.files = outputs.finish(&case, &finished, build_seconds)?;
@@ -201,8 +207,13 @@ fn unbalanced(tables: &Tables) -> Option<String> {
     })
 }
 
+/// Number of particles that were removed, by schemes that do so.
+fn removed(tables: &Tables) -> f64 {
+    tables.steps.values("removed").and_then(|values| values.last().copied()).unwrap_or(0.0)
+}
+
 /// The names behind `run.`, numbers and texts of a run as a whole.
-pub(super) const RUN_QUANTITIES: [&str; 11] = [
+pub(super) const RUN_QUANTITIES: [&str; 12] = [
     "first_step",
     "smallest_step",
     "largest_step",
@@ -213,6 +224,7 @@ pub(super) const RUN_QUANTITIES: [&str; 11] = [
     "ratio_mismatch",
     "largest_speed",
     "retries",
+    "removed",
     "outcome",
 ];
 
@@ -233,6 +245,7 @@ impl Finished {
             Some("ratio_mismatch") => number(summary.worst.ratio_mismatch, "1"),
             Some("largest_speed") => number(summary.worst.largest_speed, "m/s"),
             Some("retries") => number(summary.retries.len() as f64, "1"),
+            Some("removed") => number(removed(&self.tables), "1"),
             Some("outcome") => Some(Series::Text(summary.outcome.summary())),
             Some(_) => None,
         }

@@ -21,6 +21,10 @@ pub struct SkinList<const D: usize> {
     /// many as `active`.
     ranks: Vec<u32>,
     active: u32,
+    /// Particles that nobody sees, by number; empty if there are none.
+    excluded: Vec<bool>,
+    /// Whether the list has to be made anew, whoever moved.
+    stale: bool,
     /// Number of the particle at each place, and the reverse.
     numbers: Vec<u32>,
     places: Vec<u32>,
@@ -47,14 +51,7 @@ impl<const D: usize> SkinList<D> {
         domain: Domain<D>,
     ) -> Result<Self, NeighborError> {
         let numbers: Vec<u32> = (0..positions.len() as u32).collect();
-        let active = passive.iter().filter(|&&is_passive| !is_passive).count() as u32;
-        let mut next = [0, active];
-        let rank = |&is_passive: &bool| {
-            let next = &mut next[usize::from(is_passive)];
-            *next += 1;
-            *next - 1
-        };
-        let ranks = passive.iter().map(rank).collect();
+        let (ranks, active) = rank(&passive);
         let mut list = Self {
             domain,
             support,
@@ -62,6 +59,8 @@ impl<const D: usize> SkinList<D> {
             passive,
             ranks,
             active,
+            excluded: Vec::new(),
+            stale: false,
             places: numbers.clone(),
             numbers,
             positions: vec![Vector::zeros(); positions.len()],
@@ -87,6 +86,7 @@ impl<const D: usize> SkinList<D> {
         let (positions, made_at, domain) = (&self.positions, &self.made_at, &self.domain);
         let moved = |k: usize| domain.separation(&made_at[k], &positions[k]).norm_squared();
         if self.builds > 0
+            && !self.stale
             && parallel::maximum(positions.len(), 0.0, moved) <= 0.25 * self.skin * self.skin
         {
             return Ok(());
@@ -95,7 +95,15 @@ impl<const D: usize> SkinList<D> {
         self.take(&position);
         self.made_at.clone_from(&self.positions);
         self.builds += 1;
+        self.stale = false;
         Ok(())
+    }
+
+    /// Sets which particles are passive, and which neither see nor are seen, by number, from the
+    /// next update on.
+    pub fn exclude(&mut self, passive: Vec<bool>, excluded: Vec<bool>) {
+        (self.ranks, self.active) = rank(&passive);
+        (self.passive, self.excluded, self.stale) = (passive, excluded, true);
     }
 
     fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) {
@@ -120,10 +128,14 @@ impl<const D: usize> SkinList<D> {
             ranked[rank as usize] = place as u32;
         }
         let both = [ranks.as_slice(), ranked.as_slice()];
-        let list = search_ranked(&ordered, reach, &self.domain, both, self.active)?;
+        let mut list = search_ranked(&ordered, reach, &self.domain, both, self.active)?;
         self.numbers = order.iter().map(|&place| self.numbers[place as usize]).collect();
         for (place, &number) in self.numbers.iter().enumerate() {
             self.places[number as usize] = place as u32;
+        }
+        if self.excluded.contains(&true) {
+            let is_out = |place: u32| self.excluded[self.numbers[place as usize] as usize];
+            list = list.retain(|a, b| !is_out(a) && !is_out(b));
         }
         (self.offsets, self.entries) = list.into_arrays();
         let active = self.active;
@@ -198,4 +210,16 @@ impl<const D: usize> SkinList<D> {
         let particle = 2 * size_of::<Vector<D>>() + 2 * size_of::<usize>() + 3 * size_of::<u32>();
         self.len() * particle + self.entries.len() * size_of::<u32>()
     }
+}
+
+/// Place of each number in the order of rows, and how many are not passive.
+fn rank(passive: &[bool]) -> (Vec<u32>, u32) {
+    let active = passive.iter().filter(|&&is_passive| !is_passive).count() as u32;
+    let mut next = [0, active];
+    let rank = |&is_passive: &bool| {
+        let next = &mut next[usize::from(is_passive)];
+        *next += 1;
+        *next - 1
+    };
+    (passive.iter().map(rank).collect(), active)
 }

@@ -23,7 +23,8 @@ impl SharedTables {
     }
 }
 
-/// Names and units of the columns of the table of steps, after the time.
+/// Names and units of the columns of the table of steps, after the time and before the figures of
+/// the scheme.
 pub const STEP_COLUMNS: [(&str, &str); 5] = [
     ("count", "1"),
     ("size", "s"),
@@ -116,7 +117,8 @@ impl Recorder {
         let momentum_columns =
             momentum_columns.into_iter().map(|(name, unit)| Column::new(name, unit));
         let momentum = std::iter::once(time()).chain(momentum_columns).collect();
-        let step_columns = STEP_COLUMNS.iter().map(|&(name, unit)| Column::new(name, unit));
+        let step_columns = STEP_COLUMNS.iter().chain(scheme.figure_names());
+        let step_columns = step_columns.map(|&(name, unit)| Column::new(name, unit));
         let steps = std::iter::once(time()).chain(step_columns).collect();
         Tables {
             probes: Table::new(probe_columns),
@@ -180,6 +182,7 @@ impl Recorder {
             health.ratio_mismatch,
             health.largest_speed,
         ]);
+        moment.scheme.figures(moment.state, row);
         tables.steps.push_row(row).expect(complete);
     }
 

@@ -198,6 +198,12 @@ impl<const D: usize> MovingSupport<D> {
         self.list.update(position)
     }
 
+    /// Sets which particles are passive, and which have no neighbours and are none, by number, from
+    /// the next update on.
+    pub fn exclude(&mut self, passive: Vec<bool>, excluded: Vec<bool>) {
+        self.list.exclude(passive, excluded);
+    }
+
     /// The list behind it.
     pub fn list(&self) -> &SkinList<D> {
         &self.list

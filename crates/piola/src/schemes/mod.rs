@@ -10,5 +10,5 @@ pub mod upwind;
 
 pub use initial::Initial;
 pub use momentum::{MomentumComponent, momentum_components};
-pub use scheme::{Health, Ledger, Particle, Scheme, StepLimit, snapshot};
+pub use scheme::{Escape, Health, Ledger, Particle, Scheme, StepLimit, snapshot};
 pub use split::SplitScheme;

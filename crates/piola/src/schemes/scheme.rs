@@ -51,6 +51,20 @@ pub trait Scheme: Send {
     /// of one in `limits`, which is cleared first.
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health;
 
+    /// What is known of a particle (index in memory) that [`Scheme::inspect`] has just found to have
+    /// escaped in `state`.
+    fn escape(&self, _index: usize, _state: &[f64]) -> Option<Escape> {
+        None
+    }
+
+    /// Names and units of figures of its own, which the table of steps records.
+    fn figure_names(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
+
+    /// Appends the values of [`Scheme::figure_names`] at `state`.
+    fn figures(&self, _state: &[f64], _figures: &mut Vec<f64>) {}
+
     /// The energies of `state` in J, in the order of [`Scheme::energy_names`].
     fn energies(&self, state: &[f64], energies: &mut [f64]);
 
@@ -125,6 +139,17 @@ pub struct Particle {
     pub reference: Vec<f64>,
 }
 
+/// A particle that is where no particle may be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Escape {
+    /// Where it is now, in m.
+    pub position: Vec<f64>,
+    /// Its speed in m/s.
+    pub speed: f64,
+    /// Name of the wall that it has gone through; `None` if it has left the box around everything.
+    pub wall: Option<String>,
+}
+
 /// Figures that tell whether a state is sound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Health {
@@ -142,6 +167,8 @@ pub struct Health {
     pub ratio_mismatch: f64,
     /// First particle (index in memory) with a value that is not finite.
     pub first_not_finite: Option<usize>,
+    /// First particle (index in memory) that is where it must not be.
+    pub first_escaped: Option<usize>,
 }
 
 impl Health {
@@ -154,6 +181,7 @@ impl Health {
         smallest_ratio_particle: 0,
         ratio_mismatch: 0.0,
         first_not_finite: None,
+        first_escaped: None,
     };
 
     /// The worse of two, figure by figure; `self` wins ties, so that reductions in index order
@@ -178,6 +206,7 @@ impl Health {
             },
             ratio_mismatch: self.ratio_mismatch.max(other.ratio_mismatch),
             first_not_finite: self.first_not_finite.or(other.first_not_finite),
+            first_escaped: self.first_escaped.or(other.first_escaped),
         }
     }
 }

@@ -233,7 +233,7 @@ impl Executor {
             tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
             run.warnings.extend(supersonic(tally.start_speeds));
         }
-        if let Some(failure) = self.broken(&health, clock, tally.start_speeds) {
+        if let Some(failure) = self.broken(&health, state, clock, tally.start_speeds) {
             let may_retry = run.tally.retries.len() < self.retries
                 && clock.step > 0
                 && matches!(self.control, StepControl::Cfl(_));

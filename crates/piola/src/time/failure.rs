@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::schemes::Particle;
+use crate::schemes::{Escape, Particle};
 
 /// What went wrong, where and when, with what to do about it.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -48,6 +48,33 @@ pub enum Failure {
         time: f64,
         /// The likely cause and what to change.
         advice: String,
+    },
+    /// A particle is where it must not be.
+    #[error(
+        "particle {} (reference position {:?} m) {} at {:?} m with {:.4e} m/s, after step {step}, \
+         t = {time:.6} s; if a few lost drops do not matter, `scheme.escaped = \"remove\"` takes them \
+         out and counts them; otherwise make the wall thicker than the support of the kernel and \
+         without holes, raise the wave speed of the fluid, or lower `time.cfl`",
+        particle.id,
+        particle.reference,
+        match &escape.wall {
+            Some(wall) => format!("has gone through the wall `{wall}`, and is"),
+            None => "has left the box around everything, and is".into(),
+        },
+        escape.position,
+        escape.speed
+    )]
+    Escaped {
+        /// Index of the particle in memory.
+        index: usize,
+        /// The particle.
+        particle: Particle,
+        /// Where it is, how fast, and through which wall.
+        escape: Escape,
+        /// Steps taken.
+        step: u64,
+        /// Simulated time in s.
+        time: f64,
     },
     /// A particle is much faster than anything was at the start.
     #[error(
@@ -144,6 +171,7 @@ impl Failure {
         match self {
             Self::NotFinite { .. } => "not_finite",
             Self::Inverted { .. } => "inverted",
+            Self::Escaped { .. } => "escaped",
             Self::TooFast { .. } => "too_fast",
             Self::FixedStepTooLarge { .. } => "fixed_step_too_large",
             Self::StepBelowFloor { .. } => "step_below_floor",
@@ -156,6 +184,7 @@ impl Failure {
         match self {
             Self::NotFinite { index, .. }
             | Self::Inverted { index, .. }
+            | Self::Escaped { index, .. }
             | Self::TooFast { index, .. }
             | Self::FixedStepTooLarge { index, .. }
             | Self::StepBelowFloor { index, .. } => Some(*index),

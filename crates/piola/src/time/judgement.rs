@@ -22,6 +22,7 @@ impl Executor {
     pub(super) fn broken(
         &self,
         health: &Health,
+        state: &[f64],
         clock: &Clock,
         start_speeds: [f64; 2],
     ) -> Option<Failure> {
@@ -45,6 +46,12 @@ impl Executor {
                     None => self.scheme.collapse_advice(index),
                 },
             });
+        }
+        if let Some(index) = health.first_escaped
+            && let Some(escape) = self.scheme.escape(index, state)
+        {
+            let particle = self.scheme.particle(index);
+            return Some(Failure::Escaped { index, particle, escape, step, time });
         }
         if health.largest_speed > speed_limit {
             let index = health.largest_speed_particle;

@@ -1,5 +1,6 @@
 //! The transport-velocity formulation.
 
+mod escapes;
 mod operators;
 mod runs;
 mod support;

@@ -1,7 +1,7 @@
 //! Particles turned into a weakly compressible fluid between walls.
 
 use super::bodies::{self, BodyReport};
-use super::{Built, initial, kernel, probes, selections};
+use super::{Built, initial, kernel, probes, selections, tanks};
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
@@ -10,7 +10,7 @@ use crate::geometry::{Particles, Shape};
 use crate::neighbors::{Domain, NeighborStatistics, spatial_order};
 use crate::schemes::Scheme;
 use crate::schemes::transport_velocity::{
-    Fluid, TransportVelocity, TransportVelocityError, TransportVelocityInput, Wall,
+    Fluid, Guard, TransportVelocity, TransportVelocityError, TransportVelocityInput, Wall,
 };
 
 /// Builds the scheme `transport_velocity`.
@@ -30,7 +30,7 @@ pub(super) fn build<const D: usize>(
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
     let fluid = fluid(case)?;
-    let normals = normals(case, &particles)?;
+    let (normals, shape) = normals(case, &particles)?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let motion = selections::prescribed(case, &particles, &mut problems);
@@ -48,6 +48,10 @@ pub(super) fn build<const D: usize>(
                 .into(),
         );
     }
+    let support = kernel.support_radius(smoothing_length);
+    if let Some(shape) = &shape {
+        warnings.extend(tanks::warnings(case, shape, &particles, &normals, support));
+    }
     let initial = initial(case, &particles);
     let sliding = sliding(case, &particles);
     let built = TransportVelocity::new(TransportVelocityInput {
@@ -64,7 +68,7 @@ pub(super) fn build<const D: usize>(
         body_forces: selections::body_forces(case),
         particles,
     });
-    let scheme = built.map_err(|error| {
+    let mut scheme = built.map_err(|error| {
         let (place, label) = match &error {
             TransportVelocityError::Start { .. } => {
                 (case.bodies[0].name.place, "initial values of a body")
@@ -74,6 +78,10 @@ pub(super) fn build<const D: usize>(
         };
         vec![case.problem_at(place, error.to_string(), label, None)]
     })?;
+    scheme.guard(Guard {
+        bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
+        removes: settings.removes_escaped,
+    });
     let (neighbors, poorly_supported) = statistics(&scheme);
     Ok(Built {
         scheme: Box::new(scheme),
@@ -112,17 +120,17 @@ fn walls(case: &Case) -> Vec<Wall> {
     bodies.filter_map(wall).collect()
 }
 
-/// Normals of wall particles: the shortest way out of all walls together, inside the box around
+/// The shape of all walls together, and the normals of their particles: the shortest way out of all walls together, inside the box around
 /// all bodies, so that the outer faces of a tank do not count. In a periodic box the box itself is
 /// no wall either.
 fn normals<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
-) -> Result<Vec<Vector<D>>, Vec<Problem>> {
+) -> Result<(Vec<Vector<D>>, Option<Shape<D>>), Vec<Problem>> {
     let mut normals = vec![Vector::zeros(); particles.len()];
     let is_wall: Vec<bool> = case.bodies.iter().map(|body| body.wall.is_some()).collect();
     if !is_wall.contains(&true) {
-        return Ok(normals);
+        return Ok((normals, None));
     }
     let (mut shapes, mut bounds) = (Vec::new(), None::<(Vector<D>, Vector<D>)>);
     for (body, is_wall) in case.bodies.iter().zip(&is_wall) {
@@ -135,7 +143,9 @@ fn normals<const D: usize>(
             shapes.push(shape);
         }
     }
-    let (Some(bounds), Ok(walls)) = (bounds, Shape::union(shapes)) else { return Ok(normals) };
+    let (Some(bounds), Ok(walls)) = (bounds, Shape::union(shapes)) else {
+        return Ok((normals, None));
+    };
     crate::parallel::for_each_chunk(&mut normals, |first, rows| {
         for (offset, normal) in rows.iter_mut().enumerate() {
             let number = first + offset;
@@ -145,7 +155,7 @@ fn normals<const D: usize>(
             }
         }
     });
-    Ok(normals)
+    Ok((normals, Some(walls)))
 }
 
 /// The velocities of surfaces that slide.

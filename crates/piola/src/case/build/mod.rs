@@ -5,6 +5,7 @@ mod fluids;
 mod functions;
 mod probes;
 mod selections;
+mod tanks;
 
 use std::time::{Duration, Instant};
 

@@ -89,7 +89,7 @@ impl Reader<'_, '_> {
                 Quantity::Momentum(owned)
             }
             "step" => {
-                self.known_column(text, column, &catalogue::step_columns())?;
+                self.known_column(text, column, &catalogue::step_columns(self.names.scheme))?;
                 Quantity::Step(owned)
             }
             "run" => {

@@ -35,6 +35,7 @@ pub(super) fn transport_velocity(record: &Record) -> Option<TransportVelocity> {
             free_surface: record.boolean("free_surface")?,
             density_drift: record.number("density_drift")?.value,
         },
+        removes_escaped: record.text("escaped")?.as_str() == "remove",
     })
 }
 

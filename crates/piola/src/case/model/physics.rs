@@ -160,6 +160,8 @@ pub struct TransportVelocity {
     pub smoothing_length: Located<f64>,
     /// All that the formulation itself knows.
     pub settings: transport_velocity::Settings,
+    /// Whether particles that escape are removed; otherwise the run ends.
+    pub removes_escaped: bool,
 }
 
 /// What makes a body a wall.

@@ -98,6 +98,13 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Default("false"),
             "whether free surfaces are looked for, near which shifting is limited, CTVF (44), (45)",
         ),
+        key(
+            "escaped",
+            Kind::Name(ESCAPES),
+            "",
+            Default("\"stop\""),
+            "what is done about a particle that goes through a wall or leaves the box around everything",
+        ),
     ],
 };
 
@@ -120,6 +127,11 @@ const SHIFTINGS: Choices = choices(&[
     choice("spst", "by a velocity deviation, CTVF (35)"),
     choice("ipst", "by an iterated displacement, CTVF (37) to (41)"),
     choice("none", "not at all"),
+]);
+
+const ESCAPES: Choices = choices(&[
+    choice("stop", "the run ends and names it"),
+    choice("remove", "it is taken out of the interaction, and counted in `step.removed`"),
 ]);
 
 pub(super) static WALL: TableSpec = TableSpec {

@@ -70,6 +70,7 @@ impl<const D: usize> DualSupport<D> {
                 smallest_ratio_particle: a,
                 ratio_mismatch: 0.0,
                 first_not_finite: None,
+                first_escaped: None,
             },
             stiffening: (modulus / at_rest).max(0.0).sqrt(),
         }

@@ -168,6 +168,8 @@ impl<const D: usize> TransportVelocity<D> {
             found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
             iteration: Iteration::default(),
             chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
+            guard: None,
+            removed: Vec::new(),
             lost: None,
             start: Vec::new(),
             body_forces: input.body_forces,

@@ -67,7 +67,7 @@ impl<const D: usize> Forces<D> {
 impl<const D: usize> Forces<D> {
     /// The accelerations that do not come in pairs on the line between two particles, in the
     /// order of the ways in which momentum enters.
-    pub(super) fn ways_in(&self) -> [&Vector<D>; super::IMPULSES.len()] {
+    pub(super) fn ways_in(&self) -> [&Vector<D>; super::ENTERING] {
         [&self.walls, &self.body_force, &self.viscosity, &self.transport]
     }
 }

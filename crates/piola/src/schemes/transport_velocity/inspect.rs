@@ -39,6 +39,9 @@ impl<const D: usize> TransportVelocity<D> {
     ///
     /// All are scaled by the CFL number, which the paper has as 0.25.
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        if self.guard.is_some() {
+            self.load(state);
+        }
         let mut figures = std::mem::take(&mut self.chunk_figures);
         let rows = &state[..self.particles.len() * Row::<D>::LENGTH];
         rows.par_chunks(CHUNK * Row::<D>::LENGTH)
@@ -60,7 +63,14 @@ impl<const D: usize> TransportVelocity<D> {
             let step = (h / worst.acceleration.0.sqrt()).sqrt();
             limits.push(limit("acceleration", step, worst.acceleration.1));
         }
-        worst.health
+        let mut health = worst.health;
+        if let Some((guard, _)) = &self.guard
+            && !guard.removes
+            && health.first_not_finite.is_none()
+        {
+            health.first_escaped = self.escaped(state).first().copied();
+        }
+        health
     }
 
     fn look_at_rows(&self, first: usize, rows: &[f64]) -> ChunkFigures {

@@ -7,12 +7,12 @@
 use std::ops::Range;
 
 use super::{
-    ACCELERATING, IMPULSES, MECHANISMS, PRESSURE, PRESSURE_DIFFUSION, Row, TRANSPORT,
-    TransportVelocity,
+    ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PRESSURE, PRESSURE_DIFFUSION, REMOVED, Row,
+    TRANSPORT, TransportVelocity,
 };
-use crate::parallel;
 use crate::schemes::momentum::{self, MOST_COMPONENTS};
 use crate::schemes::momentum_components;
+use crate::{Vector, parallel};
 
 /// Where the sums over all particles stand behind the rows of a state.
 pub(super) struct Tail {
@@ -21,7 +21,7 @@ pub(super) struct Tail {
 }
 
 /// Numbers that a kick needs of each particle.
-const KICK: usize = 2 * ACCELERATING + IMPULSES.len() * MOST_COMPONENTS;
+const KICK: usize = 2 * ACCELERATING + ENTERING * MOST_COMPONENTS;
 
 impl Tail {
     pub fn new(dimension: usize) -> Self {
@@ -39,12 +39,30 @@ impl Tail {
 
     /// `P_k`, then `Q_k`, then the force of each way in by component.
     fn kick(&self) -> Range<usize> {
-        Self::after(self.impulses().end, 2 * ACCELERATING + IMPULSES.len() * self.components)
+        Self::after(self.impulses().end, 2 * ACCELERATING + ENTERING * self.components)
+    }
+
+    /// Where the number of passes of the last shifting stands.
+    pub fn passes(&self) -> usize {
+        self.kick().end
     }
 
     /// Numbers behind the rows.
     pub fn length(&self) -> usize {
-        self.kick().end
+        self.passes() + 1
+    }
+
+    /// Books that `energy` in J and the momentum `momentum` at `position` are taken away.
+    pub fn book_removal<const D: usize>(
+        &self,
+        energy: f64,
+        position: &Vector<D>,
+        momentum: &Vector<D>,
+        tail: &mut [f64],
+    ) {
+        tail[REMOVED] -= energy;
+        let last = (IMPULSES.len() - 1) * self.components;
+        momentum::add_moments(position, &-momentum, &mut tail[self.impulses()][last..]);
     }
 }
 
@@ -84,7 +102,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// `1 / (rho0 c)^2`.
-    fn compliance(&self) -> f64 {
+    pub(super) fn compliance(&self) -> f64 {
         (self.fluid.density * self.fluid.wave_speed).powi(-2)
     }
 
@@ -159,8 +177,8 @@ impl<const D: usize> TransportVelocity<D> {
         tail[TRANSPORT] += sums[1];
         tail[PRESSURE_DIFFUSION] += sums[2];
         let layout = Tail::new(D);
-        // The corrections are the last way in.
-        let last = (IMPULSES.len() - 1) * layout.components;
+        // The corrections are the last of the ways in of accelerations.
+        let last = (ENTERING - 1) * layout.components;
         for (kept, sum) in tail[layout.impulses()][last..].iter_mut().zip(&sums[3..]) {
             *kept += sum;
         }

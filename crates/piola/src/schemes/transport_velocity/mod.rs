@@ -28,6 +28,7 @@
 mod build;
 mod density;
 mod drift;
+mod escape;
 mod forces;
 mod gather;
 mod inspect;
@@ -48,8 +49,9 @@ use crate::operators::MovingSupport;
 
 pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
 pub use drift::Rates;
+pub use escape::Guard;
 pub use forces::Forces;
-pub use scheme::FIELDS;
+pub use scheme::{FIELDS, FIGURES};
 pub use settings::{
     Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings, Shifting, Slip,
 };
@@ -90,6 +92,11 @@ pub struct TransportVelocity<const D: usize> {
     found: Vec<(Vector<D>, bool)>,
     iteration: Iteration<D>,
     chunk_figures: Vec<ChunkFigures>,
+    /// Who looks for particles that escape, with the width of everything at the start in m.
+    guard: Option<(Guard, f64)>,
+    /// The particles that have been removed, by number; empty where none ever is. They are passive,
+    /// as walls are.
+    removed: Vec<bool>,
     /// The first particle whose place was no number, if the neighbours could not be found.
     lost: Option<usize>,
 }
@@ -101,7 +108,7 @@ pub const ENERGIES: [&str; 2] = ["kinetic", "compression"];
 ///
 /// `pressure` is what the exchange between kinetic energy and that of compression fails to
 /// conserve: the discrete force and divergence are not exact adjoints.
-pub const MECHANISMS: [&str; 7] = [
+pub const MECHANISMS: [&str; 8] = [
     "pressure",
     "viscosity",
     "artificial_viscosity",
@@ -109,18 +116,22 @@ pub const MECHANISMS: [&str; 7] = [
     "walls",
     "body_force",
     "pressure_diffusion",
+    "removed",
 ];
 
 /// The ways in which momentum enters, in the order of the state's tail. Viscous forces act along
 /// `u_ab` and turn the fluid; the corrections neither come in pairs, nor do particles move along
-/// their velocity.
-pub const IMPULSES: [&str; 4] = ["walls", "body_force", "viscosity", "corrections"];
+/// their velocity. What is removed takes its momentum along.
+pub const IMPULSES: [&str; 5] = ["walls", "body_force", "viscosity", "corrections", "removed"];
 
 const PRESSURE: usize = 0;
 const TRANSPORT: usize = 3;
 const PRESSURE_DIFFUSION: usize = 6;
+const REMOVED: usize = 7;
 /// The mechanisms that accelerate, which stand first.
 const ACCELERATING: usize = 6;
+/// The ways in of accelerations, which stand first.
+const ENTERING: usize = 4;
 
 /// Where the unknowns stand in a row of the state.
 struct Row<const D: usize>;

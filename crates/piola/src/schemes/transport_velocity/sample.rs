@@ -74,7 +74,10 @@ impl<const D: usize> TransportVelocity<D> {
                 let normal = self.openings.get(place).map_or(Vector::zeros(), |o| o.normal);
                 values.extend_from_slice(normal.as_slice());
             }
-            "wall" => values.push(f64::from(self.is_wall[number])),
+            "wall" => {
+                let is_wall = self.is_wall[number] && !Self::is_removed(row);
+                values.push(f64::from(is_wall));
+            }
             "normal" => values.extend_from_slice(self.normal(number).as_slice()),
             "neighbors" => values.push(self.neighbor_count(place) as f64),
             "mass" => values.push(self.mass[number]),
@@ -115,7 +118,7 @@ impl<const D: usize> TransportVelocity<D> {
         sum
     }
 
-    fn normal(&self, number: usize) -> Vector<D> {
+    pub(super) fn normal(&self, number: usize) -> Vector<D> {
         let wall = self.walls.binary_search_by_key(&(number as u32), |wall| wall.number);
         wall.map_or(Vector::zeros(), |wall| self.walls[wall].normal)
     }

@@ -1,8 +1,9 @@
 //! The transport-velocity formulation as integrators, clock and output see it.
 
+use super::ledger::Tail;
 use super::{ENERGIES, IMPULSES, MECHANISMS, Row, TransportVelocity};
 use crate::fields::{FieldDescription, FieldKind};
-use crate::schemes::{Health, Particle, Scheme, SplitScheme, StepLimit};
+use crate::schemes::{Escape, Health, Particle, Scheme, SplitScheme, StepLimit};
 
 const fn field(
     name: &'static str,
@@ -32,6 +33,9 @@ pub const FIELDS: [FieldDescription; 16] = [
     field("neighbors", "1", FieldKind::Scalar, "number of neighbours inside the support"),
     field("mass", "kg", FieldKind::Scalar, "mass, for 1 m in missing dimensions"),
 ];
+
+/// Names and units of the figures of the formulation.
+pub const FIGURES: [(&str, &str); 2] = [("shifting_passes", "1"), ("removed", "1")];
 
 impl<const D: usize> Scheme for TransportVelocity<D> {
     fn name(&self) -> &'static str {
@@ -100,6 +104,19 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.look(state, limits)
+    }
+
+    fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
+        self.escape_of(index, state)
+    }
+
+    fn figure_names(&self) -> &'static [(&'static str, &'static str)] {
+        &FIGURES
+    }
+
+    fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
+        let tail = &state[self.particles.len() * Row::<D>::LENGTH..];
+        figures.extend([tail[Tail::new(D).passes()], self.removed_count(state)]);
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {

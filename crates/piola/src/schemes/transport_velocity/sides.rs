@@ -45,6 +45,9 @@ impl<const D: usize> TransportVelocity<D> {
     /// Finds the neighbours at the positions of `state` and fills the sides of all particles.
     /// Those of walls are completed by the pass over walls.
     pub(super) fn load(&mut self, state: &[f64]) {
+        if !self.removed.is_empty() {
+            self.follow_removals(state);
+        }
         let updated = self.support.update(|number| Row::<D>::position(Row::<D>::of(state, number)));
         self.lost = updated.is_err().then(|| {
             let lost = |row: &[f64]| !Row::<D>::position(row).iter().all(|x| x.is_finite());

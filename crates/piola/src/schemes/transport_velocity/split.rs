@@ -60,6 +60,7 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
     }
 
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
+        self.remove_escaped(state);
         let algebraic = self.settings.pressure == PressureRule::StateEquation;
         let before = if algebraic { self.compression_energy(state) } else { 0.0 };
         self.load(state);

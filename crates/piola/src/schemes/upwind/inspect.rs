@@ -128,6 +128,7 @@ impl<const D: usize> Upwind<D> {
             smallest_ratio_particle: a,
             ratio_mismatch: (evolved - determinant).abs(),
             first_not_finite: None,
+            first_escaped: None,
         };
         if !(health.smallest_ratio > 0.0) {
             return ChunkFigures { health, ..ChunkFigures::NEUTRAL };

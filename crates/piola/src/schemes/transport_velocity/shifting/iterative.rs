@@ -1,6 +1,7 @@
 //! IPST: displacements iterated until particles are even.
 
 use crate::operators::{Needs, NeighborBlock};
+use crate::schemes::transport_velocity::ledger::Tail;
 use crate::schemes::transport_velocity::{Opening, Row, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
@@ -48,6 +49,7 @@ impl<const D: usize> TransportVelocity<D> {
             let places = self.support.list().places().iter();
             iteration.openings.extend(places.map(|&place| self.openings[place as usize]));
         }
+        let mut passes = 0.0;
         for _ in 0..most_passes {
             let positions = &iteration.positions;
             // Places that are lost are noticed when the state is loaded.
@@ -59,6 +61,7 @@ impl<const D: usize> TransportVelocity<D> {
             if (largest - iteration.even).abs() <= tolerance {
                 break;
             }
+            passes += 1.0;
             let (found, places) = (&iteration.found, self.support.list().places());
             parallel::for_each_chunk(&mut iteration.positions, |first, rows| {
                 for (row, &place) in rows.iter_mut().zip(&places[first..]) {
@@ -72,6 +75,7 @@ impl<const D: usize> TransportVelocity<D> {
             let deviation = (positions[number] - Row::<D>::position(row)) / step;
             row[Row::<D>::DEVIATION..][..D].copy_from_slice(deviation.as_slice());
         });
+        state[count * Row::<D>::LENGTH + Tail::new(D).passes()] = passes;
         self.iteration = iteration;
     }
 
@@ -107,6 +111,7 @@ impl<const D: usize> TransportVelocity<D> {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
+                *row = (Vector::zeros(), 0.0);
                 let (mut sum, mut direction) = (support.centre(), Vector::zeros());
                 let opening = openings.get(list.numbers()[place] as usize);
                 let within = opening.map(|opening| opening.reach).filter(|&reach| reach < h);

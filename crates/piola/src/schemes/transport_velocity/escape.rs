@@ -1,0 +1,178 @@
+//! Particles of the fluid that leave it: through a wall, or out of the box around everything.
+
+use super::ledger::Tail;
+use super::{Row, TransportVelocity};
+use crate::Vector;
+use crate::operators::{Needs, NeighborBlock};
+use crate::parallel;
+use crate::schemes::Escape;
+
+/// What a run does about particles that escape.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Guard {
+    /// Names of the bodies by their numbers.
+    pub bodies: Vec<String>,
+    /// Whether such particles are removed; otherwise they are a fault of the state.
+    pub removes: bool,
+}
+
+/// What of a spacing a particle may be behind the first layer of a wall. The layer may stand on
+/// the wall's face, which the fluid touches up to round-off.
+const TOLERANCE: f64 = 0.1;
+
+/// The density in a row that says that its particle has been removed.
+const REMOVED: f64 = 0.0;
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Lets the scheme look for particles that escape. Without walls there is nothing to escape
+    /// from.
+    ///
+    /// A particle has gone through a wall if it is behind the plane of the nearest wall particle,
+    /// and has left the box around everything if it is further from that of the walls, along an
+    /// axis that is not periodic, than everything is wide at the start.
+    pub fn guard(&mut self, guard: Guard) {
+        let position = &self.particles.position;
+        let Some(&first) = position.first().filter(|_| !self.walls.is_empty()) else { return };
+        let low = position.iter().fold(first, |low, x| low.inf(x));
+        let high = position.iter().fold(first, |high, x| high.sup(x));
+        if guard.removes {
+            self.removed = vec![false; position.len()];
+        }
+        self.guard = Some((guard, (high - low).max()));
+    }
+
+    /// Whether a row is of a particle that has been removed.
+    pub(super) fn is_removed(row: &[f64]) -> bool {
+        row[Row::<D>::DENSITY] == REMOVED
+    }
+
+    /// Takes particles out of the interaction, or back into it, as `state` has them.
+    pub(super) fn follow_removals(&mut self, state: &[f64]) {
+        let removed = &self.removed;
+        let differs = |number: usize| {
+            f64::from(Self::is_removed(Row::<D>::of(state, number)) != removed[number])
+        };
+        if parallel::maximum(removed.len(), 0.0, differs) == 0.0 {
+            return;
+        }
+        for number in 0..self.removed.len() {
+            let is_removed = Self::is_removed(Row::<D>::of(state, number));
+            if is_removed != self.removed[number] {
+                (self.removed[number], self.is_wall[number]) = (is_removed, is_removed);
+            }
+        }
+        self.support.exclude(self.is_wall.clone(), self.removed.clone());
+    }
+
+    /// The particles that have escaped in `state`, which has been loaded, by number.
+    pub(super) fn escaped(&self, state: &[f64]) -> Vec<usize> {
+        let Some(bounds) = self.bounds(state).filter(|_| self.lost.is_none()) else {
+            return Vec::new();
+        };
+        let count = self.particles.len();
+        let any = parallel::maximum(count, 0.0, |place| {
+            f64::from(self.escape_at(place, &bounds).is_some())
+        });
+        if any == 0.0 {
+            return Vec::new();
+        }
+        let places = self.support.list().places().iter().enumerate();
+        let escaped =
+            places.filter(|(_, place)| self.escape_at(**place as usize, &bounds).is_some());
+        escaped.map(|(number, _)| number).collect()
+    }
+
+    /// What is known of a particle that has escaped in `state`, which has been loaded.
+    pub(super) fn escape_of(&self, number: usize, state: &[f64]) -> Option<Escape> {
+        let (guard, bounds) = (&self.guard.as_ref()?.0, self.bounds(state)?);
+        let wall = self.escape_at(self.support.list().places()[number] as usize, &bounds)?;
+        let row = Row::<D>::of(state, number);
+        let name = |wall: u32| guard.bodies.get(self.particles.body[wall as usize] as usize);
+        Some(Escape {
+            position: Row::<D>::position(row).iter().copied().collect(),
+            speed: Row::<D>::velocity(row).norm(),
+            wall: wall.map(|wall| name(wall).cloned().unwrap_or_default()),
+        })
+    }
+
+    /// The box that the fluid may be in, if anybody asks.
+    fn bounds(&self, state: &[f64]) -> Option<(Vector<D>, Vector<D>)> {
+        let reach = Vector::repeat(self.guard.as_ref()?.1);
+        let mut bounds: Option<(Vector<D>, Vector<D>)> = None;
+        for wall in &self.walls {
+            let position = Row::<D>::position(Row::<D>::of(state, wall.number as usize));
+            let (low, high) = bounds.unwrap_or((position, position));
+            bounds = Some((low.inf(&position), high.sup(&position)));
+        }
+        bounds.map(|(low, high)| (low - reach, high + reach))
+    }
+
+    /// The number of the wall particle behind which the one at `place` is, or `Some(None)` if it
+    /// has left the bounds.
+    fn escape_at(&self, place: usize, bounds: &(Vector<D>, Vector<D>)) -> Option<Option<u32>> {
+        let list = self.support.list();
+        if list.is_passive(place) {
+            return None;
+        }
+        let position = &list.positions()[place];
+        let periodic = list.domain().periodic();
+        if (0..D).any(|axis| {
+            let inside = bounds.0[axis]..=bounds.1[axis];
+            periodic[axis].is_none() && !inside.contains(&position[axis])
+        }) {
+            return Some(None);
+        }
+        let mut nearest = None::<(f64, Vector<D>, usize)>;
+        let (mut block, mut rest) = (NeighborBlock::default(), self.support.passive(place));
+        while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
+            for neighbor in block.iter() {
+                if nearest.is_none_or(|(square, ..)| neighbor.square < square) {
+                    nearest = Some((neighbor.square, neighbor.separation, neighbor.place));
+                }
+            }
+        }
+        let (_, separation, wall) = nearest?;
+        let number = list.numbers()[wall];
+        let height = separation.dot(&self.normal(number as usize));
+        (height < -TOLERANCE * self.particles.spacing[0]).then_some(Some(number))
+    }
+
+    /// Removes what has escaped in `state`, if that is what is to be done: such particles rest where
+    /// they were found and nothing feels them. Their energy and momentum leave by ways of their own.
+    pub(super) fn remove_escaped(&mut self, state: &mut [f64]) {
+        if self.removed.is_empty() {
+            return;
+        }
+        self.load(state);
+        let escaped = self.escaped(state);
+        if escaped.is_empty() {
+            return;
+        }
+        let layout = Tail::new(D);
+        let compliance = self.compliance();
+        let (rows, tail) = self.parts(state);
+        for number in escaped {
+            let mass = self.mass[number];
+            let row = &mut rows[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            let (velocity, pressure) = (Row::<D>::velocity(row), row[Row::<D>::PRESSURE]);
+            let energy = velocity.norm_squared() + compliance * pressure * pressure;
+            layout.book_removal(
+                0.5 * mass * energy,
+                &Row::<D>::position(row),
+                &(velocity * mass),
+                tail,
+            );
+            let position = Row::<D>::position(row);
+            row.fill(0.0);
+            row[Row::<D>::POSITION..][..D].copy_from_slice(position.as_slice());
+            row[Row::<D>::DENSITY] = REMOVED;
+        }
+    }
+
+    /// Number of particles that have been removed in `state`.
+    pub(super) fn removed_count(&self, state: &[f64]) -> f64 {
+        parallel::sum(self.removed.len(), |number| {
+            f64::from(Self::is_removed(Row::<D>::of(state, number)))
+        })
+    }
+}

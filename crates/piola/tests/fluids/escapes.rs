@@ -1,0 +1,182 @@
+//! Fluid that gets out: it is named, or removed and accounted for; walls that will not hold it.
+
+use std::sync::atomic::AtomicBool;
+
+use piola::case::{self, Case, Finished, LoadOptions};
+use piola::observe::Series;
+use piola::time::{Failure, Outcome};
+
+/// A block of fluid above a floor that it hits at three times its wave speed, so that it goes
+/// through.
+const BULLET: &str = r#"
+version = 1
+title = "A block of fluid falls onto a floor"
+dimension = 2
+
+[parameters]
+speed = 3.0
+layers = 3
+hole = 5.0
+gap = 0.1
+
+[[body]]
+name = "block"
+shape = { kind = "box", min = [0.0, 0.1], max = [0.4, 0.5] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 1.0, viscosity = 0.0 }
+initial = { velocity = ["0", "-speed"] }
+
+[[body]]
+name = "floor"
+shape = { kind = "difference", from = { kind = "box", min = [-1.0, "-0.05 * layers"], max = [1.4, 0.0] }, remove = [{ kind = "box", min = ["hole", -1.0], max = ["hole + gap", 1.0] }] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 1.0, viscosity = 0.0 }
+wall = { slip = "no" }
+
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+
+[time]
+end = 0.2
+
+[output]
+every = 0.1
+table_every = 0.01
+"#;
+
+fn read(text: &str, set: &[&str]) -> Case {
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, ..LoadOptions::default() };
+    case::parse(text, "test", &options).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn run(text: &str, set: &[&str]) -> Finished {
+    let simulation = case::build(&read(text, set)).unwrap_or_else(|problems| panic!("{problems}"));
+    simulation.run(None, &AtomicBool::new(false), &mut |_| {}).expect("no files are written")
+}
+
+fn failure(finished: &Finished) -> &Failure {
+    match &finished.summary.outcome {
+        Outcome::Failed(failure) => failure,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn values(finished: &Finished, name: &str) -> Vec<f64> {
+    match finished.quantity(name) {
+        Some(Series::Curve { values, .. }) => values,
+        Some(Series::Number { value, .. }) => vec![value],
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+#[test]
+fn what_goes_through_a_wall_is_named_at_once() {
+    let finished = run(BULLET, &[]);
+    let Failure::Escaped { escape, time, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    assert_eq!(escape.wall.as_deref(), Some("floor"));
+    // The first layer stands 0.025 m below the face; in a step the block moves by 0.25 * 0.05 m at
+    // most, and no faster than it started by much.
+    assert!((-0.05..-0.025).contains(&escape.position[1]), "{escape:?}");
+    assert!(*time > 0.03 && *time < 0.1, "it was 0.125 m above: {time}");
+    assert!(escape.speed > 0.1 && escape.speed < 30.0);
+    let message = failure(&finished).to_string();
+    for part in ["`floor`", "scheme.escaped", "m/s"] {
+        assert!(message.contains(part), "{message}");
+    }
+    assert_eq!(finished.summary.outcome.summary(), "failed: escaped");
+    // What the fluid does at a speed that walls are for is no escape.
+    let slow = run(BULLET, &["parameters.speed=0.2", "time.end=0.6"]);
+    assert_eq!(slow.summary.outcome, Outcome::Completed);
+}
+
+#[test]
+fn what_is_removed_leaves_by_ways_of_its_own() {
+    for pressure in ["edac", "state_equation"] {
+        let law = format!("scheme.pressure='{pressure}'");
+        let set = ["scheme.escaped='remove'", law.as_str()];
+        let finished = run(BULLET, &set);
+        assert_eq!(finished.summary.outcome, Outcome::Completed);
+        let removed = values(&finished, "step.removed");
+        assert!(removed.windows(2).all(|pair| pair[1] >= pair[0]), "none comes back");
+        assert!(removed[0] == 0.0 && removed.last() >= Some(&1.0), "{removed:?}");
+        assert_eq!(values(&finished, "run.removed"), removed[removed.len() - 1..]);
+        let told = format!("{} of", removed[removed.len() - 1]);
+        assert!(finished.warnings.iter().any(|text| text.contains(&told)));
+        // 160 kg at 3 m/s: 720 J and 480 kg m/s; the sums are round-off.
+        let largest =
+            |name: &str| values(&finished, name).iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let taken = values(&finished, "energy.removed");
+        assert!(taken.last() < Some(&-0.1), "what is removed moves: {taken:?}");
+        assert!(largest("energy.balance") < 1e-9, "{:e}", largest("energy.balance"));
+        let impulse = values(&finished, "momentum.removed.linear.y");
+        assert!(impulse.last() > Some(&0.01), "it went down: {impulse:?}");
+        for component in ["linear.x", "linear.y"] {
+            let balance = largest(&format!("momentum.balance.{component}"));
+            assert!(balance < 1e-9, "{component}: {balance:e}");
+        }
+    }
+}
+
+#[test]
+fn what_leaves_the_box_is_named() {
+    let set = ["body.block.initial.velocity=['0', '20']", "time.end=1", "time.max_speed=100"];
+    let finished = run(BULLET, &set);
+    let Failure::Escaped { escape, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    // The walls end half a spacing below 0 and everything is 2.35 m wide.
+    assert_eq!(escape.wall, None);
+    assert!((2.3..2.6).contains(&escape.position[1]), "{escape:?}");
+    assert!(failure(&finished).to_string().contains("left the box"));
+}
+
+#[test]
+fn a_fixed_step_above_a_limit_is_refused_with_the_limit() {
+    let finished = run(BULLET, &["parameters.speed=0.5", "time.step=0.05"]);
+    let Failure::FixedStepTooLarge { step, stable, limiter, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    // h / (c + |u|) = 0.05 / 1.5 s, theory (34).
+    assert_eq!((*step, *limiter), (0.05, "acoustic"));
+    assert!((stable - 0.05 / 1.5).abs() < 1e-12);
+    assert!(failure(&finished).to_string().contains("3.3333e-2 s"));
+    assert_eq!(finished.summary.steps, 0);
+}
+
+#[test]
+fn passes_of_the_iterated_shifting_are_counted() {
+    let set = [
+        "parameters.speed=0.4",
+        "time.end=0.5",
+        "scheme.shifting='ipst'",
+        "scheme.shifting_passes=4",
+    ];
+    let passes = values(&run(BULLET, &set), "step.shifting_passes");
+    assert!(passes.iter().all(|passes| (0.0..=4.0).contains(passes) && passes.fract() == 0.0));
+    assert!(passes.iter().any(|passes| *passes >= 1.0), "{passes:?}");
+    let none = values(&run(BULLET, &["parameters.speed=0.2"]), "step.shifting_passes");
+    assert!(none.iter().all(|passes| *passes == 0.0));
+}
+
+#[test]
+fn walls_that_will_not_hold_are_warned_of() {
+    let warnings = |set: &[&str]| {
+        let mut simulation = case::build(&read(BULLET, set)).expect("the case can be built");
+        simulation.plan().warnings
+    };
+    let has = |warnings: &[String], part: &str| warnings.iter().any(|text| text.contains(part));
+    let sound = warnings(&["parameters.speed=0.2"]);
+    assert!(sound.is_empty(), "three layers are as thick as the support: {sound:?}");
+    let thin = warnings(&["parameters.speed=0.2", "parameters.layers=2"]);
+    assert!(has(&thin, "`floor` is about") && has(&thin, "3 layers"), "{thin:?}");
+    let hole = warnings(&["parameters.speed=0.2", "parameters.hole=1.0"]);
+    assert!(has(&hole, "`floor` has a gap of about 1.000e-1 m at [0.9"), "{hole:?}");
+    let wide = warnings(&["parameters.speed=0.2", "parameters.hole=1.0", "parameters.gap=0.2"]);
+    assert!(wide.is_empty(), "wider than the support: {wide:?}");
+}
