@@ -9,7 +9,7 @@ use super::spec::Choice;
 use crate::fields::FieldDescription;
 use crate::observe;
 use crate::observe::reduce::{REDUCTIONS, ReductionEntry};
-use crate::schemes::{momentum_components, transport_velocity, upwind};
+use crate::schemes::{dual_support, momentum_components, transport_velocity, upwind};
 use crate::time::IntegratorKind;
 
 /// The kernels.
@@ -46,6 +46,7 @@ pub fn fields(scheme: &str) -> &'static [FieldDescription] {
     match scheme {
         "upwind" => &upwind::FIELDS,
         "transport_velocity" => &transport_velocity::FIELDS,
+        "dual_support" => &dual_support::FIELDS,
         _ => &[],
     }
 }
@@ -57,6 +58,9 @@ pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
         "transport_velocity" => {
             observe::energy_columns(&transport_velocity::ENERGIES, &transport_velocity::MECHANISMS)
         }
+        "dual_support" => {
+            observe::energy_columns(&dual_support::ENERGIES, &dual_support::MECHANISMS)
+        }
         _ => Vec::new(),
     }
 }
@@ -66,6 +70,7 @@ pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
     let impulses: &[&str] = match scheme {
         "upwind" => &upwind::IMPULSES,
         "transport_velocity" => &transport_velocity::IMPULSES,
+        "dual_support" => &dual_support::IMPULSES,
         _ => return Vec::new(),
     };
     let columns = observe::momentum_columns(momentum_components(dimension), impulses);

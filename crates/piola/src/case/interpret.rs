@@ -18,6 +18,7 @@ mod fluids;
 mod members;
 mod observers;
 mod physics;
+mod solids;
 mod sweeps;
 
 /// Which of the settings of a case file is read.
@@ -203,7 +204,9 @@ impl Reader<'_, '_> {
     }
 
     fn time(&mut self, record: &Record) -> Option<Time> {
-        let splits = self.names.scheme == "transport_velocity";
+        let scheme = self.names.scheme;
+        // Whether it can be split, and whether it must be.
+        let (splits, only_splits) = (scheme != "upwind", scheme == "transport_velocity");
         let (cfl, step) = (record.number("cfl"), record.number("step"));
         if let (Some(_), Some(place)) = (record.key_place("cfl"), record.key_place("step")) {
             let message = "`cfl` and `step` cannot be given both";
@@ -216,7 +219,12 @@ impl Reader<'_, '_> {
             (_, Some(step)) => step.map(StepControl::Fixed),
             (Some(cfl), None) => cfl.map(StepControl::Cfl),
             (None, None) => {
-                Located::new(StepControl::Cfl(if splits { 0.25 } else { 0.3 }), record.place)
+                let cfl = match scheme {
+                    "transport_velocity" => 0.25,
+                    "dual_support" => 0.8,
+                    _ => 0.3,
+                };
+                Located::new(StepControl::Cfl(cfl), record.place)
             }
         };
         let natural = if splits { IntegratorKind::KickDriftKick } else { IntegratorKind::TvdRk2 };
@@ -231,7 +239,7 @@ impl Reader<'_, '_> {
                 Problem::new(integrator.place, message, "of another scheme").help("use `tvd_rk2`"),
             );
         }
-        if splits && integrator.value != IntegratorKind::KickDriftKick.name() {
+        if only_splits && integrator.value != IntegratorKind::KickDriftKick.name() {
             let message =
                 format!("the scheme `{}` keeps its accelerations in its state", self.names.scheme);
             self.report(
@@ -290,6 +298,7 @@ impl Reader<'_, '_> {
     fn scheme(&mut self, record: &Record) -> Option<Located<Scheme>> {
         let scheme = match record.kind {
             "transport_velocity" => Scheme::TransportVelocity(fluids::transport_velocity(record)?),
+            "dual_support" => Scheme::DualSupport(self.dual_support(record)?),
             _ => Scheme::Upwind(physics::upwind(record)?),
         };
         Some(Located::new(scheme, record.place))

@@ -11,6 +11,7 @@ mod checks;
 mod fluids;
 mod geometry;
 mod observers;
+mod solids;
 
 /// The case file as a whole.
 pub static CASE: TableSpec = TableSpec {
@@ -134,7 +135,7 @@ static SCHEME: TaggedSpec = TaggedSpec {
     title: "[scheme]",
     meaning: "The formulation and its settings.",
     common: &[],
-    kinds: &[UPWIND, fluids::TRANSPORT_VELOCITY],
+    kinds: &[UPWIND, fluids::TRANSPORT_VELOCITY, solids::DUAL_SUPPORT],
 };
 
 const UPWIND: KindSpec = KindSpec {
@@ -224,15 +225,15 @@ static TIME: TableSpec = TableSpec {
             "integrator",
             Kind::Name(Choices::Registry(catalogue::integrators)),
             "",
-            Derived("`tvd_rk2`; `kick_drift_kick` for the scheme `transport_velocity`"),
+            Derived("`kick_drift_kick`; `tvd_rk2` for the scheme `upwind`"),
             "time integrator",
         ),
         key(
             "cfl",
             Kind::Number(Interval::POSITIVE),
             "1",
-            Derived("0.3 (`transport_velocity`: 0.25) unless `step` is given"),
-            "share of the time that a wave needs from particle to particle",
+            Derived("0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8) unless `step` is given"),
+            "share of the time that a wave needs from particle to particle; with `dual_support`, of the largest stable step of central differences",
         ),
         key(
             "step",

@@ -2,10 +2,15 @@
 
 use thiserror::Error;
 
+use crate::neighbors::NeighborError;
+
 /// An operator that cannot be built on the given particles.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum OperatorError {
+    /// There is no list of neighbours.
+    #[error(transparent)]
+    Neighbors(#[from] NeighborError),
     /// Too few neighbours, or neighbours in a plane or line, for a correction matrix.
     #[error(
         "particle {id} at {position:?} has {neighbors} neighbours, which do not span \

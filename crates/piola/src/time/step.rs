@@ -51,6 +51,9 @@ pub struct StepTooLarge {
 /// A step may exceed its bound by round-off: one that is fixed, or that meets a due time.
 const ROUND_OFF: f64 = 1e-9;
 
+/// Below this share of the stable step it is the output that limits a step.
+const SHORTENED: f64 = 0.9;
+
 impl StepControl {
     /// The step for a state with these limits, before it is shortened to meet a due time.
     ///
@@ -82,18 +85,20 @@ impl StepControl {
         }
     }
 
-    /// Shortens `chosen` so that a step ends exactly at `due`. A fixed step stays as it is: it
+    /// Shortens `chosen` so that equal steps end exactly at `due`. A fixed step stays as it is: it
     /// meets times that are its multiples, and others at the first step after them.
+    ///
+    /// Equal, because a step that is long and short by turns, in time with the output, drives
+    /// undamped waves by parametric resonance, far below the largest stable step.
     pub fn meet(self, chosen: ChosenStep, time: f64, due: f64) -> ChosenStep {
         let left = due - time;
-        let step = match self {
-            Self::Fixed(_) => return chosen,
-            Self::Cfl(_) if chosen.step * (1.0 + ROUND_OFF) >= left => left,
-            // Two equal steps instead of one full and one tiny one.
-            Self::Cfl(_) if 2.0 * chosen.step > left => 0.5 * left,
-            Self::Cfl(_) => return chosen,
-        };
-        ChosenStep { step, limiter: "output", ..chosen }
+        let Self::Cfl(_) = self else { return chosen };
+        if chosen.step * (1.0 + ROUND_OFF) >= left {
+            return ChosenStep { step: left, limiter: "output", ..chosen };
+        }
+        let step = left / (left / (chosen.step * (1.0 + ROUND_OFF))).ceil();
+        let limiter = if step < SHORTENED * chosen.step { "output" } else { chosen.limiter };
+        ChosenStep { step, limiter, ..chosen }
     }
 }
 
@@ -127,7 +132,9 @@ mod tests {
         let chosen = ChosenStep { step: 0.1, limiter: "acoustic", particle: 0 };
         assert_eq!(control.meet(chosen, 1.0, 1.15).step, 0.5 * (1.15 - 1.0));
         assert_eq!(control.meet(chosen, 1.0, 1.05).step, 1.05 - 1.0);
-        assert_eq!(control.meet(chosen, 1.0, 1.5), chosen);
+        let met = control.meet(chosen, 1.0, 1.45);
+        assert_eq!((met.step, met.limiter), ((1.45 - 1.0) / 5.0, "acoustic"));
+        assert_eq!(control.meet(chosen, 1.0, 1.11).limiter, "output");
         // 0.1 + 0.1 + 0.1 is beyond 0.3 by a rounding: no reason for another step.
         assert_eq!(control.meet(chosen, 0.2, 0.1 + 0.1 + 0.1).step, 0.1 + 0.1 + 0.1 - 0.2);
     }

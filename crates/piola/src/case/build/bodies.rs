@@ -45,7 +45,7 @@ pub(super) fn particles<const D: usize>(
     for (number, body) in (0u32..).zip(&case.bodies) {
         let made = match &body.shape.value {
             model::Shape::Points { file } => cloud(case, domain, file),
-            _ => lattice(case, body, domain),
+            _ => lattice(case, body, domain, body.lattice.jitter),
         };
         let added = made.and_then(|report| {
             let (particles, volume) = (report.particles.len(), report.total_volume);
@@ -93,11 +93,12 @@ fn cloud<const D: usize>(
     Ok(FillReport { particles, total_volume, exact_volume: None, actual_spacing })
 }
 
-/// A body that a lattice fills.
-fn lattice<const D: usize>(
+/// A body that a lattice fills, displaced by up to `jitter` spacings.
+pub(super) fn lattice<const D: usize>(
     case: &Case,
     body: &Body,
     domain: &Domain<D>,
+    jitter: f64,
 ) -> Result<FillReport<D>, Problem> {
     let shape = shape(case, body, &body.shape)?;
     let (min, max) = shape.bounding_box();
@@ -119,7 +120,7 @@ fn lattice<const D: usize>(
             model::LatticeOrigin::Cells => Placement::Cells,
         },
         periodic,
-        jitter: body.lattice.jitter,
+        jitter,
         seed: body.lattice.seed,
     };
     fill(&shape, &spec).map_err(|error| {

@@ -5,6 +5,7 @@ mod fluids;
 mod functions;
 mod probes;
 mod selections;
+mod solids;
 mod tanks;
 
 use std::time::{Duration, Instant};
@@ -19,7 +20,7 @@ use super::source::Located;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::observe::Probe;
-use crate::operators::{Correction, Support};
+use crate::operators::{Correction, GradientOperator, Support};
 use crate::schemes::Scheme;
 use crate::schemes::upwind::{
     Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
@@ -63,6 +64,9 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
         model::Scheme::Upwind(settings) => build_upwind(case, settings, particles, bodies, domain)?,
         model::Scheme::TransportVelocity(settings) => {
             fluids::build(case, settings, particles, bodies, domain)?
+        }
+        model::Scheme::DualSupport(settings) => {
+            solids::build(case, settings, particles, bodies, domain)?
         }
     };
     Ok(Simulation::new(case, built))
@@ -140,7 +144,14 @@ fn upwind<const D: usize>(
     let prescribed = selections::prescribed(case, &particles, problems);
     let body_forces = selections::body_forces(case);
     let correction = correction(settings);
-    let tractions = selections::tractions(case, &particles, &support, correction, problems);
+    // Theory (14).
+    let areas = || {
+        let operator = GradientOperator::new(&particles, &support, correction);
+        operator
+            .map(|operator| operator.boundary_areas(&support, &particles.volume))
+            .map_err(|error| error.to_string())
+    };
+    let tractions = selections::tractions(case, &particles, areas, problems);
     if !problems.is_empty() {
         return None;
     }
@@ -188,10 +199,10 @@ fn materials(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material> {
     let law = |material: &model::Material| {
         let bulk_modulus = material.bulk_modulus(case.dimension);
         match *material {
-            // The reader of cases has refused a fluid for this scheme.
-            model::Material::Linear { .. } | model::Material::WeaklyCompressible { .. } => {
-                VolumetricLaw::linear(bulk_modulus)
-            }
+            // The reader of cases has refused others for this scheme.
+            model::Material::Linear { .. }
+            | model::Material::WeaklyCompressible { .. }
+            | model::Material::Hyperelastic { .. } => VolumetricLaw::linear(bulk_modulus),
             model::Material::GammaLaw { gamma, .. } => {
                 VolumetricLaw::gamma_law(bulk_modulus, gamma)
             }

@@ -74,14 +74,23 @@ pub(super) fn probes<const D: usize>(
     probes
 }
 
-/// The kernel of the scheme, and its smoothing length in spacings.
+/// The kernel of the scheme, and its smoothing length in spacings, for points between particles.
 fn kernel_of(case: &Case) -> (Kernel, f64) {
-    let (name, ratio) = match &case.scheme.value {
-        model::Scheme::Upwind(settings) => (&settings.kernel, *settings.smoothing_length),
+    // The reader has checked the names against the same registry.
+    let kernel = |name: &str| Kernel::from_name(name).unwrap_or(Kernel::QuinticSpline);
+    match &case.scheme.value {
+        model::Scheme::Upwind(settings) => (kernel(&settings.kernel), *settings.smoothing_length),
         model::Scheme::TransportVelocity(settings) => {
-            (&settings.kernel, *settings.smoothing_length)
+            (kernel(&settings.kernel), *settings.smoothing_length)
         }
-    };
-    // The reader has checked the name against the same registry.
-    (Kernel::from_name(name).unwrap_or(Kernel::QuinticSpline), ratio)
+        model::Scheme::DualSupport(settings) => {
+            let kernel = kernel(&settings.kernel);
+            let radius = match *settings.support {
+                model::SupportSize::Spacings(radius) => radius,
+                // As many as these are about so far away.
+                model::SupportSize::Neighbors(_) => 2.0,
+            };
+            (kernel, radius / kernel.support_over_h())
+        }
+    }
 }

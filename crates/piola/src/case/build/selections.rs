@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::bodies::vector;
+use crate::Vector;
 use crate::boundaries::{BodyForce, PrescribedVelocity, SpaceTime, Traction};
 use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
 use crate::case::model::{self, Case, LoadKind};
 use crate::case::source::Located;
 use crate::geometry::{Particles, Region};
-use crate::operators::{Correction, GradientOperator, Support};
 
 /// The particles of `body` (all bodies if `None`) in a region, by index in memory; a problem if
 /// there is none.
@@ -105,13 +105,13 @@ pub(super) fn body_forces<const D: usize>(case: &Case) -> Vec<BodyForce<D>> {
     forces
 }
 
-/// The tractions, with the areas of their particles from the discrete operator, theory (14):
-/// the part of each particle's outward area that points along the normal of the region.
+/// The tractions, with the part of each particle's outward area that points along the normal of the
+/// region. The areas are asked for where there is a traction, and a word why there are none is a
+/// problem of its region.
 pub(super) fn tractions<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
-    support: &Support<D>,
-    correction: Correction,
+    find_areas: impl Fn() -> Result<Vec<Vector<D>>, String>,
     problems: &mut Vec<Problem>,
 ) -> Vec<Traction<D>> {
     let mut areas = None;
@@ -129,11 +129,10 @@ pub(super) fn tractions<const D: usize>(
             continue;
         };
         if areas.is_none() {
-            match GradientOperator::new(particles, support, correction) {
-                Ok(operator) => areas = Some(operator.boundary_areas(support, &particles.volume)),
-                Err(error) => {
-                    let place = region.place;
-                    problems.push(case.problem_at(place, error.to_string(), "loaded here", None));
+            match find_areas() {
+                Ok(found) => areas = Some(found),
+                Err(message) => {
+                    problems.push(case.problem_at(region.place, message, "loaded here", None));
                     return tractions;
                 }
             }

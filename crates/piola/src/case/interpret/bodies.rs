@@ -1,6 +1,8 @@
 //! Bodies: shapes, lattices, materials and initial state; and regions.
 
 use super::*;
+use piola_formulas::hyperelastic::HyperelasticLaw;
+
 use crate::case::expression::Expression;
 use crate::case::model::{
     Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Region, Shape,
@@ -136,6 +138,9 @@ impl Reader<'_, '_> {
     }
 
     fn material(&mut self, record: &Record) -> Option<Located<Material>> {
+        if HyperelasticLaw::NAMES.contains(&record.kind) {
+            return self.elastic_solid(record);
+        }
         let stiffness = self.stiffness(record);
         let density = number(record, "density");
         let material = match record.kind {
@@ -200,10 +205,7 @@ impl Reader<'_, '_> {
         if self.dimension == 3 {
             self.meaningless(record, "plane", "in 3D");
         }
-        let plane = match record.text("plane").as_deref().map(String::as_str) {
-            Some("strain") => PlaneState::Strain,
-            _ => PlaneState::Stress,
-        };
+        let plane = plane(record).unwrap_or(PlaneState::Stress);
         let modulus = number(record, "young_modulus");
         let is_free = plane == PlaneState::Stress && self.dimension < 3;
         let poisson_ratio = match record.number("poisson_ratio") {
@@ -237,6 +239,14 @@ impl Reader<'_, '_> {
     }
 }
 
+/// What the directions do that the case does not have, if the file says it.
+pub(super) fn plane(record: &Record) -> Option<PlaneState> {
+    Some(match record.text("plane")?.as_str() {
+        "strain" => PlaneState::Strain,
+        _ => PlaneState::Stress,
+    })
+}
+
 fn lattice(record: &Record) -> Option<Lattice> {
     Some(Lattice {
         kind: match record.text("kind")?.as_str() {
@@ -252,7 +262,7 @@ fn lattice(record: &Record) -> Option<Lattice> {
     })
 }
 
-fn number(record: &Record, key: &str) -> Option<f64> {
+pub(super) fn number(record: &Record, key: &str) -> Option<f64> {
     record.number(key).map(|number| number.value)
 }
 

@@ -1,5 +1,7 @@
 //! The scheme `transport_velocity`, walls, and what of a case fits to which scheme.
 
+use piola_formulas::hyperelastic::HyperelasticLaw;
+
 use super::*;
 use crate::case::model::{Body, Boundary, Material, TransportVelocity, Wall};
 use crate::schemes::transport_velocity::{
@@ -55,15 +57,28 @@ impl Reader<'_, '_> {
         let scheme = self.names.scheme;
         let is_fluid = scheme == "transport_velocity";
         for body in bodies {
-            let compressible = matches!(body.material.value, Material::WeaklyCompressible { .. });
-            if compressible != is_fluid {
+            let help = match (scheme, &body.material.value) {
+                ("transport_velocity", Material::WeaklyCompressible { .. })
+                | ("dual_support", Material::Hyperelastic { .. })
+                | ("upwind", Material::Linear { .. } | Material::GammaLaw { .. }) => None,
+                ("transport_velocity", _) => {
+                    Some("use `kind = \"weakly_compressible\"`, for walls too".to_owned())
+                }
+                ("dual_support", _) => {
+                    Some(format!("use one of {}", HyperelasticLaw::NAMES.join(", ")))
+                }
+                _ => Some("use `linear` or `gamma_law`".to_owned()),
+            };
+            if let Some(help) = help {
                 let message = format!("the scheme `{scheme}` does not know this material");
-                let help = match is_fluid {
-                    true => "use `kind = \"weakly_compressible\"`, for walls too",
-                    false => "use `linear` or `gamma_law`",
-                };
                 let problem = Problem::new(body.material.place, message, "of another scheme");
                 self.report(problem.help(help));
+            }
+            if scheme == "dual_support" && body.initial.pressure.as_constant() != Some(0.0) {
+                let message =
+                    format!("body `{}` starts with a pressure, which no strain makes", *body.name);
+                let problem = Problem::new(body.name.place, message, "no meaning in this scheme");
+                self.report(problem.help("remove `initial.pressure`"));
             }
             if let (Some(wall), false) = (&body.wall, is_fluid) {
                 let message = format!("the scheme `{scheme}` has no walls of ghost particles");

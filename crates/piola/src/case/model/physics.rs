@@ -1,5 +1,6 @@
 //! Materials, schemes, time, loads and boundaries.
 
+use piola_formulas::hyperelastic::HyperelasticLaw;
 use piola_formulas::volumetric::{self, StressState};
 
 use super::Region;
@@ -35,6 +36,15 @@ pub enum Material {
         /// Kinematic viscosity in m^2/s.
         viscosity: f64,
     },
+    /// An elastic solid with a strain energy.
+    Hyperelastic {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// Its strain energy in three dimensions.
+        law: HyperelasticLaw,
+        /// What the directions that the case does not have do. Without meaning in 3D.
+        plane: PlaneState,
+    },
 }
 
 impl Material {
@@ -43,11 +53,13 @@ impl Material {
         match *self {
             Self::Linear { density, .. }
             | Self::GammaLaw { density, .. }
-            | Self::WeaklyCompressible { density, .. } => density,
+            | Self::WeaklyCompressible { density, .. }
+            | Self::Hyperelastic { density, .. } => density,
         }
     }
 
-    /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions.
+    /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions; of an elastic
+    /// solid that of small strains.
     ///
     /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
     /// Upwind (6.31) solved for kappa, with gamma = 1 for the linear law.
@@ -56,6 +68,7 @@ impl Material {
             Self::Linear { density, stiffness } => (density, 1.0, stiffness),
             Self::GammaLaw { density, gamma, stiffness } => (density, gamma, stiffness),
             Self::WeaklyCompressible { density, stiffness, .. } => (density, 1.0, stiffness),
+            Self::Hyperelastic { law, .. } => return law.small_strain().bulk_modulus(),
         };
         match stiffness {
             Stiffness::BulkModulus(modulus) => modulus,
@@ -99,14 +112,19 @@ impl PlaneState {
     /// ([`volumetric::bulk_modulus`]); in three dimensions nothing is left to choose. NaN where it
     /// does not exist, which no reader of cases lets pass.
     pub fn bulk_modulus(self, young_modulus: f64, poisson_ratio: f64, dimension: usize) -> f64 {
-        let state = match (dimension, self) {
+        let state = self.stress_state(dimension);
+        volumetric::bulk_modulus(young_modulus, poisson_ratio, state).unwrap_or(f64::NAN)
+    }
+
+    /// The stress state in a case of `dimension` dimensions.
+    pub fn stress_state(self, dimension: usize) -> StressState {
+        match (dimension, self) {
             (1, Self::Stress) => StressState::UniaxialStress,
             (1, Self::Strain) => StressState::UniaxialStrain,
             (2, Self::Stress) => StressState::PlaneStress,
             (2, Self::Strain) => StressState::PlaneStrain,
             _ => StressState::ThreeDimensional,
-        };
-        volumetric::bulk_modulus(young_modulus, poisson_ratio, state).unwrap_or(f64::NAN)
+        }
     }
 }
 
@@ -118,6 +136,8 @@ pub enum Scheme {
     Upwind(Upwind),
     /// Weakly compressible fluids with a corrected transport velocity.
     TransportVelocity(TransportVelocity),
+    /// Elastic solids from one discrete energy.
+    DualSupport(DualSupport),
 }
 
 impl Scheme {
@@ -126,6 +146,7 @@ impl Scheme {
         match self {
             Self::Upwind(_) => "upwind",
             Self::TransportVelocity(_) => "transport_velocity",
+            Self::DualSupport(_) => "dual_support",
         }
     }
 }
@@ -162,6 +183,37 @@ pub struct TransportVelocity {
     pub settings: transport_velocity::Settings,
     /// Whether particles that escape are removed; otherwise the run ends.
     pub removes_escaped: bool,
+}
+
+/// Settings of the scheme `dual_support`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DualSupport {
+    /// Name in the kernel registry.
+    pub kernel: Located<String>,
+    /// How large supports are.
+    pub support: Located<SupportSize>,
+    /// Coefficients of the deformation gradient; `None` for the better ones that there are.
+    pub gradients: Option<Located<GradientKind>>,
+    /// Coefficient of the hourglass energy in units of the shear modulus, if it is given.
+    pub hourglass: Option<f64>,
+}
+
+/// How large the support of a particle is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SupportSize {
+    /// Its radius in units of the particle spacing.
+    Spacings(f64),
+    /// It reaches to the so many-th neighbour.
+    Neighbors(usize),
+}
+
+/// Coefficients of the deformation gradient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GradientKind {
+    /// Those of the paper.
+    Plain,
+    /// Corrected so that constant stress is in equilibrium.
+    PatchConsistent,
 }
 
 /// What makes a body a wall.

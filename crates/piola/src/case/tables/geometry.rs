@@ -208,29 +208,21 @@ pub(super) static REGION: TaggedSpec = TaggedSpec {
 static MATERIAL: TaggedSpec = TaggedSpec {
     title: "material",
     meaning: "What a body is made of.",
-    common: &[
-        key("density", Kind::Number(Interval::POSITIVE), "kg/m^3", Required, "reference density"),
-        key(
-            "bulk_modulus",
-            Kind::Number(Interval::POSITIVE),
-            "Pa",
-            Optional,
-            "the modulus kappa of the pressure law",
-        ),
-        key(
-            "wave_speed",
-            Kind::Number(Interval::POSITIVE),
-            "m/s",
-            Optional,
-            "wave speed of the reference state, instead of `bulk_modulus`",
-        ),
-    ],
+    common: &[key(
+        "density",
+        Kind::Number(Interval::POSITIVE),
+        "kg/m^3",
+        Required,
+        "reference density",
+    )],
     kinds: &[
         KindSpec {
             name: "linear",
             meaning: "pressure linear in the volume ratio, p = -kappa (J - 1); give `bulk_modulus`, `wave_speed`, or `young_modulus` with `poisson_ratio`",
             dimensions: &[1, 2, 3],
             keys: &[
+                PRESSURE_MODULUS,
+                WAVE_SPEED,
                 key(
                     "young_modulus",
                     Kind::Number(Interval::POSITIVE),
@@ -258,24 +250,53 @@ static MATERIAL: TaggedSpec = TaggedSpec {
             name: "gamma_law",
             meaning: "p = kappa (J^-gamma - 1), Upwind (6.30); give `bulk_modulus` or `wave_speed`",
             dimensions: &[1, 2, 3],
-            keys: &[key("gamma", Kind::Number(Interval::at_least(1.0)), "1", Required, "exponent")],
+            keys: &[
+                PRESSURE_MODULUS,
+                WAVE_SPEED,
+                key("gamma", Kind::Number(Interval::at_least(1.0)), "1", Required, "exponent"),
+            ],
         },
         KindSpec {
             name: "weakly_compressible",
             meaning: "a fluid with p = kappa (rho / rho0 - 1), CTVF (8); give `wave_speed`, ten times the largest speed, or `bulk_modulus`",
             dimensions: &[1, 2, 3],
-            keys: &[key(
-                "viscosity",
-                Kind::Number(Interval::NOT_NEGATIVE),
-                "m^2/s",
-                Default("0.0"),
-                "kinematic viscosity",
-            )],
+            keys: &[
+                PRESSURE_MODULUS,
+                WAVE_SPEED,
+                key(
+                    "viscosity",
+                    Kind::Number(Interval::NOT_NEGATIVE),
+                    "m^2/s",
+                    Default("0.0"),
+                    "kinematic viscosity",
+                ),
+            ],
         },
+        solids::LINEAR_ELASTIC,
+        solids::SAINT_VENANT_KIRCHHOFF,
+        solids::NEO_HOOKEAN,
+        solids::NEO_HOOKEAN_LOGARITHMIC,
+        solids::MOONEY_RIVLIN,
+        solids::OGDEN,
     ],
 };
 
-const PLANES: Choices =
+const PRESSURE_MODULUS: KeySpec = key(
+    "bulk_modulus",
+    Kind::Number(Interval::POSITIVE),
+    "Pa",
+    Optional,
+    "the modulus kappa of the pressure law",
+);
+const WAVE_SPEED: KeySpec = key(
+    "wave_speed",
+    Kind::Number(Interval::POSITIVE),
+    "m/s",
+    Optional,
+    "wave speed of the reference state, instead of `bulk_modulus`",
+);
+
+pub(super) const PLANES: Choices =
     choices(&[choice("stress", "no stress there"), choice("strain", "no strain there")]);
 
 static INITIAL: TableSpec = TableSpec {

@@ -3,13 +3,13 @@
 use thiserror::Error;
 
 use super::external::Loaded;
-use super::inspect::{largest_wave_modulus, stable_step};
-use super::{Discrete, DualSupport, Gradients, Material, Settings, Side};
+use super::inspect::largest_wave_modulus;
+use super::stable_step::stable_step;
+use super::{Discrete, DualSupport, Gradients, Material, Row, Settings, Side};
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{PrescribedVelocity, Traction, padded};
+use crate::boundaries::{BodyForce, PrescribedVelocity, Traction, padded};
 use crate::geometry::Particles;
 use crate::operators::{DirectedSupport, DualGradient, OperatorError};
-use crate::schemes::upwind::BodyForce;
 use crate::{Tensor, Vector};
 
 /// All that the formulation is bound to.
@@ -173,6 +173,7 @@ impl<const D: usize> DualSupport<D> {
             displacement: vec![Vector::zeros(); count],
             sides: vec![Side::zero(); count],
             force: vec![Vector::zeros(); count],
+            rate: vec![0.0; count * Row::<D>::LENGTH + Self::tail_length()],
             mass,
             discrete,
         })

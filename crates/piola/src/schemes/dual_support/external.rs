@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, IMPULSES, MECHANISMS, Row, TRACTION};
-use crate::boundaries::{SpaceTime, padded};
+use crate::boundaries::{BodyForce, SpaceTime};
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use crate::{Vector, parallel};
 
@@ -16,14 +16,26 @@ pub(super) struct Loaded<const D: usize> {
     pub value: [Arc<dyn SpaceTime>; D],
 }
 
+impl<const D: usize> Loaded<D> {
+    /// The force in N at a time in s.
+    pub fn force(&self, time: f64) -> Vector<D> {
+        Vector::from_fn(|i, _| self.area * self.value[i].value(self.place, time))
+    }
+}
+
 /// Power, force and moment of the body forces.
 const BODY_SUMS: usize = 1 + MOST_COMPONENTS;
 
 impl<const D: usize> DualSupport<D> {
     /// Numbers at the end of a state: the work of each mechanism, then the impulse of each way
     /// in which momentum enters, component by component.
-    pub(super) fn tail_length() -> usize {
+    pub(super) fn ledger_length() -> usize {
         MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len()
+    }
+
+    /// Numbers behind the rows: the ledger, its rates, and how fast its powers grow in a kick.
+    pub(super) fn tail_length() -> usize {
+        2 * Self::ledger_length() + MECHANISMS.len()
     }
 
     /// Current position of particle a in m, of its row of a state.
@@ -34,29 +46,30 @@ impl<const D: usize> DualSupport<D> {
 
     /// Body forces at particle a in m/s^2.
     #[inline]
-    fn body_acceleration(&self, a: usize, time: f64) -> Vector<D> {
+    pub(super) fn body_acceleration(&self, a: usize, time: f64) -> Vector<D> {
         let particles = &self.discrete.particles;
-        let place = padded(&particles.position[a]);
-        let acts = |body: Option<u32>| body.is_none_or(|body| body == particles.body[a]);
-        let mut sum = Vector::zeros();
-        for force in self.body_forces.iter().filter(|force| acts(force.body)) {
-            for (component, value) in force.acceleration.iter().enumerate() {
-                sum[component] += value.value(place, time);
-            }
-        }
-        sum
+        BodyForce::sum(&self.body_forces, particles.body[a], &particles.position[a], time)
     }
 
-    /// Writes the rates of `state`, of which the internal forces are known.
-    pub(super) fn external_pass(&self, time: f64, state: &[f64], rate: &mut [f64]) {
+    /// Writes the rates of `state`, of which the internal forces in N are known.
+    pub(super) fn external_pass(
+        &self,
+        time: f64,
+        state: &[f64],
+        internal: &[Vector<D>],
+        rate: &mut [f64],
+    ) {
         let length = Row::<D>::LENGTH;
         let (rows, tail) = rate.split_at_mut(self.mass.len() * length);
         for (a, row) in rows.chunks_exact_mut(length).enumerate() {
-            let acceleration = self.force[a] / self.mass[a] + self.body_acceleration(a, time);
+            let acceleration = internal[a] / self.mass[a] + self.body_acceleration(a, time);
             row[..D].copy_from_slice(acceleration.as_slice());
-            row[D..].copy_from_slice(&state[a * length..][..D]);
+            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(&state[a * length..][..D]);
+            row[Row::<D>::ACCELERATION..].fill(0.0);
         }
         let components = momentum_components(D).len();
+        let (tail, kept) = tail.split_at_mut(Self::ledger_length());
+        kept.fill(0.0);
         let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
         powers.fill(0.0);
         impulses.fill(0.0);
@@ -70,8 +83,7 @@ impl<const D: usize> DualSupport<D> {
         impulses[..components].copy_from_slice(&body[1..][..components]);
         let (traction, boundary) = impulses[components..].split_at_mut(components);
         for load in &self.loaded {
-            let (a, value) = (load.particle, &load.value);
-            let force = Vector::<D>::from_fn(|i, _| load.area * value[i].value(load.place, time));
+            let (a, force) = (load.particle, load.force(time));
             for (component, force) in force.iter().enumerate() {
                 rows[a * length + component] += force / self.mass[a];
             }

@@ -3,16 +3,10 @@
 use piola_formulas::hyperelastic::Reduced;
 use piola_formulas::tensor;
 
-use super::{Discrete, DualSupport, Row};
+use super::{DualSupport, Row};
 use crate::parallel::CHUNK;
 use crate::schemes::{Health, StepLimit};
-use crate::{Tensor, Vector, parallel};
-
-/// Steps of the power method: enough for a few percent of the largest frequency.
-const POWER_STEPS: usize = 60;
-
-/// By how much the power method may have missed the largest frequency.
-const SAFETY: f64 = 1.05;
+use crate::{Tensor, Vector};
 
 /// Figures of some particles.
 #[derive(Clone, Copy)]
@@ -115,28 +109,4 @@ fn principal_directions<const D: usize>(tensor: &Tensor<D>) -> [Vector<D>; D] {
         }
     }
     std::array::from_fn(|axis| all.get(axis).copied().unwrap_or_else(Vector::zeros))
-}
-
-/// Largest step of central differences at rest, `2/omega`, theory (50), and the particle that moves
-/// most in the mode it belongs to: by the power method on `M^-1 K` with a fixed start.
-pub(super) fn stable_step<const D: usize>(discrete: &Discrete<D>, mass: &[f64]) -> (f64, usize) {
-    let rest = vec![Vector::<D>::zeros(); mass.len()];
-    let mut mode: Vec<Vector<D>> =
-        (0..mass.len()).map(|a| Vector::from_fn(|i, _| alternating(a * D + i))).collect();
-    let mut square = 0.0;
-    for _ in 0..POWER_STEPS {
-        let norm = parallel::sum(mass.len(), |a| mass[a] * mode[a].norm_squared()).sqrt();
-        mode.iter_mut().for_each(|mode| *mode /= norm);
-        let product = discrete.stiffness_product(&rest, &mode);
-        square = parallel::sum(mass.len(), |a| mode[a].dot(&product[a]));
-        mode = product.iter().zip(mass).map(|(force, mass)| force / *mass).collect();
-    }
-    let fastest = |best: usize, a: usize| if mode[a].norm() > mode[best].norm() { a } else { best };
-    (2.0 / (SAFETY * square.max(0.0).sqrt()), (0..mass.len()).fold(0, fastest))
-}
-
-/// A number in (-1, 1) for each index, of no regular pattern.
-fn alternating(index: usize) -> f64 {
-    let turned = (index as f64 + 1.0) * 0.618_033_988_749_894_9;
-    2.0 * turned.fract() - 1.0
 }

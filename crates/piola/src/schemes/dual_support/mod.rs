@@ -20,6 +20,8 @@ mod inspect;
 mod sample;
 mod scheme;
 mod settings;
+mod split;
+mod stable_step;
 
 pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
@@ -27,8 +29,8 @@ pub use sample::FIELDS;
 pub use settings::{Gradients, Material, Settings};
 
 use crate::Vector;
-use crate::boundaries::prescribed::PrescribedComponents;
-use crate::schemes::upwind::BodyForce;
+use crate::boundaries::{BodyForce, prescribed::PrescribedComponents};
+
 use external::Loaded;
 
 /// The dual-support formulation bound to its particles.
@@ -48,6 +50,8 @@ pub struct DualSupport<const D: usize> {
     displacement: Vec<Vector<D>>,
     sides: Vec<Side<f64, D>>,
     force: Vec<Vector<D>>,
+    /// Scratch of the length of a state.
+    rate: Vec<f64>,
 }
 
 /// The energies of the formulation.
@@ -63,12 +67,13 @@ const BODY_FORCE: usize = 0;
 const TRACTION: usize = 1;
 const BOUNDARY_MOTION: usize = 2;
 
-/// Where the unknowns stand in a row of the state: v, u.
+/// Where the unknowns stand in a row of the state: v, u, and the acceleration, which kicks need.
 struct Row<const D: usize>;
 
 impl<const D: usize> Row<D> {
     const DISPLACEMENT: usize = D;
-    const LENGTH: usize = 2 * D;
+    const ACCELERATION: usize = 2 * D;
+    const LENGTH: usize = 3 * D;
 
     /// Velocity of a row.
     #[inline]
@@ -79,6 +84,6 @@ impl<const D: usize> Row<D> {
     /// Displacement of a row.
     #[inline]
     fn displacement(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::DISPLACEMENT..Self::LENGTH])
+        Vector::from_column_slice(&row[Self::DISPLACEMENT..Self::ACCELERATION])
     }
 }

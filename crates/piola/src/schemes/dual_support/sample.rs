@@ -60,7 +60,9 @@ impl<const D: usize> DualSupport<D> {
             let row = &state[start..][..Row::<D>::LENGTH];
             match field {
                 "position" => values.extend_from_slice(self.position(a, row).as_slice()),
-                "displacement" => values.extend_from_slice(&row[Row::<D>::DISPLACEMENT..]),
+                "displacement" => {
+                    values.extend_from_slice(&row[Row::<D>::DISPLACEMENT..][..D]);
+                }
                 "velocity" => values.extend_from_slice(&row[..D]),
                 "acceleration" => values.extend_from_slice(&rate[start..][..D]),
                 "internal_force" => values.extend_from_slice(self.force[a].as_slice()),

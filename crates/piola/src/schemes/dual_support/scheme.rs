@@ -2,8 +2,8 @@
 
 use super::{DualSupport, ENERGIES, FIELDS, IMPULSES, MECHANISMS, Row};
 use crate::fields::FieldDescription;
-use crate::parallel;
-use crate::schemes::{Health, Particle, Scheme, StepLimit};
+use crate::schemes::{Health, Particle, Scheme, SplitScheme, StepLimit};
+use crate::{Vector, parallel};
 
 impl<const D: usize> Scheme for DualSupport<D> {
     fn name(&self) -> &'static str {
@@ -44,13 +44,18 @@ impl<const D: usize> Scheme for DualSupport<D> {
         for (row, velocity) in rows.zip(&self.initial_velocity) {
             row[..D].copy_from_slice(velocity.as_slice());
         }
+        self.constrain(0.0, &mut state);
+        // Nothing is strained yet, so that no force comes from inside.
+        let mut rate = vec![0.0; state.len()];
+        self.external_pass(0.0, &state, &vec![Vector::zeros(); self.mass.len()], &mut rate);
+        self.store(0.0, &rate, &mut state);
         state
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         self.load(state);
         self.discrete.forces(&self.displacement, &mut self.sides, &mut self.force);
-        self.external_pass(time, state, rate);
+        self.external_pass(time, state, &self.force, rate);
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
@@ -118,6 +123,10 @@ impl<const D: usize> Scheme for DualSupport<D> {
         all
     }
 
+    fn split(&mut self) -> Option<&mut dyn SplitScheme> {
+        Some(self)
+    }
+
     fn stability_advice(&self) -> &'static str {
         "raise `scheme.hourglass`"
     }
@@ -153,6 +162,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
             + size_of_val(self.displacement.as_slice())
             + size_of_val(self.sides.as_slice())
             + size_of_val(self.force.as_slice())
+            + size_of_val(self.rate.as_slice())
     }
 }
 

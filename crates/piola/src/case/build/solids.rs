@@ -1,0 +1,167 @@
+//! Particles turned into elastic solids of the dual-support formulation.
+
+use piola_formulas::hyperelastic::Reduced;
+
+use super::bodies::{self, BodyReport};
+use super::{Built, initial, kernel, probes, selections};
+use crate::Vector;
+use crate::case::diagnostics::Problem;
+use crate::case::model::{self, Case, GradientKind, SupportSize};
+use crate::geometry::Particles;
+use crate::neighbors::{Domain, NeighborError, spatial_order};
+use crate::operators::{DirectedSupport, lattice_areas, nearest_radii};
+use crate::schemes::dual_support::{
+    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Settings,
+};
+
+/// Builds the scheme `dual_support`.
+pub(super) fn build<const D: usize>(
+    case: &Case,
+    settings: &model::DualSupport,
+    mut particles: Particles<D>,
+    reports: Vec<BodyReport>,
+    domain: Domain<D>,
+) -> Result<Built, Vec<Problem>> {
+    let kernel = kernel(case, &settings.kernel)?;
+    let mut areas = areas(case, &mut particles, &domain)?;
+    let place = settings.support.place;
+    let refuse = |error: NeighborError| {
+        vec![case.problem_at(place, error.to_string(), "with these supports", None)]
+    };
+    let radii = |particles: &Particles<D>| match *settings.support {
+        SupportSize::Spacings(ratio) => {
+            Ok(particles.spacing.iter().map(|spacing| ratio * spacing).collect::<Vec<_>>())
+        }
+        SupportSize::Neighbors(count) => nearest_radii(particles, count, &domain),
+    };
+    let widest = radii(&particles).map_err(refuse)?.into_iter().fold(0.0, f64::max);
+    let order = spatial_order(&particles.position, widest).map_err(refuse)?;
+    particles.reorder(&order);
+    if let Some(areas) = &mut areas {
+        *areas = order.iter().map(|&number| areas[number as usize]).collect();
+    }
+    let radius = radii(&particles).map_err(refuse)?;
+    let support =
+        DirectedSupport::new(&particles, kernel, radius, domain.clone()).map_err(refuse)?;
+    let rows = 0..particles.len();
+    let poorly_supported =
+        rows.filter(|&a| support.list.row(a).len() < D).map(|a| a as u32).collect();
+    let neighbors = support.list.statistics();
+
+    let mut problems = Vec::new();
+    let probes = probes::probes(case, &particles, &mut problems);
+    let prescribed = selections::prescribed(case, &particles, &mut problems);
+    let known = || {
+        areas.clone().ok_or_else(|| {
+            "a traction needs the areas of the particles, which are not known of points from a file"
+                .to_owned()
+        })
+    };
+    let tractions = selections::tractions(case, &particles, known, &mut problems);
+    let materials = materials(case, &mut problems);
+    let (gradients, warnings) = gradients(case, settings, areas.clone(), &mut problems);
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let usual = if gradients == Gradients::Plain { 1.0 } else { 0.1 };
+    let velocity = initial(case, &particles).velocity;
+    let scheme = DualSupport::new(DualSupportInput {
+        settings: Settings { gradients, hourglass: settings.hourglass.unwrap_or(usual) },
+        body_forces: selections::body_forces(case),
+        particles,
+        support,
+        materials,
+        velocity,
+        tractions,
+        prescribed,
+    });
+    let scheme = scheme.map_err(|error| {
+        let (place, label) = match &error {
+            DualSupportError::Velocity { .. } => {
+                (case.bodies[0].name.place, "initial values of a body")
+            }
+            _ => (place, "with these supports"),
+        };
+        vec![case.problem_at(place, error.to_string(), label, None)]
+    })?;
+    Ok(Built {
+        scheme: Box::new(scheme),
+        probes,
+        bodies: reports,
+        neighbors,
+        poorly_supported,
+        warnings,
+    })
+}
+
+/// The boundary area vectors of all particles in m^(D-1), of the lattices before they are displaced;
+/// particles that have one go back to their site. `None` if there is a body of points.
+fn areas<const D: usize>(
+    case: &Case,
+    particles: &mut Particles<D>,
+    domain: &Domain<D>,
+) -> Result<Option<Vec<Vector<D>>>, Vec<Problem>> {
+    let mut all = Vec::with_capacity(particles.len());
+    for body in &case.bodies {
+        if let model::Shape::Points { .. } = body.shape.value {
+            return Ok(None);
+        }
+        let still = bodies::lattice(case, body, domain, 0.0).map_err(|problem| vec![problem])?;
+        let found = lattice_areas(&still.particles, &still.actual_spacing, domain);
+        let areas = found.map_err(|error| {
+            let label = format!("body `{}`", *body.name);
+            vec![case.problem_at(body.shape.place, error.to_string(), label, None)]
+        })?;
+        for (area, site) in areas.iter().zip(&still.particles.position) {
+            if area.norm_squared() > 0.0 {
+                particles.position[all.len()] = *site;
+            }
+            all.push(*area);
+        }
+    }
+    Ok(Some(all))
+}
+
+/// The coefficients that the case asks for, or the better ones that there are.
+fn gradients<const D: usize>(
+    case: &Case,
+    settings: &model::DualSupport,
+    areas: Option<Vec<Vector<D>>>,
+    problems: &mut Vec<Problem>,
+) -> (Gradients<D>, Vec<String>) {
+    let wanted = settings.gradients.as_ref();
+    match (wanted.map(|kind| kind.value), areas) {
+        (Some(GradientKind::Plain), _) => (Gradients::Plain, Vec::new()),
+        (_, Some(areas)) => (Gradients::PatchConsistent { areas }, Vec::new()),
+        (None, None) => {
+            let warning = "gradients are plain, as the boundary areas of points from a file are not \
+                           known: a constant stress is not in equilibrium there";
+            (Gradients::Plain, vec![warning.to_owned()])
+        }
+        (Some(GradientKind::PatchConsistent), None) => {
+            let place = wanted.map_or(case.scheme.place, |kind| kind.place);
+            let message = "the boundary areas of points from a file are not known";
+            let help = "use `gradients = \"plain\"`, or shapes that a lattice fills".to_owned();
+            problems.push(case.problem_at(place, message, "needs boundary areas", Some(help)));
+            (Gradients::Plain, Vec::new())
+        }
+    }
+}
+
+fn materials<const D: usize>(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material<D>> {
+    let mut materials = Vec::new();
+    for body in &case.bodies {
+        // The reader of cases has refused others for this scheme.
+        let model::Material::Hyperelastic { density, law, plane } = body.material.value else {
+            continue;
+        };
+        match Reduced::new(law, plane.stress_state(case.dimension)) {
+            Ok(law) => materials.push(Material { density, law }),
+            Err(error) => {
+                let place = body.material.place;
+                problems.push(case.problem_at(place, error.to_string(), "this material", None));
+            }
+        }
+    }
+    materials
+}
