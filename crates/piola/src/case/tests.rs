@@ -9,6 +9,7 @@ use super::*;
 mod faults;
 mod hostile;
 mod overrides;
+mod solids;
 mod sweeps;
 
 /// A case that uses every table and nearly every key.

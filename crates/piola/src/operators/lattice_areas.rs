@@ -61,3 +61,48 @@ fn in_metres<const D: usize>(mut error: OperatorError, particles: &Particles<D>)
     }
     error
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{LatticeSpec, Shape, fill};
+
+    #[test]
+    fn a_box_has_its_faces() {
+        let (low, high) = (Vector::<2>::new(1.0, -1.0), Vector::<2>::new(2.0, 1.0));
+        let shape = Shape::cuboid(low, high).expect("a box");
+        let filled = fill(&shape, &LatticeSpec::square([0.1, 0.4])).expect("particles");
+        let domain = Domain::new([None; 2]).expect("open");
+        let (particles, edges) = (&filled.particles, &filled.actual_spacing);
+        let areas = lattice_areas(particles, edges, &domain).expect("areas");
+        for (x, area) in particles.position.iter().zip(&areas) {
+            let share = |axis: usize| {
+                let side =
+                    |end: f64, sign: f64| if (x[axis] - end).abs() < 1e-9 { sign } else { 0.0 };
+                let across = 1 - axis;
+                let is_end = (x[across] - low[across]).abs() < 1e-9
+                    || (x[across] - high[across]).abs() < 1e-9;
+                let face = edges[across] * if is_end { 0.5 } else { 1.0 };
+                (side(high[axis], 1.0) + side(low[axis], -1.0)) * face
+            };
+            let expected = Vector::<2>::new(share(0), share(1));
+            assert!((area - expected).norm() < 1e-12, "{area} instead of {expected} at {x}");
+        }
+    }
+
+    #[test]
+    fn a_single_row_has_no_areas_across_and_says_where() {
+        let shape = Shape::cuboid(Vector::<2>::new(3.0, 0.0), Vector::<2>::new(4.0, 0.1));
+        let mut particles = fill(&shape.expect("a box"), &LatticeSpec::square([0.1, 0.1]))
+            .expect("particles")
+            .particles;
+        let row: Vec<u32> = (0..particles.len() as u32)
+            .filter(|&a| particles.position[a as usize][1] < 0.05)
+            .collect();
+        particles.reorder(&row);
+        let domain = Domain::new([None; 2]).expect("open");
+        let error = lattice_areas(&particles, &[0.1, 0.1], &domain).expect_err("one row");
+        let OperatorError::PoorSupport { position, .. } = error else { panic!("{error:?}") };
+        assert!((3.0..=4.0).contains(&position[0]), "in metres: {position:?}");
+    }
+}

@@ -132,8 +132,8 @@ mod tests {
         let chosen = ChosenStep { step: 0.1, limiter: "acoustic", particle: 0 };
         assert_eq!(control.meet(chosen, 1.0, 1.15).step, 0.5 * (1.15 - 1.0));
         assert_eq!(control.meet(chosen, 1.0, 1.05).step, 1.05 - 1.0);
-        let met = control.meet(chosen, 1.0, 1.45);
-        assert_eq!((met.step, met.limiter), ((1.45 - 1.0) / 5.0, "acoustic"));
+        let met = control.meet(chosen, 1.0, 1.48);
+        assert_eq!((met.step, met.limiter), ((1.48 - 1.0) / 5.0, "acoustic"));
         assert_eq!(control.meet(chosen, 1.0, 1.11).limiter, "output");
         // 0.1 + 0.1 + 0.1 is beyond 0.3 by a rounding: no reason for another step.
         assert_eq!(control.meet(chosen, 0.2, 0.1 + 0.1 + 0.1).step, 0.1 + 0.1 + 0.1 - 0.2);
