@@ -20,11 +20,13 @@ mod inspect;
 mod sample;
 mod scheme;
 mod settings;
+mod statics;
 
 pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
 pub use sample::FIELDS;
 pub use settings::{Gradients, Material, Settings};
+pub use statics::{Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness};
 
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
