@@ -15,6 +15,7 @@ mod least_squares;
 mod moving;
 mod patch;
 mod support;
+mod trace;
 
 pub(crate) use areas::total;
 pub use areas::{Block, LANES, Lanes, PairAreas};
@@ -27,3 +28,4 @@ pub use interpolation::Interpolation;
 pub use least_squares::LeastSquares;
 pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock, NeighborGroup};
 pub use support::Support;
+pub use trace::{Face, Trace};

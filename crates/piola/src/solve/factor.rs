@@ -2,6 +2,7 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{LdltParams, LdltRegularization};
+use faer::perm::PermRef;
 use faer::prelude::default;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
@@ -51,10 +52,14 @@ impl Factor {
         let memory = FactorError::Memory { unknowns };
         let (offsets, rows, _) = matrix.parts();
         let pattern = SymbolicSparseColMatRef::new_checked(unknowns, unknowns, offsets, None, rows);
+        // The order is that of the unknowns. It is given as a permutation because the analysis of
+        // `SymmetricOrdering::Identity` does not find the elimination tree of a lower triangle.
+        let order: Vec<usize> = (0..unknowns).collect();
+        let order = PermRef::new_checked(&order, &order, unknowns);
         let symbolic = factorize_symbolic_cholesky(
             pattern,
             Side::Lower,
-            SymmetricOrdering::Identity,
+            SymmetricOrdering::Custom(order),
             CholeskySymbolicParams::default(),
         )
         .map_err(|_| memory)?;

@@ -42,7 +42,7 @@ impl LinearMethod {
     /// Whether a system is to be factorised: factors grow with the number of unknowns to the power
     /// of 1, about 1 and 4/3 in 1D, 2D and 3D, the work with that of 1, 3/2 and 2.
     fn is_direct<const D: usize>(self, unknowns: usize) -> bool {
-        let most = [1_000_000, 150_000, 6_000][D - 1];
+        let most = [1_000_000, 150_000, 3_000][D - 1];
         match self {
             Self::Automatic => unknowns <= most,
             Self::Direct => true,
@@ -58,6 +58,8 @@ pub enum Stability {
     Stable,
     /// It falls in some: in as many as the number says where they were counted.
     Unstable(Option<usize>),
+    /// There is no energy: the tangent is not symmetric.
+    Unknown,
 }
 
 /// What a solution took.
@@ -185,7 +187,8 @@ impl<const D: usize> LinearSolver<D> {
         tolerance: f64,
         solution: &mut [f64],
     ) -> Result<LinearReport, LinearError> {
-        let (shift, mut indefinite, mut steps) = (self.shift, self.negative > 0, 0);
+        let (shift, mut steps) = (self.shift, 0);
+        let mut indefinite = tangent.is_symmetric() && self.negative > 0;
         if tangent.is_symmetric() && self.is_direct() {
             solution.copy_from_slice(right);
             self.precondition_in_place(solution);
@@ -205,6 +208,9 @@ impl<const D: usize> LinearSolver<D> {
     /// Whether the tangent that was loaded without a shift is positive definite. Iteratively this
     /// is as much as conjugate gradients meet on their way from a start without any order.
     pub fn stability<T: Tangent<D>>(&mut self, tangent: &mut T) -> Stability {
+        if !tangent.is_symmetric() {
+            return Stability::Unknown;
+        }
         if self.is_direct() {
             return match self.negative {
                 0 => Stability::Stable,
@@ -213,7 +219,7 @@ impl<const D: usize> LinearSolver<D> {
         }
         let golden = |k: usize| ((k + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5;
         let start: Vec<f64> = (0..self.reduction.unknowns()).map(golden).collect();
-        match tangent.is_symmetric() && self.iterate(tangent, &start, 1e-6).negative_curvature {
+        match self.iterate(tangent, &start, 1e-6).negative_curvature {
             true => Stability::Unstable(None),
             false => Stability::Stable,
         }

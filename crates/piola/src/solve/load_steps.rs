@@ -2,17 +2,18 @@
 
 use thiserror::Error;
 
-use super::krylov::advance;
+use super::krylov::{advance, norm};
 use super::newton::{Equations, Iteration, Newton, NewtonError, Solved};
 use super::{LinearReport, Stability};
 
 /// The load factors to be visited, from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoadSteps {
-    /// These, each in one step.
+    /// These, each in one step, whatever the way there leads over.
     Given(Vec<f64>),
-    /// These, in steps that are cut in two where there is no convergence and grow again where it
-    /// is quick.
+    /// These, in steps that are cut in two where there is no convergence or where the tangent was
+    /// indefinite on the way, so that no limit is jumped over, and that grow again where it is
+    /// quick.
     Automatic {
         /// Factors that are met exactly, ascending; the last one is the end.
         levels: Vec<f64>,
@@ -81,6 +82,8 @@ const QUICK: usize = 5;
 const SLOW: usize = 10;
 /// By how much.
 const GROWTH: f64 = 1.5;
+/// Distance of a state from where its step was to lead, over that of the step, which is too far.
+const FAR: f64 = 2.0;
 
 /// Finds a stable equilibrium at each of the load factors in turn, from `start` at a factor of 0,
 /// and shows each.
@@ -102,7 +105,7 @@ pub fn follow<E: Equations + ?Sized>(
     match steps {
         LoadSteps::Given(factors) => {
             for &factor in factors {
-                let increment = path.attempt(equations, newton, factor)?;
+                let increment = path.attempt(equations, newton, factor, false)?;
                 path.accept(&increment);
                 show(equations, increment);
             }
@@ -113,7 +116,7 @@ pub fn follow<E: Equations + ?Sized>(
                 while path.factor < level {
                     let near = path.factor + step >= level - 1e-9 * level.abs();
                     let factor = if near { level } else { path.factor + step };
-                    match path.attempt(equations, newton, factor) {
+                    match path.attempt(equations, newton, factor, true) {
                         Ok(increment) => {
                             match increment.solved.iterations.len() {
                                 count if count <= QUICK => step *= GROWTH,
@@ -145,22 +148,34 @@ struct Path {
 }
 
 impl Path {
+    /// The state at a load factor; with `near` only one that belongs to the path so far.
     fn attempt<E: Equations + ?Sized>(
         &self,
         equations: &mut E,
         newton: &Newton,
         factor: f64,
+        near: bool,
     ) -> Result<Increment, LoadError> {
         let reached = self.factor;
         let failed = |source| LoadError::Newton { factor, reached, source };
-        let (mut x, before) = self.start(equations, newton, factor).map_err(failed)?;
+        let (start, before) = self.start(equations, newton, factor, near).map_err(failed)?;
+        let mut x = start.clone();
         let solved = newton.solve(equations, factor, &mut x, before).map_err(failed)?;
-        match solved.stability {
-            Stability::Stable => Ok(Increment { factor, x, solved }),
-            Stability::Unstable(negative) => {
-                Err(LoadError::Unstable { factor, reached, negative })
-            }
+        let unstable = |negative| LoadError::Unstable { factor, reached, negative };
+        if let Stability::Unstable(negative) = solved.stability {
+            return Err(unstable(negative));
         }
+        // Where the tangent was indefinite on the way, or where the start was far off, the state
+        // may lie beyond a limit: a smaller step tells.
+        let apart = |to: &[f64]| {
+            let changes: Vec<f64> = start.iter().zip(to).map(|(a, b)| a - b).collect();
+            norm(&changes)
+        };
+        let indefinite = solved.iterations.iter().any(|iteration| iteration.indefinite);
+        if near && (indefinite || apart(&x) > FAR * apart(&self.x)) {
+            return Err(unstable(None));
+        }
+        Ok(Increment { factor, x, solved })
     }
 
     fn accept(&mut self, increment: &Increment) {
@@ -175,13 +190,16 @@ impl Path {
         equations: &mut E,
         newton: &Newton,
         factor: f64,
+        near: bool,
     ) -> Result<(Vec<f64>, Vec<Iteration>), NewtonError> {
         let is_sound = |equations: &mut E, x: &[f64]| equations.trial(factor, x).broken.is_none();
         if let Some((earlier, last)) = &self.before {
             let ratio = (factor - self.factor) / (self.factor - earlier);
             let onwards = |(now, last): (&f64, &f64)| now + ratio * (now - last);
             let x: Vec<f64> = self.x.iter().zip(last).map(onwards).collect();
-            if is_sound(equations, &x) {
+            // More left than there are loads: the path has turned.
+            let mut left = vec![0.0; x.len()];
+            if is_sound(equations, &x) && equations.residual(factor, &x, &mut left) < 1.0 {
                 return Ok((x, Vec::new()));
             }
         }
@@ -202,9 +220,11 @@ impl Path {
             true => Ok((x, taken(1.0))),
             // Loads alone can be met from where they were; what is moved by hand may not.
             false => match equations.trial(factor, &self.x).broken {
-                None => Ok((self.x.clone(), taken(0.0))),
-                Some(particle) => {
+                None if !near => Ok((self.x.clone(), taken(0.0))),
+                broken => {
+                    let broken = equations.trial(factor, &x).broken.or(broken);
                     let (history, residual) = (taken(0.0), f64::NAN);
+                    let particle = broken.unwrap_or_default();
                     Err(NewtonError::Broken { particle, history, residual })
                 }
             },
