@@ -1,9 +1,9 @@
 //! Paths on which loads may fall.
 
+use super::Stability;
 use super::krylov::{advance, dot};
 use super::load_steps::{Increment, LoadError};
 use super::newton::{Equations, Iteration, Newton, NewtonError, Solved, length};
-use super::Stability;
 
 /// How a path is followed by cylindrical arc length: steps of the unknowns have a given length,
 /// and the load factor is what balances them.

@@ -82,8 +82,12 @@ const QUICK: usize = 5;
 const SLOW: usize = 10;
 /// By how much.
 const GROWTH: f64 = 1.5;
-/// Distance of a state from where its step was to lead, over that of the step, which is too far.
+/// Distance of a state from where its step was to lead, over the length of that step, that is too
+/// far, and that is notable.
 const FAR: f64 = 2.0;
+const OFF: f64 = 0.3;
+/// Ratio of the lengths of two steps per load that is notable.
+const HASTE: f64 = 3.0;
 
 /// Finds a stable equilibrium at each of the load factors in turn, from `start` at a factor of 0,
 /// and shows each.
@@ -160,22 +164,34 @@ impl Path {
         let failed = |source| LoadError::Newton { factor, reached, source };
         let (start, before) = self.start(equations, newton, factor, near).map_err(failed)?;
         let mut x = start.clone();
-        let solved = newton.solve(equations, factor, &mut x, before).map_err(failed)?;
         let unstable = |negative| LoadError::Unstable { factor, reached, negative };
+        let solved =
+            newton.solve(equations, factor, &mut x, before).map_err(|error| match error {
+                NewtonError::NoConvergence { history, .. } if near && any_indefinite(&history) => {
+                    unstable(None)
+                }
+                error => failed(error),
+            })?;
         if let Stability::Unstable(negative) = solved.stability {
             return Err(unstable(negative));
         }
-        // Where the tangent was indefinite on the way, or where the start was far off, the state
-        // may lie beyond a limit: a smaller step tells.
-        let apart = |to: &[f64]| {
-            let changes: Vec<f64> = start.iter().zip(to).map(|(a, b)| a - b).collect();
-            norm(&changes)
-        };
-        let indefinite = solved.iterations.iter().any(|iteration| iteration.indefinite);
-        if near && (indefinite || apart(&x) > FAR * apart(&self.x)) {
+        if near && self.may_have_jumped(factor, &start, &x, &solved) {
             return Err(unstable(None));
         }
         Ok(Increment { factor, x, solved })
+    }
+
+    /// Whether a state may lie beyond a limit, which a smaller step tells: where the tangent was
+    /// indefinite on the way, where the start was far off, or where it was off and the step is
+    /// much larger for its load than the one before.
+    fn may_have_jumped(&self, factor: f64, start: &[f64], x: &[f64], solved: &Solved) -> bool {
+        let missed = distance(start, x) / distance(start, &self.x);
+        let hastens = self.before.as_ref().is_some_and(|(earlier, last)| {
+            let now = distance(x, &self.x) / (factor - self.factor).abs();
+            let before = distance(&self.x, last) / (self.factor - earlier).abs();
+            now > HASTE * before
+        });
+        any_indefinite(&solved.iterations) || missed > FAR || hastens && missed > OFF
     }
 
     fn accept(&mut self, increment: &Increment) {
@@ -211,9 +227,8 @@ impl Path {
         });
         let LinearReport { steps, indefinite, .. } =
             report.map_err(|source| NewtonError::Linear { source, history: Vec::new() })?;
-        let taken = |length| {
-            vec![Iteration { residual: 1.0, length, linear_steps: steps, indefinite }]
-        };
+        let taken =
+            |length| vec![Iteration { residual: 1.0, length, linear_steps: steps, indefinite }];
         let mut x = self.x.clone();
         advance(&mut x, 1.0, &direction);
         match is_sound(equations, &x) {
@@ -230,6 +245,15 @@ impl Path {
             },
         }
     }
+}
+
+fn any_indefinite(iterations: &[Iteration]) -> bool {
+    iterations.iter().any(|iteration| iteration.indefinite)
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let changes: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    norm(&changes)
 }
 
 fn check(steps: &LoadSteps) -> Result<(), LoadError> {

@@ -213,9 +213,9 @@ impl Newton {
             let trial = equations.trial(factor, &x);
             broken = trial.broken;
             if broken.is_none() {
-                let change = before.zip(trial.potential).map(|(before, after)| {
-                    (after - before, NOISE * before.abs().max(after.abs()))
-                });
+                let change = before
+                    .zip(trial.potential)
+                    .map(|(before, after)| (after - before, NOISE * before.abs().max(after.abs())));
                 let taken = match change {
                     Some((change, noise)) if change.abs() > noise => {
                         change <= -SUFFICIENT * length * slope

@@ -14,6 +14,7 @@ use piola_formulas::volumetric::StressState;
 
 use super::{forces, growing, moved, select};
 use crate::clouds::Cloud;
+use crate::support::lattice;
 
 const YOUNG: f64 = 30e9;
 const POISSON: f64 = 0.3;
@@ -37,7 +38,10 @@ fn timoshenko(x: &[f64; 3]) -> [f64; 2] {
 
 /// Nodes of a disordered mesh of tetrahedra with 24 neighbours each.
 fn beam(intervals: [usize; 3]) -> (Cloud<3>, Discrete<3>) {
-    let cloud = Cloud::block(LENGTHS, intervals, 0.2);
+    let mut cloud = Cloud::block(LENGTHS, intervals, 0.1);
+    // Whole cells as kernel weights: with the shares of the nodes, which are small on the boundary,
+    // so few particles are 10 % too soft.
+    cloud.particles.weight = lattice(LENGTHS, intervals).weight;
     let radii = nearest_radii(&cloud.particles, 24, &Domain::open()).unwrap();
     let support =
         DirectedSupport::new(&cloud.particles, Kernel::QuinticSpline, radii, Domain::open());
@@ -69,9 +73,8 @@ fn shear(cloud: &Cloud<3>, intervals: [usize; 3]) -> Vec<Vector<3>> {
     let inertia = height * height * height / 12.0;
     let traction = |y: f64| 1000.0 / (2.0 * inertia) * (0.25 * height * height - y * y);
     let mut loads = vec![Vector::<3>::zeros(); cloud.particles.len()];
-    let node = |j: usize, k: usize| {
-        intervals[0] + (intervals[0] + 1) * (j + (intervals[1] + 1) * k)
-    };
+    let node =
+        |j: usize, k: usize| intervals[0] + (intervals[0] + 1) * (j + (intervals[1] + 1) * k);
     for j in 0..intervals[1] {
         for k in 0..intervals[2] {
             let (low, high) = (node(j, k), node(j + 1, k + 1));
@@ -83,8 +86,8 @@ fn shear(cloud: &Cloud<3>, intervals: [usize; 3]) -> Vec<Vector<3>> {
     loads
 }
 
-/// By the three points inside a triangle that are exact to the second degree, on its four quarters
-/// of quarters: what a cubic leaves is far below all that is asserted.
+/// By the centres of 64 parts of a triangle: what that leaves of a cubic, 2e-4, is far below all
+/// that is asserted.
 fn integrate(
     cloud: &Cloud<3>,
     nodes: [usize; 3],
@@ -140,10 +143,9 @@ fn bending(intervals: [usize; 3]) -> (f64, f64) {
 
 #[test]
 fn the_bending_of_a_cantilever_converges() {
-    // 264 and 720 particles; prototypes had 0.0216 with 261, 0.0160 with 688 and 0.0092 with 2074.
+    // 264 and 720 particles, 0.0297 and 0.0077 where this was written.
     let (coarse, coarse_hourglass) = bending([10, 5, 3]);
     let (fine, fine_hourglass) = bending([14, 7, 5]);
-    println!("{coarse} {coarse_hourglass} {fine} {fine_hourglass}");
     assert!(coarse < 0.03 && fine < 0.02 && fine < coarse, "{coarse} {fine}");
     assert!(coarse_hourglass < 1e-3 && fine_hourglass < 1e-3);
 }
@@ -151,9 +153,9 @@ fn the_bending_of_a_cantilever_converges() {
 #[test]
 #[ignore = "larger clouds: most of a minute"]
 fn the_bending_of_fine_cantilevers_converges() {
+    // 2016 and 11 115 particles, 0.0054 and 0.0034 where this was written.
     for (intervals, most) in [([20, 11, 7], 0.012), ([38, 18, 14], 0.006)] {
         let (error, hourglass) = bending(intervals);
-        println!("{intervals:?} {error} {hourglass}");
         assert!(error < most && hourglass < 1e-3, "{intervals:?} {error} {hourglass}");
     }
 }
@@ -172,7 +174,9 @@ fn a_cantilever_in_tension_is_exact() {
     let zero = || growing(|_| 0.0);
     let mut prescribed = vec![PrescribedDisplacement::component("wall", wall, 0, zero())];
     let corner = |y: f64| select(&cloud, |x| x[0] == 0.0 && x[1] == y && x[2] == 0.0);
-    prescribed.extend((1..3).map(|i| PrescribedDisplacement::component("corner", corner(0.0), i, zero())));
+    prescribed.extend(
+        (1..3).map(|i| PrescribedDisplacement::component("corner", corner(0.0), i, zero())),
+    );
     prescribed.push(PrescribedDisplacement::component("no turn", corner(3.0), 2, zero()));
     let state = solve(&body, &loads, prescribed);
     assert!((state.energies[0] / 800.0 - 1.0).abs() < 1e-8, "{:?}", state.energies);

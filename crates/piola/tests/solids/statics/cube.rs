@@ -7,7 +7,7 @@ use piola::operators::DirectedSupport;
 use piola::schemes::dual_support::{
     Discrete, Gradients, Material, Settings, StaticState, Statics, StaticsInput,
 };
-use piola::solve::{LinearMethod, LoadSteps};
+use piola::solve::{LinearMethod, LoadSteps, Newton};
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::StressState;
@@ -15,9 +15,17 @@ use piola_formulas::volumetric::StressState;
 use super::forces;
 use crate::support::lattice;
 
+/// What is asserted of a load level.
+#[derive(Debug)]
+struct Level {
+    lowest: f64,
+    corner: f64,
+    iterations: usize,
+}
+
 /// A cube of the law (46) there, with half of its top under a dead pressure of 2 Pa: particles on
 /// the nodes of a lattice, loads consistent, so that the line at the middle has half of them.
-pub fn cube(intervals: usize, method: LinearMethod) -> Vec<StaticState<3>> {
+fn cube(intervals: usize, method: LinearMethod) -> Vec<Level> {
     let mut particles = lattice([1.0; 3], [intervals; 3]);
     let side = intervals + 1;
     let cell = 1.0 / intervals as f64;
@@ -61,23 +69,52 @@ pub fn cube(intervals: usize, method: LinearMethod) -> Vec<StaticState<3>> {
         tractions: forces(&loads),
         prescribed: PrescribedDisplacement::clamp("bottom", &bottom).to_vec(),
         method,
+        // As there.
+        newton: Newton { tolerance: 1e-6, ..Newton::default() },
         ..StaticsInput::default()
     };
     let mut statics = Statics::new(&body, input).unwrap();
-    let mut states = Vec::new();
-    let start = std::time::Instant::now();
-    statics.solve_with(&LoadSteps::Given(vec![0.25, 0.5, 0.75, 1.0]), |state| {
-        let lowest = state.displacement.iter().map(|u| u[2]).fold(0.0, f64::min);
-        let corner = state.displacement[side * side * intervals];
-        println!("{} lowest {lowest:.5} corner {:.5} its {} steps {:?} t {:?} E {:?} R {:?}", state.factor, corner[2], state.solved.iterations.len(), state.solved.iterations.iter().map(|i| (i.residual, i.length, i.linear_steps)).collect::<Vec<_>>(), start.elapsed(), state.energies, state.reactions[2].force[2]);
-        states.push(state);
-    }).unwrap();
-    states
+    let states = statics.solve(&LoadSteps::Given(vec![0.25, 0.5, 0.75, 1.0])).unwrap();
+    let level = |state: StaticState<3>| {
+        let top = state.reactions[2].force[2];
+        assert!((top - state.factor).abs() < 1e-5, "{top} N carry a load of {} N", state.factor);
+        Level {
+            lowest: state.displacement.iter().map(|u| u[2]).fold(0.0, f64::min),
+            corner: state.displacement[side * side * intervals][2],
+            iterations: state.solved.iterations.len(),
+        }
+    };
+    states.into_iter().map(level).collect()
+}
+
+/// What converged finite elements give at the four levels: the largest displacement downwards, and
+/// that of the corner (0, 0, 1), which is another one.
+const LOWEST: [f64; 4] = [-0.0617, -0.1387, -0.267, -0.5756];
+const CORNER: [f64; 4] = [-0.0615, -0.1368, -0.2578, -0.5429];
+
+fn check(levels: &[Level], most: [f64; 4]) {
+    for (k, level) in levels.iter().enumerate() {
+        let error = |found: f64, expected: f64| (found / expected - 1.0).abs();
+        assert!(error(level.lowest, LOWEST[k]) < most[k], "{k}: {level:?}");
+        assert!(error(level.corner, CORNER[k]) < most[k], "{k}: {level:?}");
+    }
+}
+
+/// Half the spacing of the source: a few percent too stiff, most where the response is steep.
+#[test]
+fn a_coarse_cube_bends_nearly_as_finite_elements_do() {
+    check(&cube(10, LinearMethod::Krylov), [0.01, 0.02, 0.04, 0.04]);
 }
 
 #[test]
-fn measure() {
-    let n = std::env::var("N").unwrap_or("6".into()).parse().unwrap();
-    let method = if std::env::var("KRYLOV").is_ok() { LinearMethod::Krylov } else { LinearMethod::Direct };
-    cube(n, method);
+#[ignore = "the size of the source: most of a minute"]
+fn the_cube_of_the_source_bends_as_finite_elements_do() {
+    let levels = cube(20, LinearMethod::Automatic);
+    check(&levels, [0.015; 4]);
+    // The numbers of the source.
+    let iterations: Vec<usize> = levels.iter().map(|level| level.iterations).collect();
+    assert!(
+        iterations.iter().zip([4, 4, 5, 7]).all(|(taken, most)| *taken <= most),
+        "{iterations:?}"
+    );
 }

@@ -39,7 +39,9 @@ pub fn body<const D: usize>(
 }
 
 /// A value that grows in proportion to the load factor.
-pub fn growing(value: impl Fn([f64; 3]) -> f64 + Clone + Send + Sync + 'static) -> Arc<dyn SpaceTime> {
+pub fn growing(
+    value: impl Fn([f64; 3]) -> f64 + Clone + Send + Sync + 'static,
+) -> Arc<dyn SpaceTime> {
     let rate = value.clone();
     Arc::new(Function {
         value: move |x: [f64; 3], factor: f64| factor * value(x),

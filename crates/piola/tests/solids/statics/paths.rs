@@ -1,9 +1,9 @@
 //! Instability, and paths that lead through it.
 
+use piola::Vector;
 use piola::boundaries::PrescribedDisplacement;
 use piola::schemes::dual_support::{Discrete, Statics, StaticsError, StaticsInput};
 use piola::solve::{ArcLength, LoadError, LoadSteps, Newton, Stability};
-use piola::Vector;
 use piola_formulas::hyperelastic::HyperelasticLaw;
 use piola_formulas::volumetric::StressState;
 
@@ -61,7 +61,9 @@ fn arch() -> (Cloud<2>, Discrete<2>, [usize; 3]) {
 #[test]
 fn arc_length_follows_an_arch_through_its_limit() {
     let (cloud, body, [top, columns, _]) = arch();
-    let is_end = |a: &u32| (*a as usize).is_multiple_of(columns + 1) || (*a as usize + 1).is_multiple_of(columns + 1);
+    let is_end = |a: &u32| {
+        (*a as usize).is_multiple_of(columns + 1) || (*a as usize + 1).is_multiple_of(columns + 1)
+    };
     let ends: Vec<u32> = select(&cloud, |_| true).into_iter().filter(is_end).collect();
     let clamp = PrescribedDisplacement::clamp("walls", &ends).to_vec();
     let force = 60.0;
@@ -98,7 +100,12 @@ fn arc_length_follows_an_arch_through_its_limit() {
     assert!(reached < 1.01 * highest && reached > 0.97 * highest, "{reached} {highest}");
     // With the displacement prescribed.
     let mut prescribed = clamp.clone();
-    prescribed.push(PrescribedDisplacement::component("tip", vec![top as u32], 1, growing(|_| -1.0)));
+    prescribed.push(PrescribedDisplacement::component(
+        "tip",
+        vec![top as u32],
+        1,
+        growing(|_| -1.0),
+    ));
     let input = StaticsInput { prescribed, newton, ..StaticsInput::default() };
     let levels = points.iter().map(|point| point.0).collect();
     let states = Statics::new(&body, input).unwrap().solve(&LoadSteps::Given(levels)).unwrap();

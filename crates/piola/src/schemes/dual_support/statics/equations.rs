@@ -91,8 +91,7 @@ impl<const D: usize> Equations for Statics<'_, D> {
         let reduction = self.solver.reduction();
         reduction.restrict(&self.left, residual);
         let left = &self.left;
-        let held =
-            parallel::sum(left.len(), |a| reduction.held_part(a, &left[a]).norm_squared());
+        let held = parallel::sum(left.len(), |a| reduction.held_part(a, &left[a]).norm_squared());
         let open = parallel::sum(residual.len(), |k| residual[k] * residual[k]);
         if open == 0.0 { 0.0 } else { (open / (loads + held)).sqrt() }
     }

@@ -97,11 +97,7 @@ impl<const D: usize> Statics<'_, D> {
     /// An error of the load steps with the particle that it is about.
     pub(super) fn named(&self, error: LoadError) -> StaticsError {
         match error {
-            LoadError::Newton {
-                factor,
-                reached,
-                source: NewtonError::Broken { particle, .. },
-            } => {
+            LoadError::Newton { factor, reached, source: NewtonError::Broken { particle, .. } } => {
                 let particles = &self.discrete.particles;
                 StaticsError::Inverted {
                     id: particles.id[particle],

@@ -16,9 +16,7 @@ pub use stiffness::Stiffness;
 
 use super::{Discrete, Side};
 use crate::Vector;
-use crate::boundaries::{
-    BodyForce, FollowerPressure, PrescribedDisplacement, Tie, Traction,
-};
+use crate::boundaries::{BodyForce, FollowerPressure, PrescribedDisplacement, Tie, Traction};
 use crate::solve::{
     ArcLength, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow, follow_arc,
 };
@@ -109,12 +107,10 @@ impl<'a, const D: usize> Statics<'a, D> {
             return Err(StaticsError::Free { body, motion });
         }
         let stiffness = Stiffness::new(discrete);
-        let solver = LinearSolver::new(
-            input.method,
-            &discrete.particles.position,
-            &stiffness,
-            |order| supports.reduction(order),
-        )?;
+        let solver =
+            LinearSolver::new(input.method, &discrete.particles.position, &stiffness, |order| {
+                supports.reduction(order)
+            })?;
         Ok(Self {
             discrete,
             loads: Loads { body_forces, tractions, pressures },
