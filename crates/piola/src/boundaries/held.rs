@@ -41,6 +41,21 @@ impl<const D: usize> PrescribedDisplacement<D> {
     }
 }
 
+/// The displacement of boundary faces of cells along a direction, prescribed as a function of the
+/// face's reference place and of the load factor, which stands for the time. For clouds of cell
+/// centres, which have no particle where the body is held.
+#[derive(Clone)]
+pub struct PrescribedFaces<const D: usize> {
+    /// Name for messages and for the reaction.
+    pub name: String,
+    /// Faces by number.
+    pub faces: Vec<u32>,
+    /// The direction, of any length.
+    pub direction: Vector<D>,
+    /// Displacement along the direction in m.
+    pub value: Arc<dyn SpaceTime>,
+}
+
 /// Particles whose displacements have one component in common, which is not prescribed: with a tie
 /// for each component they are the face of a rigid platen that is guided, and does not tilt.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -9,7 +9,7 @@ mod traction;
 
 pub use body_force::BodyForce;
 pub use function::{SpaceTime, padded};
-pub use held::{PrescribedDisplacement, Tie};
+pub use held::{PrescribedDisplacement, PrescribedFaces, Tie};
 pub use prescribed::PrescribedVelocity;
 pub use pressure::FollowerPressure;
 pub use traction::Traction;

@@ -68,16 +68,24 @@ impl<const D: usize> Trace<D> {
         &self.faces
     }
 
+    /// Particles with their coefficients in the value on a face: its owner, and then the support of
+    /// that in order.
+    pub fn row(&self, face: usize) -> Vec<(u32, f64)> {
+        let row = self.range(face);
+        let pairs = self.particles[row.clone()].iter().zip(&self.coefficients[row]);
+        pairs.map(|(&k, &coefficient)| (k, coefficient)).collect()
+    }
+
     /// The value of a field on a face.
     pub fn value(&self, face: usize, field: &[Vector<D>]) -> Vector<D> {
-        let row = self.row(face);
+        let row = self.range(face);
         let terms = self.particles[row.clone()].iter().zip(&self.coefficients[row]);
         terms.map(|(&k, &coefficient)| field[k as usize] * coefficient).sum()
     }
 
     /// Adds to forces on particles what a force on a face does on them.
     pub fn spread(&self, face: usize, force: &Vector<D>, forces: &mut [Vector<D>]) {
-        let row = self.row(face);
+        let row = self.range(face);
         for (&k, &coefficient) in self.particles[row.clone()].iter().zip(&self.coefficients[row]) {
             forces[k as usize] += force * coefficient;
         }
@@ -93,7 +101,7 @@ impl<const D: usize> Trace<D> {
         areas
     }
 
-    fn row(&self, face: usize) -> Range<usize> {
+    fn range(&self, face: usize) -> Range<usize> {
         self.offsets[face]..self.offsets[face + 1]
     }
 }

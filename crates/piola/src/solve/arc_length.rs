@@ -119,7 +119,10 @@ impl Walk {
             if let Some(particle) = equations.trial(factor, &x).broken {
                 return Err(NewtonError::Broken { particle, history, residual: f64::NAN });
             }
-            let residual = equations.residual(factor, &x, &mut left);
+            let mut residual = equations.residual(factor, &x, &mut left);
+            if residual <= newton.tolerance && equations.settle(factor, &x) {
+                residual = equations.residual(factor, &x, &mut left);
+            }
             if residual <= newton.tolerance {
                 equations.linearise(factor, &x, false).map_err(|e| linear(e, &history))?;
                 let stability: Stability = equations.stability();

@@ -27,6 +27,12 @@ pub trait Equations {
     /// [`Self::linearise`] if all but the loads is taken as linear.
     fn step_residual(&mut self, from: f64, to: f64, residual: &mut [f64]);
 
+    /// Moves multipliers, where there are any, to a state with a residual of zero; whether the
+    /// residual has changed with them.
+    fn settle(&mut self, _factor: f64, _x: &[f64]) -> bool {
+        false
+    }
+
     /// Makes the tangent `-dr/dx` of a state; `definite` allows it to be changed so that it is
     /// positive definite.
     ///
@@ -158,6 +164,9 @@ impl Newton {
         let mut direction = vec![0.0; x.len()];
         let mut residual = equations.residual(factor, x, &mut left);
         loop {
+            if residual <= self.tolerance && equations.settle(factor, x) {
+                residual = equations.residual(factor, x, &mut left);
+            }
             if residual <= self.tolerance {
                 // Where the potential has a saddle a shift would hide it.
                 equations

@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use piola::boundaries::PrescribedFaces;
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{DirectedSupport, DualGradient, Face, Trace, nearest_radii};
 use piola::schemes::dual_support::{
-    Discrete, Gradients, Material, Settings, Statics, StaticsInput,
+    Discrete, Gradients, Material, Settings, Statics, StaticsError, StaticsInput,
 };
-use piola::solve::{LoadSteps, Newton};
+use piola::solve::{LinearMethod, LoadSteps, Newton};
 use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::{HyperelasticLaw, Reduced};
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::StressState;
 
-use super::{constants, forces, moved};
+use super::{constants, forces, growing, moved};
 use crate::clouds::some_gradient;
 use crate::support::jittered;
 
@@ -90,6 +91,8 @@ fn traces_are_exact_for_linear_fields_and_their_own_adjoints() {
     assert!((moment / volume - Tensor::<2>::identity()).amax() < 1e-13);
 }
 
+/// A homogeneous state by loads on all faces, held at three particles; and by holding the faces of
+/// the left and the lower side, with loads on the others.
 #[test]
 fn the_patch_test_holds_on_cell_centres() {
     let (particles, support, trace) = bound([10, 5]);
@@ -101,23 +104,87 @@ fn the_patch_test_holds_on_cell_centres() {
     let places = particles.position.clone();
     let body = Discrete::new(particles, support, &settings, materials).unwrap();
     let slope = some_gradient::<2>() + Tensor::<2>::identity() * 0.2;
+    let slope = 0.5 * (slope + slope.transpose());
     let stress = law.stress(&slope);
-    let mut loads = vec![Vector::<2>::zeros(); body.len()];
+    let (mut all, mut others) = (vec![Vector::<2>::zeros(); body.len()], Vec::new());
+    let (mut left, mut lower) = (Vec::new(), Vec::new());
     for (index, face) in trace.faces().iter().enumerate() {
-        trace.spread(index, &(stress * face.area), &mut loads);
+        trace.spread(index, &(stress * face.area), &mut all);
+        let normal = face.area.normalize();
+        left.extend((normal[0] < -0.8).then_some(index as u32));
+        lower.extend((normal[1] < -0.8).then_some(index as u32));
+        others.extend((normal.min() > -0.8).then_some(index));
+    }
+    assert!(left.len() == 5 && lower.len() == 10);
+    let mut loads = vec![Vector::<2>::zeros(); body.len()];
+    for index in others {
+        trace.spread(index, &(stress * trace.faces()[index].area), &mut loads);
     }
     let held = [(0, 0), (0, 1), (9, 1)];
-    let input = StaticsInput {
-        tractions: forces(&loads),
+    let faces = |name: &str, faces: &[u32], component: usize| PrescribedFaces {
+        name: name.into(),
+        faces: faces.to_vec(),
+        direction: Vector::<2>::from_fn(|i, _| f64::from(u8::from(i == component))),
+        value: growing(move |x| (slope * Vector::<2>::new(x[0], x[1]))[component]),
+    };
+    let points = StaticsInput {
+        tractions: forces(&all),
         prescribed: held.iter().map(|&(a, i)| moved(a, i, (slope * places[a])[i])).collect(),
-        newton: Newton { tolerance: 1e-11, ..Newton::default() },
         ..StaticsInput::default()
     };
-    let mut statics = Statics::new(&body, input).unwrap();
-    let state = statics.solve(&LoadSteps::Given(vec![0.5, 1.0])).unwrap().remove(1);
-    for (u, x) in state.displacement.iter().zip(&places) {
-        assert!((u - slope * x).amax() < 1e-8, "{u}");
+    let sides = |method| StaticsInput {
+        tractions: forces(&loads),
+        trace: Some(trace.clone()),
+        prescribed_faces: vec![
+            faces("left", &left, 0),
+            faces("left", &left, 1),
+            faces("lower", &lower, 0),
+            faces("lower", &lower, 1),
+        ],
+        method,
+        ..StaticsInput::default()
+    };
+    for input in [points, sides(LinearMethod::Direct), sides(LinearMethod::Krylov)] {
+        let newton = Newton { tolerance: 1e-11, ..Newton::default() };
+        let is_held = input.trace.is_some();
+        let mut statics = Statics::new(&body, StaticsInput { newton, ..input }).unwrap();
+        let state = statics.solve(&LoadSteps::Given(vec![0.5, 1.0])).unwrap().remove(1);
+        for (u, x) in state.displacement.iter().zip(&places) {
+            assert!((u - slope * x).amax() < 1e-8, "{u} {:?}", state.solved);
+        }
+        let face = trace.faces()[7];
+        assert!((trace.value(7, &state.displacement) - slope * face.place).amax() < 1e-8);
+        if is_held {
+            let reaction: Vector<2> = state.reactions.iter().map(|reaction| reaction.force).sum();
+            let total: Vector<2> = loads.iter().sum();
+            assert!((reaction + total).norm() < 1e-9 * total.norm(), "{reaction} {total}");
+        }
     }
-    let (index, face) = (7, trace.faces()[7]);
-    assert!((trace.value(index, &state.displacement) - slope * face.place).amax() < 1e-8);
+}
+
+#[test]
+fn faces_that_do_not_exist_or_do_not_hold_are_named() {
+    let (particles, support, trace) = bound([4, 2]);
+    let law = HyperelasticLaw::linear_elastic(constants());
+    let law = Reduced::<2>::new(law, StressState::PlaneStrain).unwrap();
+    let settings = Settings { gradients: Gradients::Plain, hourglass: 1.0 };
+    let materials = vec![Material { density: 1.0, law }];
+    let body = Discrete::new(particles, support, &settings, materials).unwrap();
+    let refused = |faces: Vec<u32>, trace: Option<Trace<2>>| {
+        let held = |direction| PrescribedFaces {
+            name: "wall".into(),
+            faces: faces.clone(),
+            direction,
+            value: growing(|_| 0.0),
+        };
+        let prescribed_faces = vec![held(Vector::<2>::x()), held(Vector::<2>::y())];
+        let input = StaticsInput { trace, prescribed_faces, ..StaticsInput::default() };
+        Statics::new(&body, input).err().expect("it is refused")
+    };
+    let error = refused(vec![99], Some(trace.clone()));
+    assert!(matches!(error, StaticsError::Index { got: 99, count: 12, .. }), "{error}");
+    let error = refused(vec![0], None);
+    assert!(matches!(error, StaticsError::Index { got: 0, count: 0, .. }), "{error}");
+    let error = refused(vec![0], Some(trace));
+    assert!(matches!(error, StaticsError::Free { .. }), "{error}");
 }

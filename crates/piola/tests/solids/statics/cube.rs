@@ -29,7 +29,7 @@ fn cube(intervals: usize, method: LinearMethod) -> Vec<Level> {
     let mut particles = lattice([1.0; 3], [intervals; 3]);
     let side = intervals + 1;
     let cell = 1.0 / intervals as f64;
-    let half = |index: usize| if index % intervals == 0 { 0.5 * cell } else { cell };
+    let half = |index: usize| if index.is_multiple_of(intervals) { 0.5 * cell } else { cell };
     let index = |a: usize| [a % side, a / side % side, a / side / side];
     let outward = |index: usize| match index {
         0 => -1.0,

@@ -24,11 +24,12 @@ impl<const D: usize> Statics<'_, D> {
         size
     }
 
-    /// All loads at a load factor in N, on the displaced body.
+    /// All loads at a load factor in N, on the displaced body, and what holds its faces.
     fn outside(&mut self, factor: f64) -> Vec<Vector<D>> {
         let mut outside = self.dead_loads(factor).to_vec();
         let pressing = self.loads.pressing(self.discrete, factor, false);
         press(self.discrete, &self.displacement, &pressing, &mut outside);
+        self.faces.add_forces(&self.displacement, factor, &mut outside);
         outside
     }
 
@@ -80,6 +81,7 @@ impl<const D: usize> Equations for Statics<'_, D> {
             sums[1] += f64::from(u8::from(is_broken(a, own)));
         });
         let first = || (0..discrete.len()).find(|&a| is_broken(a, energy(a)));
+        let potential = potential + self.faces.potential(displacement, factor);
         Trial {
             potential: self.loads.pressures.is_empty().then_some(potential),
             broken: if broken > 0.0 { first() } else { None },
@@ -100,6 +102,7 @@ impl<const D: usize> Equations for Statics<'_, D> {
         let mut forces = self.loads.dead(self.discrete, factor, true);
         let pressing = self.loads.pressing(self.discrete, factor, true);
         press(self.discrete, &self.displacement, &pressing, &mut forces);
+        self.faces.add_rates(factor, &mut forces);
         let held = self.supports.values(factor, true);
         self.restricted(&held, forces, rate);
     }
@@ -111,6 +114,11 @@ impl<const D: usize> Equations for Statics<'_, D> {
         let (before, after) = (self.supports.values(from, false), self.supports.values(to, false));
         let moved: Vec<Vector<D>> = after.iter().zip(&before).map(|(a, b)| a - b).collect();
         self.restricted(&moved, forces, residual);
+    }
+
+    fn settle(&mut self, factor: f64, x: &[f64]) -> bool {
+        self.displace(factor, x);
+        self.faces.settle(&self.displacement, factor)
     }
 
     fn linearise(&mut self, factor: f64, x: &[f64], definite: bool) -> Result<(), LinearError> {

@@ -6,6 +6,7 @@
 
 mod equations;
 mod error;
+mod faces;
 mod loads;
 mod rigid;
 mod stiffness;
@@ -16,11 +17,15 @@ pub use stiffness::Stiffness;
 
 use super::{Discrete, Side};
 use crate::Vector;
-use crate::boundaries::{BodyForce, FollowerPressure, PrescribedDisplacement, Tie, Traction};
+use crate::boundaries::{
+    BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
+};
+use crate::operators::Trace;
 use crate::solve::{
     ArcLength, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow, follow_arc,
 };
 use error::check_index;
+use faces::Faces;
 use loads::Loads;
 use rigid::free_motion;
 use supports::Supports;
@@ -37,6 +42,10 @@ pub struct StaticsInput<const D: usize> {
     pub pressures: Vec<FollowerPressure<D>>,
     /// Prescribed displacements; of two in the same direction the later one holds.
     pub prescribed: Vec<PrescribedDisplacement<D>>,
+    /// Boundary faces of cells, where particles are centres of cells.
+    pub trace: Option<Trace<D>>,
+    /// Prescribed displacements of faces of the trace.
+    pub prescribed_faces: Vec<PrescribedFaces<D>>,
     /// Particles that move together.
     pub ties: Vec<Tie>,
     /// How linear equations are solved.
@@ -50,6 +59,7 @@ pub struct Statics<'a, const D: usize> {
     discrete: &'a Discrete<D>,
     loads: Loads<D>,
     supports: Supports<D>,
+    faces: Faces<D>,
     solver: LinearSolver<D>,
     stiffness: Stiffness<'a, D>,
     newton: Newton,
@@ -70,7 +80,7 @@ pub struct StaticState<const D: usize> {
     pub displacement: Vec<Vector<D>>,
     /// Force of the supports on each particle in N.
     pub support_force: Vec<Vector<D>>,
-    /// Force of each condition on the body, in their order.
+    /// Force of each condition on the body, in their order, those of faces last.
     pub reactions: Vec<Reaction<D>>,
     /// Strain and hourglass energy in J.
     pub energies: [f64; 2],
@@ -94,7 +104,15 @@ impl<'a, const D: usize> Statics<'a, D> {
     /// [`StaticsError`] for conditions on what does not exist or that contradict each other, and
     /// for bodies that are free to move as a whole.
     pub fn new(discrete: &'a Discrete<D>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
-        let StaticsInput { body_forces, tractions, pressures, prescribed, ties, .. } = input;
+        let StaticsInput {
+            body_forces,
+            tractions,
+            pressures,
+            prescribed,
+            prescribed_faces,
+            ties,
+            ..
+        } = input;
         let count = discrete.len();
         for traction in &tractions {
             error::check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
@@ -103,10 +121,13 @@ impl<'a, const D: usize> Statics<'a, D> {
             error::check_areas(&pressure.name, &pressure.particles, pressure.areas.len(), count)?;
         }
         let supports = Supports::new(&discrete.particles, prescribed, ties)?;
-        if let Some((body, motion)) = free_motion(&discrete.particles, &supports) {
+        let shear = |a: usize| discrete.material(a).law.law().small_strain().mu;
+        let faces = Faces::new(input.trace.as_ref(), prescribed_faces, shear)?;
+        if let Some((body, motion)) = free_motion(&discrete.particles, &supports, faces.springs()) {
             return Err(StaticsError::Free { body, motion });
         }
-        let stiffness = Stiffness::new(discrete);
+        let mut stiffness = Stiffness::new(discrete);
+        stiffness.hold(faces.springs());
         let solver =
             LinearSolver::new(input.method, &discrete.particles.position, &stiffness, |order| {
                 supports.reduction(order)
@@ -115,6 +136,7 @@ impl<'a, const D: usize> Statics<'a, D> {
             discrete,
             loads: Loads { body_forces, tractions, pressures },
             supports,
+            faces,
             solver,
             stiffness,
             newton: input.newton,
@@ -150,6 +172,7 @@ impl<'a, const D: usize> Statics<'a, D> {
         mut show: impl FnMut(StaticState<D>),
     ) -> Result<(), StaticsError> {
         let (newton, start) = (self.newton, vec![0.0; self.unknowns()]);
+        self.faces.reset();
         follow(self, &newton, steps, start, |statics, increment| show(statics.state(increment)))
             .map_err(|error| self.named(error))
     }
@@ -164,6 +187,7 @@ impl<'a, const D: usize> Statics<'a, D> {
         mut show: impl FnMut(StaticState<D>) -> bool,
     ) -> Result<(), StaticsError> {
         let (newton, start) = (self.newton, vec![0.0; self.unknowns()]);
+        self.faces.reset();
         follow_arc(self, &newton, arc, start, |statics, increment| show(statics.state(increment)))
             .map_err(|error| self.named(error))
     }
@@ -180,8 +204,9 @@ impl<'a, const D: usize> Statics<'a, D> {
             let along = axis.dot(&support_force[entry.particle]);
             forces[entry.condition] += axis * along;
         }
-        let named = self.supports.names().zip(forces);
-        let reactions = named.map(|(name, force)| Reaction { name: name.to_owned(), force });
+        let named = self.supports.names().map(str::to_owned).zip(forces);
+        let faces = self.faces.reactions(&self.displacement, factor);
+        let reactions = named.chain(faces).map(|(name, force)| Reaction { name, force });
         StaticState {
             factor,
             displacement: self.displacement.clone(),

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::faces::Spring;
 use super::supports::Supports;
 use crate::Vector;
 use crate::geometry::Particles;
@@ -14,14 +15,16 @@ const FREE: f64 = 1e-10;
 pub(super) fn free_motion<const D: usize>(
     particles: &Particles<D>,
     supports: &Supports<D>,
+    springs: &[Spring<D>],
 ) -> Option<(u32, String)> {
     let bodies = particles.body.iter().max().map_or(0, |&body| body + 1);
-    (0..bodies).find_map(|body| free_motion_of(particles, supports, body))
+    (0..bodies).find_map(|body| free_motion_of(particles, supports, springs, body))
 }
 
 fn free_motion_of<const D: usize>(
     particles: &Particles<D>,
     supports: &Supports<D>,
+    springs: &[Spring<D>],
     body: u32,
 ) -> Option<(u32, String)> {
     let own: Vec<usize> = (0..particles.len()).filter(|&a| particles.body[a] == body).collect();
@@ -36,6 +39,13 @@ fn free_motion_of<const D: usize>(
             motions(&place(entry.particle), &direction)
         })
         .collect();
+    let own = |spring: &&Spring<D>| particles.body[spring.owner as usize] == body;
+    rows.extend(
+        springs
+            .iter()
+            .filter(own)
+            .map(|spring| motions(&((spring.place - center) / size), &spring.direction)),
+    );
     for tie in supports.ties() {
         let axis = Vector::from_fn(|i, _| f64::from(u8::from(i == tie.component)));
         let of = |a: u32| match particles.body[a as usize] == body {

@@ -1,10 +1,13 @@
 //! The tangent stiffness of a state, in products and in blocks.
 
+use std::sync::Arc;
+
 use num_dual::Dual64;
 use piola_formulas::hyperelastic::Tangent as MaterialTangent;
 use piola_formulas::tensor;
 
 use super::super::{Discrete, Side};
+use super::faces::Spring;
 use crate::operators::dual_row;
 use crate::solve::Tangent;
 use crate::{Tensor, Vector, parallel};
@@ -32,6 +35,9 @@ pub struct Stiffness<'a, const D: usize> {
     /// Derivative of the pressing force on a particle by its deformation gradient, by entry, N;
     /// empty without pressure.
     pressed: Vec<[[Vector<D>; D]; D]>,
+    /// Held faces, and those of each particle.
+    springs: Arc<Vec<Spring<D>>>,
+    springs_of: Vec<Vec<u32>>,
     sides: Vec<Side<f64, D>>,
 }
 
@@ -69,10 +75,20 @@ impl<'a, const D: usize> Stiffness<'a, D> {
             owners: (0..count).map(owner).collect(),
             tangents: vec![[[Tensor::zeros(); D]; D]; count],
             pressed: Vec::new(),
+            springs: Arc::default(),
+            springs_of: vec![Vec::new(); count],
             sides: vec![Side::zero(); count],
         };
         stiffness.load(&vec![Vector::zeros(); count], &[]);
         stiffness
+    }
+
+    /// Adds what holds faces of cells.
+    pub(super) fn hold(&mut self, springs: &Arc<Vec<Spring<D>>>) {
+        self.springs = springs.clone();
+        for (index, spring) in springs.iter().enumerate() {
+            self.springs_of[spring.owner as usize].push(index as u32);
+        }
     }
 
     /// Takes in displacements in m, and the force `p N_a` of follower pressures on each particle
@@ -156,6 +172,21 @@ impl<'a, const D: usize> Stiffness<'a, D> {
         }
     }
 
+    /// Shows the stiffness of each held face of c in the row of the particle at a position in the
+    /// rows of these faces: the owner comes first, then its support in order.
+    fn see_springs(&self, c: usize, position: usize, see: &mut dyn FnMut(&Spring<D>, &Tensor<D>)) {
+        for &index in &self.springs_of[c] {
+            let spring = &self.springs[index as usize];
+            let n = spring.direction;
+            see(spring, &(n * n.transpose() * (spring.stiffness * spring.row[position].1)));
+        }
+    }
+
+    /// Position of the particle at an entry of the support of c in the rows of its faces.
+    fn position(&self, c: usize, entry: u32) -> usize {
+        entry as usize - self.discrete.support.list.range(c).start + 1
+    }
+
     /// Adds half of what pressure couples particle a with, and half of the transpose.
     fn add_pressure(&self, a: usize, add: &mut dyn FnMut(u32, &Tensor<D>)) {
         let list = &self.discrete.support.list;
@@ -187,10 +218,17 @@ impl<const D: usize> Tangent<D> for Stiffness<'_, D> {
     }
 
     fn add_row(&self, a: usize, add: &mut dyn FnMut(u32, &Tensor<D>)) {
+        let add_springs = |add: &mut dyn FnMut(u32, &Tensor<D>), c: usize, position: usize| {
+            self.see_springs(c, position, &mut |spring, block| {
+                spring.row.iter().for_each(|&(b, r)| add(b, &(block * r)));
+            });
+        };
         self.add_support(a, &self.owner(a), add);
+        add_springs(add, a, 0);
         for (&c, &entry) in dual_row(&self.discrete.support, a) {
             let c = c as usize;
             self.add_support(c, &self.member(c, a as u32, entry as usize), add);
+            add_springs(add, c, self.position(c, entry));
         }
         if !self.pressed.is_empty() {
             self.add_pressure(a, add);
@@ -230,6 +268,7 @@ impl<const D: usize> Tangent<D> for Stiffness<'_, D> {
                 }
             }
         });
+        self.springs.iter().for_each(|spring| spring.add_product(direction, product));
     }
 
     fn diagonal(&self) -> Vec<Tensor<D>> {
@@ -238,9 +277,14 @@ impl<const D: usize> Tangent<D> for Stiffness<'_, D> {
             for (offset, block) in blocks.iter_mut().enumerate() {
                 let a = first + offset;
                 *block = self.own_block(a, &self.owner(a));
+                self.see_springs(a, 0, &mut |spring, row| *block += row * spring.row[0].1);
                 for (&c, &entry) in dual_row(&self.discrete.support, a) {
                     let c = c as usize;
+                    let position = self.position(c, entry);
                     *block += self.own_block(c, &self.member(c, a as u32, entry as usize));
+                    self.see_springs(c, position, &mut |spring, row| {
+                        *block += row * spring.row[position].1;
+                    });
                 }
                 if let Some(slopes) = self.pressed.get(a) {
                     *block += block_of(slopes, &self.owners[a]);
