@@ -1,9 +1,9 @@
 //! Paths on which loads may fall.
 
 use super::Stability;
-use super::krylov::{advance, dot};
+use super::krylov::{advance, dot, norm};
 use super::load_steps::{Increment, LoadError};
-use super::newton::{Equations, Iteration, Newton, NewtonError, Solved, length};
+use super::newton::{Equations, Iteration, Newton, NewtonError, Solved};
 
 /// How a path is followed by cylindrical arc length: steps of the unknowns have a given length,
 /// and the load factor is what balances them.
@@ -102,7 +102,7 @@ impl Walk {
                 equations.solve(&rate, tight, &mut along)
             })
             .map_err(|source| linear(source, &[]))?;
-        let size = length(&along);
+        let size = norm(&along);
         let radius = *radius.get_or_insert(arc.first.abs() * size);
         // Onwards: the way along the load that goes on where the last step went.
         let ahead = match &self.last {

@@ -2,8 +2,9 @@
 
 use thiserror::Error;
 
+use super::jacobi::BlockJacobi;
 use super::krylov::{Outcome, conjugate_gradients, gmres};
-use super::{Factor, FactorError, Local, Reduction, SparseMatrix, dissect};
+use super::{Factor, FactorError, Reduction, SparseMatrix, dissect};
 use crate::{Tensor, Vector, parallel};
 
 /// The derivative of what a scheme's rows resist with, at the state it was made for.
@@ -104,9 +105,7 @@ pub struct LinearSolver<const D: usize> {
     reduction: Reduction<D>,
     /// None for a Krylov method.
     direct: Option<(SparseMatrix, Factor)>,
-    /// Inverse blocks on the diagonal, and inverse entries of shared unknowns.
-    jacobi: Vec<Tensor<D>>,
-    shared: Vec<(u32, f64)>,
+    jacobi: BlockJacobi<D>,
     shift: f64,
     /// Negative pivots of the tangent as it was loaded.
     negative: usize,
@@ -138,8 +137,8 @@ impl<const D: usize> LinearSolver<D> {
             let factor = Factor::new(&matrix)?;
             direct = Some((matrix, factor));
         }
-        let (jacobi, shared) = (Vec::new(), Vec::new());
-        Ok(Self { reduction, direct, jacobi, shared, shift: 0.0, negative: 0 })
+        let jacobi = BlockJacobi::default();
+        Ok(Self { reduction, direct, jacobi, shift: 0.0, negative: 0 })
     }
 
     /// The unknowns it solves for.
@@ -160,7 +159,7 @@ impl<const D: usize> LinearSolver<D> {
     pub fn load<T: Tangent<D>>(&mut self, tangent: &T, definite: bool) -> Result<(), LinearError> {
         (self.shift, self.negative) = (0.0, 0);
         let Some((matrix, factor)) = &mut self.direct else {
-            self.load_blocks(tangent);
+            self.jacobi = BlockJacobi::new(&self.reduction, &tangent.diagonal());
             return Ok(());
         };
         matrix.assemble(&self.reduction, tangent);
@@ -252,72 +251,9 @@ impl<const D: usize> LinearSolver<D> {
     }
 
     fn precondition_in_place(&mut self, vector: &mut [f64]) {
-        if let Some((_, factor)) = &mut self.direct {
-            return factor.solve(vector);
+        match &mut self.direct {
+            Some((_, factor)) => factor.solve(vector),
+            None => self.jacobi.apply(&self.reduction, vector),
         }
-        let reduction = &self.reduction;
-        for (a, block) in self.jacobi.iter().enumerate() {
-            let locals = reduction.locals(a);
-            let own = |i: usize| match locals[i] {
-                Local::Free(number) => vector[number as usize],
-                Local::Held => 0.0,
-            };
-            let scaled = block * Vector::<D>::from_fn(|i, _| own(i));
-            for (i, local) in locals.iter().enumerate() {
-                if let &Local::Free(number) = local
-                    && block[(i, i)] != 0.0
-                {
-                    vector[number as usize] = scaled[i];
-                }
-            }
-        }
-        self.shared.iter().for_each(|&(number, inverse)| vector[number as usize] *= inverse);
     }
-
-    fn load_blocks<T: Tangent<D>>(&mut self, tangent: &T) {
-        let blocks = tangent.diagonal();
-        let mut holders = vec![0_u32; self.reduction.unknowns()];
-        let mut sums = vec![0.0; holders.len()];
-        for (a, block) in blocks.iter().enumerate() {
-            let frame = self.reduction.frame(a);
-            let block = frame.tr_mul(&(block * frame));
-            for (i, local) in self.reduction.locals(a).iter().enumerate() {
-                if let &Local::Free(number) = local {
-                    holders[number as usize] += 1;
-                    sums[number as usize] += block[(i, i)];
-                }
-            }
-        }
-        let reduction = &self.reduction;
-        let is_own = |local: &Local| match *local {
-            Local::Free(number) => holders[number as usize] == 1,
-            Local::Held => false,
-        };
-        self.jacobi.resize(blocks.len(), Tensor::zeros());
-        parallel::for_each_chunk(&mut self.jacobi, |first, inverses| {
-            for (offset, inverse) in inverses.iter_mut().enumerate() {
-                let a = first + offset;
-                let frame = reduction.frame(a);
-                let own = reduction.locals(a).each_ref().map(is_own);
-                *inverse = inverse_of(&frame.tr_mul(&(blocks[a] * frame)), &own);
-            }
-        });
-        let shared = holders.iter().zip(&sums).enumerate().filter(|(_, (count, _))| **count > 1);
-        self.shared = shared.map(|(k, (_, sum))| (k as u32, 1.0 / sum.abs())).collect();
-    }
-}
-
-/// Inverse of a block in its own components, zero elsewhere; of its diagonal where that is not
-/// positive definite.
-fn inverse_of<const D: usize>(block: &Tensor<D>, own: &[bool; D]) -> Tensor<D> {
-    let masked = Tensor::<D>::from_fn(|i, j| match (own[i] && own[j], i == j) {
-        (true, _) => 0.5 * (block[(i, j)] + block[(j, i)]),
-        (false, true) => 1.0,
-        (false, false) => 0.0,
-    });
-    let is_definite = piola_formulas::tensor::smallest_eigenvalue(&masked) > 0.0;
-    let inverse = is_definite.then(|| piola_formulas::tensor::inverse(&masked)).flatten();
-    let diagonal = || Tensor::from_diagonal(&masked.diagonal().map(|d| 1.0 / d.abs()));
-    let inverse = inverse.unwrap_or_else(diagonal);
-    Tensor::from_fn(|i, j| if own[i] && own[j] { inverse[(i, j)] } else { 0.0 })
 }

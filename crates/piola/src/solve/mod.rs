@@ -16,6 +16,7 @@
 mod arc_length;
 mod dissection;
 mod factor;
+mod jacobi;
 mod krylov;
 mod linear;
 mod load_steps;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use thiserror::Error;
 
-use super::krylov::{advance, dot, norm};
+use super::krylov::{advance, dot};
 use super::{LinearError, LinearReport, Stability};
 
 /// Equations `r(x, factor) = 0` in unknowns x, where the load factor takes the part of time.
@@ -265,9 +265,4 @@ fn listed(history: &[Iteration], last: f64) -> String {
     }
     let _ = write!(text, "{last:.1e}");
     text
-}
-
-/// Size of a vector, for tests of convergence that scale with it.
-pub(super) fn length(x: &[f64]) -> f64 {
-    norm(x)
 }

@@ -6,6 +6,7 @@ mod cube;
 mod equilibrium;
 mod paths;
 mod pressure;
+mod rubber;
 mod stiffness;
 
 use std::sync::Arc;
