@@ -45,8 +45,9 @@ impl LinearMethod {
     fn is_direct<const D: usize>(self, unknowns: usize) -> bool {
         let most = [1_000_000, 150_000, 3_000][D - 1];
         match self {
-            Self::Automatic => unknowns <= most,
-            Self::Direct => true,
+            Self::Automatic => unknowns > 0 && unknowns <= most,
+            // Nothing can be factorised where all is held.
+            Self::Direct => unknowns > 0,
             Self::Krylov => false,
         }
     }
@@ -96,6 +97,8 @@ pub enum LinearError {
 
 /// Least reduction of a residual that a Krylov method may give up with.
 const POOREST: f64 = 0.5;
+/// Steps of a Krylov method that are always allowed; a slender body needs many.
+const LEAST_STEPS: usize = 5000;
 /// First shift of an indefinite matrix over its largest diagonal entry; each further one is ten
 /// times as large.
 const FIRST_SHIFT: f64 = 1e-4;
@@ -243,7 +246,7 @@ impl<const D: usize> LinearSolver<D> {
             scaled.copy_from_slice(residual);
             self.precondition_in_place(scaled);
         };
-        let most = 2000 + 10 * right.len();
+        let most = LEAST_STEPS + right.len() / 20;
         match symmetric {
             true => conjugate_gradients(product, precondition, right, tolerance, most),
             false => gmres(product, precondition, right, tolerance, most),

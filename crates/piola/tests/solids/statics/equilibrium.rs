@@ -341,6 +341,30 @@ fn what_is_wrong_with_supports_is_named() {
     assert_eq!(refused(held(&[(0, 0)]), vec![tie]), free("shift along y"));
 }
 
+/// All is held and nothing is left to solve for: reactions are what the strain takes.
+#[test]
+fn a_body_that_is_held_throughout_has_reactions() {
+    let cloud = Cloud::block([1.0, 1.0], [4, 4], 0.2);
+    let law = HyperelasticLaw::neo_hookean(constants());
+    let body = body(&cloud, law, StressState::PlaneStrain);
+    let slope = some_gradient::<2>();
+    let all = select(&cloud, |_| true);
+    let prescribed = (0..2).map(|component| {
+        let value = growing(move |x| (slope * Vector::<2>::new(x[0], x[1]))[component]);
+        PrescribedDisplacement::component("all", all.clone(), component, value)
+    });
+    for method in [LinearMethod::Automatic, LinearMethod::Direct, LinearMethod::Krylov] {
+        let prescribed = prescribed.clone().collect();
+        let input = StaticsInput { prescribed, method, ..StaticsInput::default() };
+        let state = Statics::new(&body, input).unwrap().solve(&LoadSteps::Given(vec![1.0]));
+        let state = state.unwrap().remove(0);
+        let stress = Reduced::<2>::new(law, StressState::PlaneStrain).unwrap().stress(&slope);
+        for (force, area) in state.support_force.iter().zip(&cloud.areas) {
+            assert!((force - stress * area).amax() < 1e-8 * stress.amax(), "{force}");
+        }
+    }
+}
+
 #[test]
 fn a_failure_shows_its_iterations() {
     let (cloud, body) = column(HyperelasticLaw::neo_hookean(constants()));
