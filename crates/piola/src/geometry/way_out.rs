@@ -7,46 +7,48 @@ use crate::Vector;
 const HALVINGS: u32 = 40;
 /// Steps of a walk along a ray, each as long as the depth allows.
 const MOST_STEPS: usize = 200;
+/// Ways whose lengths differ by less than this part count as equally short.
+const TIE: f64 = 0.05;
 
 impl<const D: usize> Shape<D> {
     /// The direction of the shortest way from `point` inside the shape to space outside of it that
     /// lies between the corners `bounds` in m: the outward normal of the nearest face that is not
-    /// on these bounds. `None` where every way leads beyond them.
+    /// on these bounds. Behind an edge, where several faces are equally near, it is the direction
+    /// between theirs. `None` where every way leads beyond the bounds.
     ///
     /// Directions are searched from those to the faces, edges and corners of a cube.
     pub fn way_out(&self, point: &Vector<D>, bounds: &(Vector<D>, Vector<D>)) -> Option<Vector<D>> {
         let extent = (bounds.1 - bounds.0).norm();
+        let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
         let starts = (0..3usize.pow(D as u32)).filter_map(|number| {
             let turn = |axis: usize| (number / 3usize.pow(axis as u32) % 3) as f64 - 1.0;
-            Vector::<D>::from_fn(|axis, _| turn(axis)).try_normalize(0.0)
+            let start = Vector::<D>::from_fn(|axis, _| turn(axis)).try_normalize(0.0)?;
+            Some((length(&start), start))
         });
-        let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
-        let mut best: Option<(f64, Vector<D>)> = None;
-        for direction in starts {
-            let found = length(&direction);
+        let starts: Vec<(f64, Vector<D>)> =
+            starts.filter(|(length, _)| length.is_finite()).collect();
+        let first = starts.iter().copied().reduce(|best, start| {
             // A later direction must be shorter by more than round-off, so that symmetric
             // places choose alike.
-            if found < best.map_or(f64::INFINITY, |(least, _)| least * (1.0 - 1e-9)) {
-                best = Some((found, direction));
+            if start.0 < best.0 * (1.0 - 1e-9) { start } else { best }
+        })?;
+        let mut faces = vec![refine(first, &length)];
+        for start in starts {
+            // A way that ends on the plane of a face already found leads to the same face.
+            let on_plane =
+                |face: &(f64, Vector<D>)| start.0 * start.1.dot(&face.1) >= face.0 * (1.0 - TIE);
+            if start.0 > 1.5 * faces[0].0 || faces.iter().any(on_plane) {
+                continue;
+            }
+            let found = refine(start, &length);
+            let is_other = faces.iter().all(|face| face.1.dot(&found.1) < 1.0 - TIE);
+            if is_other && found.0 <= faces[0].0 * (1.0 + TIE) {
+                faces.push(found);
             }
         }
-        let (mut least, mut direction) = best?;
-        let mut turn = 0.3;
-        for _ in 0..HALVINGS {
-            for axis in 0..D {
-                for sign in [-turn, turn] {
-                    let mut tried = direction;
-                    tried[axis] += sign;
-                    let tried = tried.normalize();
-                    let found = length(&tried);
-                    if found < least * (1.0 - 1e-12) {
-                        (least, direction) = (found, tried);
-                    }
-                }
-            }
-            turn *= 0.5;
-        }
-        Some(direction)
+        let between: Vector<D> = faces.iter().map(|face| face.1).sum();
+        // Opposite faces, as of a plate, have nothing between them.
+        Some(between.try_normalize(0.1).unwrap_or(faces[0].1))
     }
 
     /// Length of the way out along a direction, infinite if it leaves the bounds.
@@ -77,6 +79,29 @@ impl<const D: usize> Shape<D> {
     }
 }
 
+/// The shortest way close to a start, and its direction.
+fn refine<const D: usize>(
+    (mut least, mut direction): (f64, Vector<D>),
+    length: &impl Fn(&Vector<D>) -> f64,
+) -> (f64, Vector<D>) {
+    let mut turn = 0.3;
+    for _ in 0..HALVINGS {
+        for axis in 0..D {
+            for sign in [-turn, turn] {
+                let mut tried = direction;
+                tried[axis] += sign;
+                let tried = tried.normalize();
+                let found = length(&tried);
+                if found < least * (1.0 - 1e-12) {
+                    (least, direction) = (found, tried);
+                }
+            }
+        }
+        turn *= 0.5;
+    }
+    (least, direction)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,6 +124,23 @@ mod tests {
         assert!(close(way(1.15, 0.97), -1.0, 0.0), "at the rim");
         let diagonal = 0.5_f64.sqrt();
         assert!(close(way(-0.1, -0.1), diagonal, diagonal));
+    }
+
+    #[test]
+    fn the_edges_of_a_pillar_face_between_its_sides() {
+        let low = Vector::<3>::new(1.0, 0.0, -1.0);
+        let pillar = Shape::cuboid(low, low + Vector::<3>::new(0.5, 0.5, 3.0)).unwrap();
+        let bounds = (Vector::<3>::repeat(-3.0), Vector::<3>::repeat(5.0));
+        let way = |x, y| pillar.way_out(&Vector::<3>::new(x, y, 0.5), &bounds).expect("a way");
+        let diagonal = 0.5_f64.sqrt();
+        for (x, y, sign_x, sign_y) in
+            [(1.1, 0.1, -1.0, -1.0), (1.4, 0.1, 1.0, -1.0), (1.4, 0.4, 1.0, 1.0)]
+        {
+            let expected = Vector::<3>::new(sign_x, sign_y, 0.0) * diagonal;
+            assert!((way(x, y) - expected).norm() < 2e-3, "{} at {x}, {y}", way(x, y));
+        }
+        let side = Vector::<3>::new(-1.0, 0.0, 0.0);
+        assert!((way(1.1, 0.2) - side).norm() < 2e-3, "on a side");
     }
 
     #[test]

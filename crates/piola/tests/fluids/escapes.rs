@@ -53,7 +53,7 @@ fn read(text: &str, set: &[&str]) -> Case {
     case::parse(text, "test", &options).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-fn run(text: &str, set: &[&str]) -> Finished {
+pub fn run(text: &str, set: &[&str]) -> Finished {
     let simulation = case::build(&read(text, set)).unwrap_or_else(|problems| panic!("{problems}"));
     simulation.run(None, &AtomicBool::new(false), &mut |_| {}).expect("no files are written")
 }
@@ -65,7 +65,7 @@ fn failure(finished: &Finished) -> &Failure {
     }
 }
 
-fn values(finished: &Finished, name: &str) -> Vec<f64> {
+pub fn values(finished: &Finished, name: &str) -> Vec<f64> {
     match finished.quantity(name) {
         Some(Series::Curve { values, .. }) => values,
         Some(Series::Number { value, .. }) => vec![value],

@@ -6,3 +6,4 @@ mod runs;
 mod support;
 mod surfaces;
 mod taylor_green;
+mod walls;

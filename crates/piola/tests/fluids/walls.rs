@@ -1,0 +1,142 @@
+//! Walls: what slips along them, what sticks to them, and water at rest between them.
+
+use piola::time::Outcome;
+
+use super::escapes::{run, values};
+
+/// Fluid that flows along a channel.
+const CHANNEL: &str = r#"
+version = 1
+title = "A fluid flows between two plates"
+dimension = 2
+
+[parameters]
+jitter = 0.0
+
+[domain]
+periodic = { x = [0.0, 0.5] }
+
+[[body]]
+name = "fluid"
+shape = { kind = "box", min = [0.0, 0.0], max = [0.5, 0.5] }
+spacing = 0.05
+lattice = { on = "cells", jitter = "jitter" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 10.0, viscosity = 0.1 }
+initial = { velocity = ["1", "0"] }
+
+[[body]]
+name = "plates"
+shape = { kind = "union", of = [{ kind = "box", min = [0.0, -0.15], max = [0.5, 0.0] }, { kind = "box", min = [0.0, 0.5], max = [0.5, 0.65] }] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 10.0, viscosity = 0.1 }
+wall = { slip = "free" }
+
+[scheme]
+kind = "transport_velocity"
+
+[time]
+end = 0.1
+
+[[probe]]
+name = "plates"
+kind = "sum"
+body = "plates"
+field = "force"
+
+[output]
+table_every = 0.01
+"#;
+
+#[test]
+fn a_fluid_slips_along_a_free_slip_wall() {
+    for (jitter, most) in [("0.0", 1e-4), ("0.1", 0.01)] {
+        let finished = run(CHANNEL, &[&format!("parameters.jitter={jitter}")]);
+        assert_eq!(finished.summary.outcome, Outcome::Completed);
+        let momentum = values(&finished, "momentum.linear.x");
+        let last = momentum.last().expect("there are rows");
+        // What is left is how particles that even out their distances rub against the wall; a wall
+        // without slip takes more than a third of the momentum, see below.
+        assert!((last / 0.25 - 1.0).abs() < most, "{last}");
+    }
+}
+
+#[test]
+fn a_fluid_sticks_to_a_no_slip_wall() {
+    let finished = run(CHANNEL, &["body.plates.wall.slip='no'"]);
+    let momentum = values(&finished, "momentum.linear.x");
+    let last = momentum.last().expect("there are rows");
+    // Plane flow that comes to rest: mean speed sum 8 / (n pi)^2 exp(-nu (n pi / L)^2 t), odd n.
+    let modes = (0..50).map(|k| {
+        let wave = f64::from(2 * k + 1) * std::f64::consts::PI;
+        8.0 / (wave * wave) * (-0.1 * (wave / 0.5).powi(2) * 0.1).exp()
+    });
+    let expected = 0.25 * modes.sum::<f64>();
+    assert!(expected < 0.25 * 0.66);
+    assert!((last / expected - 1.0).abs() < 0.03, "{last} instead of {expected} kg m/s");
+}
+
+/// Water in a tank under its weight.
+const TANK: &str = r#"
+version = 1
+title = "Water stands in a tank"
+dimension = 2
+
+[[body]]
+name = "water"
+shape = { kind = "box", min = [0.0, 0.0], max = [0.5, 0.5] }
+spacing = 0.05
+lattice = { on = "cells", jitter = 0.02 }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 30.0 }
+initial = { pressure = "9810 * (0.5 - y)" }
+
+[[body]]
+name = "tank"
+shape = { kind = "difference", from = { kind = "box", min = [-0.15, -0.15], max = [0.65, 0.6] }, remove = [{ kind = "box", min = [0.0, 0.0], max = [0.5, 1.0] }] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 30.0 }
+wall = { slip = "free" }
+
+[scheme]
+kind = "transport_velocity"
+artificial_viscosity = 0.05
+free_surface = true
+shifting = "ipst"
+
+[[load]]
+kind = "body_force"
+acceleration = ["0", "-9.81"]
+
+[[probe]]
+name = "tank"
+kind = "sum"
+body = "tank"
+field = "force"
+
+[[probe]]
+name = "pressure"
+kind = "error"
+body = "water"
+field = "pressure"
+exact = "9810 * (0.5 - y)"
+
+[time]
+end = 1.0
+
+[output]
+table_every = 0.05
+"#;
+
+#[test]
+fn iterated_shifting_keeps_water_at_rest_between_walls() {
+    let finished = run(TANK, &[]);
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    let passes = values(&finished, "step.shifting_passes");
+    assert!(passes.iter().any(|passes| *passes >= 1.0), "it shifts: {passes:?}");
+    let error = *values(&finished, "pressure.error").last().expect("there are rows");
+    assert!(error < 0.02, "pressure off by {error}");
+    let force = *values(&finished, "tank.force.y").last().expect("there are rows");
+    let weight = 9810.0 * 0.25;
+    assert!((force / -weight - 1.0).abs() < 0.02, "{force} N of a weight of {weight} N");
+}
