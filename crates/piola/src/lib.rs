@@ -2,7 +2,7 @@
 //!
 //! The rooms of the library, each of which uses only those further down in this list:
 //! [`case`], [`observe`], [`time`], [`output`], [`schemes`], [`boundaries`] and
-//! [`operators`], [`geometry`] and [`neighbors`], [`fields`] and [`parallel`].
+//! [`operators`], [`geometry`] and [`neighbors`], [`solve`] and [`fields`], [`parallel`].
 
 pub mod boundaries;
 pub mod case;
@@ -14,6 +14,7 @@ pub mod operators;
 pub mod output;
 pub mod parallel;
 pub mod schemes;
+pub mod solve;
 pub mod time;
 
 /// A point or vector in `D` dimensions.

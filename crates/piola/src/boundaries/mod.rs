@@ -2,10 +2,14 @@
 
 mod body_force;
 mod function;
+mod held;
 pub(crate) mod prescribed;
+mod pressure;
 mod traction;
 
 pub use body_force::BodyForce;
 pub use function::{SpaceTime, padded};
+pub use held::{PrescribedDisplacement, PrescribedFaces, Tie};
 pub use prescribed::PrescribedVelocity;
+pub use pressure::FollowerPressure;
 pub use traction::Traction;

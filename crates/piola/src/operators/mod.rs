@@ -16,6 +16,7 @@ mod least_squares;
 mod moving;
 mod patch;
 mod support;
+mod trace;
 
 pub(crate) use areas::total;
 pub use areas::{Block, LANES, Lanes, PairAreas};
@@ -29,3 +30,4 @@ pub use lattice_areas::lattice_areas;
 pub use least_squares::LeastSquares;
 pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock, NeighborGroup};
 pub use support::Support;
+pub use trace::{Face, Trace};

@@ -7,7 +7,7 @@ use piola::operators::DirectedSupport;
 use piola::{Tensor, Vector};
 use piola_formulas::kernels::Kernel;
 
-use crate::support::{jittered, noise};
+use crate::support::{jittered, lattice, noise};
 
 /// Nodes of a mesh of simplices with their shares of volume and boundary area.
 #[derive(Clone)]
@@ -22,7 +22,35 @@ impl<const D: usize> Cloud<D> {
     /// (Kuhn's way). A node takes `V/(D + 1)` of each of its simplices, and `V grad(lambda)` of its
     /// barycentric coordinate, which add up to its share of the surface.
     pub fn simplices(lengths: [f64; D], intervals: [usize; D], jitter: f64) -> Self {
+        Self::of(jittered(lengths, intervals, jitter), intervals)
+    }
+
+    /// As [`Self::simplices`], with disorder inside only: the faces stay plane.
+    pub fn block(lengths: [f64; D], intervals: [usize; D], jitter: f64) -> Self {
         let mut particles = jittered(lengths, intervals, jitter);
+        let regular = lattice(lengths, intervals);
+        for (x, place) in particles.position.iter_mut().zip(&regular.position) {
+            for axis in 0..D {
+                if place[axis] == 0.0 || place[axis] == lengths[axis] {
+                    x[axis] = place[axis];
+                }
+            }
+        }
+        Self::of(particles, intervals)
+    }
+
+    /// A lattice moved to other places.
+    pub fn bent(
+        lengths: [f64; D],
+        intervals: [usize; D],
+        place: impl Fn(&Vector<D>) -> Vector<D>,
+    ) -> Self {
+        let mut particles = lattice(lengths, intervals);
+        particles.position.iter_mut().for_each(|x| *x = place(x));
+        Self::of(particles, intervals)
+    }
+
+    fn of(mut particles: Particles<D>, intervals: [usize; D]) -> Self {
         let mut areas = vec![Vector::zeros(); particles.len()];
         particles.volume.iter_mut().for_each(|volume| *volume = 0.0);
         let cells: usize = intervals.iter().product();

@@ -8,3 +8,4 @@ mod clouds;
 mod energy;
 mod gradients;
 mod runs;
+mod statics;

@@ -121,9 +121,20 @@ impl<const D: usize> Discrete<D> {
     /// `T_a = V_a P_a + 2 sum_b c_ab e_ab (x) X_ab` and e the deviation: theory (48). With plain
     /// gradients the sum in T vanishes; with corrected ones it does not.
     pub fn side<T: Scalar>(&self, displacement: &[SVector<T, D>], a: usize) -> Side<T, D> {
+        self.side_of(displacement, a, |gradient| self.material(a).law.stress(gradient))
+    }
+
+    /// [`Self::side`] with the stress of `stress`, which the tangent replaces by a linear one.
+    #[inline]
+    pub(super) fn side_of<T: Scalar>(
+        &self,
+        displacement: &[SVector<T, D>],
+        a: usize,
+        stress: impl Fn(&SMatrix<T, D, D>) -> SMatrix<T, D, D>,
+    ) -> Side<T, D> {
         let gradient = self.displacement_gradient(displacement, a);
         let volume = self.particles.volume[a];
-        let mut tension = self.material(a).law.stress(&gradient).map(|entry| entry * volume);
+        let mut tension = stress(&gradient).map(|entry| entry * volume);
         let list = &self.support.list;
         let mut pull = SVector::<T, D>::zeros();
         if self.hourglass[a] != 0.0 {

@@ -22,11 +22,13 @@ mod scheme;
 mod settings;
 mod split;
 mod stable_step;
+mod statics;
 
 pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
 pub use sample::FIELDS;
 pub use settings::{Gradients, Material, Settings};
+pub use statics::{Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness};
 
 use crate::Vector;
 use crate::boundaries::{BodyForce, prescribed::PrescribedComponents};

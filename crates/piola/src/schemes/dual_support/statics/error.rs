@@ -1,0 +1,132 @@
+//! What can be wrong with loads and supports, and why there is no equilibrium.
+
+use thiserror::Error;
+
+use super::Statics;
+use crate::solve::{LinearError, LoadError, NewtonError};
+
+/// Statics that cannot be done.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum StaticsError {
+    /// A particle that does not exist.
+    #[error("`{name}`: particle {got} does not exist, expected a number below {count}")]
+    Index {
+        /// Name of the condition.
+        name: String,
+        /// The number.
+        got: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A load without one area for each of its particles.
+    #[error("`{name}` has {got} areas for {expected} particles")]
+    Areas {
+        /// Name of the load.
+        name: String,
+        /// Number of particles.
+        expected: usize,
+        /// Number of areas.
+        got: usize,
+    },
+    /// A direction without length, or a component that does not exist.
+    #[error("`{name}` prescribes a component or direction that does not exist")]
+    Direction {
+        /// Name of the condition.
+        name: String,
+    },
+    /// Directions of one particle that depend on each other.
+    #[error(
+        "particle {id} at {position:?} is held in directions that depend on each other; remove \
+         `{name}` there"
+    )]
+    Overconstrained {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+        /// The condition that is too many.
+        name: String,
+    },
+    /// A tie of a component that is not free.
+    #[error(
+        "`{name}` ties component {component} of particle {particle}, which is tied already, \
+         prescribed, or on an inclined roller"
+    )]
+    Tie {
+        /// Name of the tie.
+        name: String,
+        /// Index of the particle in memory.
+        particle: u32,
+        /// The component.
+        component: usize,
+    },
+    /// A body that can move as a whole.
+    #[error("body {body} is free to {motion}: prescribe displacements that hold it")]
+    Free {
+        /// Number of the body.
+        body: u32,
+        /// The motion, for example `turn about z`.
+        motion: String,
+    },
+    /// The linear solver cannot be set up.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// A particle is turned inside out at a load.
+    #[error(
+        "particle {id} at {position:?} is turned inside out at a load factor of {factor}; an \
+         equilibrium was found up to {reached}: take smaller load steps, or a law that resists \
+         compression"
+    )]
+    Inverted {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+        /// The load factor.
+        factor: f64,
+        /// The last one with an equilibrium.
+        reached: f64,
+    },
+    /// There is no further equilibrium.
+    #[error(transparent)]
+    Load(LoadError),
+}
+
+impl<const D: usize> Statics<'_, D> {
+    /// An error of the load steps with the particle that it is about.
+    pub(super) fn named(&self, error: LoadError) -> StaticsError {
+        match error {
+            LoadError::Newton { factor, reached, source: NewtonError::Broken { particle, .. } } => {
+                let particles = &self.discrete.particles;
+                StaticsError::Inverted {
+                    id: particles.id[particle],
+                    position: particles.position[particle].iter().copied().collect(),
+                    factor,
+                    reached,
+                }
+            }
+            error => StaticsError::Load(error),
+        }
+    }
+}
+
+pub(super) fn check_index(name: &str, particle: u32, count: usize) -> Result<(), StaticsError> {
+    match (particle as usize) < count {
+        true => Ok(()),
+        false => Err(StaticsError::Index { name: name.to_owned(), got: particle, count }),
+    }
+}
+
+pub(super) fn check_areas(
+    name: &str,
+    particles: &[u32],
+    areas: usize,
+    count: usize,
+) -> Result<(), StaticsError> {
+    if particles.len() != areas {
+        let (name, expected) = (name.to_owned(), particles.len());
+        return Err(StaticsError::Areas { name, expected, got: areas });
+    }
+    particles.iter().try_for_each(|&particle| check_index(name, particle, count))
+}

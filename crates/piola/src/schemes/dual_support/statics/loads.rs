@@ -1,0 +1,83 @@
+//! What acts on a body from outside, as a function of the load factor.
+
+use piola_formulas::tensor;
+
+use super::super::Discrete;
+use crate::boundaries::{BodyForce, FollowerPressure, Traction, padded};
+use crate::{Tensor, Vector};
+
+/// Dead loads and follower pressures.
+#[derive(Clone, Default)]
+pub(super) struct Loads<const D: usize> {
+    pub body_forces: Vec<BodyForce<D>>,
+    pub tractions: Vec<Traction<D>>,
+    pub pressures: Vec<FollowerPressure<D>>,
+}
+
+impl<const D: usize> Loads<D> {
+    /// Dead forces on all particles in N at a load factor, or their rates by it.
+    pub fn dead(&self, discrete: &Discrete<D>, factor: f64, rate: bool) -> Vec<Vector<D>> {
+        let particles = &discrete.particles;
+        let mut forces = vec![Vector::zeros(); particles.len()];
+        for force in &self.body_forces {
+            let acts = |body: u32| force.body.is_none_or(|own| own == body);
+            for a in (0..particles.len()).filter(|&a| acts(particles.body[a])) {
+                let place = padded(&particles.position[a]);
+                let mass = discrete.material(a).density * particles.volume[a];
+                for (component, value) in force.acceleration.iter().enumerate() {
+                    let value = match rate {
+                        true => value.rate(place, factor),
+                        false => value.value(place, factor),
+                    };
+                    forces[a][component] += mass * value;
+                }
+            }
+        }
+        for traction in &self.tractions {
+            for (&a, &area) in traction.particles.iter().zip(&traction.areas) {
+                let place = padded(&particles.position[a as usize]);
+                for (component, value) in traction.value.iter().enumerate() {
+                    let value = match rate {
+                        true => value.rate(place, factor),
+                        false => value.value(place, factor),
+                    };
+                    forces[a as usize][component] += area * value;
+                }
+            }
+        }
+        forces
+    }
+
+    /// `p N_a` of all pressures on each particle in N, or its rate; empty without pressure.
+    pub fn pressing(&self, discrete: &Discrete<D>, factor: f64, rate: bool) -> Vec<Vector<D>> {
+        if self.pressures.is_empty() {
+            return Vec::new();
+        }
+        let particles = &discrete.particles;
+        let mut pressing = vec![Vector::zeros(); particles.len()];
+        for pressure in &self.pressures {
+            for (&a, area) in pressure.particles.iter().zip(&pressure.areas) {
+                let place = padded(&particles.position[a as usize]);
+                let value = match rate {
+                    true => pressure.value.rate(place, factor),
+                    false => pressure.value.value(place, factor),
+                };
+                pressing[a as usize] += area * value;
+            }
+        }
+        pressing
+    }
+}
+
+/// Subtracts `cof(F_a) (p N)_a` from the forces of particles.
+pub(super) fn press<const D: usize>(
+    discrete: &Discrete<D>,
+    displacement: &[Vector<D>],
+    pressing: &[Vector<D>],
+    forces: &mut [Vector<D>],
+) {
+    for (a, pressing) in pressing.iter().enumerate().filter(|(_, p)| p.amax() > 0.0) {
+        let f = discrete.displacement_gradient(displacement, a) + Tensor::identity();
+        forces[a] -= tensor::cofactor(&f) * pressing;
+    }
+}

@@ -1,0 +1,219 @@
+//! Statics: states in equilibrium with loads that grow with a load factor.
+//!
+//! The potential `E(u) - f . u` of [`Discrete`] is stationary in the components that supports leave
+//! free; its Hessian is the [`Stiffness`]. How zeros are found, and in which steps, is the part of
+//! [`crate::solve`].
+
+mod equations;
+mod error;
+mod faces;
+mod loads;
+mod rigid;
+mod stiffness;
+mod supports;
+
+pub use error::StaticsError;
+pub use stiffness::Stiffness;
+
+use super::{Discrete, Side};
+use crate::Vector;
+use crate::boundaries::{
+    BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
+};
+use crate::operators::Trace;
+use crate::solve::{
+    ArcLength, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow, follow_arc,
+};
+use error::check_index;
+use faces::Faces;
+use loads::Loads;
+use rigid::free_motion;
+use supports::Supports;
+
+/// What acts on a body and holds it, all of it functions of place and load factor, and how
+/// equilibrium is found.
+#[derive(Clone, Default)]
+pub struct StaticsInput<const D: usize> {
+    /// Body forces, which add up.
+    pub body_forces: Vec<BodyForce<D>>,
+    /// Dead tractions, which add up.
+    pub tractions: Vec<Traction<D>>,
+    /// Pressures that follow the surface, which add up.
+    pub pressures: Vec<FollowerPressure<D>>,
+    /// Prescribed displacements; of two in the same direction the later one holds.
+    pub prescribed: Vec<PrescribedDisplacement<D>>,
+    /// Boundary faces of cells, where particles are centres of cells.
+    pub trace: Option<Trace<D>>,
+    /// Prescribed displacements of faces of the trace.
+    pub prescribed_faces: Vec<PrescribedFaces<D>>,
+    /// Particles that move together.
+    pub ties: Vec<Tie>,
+    /// How linear equations are solved.
+    pub method: LinearMethod,
+    /// When Newton's method has arrived, and when it gives up.
+    pub newton: Newton,
+}
+
+/// A body with loads and supports.
+pub struct Statics<'a, const D: usize> {
+    discrete: &'a Discrete<D>,
+    loads: Loads<D>,
+    supports: Supports<D>,
+    faces: Faces<D>,
+    solver: LinearSolver<D>,
+    stiffness: Stiffness<'a, D>,
+    newton: Newton,
+    displacement: Vec<Vector<D>>,
+    sides: Vec<Side<f64, D>>,
+    /// What loads and internal forces leave, held components included, N.
+    left: Vec<Vector<D>>,
+    /// Dead loads at one load factor, N.
+    dead: Option<(f64, Vec<Vector<D>>)>,
+}
+
+/// A state in equilibrium.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticState<const D: usize> {
+    /// The load factor.
+    pub factor: f64,
+    /// Displacements in m.
+    pub displacement: Vec<Vector<D>>,
+    /// Force of the supports on each particle in N.
+    pub support_force: Vec<Vector<D>>,
+    /// Force of each condition on the body, in their order, those of faces last.
+    pub reactions: Vec<Reaction<D>>,
+    /// Strain and hourglass energy in J.
+    pub energies: [f64; 2],
+    /// What it took.
+    pub solved: Solved,
+}
+
+/// What a condition holds the body with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reaction<const D: usize> {
+    /// Name of the condition.
+    pub name: String,
+    /// The force on the body in N.
+    pub force: Vector<D>,
+}
+
+impl<'a, const D: usize> Statics<'a, D> {
+    /// Binds loads and supports to a body, and finds the pattern of its stiffness.
+    ///
+    /// # Errors
+    /// [`StaticsError`] for conditions on what does not exist or that contradict each other, and
+    /// for bodies that are free to move as a whole.
+    pub fn new(discrete: &'a Discrete<D>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
+        let StaticsInput {
+            body_forces,
+            tractions,
+            pressures,
+            prescribed,
+            prescribed_faces,
+            ties,
+            ..
+        } = input;
+        let count = discrete.len();
+        for traction in &tractions {
+            error::check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
+        }
+        for pressure in &pressures {
+            error::check_areas(&pressure.name, &pressure.particles, pressure.areas.len(), count)?;
+        }
+        let supports = Supports::new(&discrete.particles, prescribed, ties)?;
+        let shear = |a: usize| discrete.material(a).law.law().small_strain().mu;
+        let faces = Faces::new(input.trace.as_ref(), prescribed_faces, shear)?;
+        if let Some((body, motion)) = free_motion(&discrete.particles, &supports, faces.springs()) {
+            return Err(StaticsError::Free { body, motion });
+        }
+        let mut stiffness = Stiffness::new(discrete);
+        stiffness.hold(faces.springs());
+        let solver =
+            LinearSolver::new(input.method, &discrete.particles.position, &stiffness, |order| {
+                supports.reduction(order)
+            })?;
+        Ok(Self {
+            discrete,
+            loads: Loads { body_forces, tractions, pressures },
+            supports,
+            faces,
+            solver,
+            stiffness,
+            newton: input.newton,
+            displacement: vec![Vector::zeros(); count],
+            sides: vec![Side::zero(); count],
+            left: vec![Vector::zeros(); count],
+            dead: None,
+        })
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.solver.reduction().unknowns()
+    }
+
+    /// The states at all load steps, from rest.
+    ///
+    /// # Errors
+    /// [`StaticsError`] for the first load factor without a stable equilibrium.
+    pub fn solve(&mut self, steps: &LoadSteps) -> Result<Vec<StaticState<D>>, StaticsError> {
+        let mut states = Vec::new();
+        self.solve_with(steps, |state| states.push(state))?;
+        Ok(states)
+    }
+
+    /// As [`Self::solve`], showing each state when it is found.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_with(
+        &mut self,
+        steps: &LoadSteps,
+        mut show: impl FnMut(StaticState<D>),
+    ) -> Result<(), StaticsError> {
+        let (newton, start) = (self.newton, vec![0.0; self.unknowns()]);
+        self.faces.reset();
+        follow(self, &newton, steps, start, |statics, increment| show(statics.state(increment)))
+            .map_err(|error| self.named(error))
+    }
+
+    /// Follows the path from rest through limit points as long as `show` wants more.
+    ///
+    /// # Errors
+    /// [`StaticsError`] where the path is lost.
+    pub fn follow_arc(
+        &mut self,
+        arc: &ArcLength,
+        mut show: impl FnMut(StaticState<D>) -> bool,
+    ) -> Result<(), StaticsError> {
+        let (newton, start) = (self.newton, vec![0.0; self.unknowns()]);
+        self.faces.reset();
+        follow_arc(self, &newton, arc, start, |statics, increment| show(statics.state(increment)))
+            .map_err(|error| self.named(error))
+    }
+
+    fn state(&mut self, increment: Increment) -> StaticState<D> {
+        let Increment { factor, x, solved } = increment;
+        self.balance(factor, &x);
+        let reduction = self.solver.reduction();
+        let support_force: Vec<Vector<D>> =
+            self.left.iter().enumerate().map(|(a, left)| -reduction.held_part(a, left)).collect();
+        let mut forces = vec![Vector::zeros(); self.supports.names().count()];
+        for entry in self.supports.entries() {
+            let axis = self.supports.frame(entry.particle).column(entry.component);
+            let along = axis.dot(&support_force[entry.particle]);
+            forces[entry.condition] += axis * along;
+        }
+        let named = self.supports.names().map(str::to_owned).zip(forces);
+        let faces = self.faces.reactions(&self.displacement, factor);
+        let reactions = named.chain(faces).map(|(name, force)| Reaction { name, force });
+        StaticState {
+            factor,
+            displacement: self.displacement.clone(),
+            reactions: reactions.collect(),
+            support_force,
+            energies: self.discrete.total_energy(&self.displacement),
+            solved,
+        }
+    }
+}

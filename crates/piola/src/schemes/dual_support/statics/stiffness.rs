@@ -1,0 +1,338 @@
+//! The tangent stiffness of a state, in products and in blocks.
+
+use std::sync::Arc;
+
+use num_dual::Dual64;
+use piola_formulas::hyperelastic::Tangent as MaterialTangent;
+use piola_formulas::tensor;
+
+use super::super::{Discrete, Side};
+use super::faces::Spring;
+use crate::operators::dual_row;
+use crate::solve::Tangent;
+use crate::{Tensor, Vector, parallel};
+
+/// `K = d2E/du2` of one set of displacements, theory (51), Dual-support (29) and (40), and what
+/// follower pressures add to it.
+///
+/// Its block between two particles is a sum over the supports that hold both. With the coefficient
+/// `g_p` of each particle of a support in the displacement gradient, `-sum_b G_cb` for its owner c,
+///
+/// ```text
+/// K_pq = g_p . (V dP/dF + 2 I (x) M) . g_q + I (z_pq - g_p . y_q - g_q . y_p)
+/// ```
+///
+/// with `M = sum_b c_cb X_cb (x) X_cb`, `y_b = 2 c_cb X_cb`, `z_bb = 2 c_cb`, and for the owner
+/// what makes sums over p vanish.
+pub struct Stiffness<'a, const D: usize> {
+    discrete: &'a Discrete<D>,
+    /// `sum_b c_ab X_ab (x) X_ab` of each support, J.
+    moments: Vec<Tensor<D>>,
+    /// Coefficient of the owner of each support in its displacement gradient, 1/m.
+    owners: Vec<Vector<D>>,
+    /// `dP/dF` of each particle in Pa.
+    tangents: Vec<MaterialTangent<D>>,
+    /// Derivative of the pressing force on a particle by its deformation gradient, by entry, N;
+    /// empty without pressure.
+    pressed: Vec<[[Vector<D>; D]; D]>,
+    /// Held faces, and those of each particle.
+    springs: Arc<Vec<Spring<D>>>,
+    springs_of: Vec<Vec<u32>>,
+    sides: Vec<Side<f64, D>>,
+}
+
+/// A particle as a member of a support.
+struct Member<const D: usize> {
+    number: u32,
+    /// Coefficient in the displacement gradient, 1/m.
+    g: Vector<D>,
+    /// `2 c X`, N; minus the sum of the others' for the owner.
+    y: Vector<D>,
+    /// `2 c`, N/m; the sum of the others' for the owner.
+    z: f64,
+}
+
+impl<'a, const D: usize> Stiffness<'a, D> {
+    /// The stiffness of a body, for now at rest.
+    pub fn new(discrete: &'a Discrete<D>) -> Self {
+        let count = discrete.len();
+        let list = &discrete.support.list;
+        let owner = |a: usize| {
+            let row = discrete.gradient.coefficients(list.range(a));
+            -row.iter().map(|g| Vector::from(*g)).sum::<Vector<D>>()
+        };
+        let moment = |a: usize| {
+            let row = list.row(a).iter().zip(discrete.gradient.weights(list.range(a)));
+            let squares = row.map(|(&b, weight)| {
+                let x = discrete.support.separation(&discrete.particles.position, a, b);
+                x * x.transpose() * (weight * discrete.hourglass[a])
+            });
+            squares.sum()
+        };
+        let mut stiffness = Self {
+            discrete,
+            moments: (0..count).map(moment).collect(),
+            owners: (0..count).map(owner).collect(),
+            tangents: vec![[[Tensor::zeros(); D]; D]; count],
+            pressed: Vec::new(),
+            springs: Arc::default(),
+            springs_of: vec![Vec::new(); count],
+            sides: vec![Side::zero(); count],
+        };
+        stiffness.load(&vec![Vector::zeros(); count], &[]);
+        stiffness
+    }
+
+    /// Adds what holds faces of cells.
+    pub(super) fn hold(&mut self, springs: &Arc<Vec<Spring<D>>>) {
+        self.springs = springs.clone();
+        for (index, spring) in springs.iter().enumerate() {
+            self.springs_of[spring.owner as usize].push(index as u32);
+        }
+    }
+
+    /// Takes in displacements in m, and the force `p N_a` of follower pressures on each particle
+    /// per area ratio in N, empty without pressure.
+    pub fn load(&mut self, displacement: &[Vector<D>], pressing: &[Vector<D>]) {
+        let discrete = self.discrete;
+        parallel::for_each_chunk(&mut self.tangents, |first, tangents| {
+            for (offset, tangent) in tangents.iter_mut().enumerate() {
+                let a = first + offset;
+                let gradient = discrete.displacement_gradient(displacement, a);
+                *tangent = discrete.material(a).law.tangent(&gradient);
+            }
+        });
+        self.pressed.resize(pressing.len(), [[Vector::zeros(); D]; D]);
+        parallel::for_each_chunk(&mut self.pressed, |first, pressed| {
+            for (offset, slopes) in pressed.iter_mut().enumerate() {
+                let a = first + offset;
+                let gradient = discrete.displacement_gradient(displacement, a);
+                *slopes = pressing_slopes(&(gradient + Tensor::identity()), &pressing[a]);
+            }
+        });
+    }
+
+    /// The particle at an entry of the support of c.
+    #[inline]
+    fn member(&self, c: usize, number: u32, entry: usize) -> Member<D> {
+        let discrete = self.discrete;
+        let z = 2.0 * discrete.hourglass[c] * discrete.gradient.weight(entry as u32);
+        let separation = discrete.support.separation(&discrete.particles.position, c, number);
+        let g = Vector::from(*discrete.gradient.coefficient(entry as u32));
+        Member { number, g, y: separation * z, z }
+    }
+
+    /// The owner of a support.
+    fn owner(&self, c: usize) -> Member<D> {
+        let list = &self.discrete.support.list;
+        let (mut y, mut z) = (Vector::zeros(), 0.0);
+        for (&b, entry) in list.row(c).iter().zip(list.range(c)) {
+            let other = self.member(c, b, entry);
+            y -= other.y;
+            z += other.z;
+        }
+        Member { number: c as u32, g: self.owners[c], y, z }
+    }
+
+    /// `g . (V dP/dF + 2 I (x) M)` of the support of c: entry `[k][L]` multiplies `g_L` of a second
+    /// particle in the column k of the block.
+    fn contracted(&self, c: usize, g: &Vector<D>) -> [[Vector<D>; D]; D] {
+        let volume = self.discrete.particles.volume[c];
+        let hourglass = self.moments[c] * g * 2.0;
+        let mut all = [[Vector::zeros(); D]; D];
+        for (k, row) in all.iter_mut().enumerate() {
+            for (l, entry) in row.iter_mut().enumerate() {
+                *entry = self.tangents[c][k][l] * g * volume;
+                entry[k] += hourglass[l];
+            }
+        }
+        all
+    }
+
+    /// Adds what the support of c couples its member p with.
+    fn add_support(&self, c: usize, p: &Member<D>, add: &mut dyn FnMut(u32, &Tensor<D>)) {
+        let list = &self.discrete.support.list;
+        let contracted = self.contracted(c, &p.g);
+        let is_owner = |member: &Member<D>| member.number as usize == c;
+        let mut block_with = |q: &Member<D>| {
+            let z = match (is_owner(p), is_owner(q)) {
+                _ if p.number == q.number => p.z,
+                (true, false) => -q.z,
+                (false, true) => -p.z,
+                _ => 0.0,
+            };
+            let hourglass = z - p.g.dot(&q.y) - q.g.dot(&p.y);
+            let mut block = block_of(&contracted, &q.g);
+            (0..D).for_each(|i| block[(i, i)] += hourglass);
+            add(q.number, &block);
+        };
+        block_with(&self.owner(c));
+        for (&b, entry) in list.row(c).iter().zip(list.range(c)) {
+            block_with(&self.member(c, b, entry));
+        }
+    }
+
+    /// Shows the stiffness of each held face of c in the row of the particle at a position in the
+    /// rows of these faces: the owner comes first, then its support in order.
+    fn see_springs(&self, c: usize, position: usize, see: &mut dyn FnMut(&Spring<D>, &Tensor<D>)) {
+        for &index in &self.springs_of[c] {
+            let spring = &self.springs[index as usize];
+            let n = spring.direction;
+            see(spring, &(n * n.transpose() * (spring.stiffness * spring.row[position].1)));
+        }
+    }
+
+    /// Position of the particle at an entry of the support of c in the rows of its faces.
+    fn position(&self, c: usize, entry: u32) -> usize {
+        entry as usize - self.discrete.support.list.range(c).start + 1
+    }
+
+    /// Adds half of what pressure couples particle a with, and half of the transpose.
+    fn add_pressure(&self, a: usize, add: &mut dyn FnMut(u32, &Tensor<D>)) {
+        let list = &self.discrete.support.list;
+        let own = block_of(&self.pressed[a], &self.owners[a]);
+        add(a as u32, &(0.5 * (own + own.transpose())));
+        let row = list.row(a).iter().zip(self.discrete.gradient.coefficients(list.range(a)));
+        for (&b, g) in row {
+            add(b, &(0.5 * block_of(&self.pressed[a], &Vector::from(*g))));
+        }
+        for (&b, &entry) in dual_row(&self.discrete.support, a) {
+            let g = Vector::from(*self.discrete.gradient.coefficient(entry));
+            add(b, &(0.5 * block_of(&self.pressed[b as usize], &g).transpose()));
+        }
+    }
+}
+
+impl<const D: usize> Tangent<D> for Stiffness<'_, D> {
+    fn coupled(&self, a: usize) -> Vec<u32> {
+        let support = &self.discrete.support;
+        let mut all = vec![a as u32];
+        all.extend_from_slice(support.list.row(a));
+        for &c in support.dual.row(a) {
+            all.push(c);
+            all.extend_from_slice(support.list.row(c as usize));
+        }
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    fn add_row(&self, a: usize, add: &mut dyn FnMut(u32, &Tensor<D>)) {
+        let add_springs = |add: &mut dyn FnMut(u32, &Tensor<D>), c: usize, position: usize| {
+            self.see_springs(c, position, &mut |spring, block| {
+                spring.row.iter().for_each(|&(b, r)| add(b, &(block * r)));
+            });
+        };
+        self.add_support(a, &self.owner(a), add);
+        add_springs(add, a, 0);
+        for (&c, &entry) in dual_row(&self.discrete.support, a) {
+            let c = c as usize;
+            self.add_support(c, &self.member(c, a as u32, entry as usize), add);
+            add_springs(add, c, self.position(c, entry));
+        }
+        if !self.pressed.is_empty() {
+            self.add_pressure(a, add);
+        }
+    }
+
+    /// The same two passes as the forces', with the linear stress `dP/dF : A`: the hourglass force
+    /// is linear as it is.
+    fn apply(&mut self, direction: &[Vector<D>], product: &mut [Vector<D>]) {
+        let (discrete, tangents) = (self.discrete, &self.tangents);
+        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+            for (offset, side) in sides.iter_mut().enumerate() {
+                let a = first + offset;
+                let stress = |gradient: &Tensor<D>| {
+                    let mut stress = Tensor::zeros();
+                    for (k, row) in tangents[a].iter().enumerate() {
+                        for (l, slope) in row.iter().enumerate() {
+                            stress += slope * gradient[(k, l)];
+                        }
+                    }
+                    stress
+                };
+                *side = discrete.side_of(direction, a, stress);
+            }
+        });
+        let (sides, pressed) = (&self.sides, &self.pressed);
+        parallel::for_each_chunk(product, |first, product| {
+            for (offset, product) in product.iter_mut().enumerate() {
+                let a = first + offset;
+                *product = -discrete.force(direction, sides, a);
+                if let Some(slopes) = pressed.get(a) {
+                    for (k, row) in slopes.iter().enumerate() {
+                        for (l, slope) in row.iter().enumerate() {
+                            *product += slope * sides[a].gradient[(k, l)];
+                        }
+                    }
+                }
+            }
+        });
+        self.springs.iter().for_each(|spring| spring.add_product(direction, product));
+    }
+
+    fn diagonal(&self) -> Vec<Tensor<D>> {
+        let mut blocks = vec![Tensor::zeros(); self.discrete.len()];
+        parallel::for_each_chunk(&mut blocks, |first, blocks| {
+            for (offset, block) in blocks.iter_mut().enumerate() {
+                let a = first + offset;
+                *block = self.own_block(a, &self.owner(a));
+                self.see_springs(a, 0, &mut |spring, row| *block += row * spring.row[0].1);
+                for (&c, &entry) in dual_row(&self.discrete.support, a) {
+                    let c = c as usize;
+                    let position = self.position(c, entry);
+                    *block += self.own_block(c, &self.member(c, a as u32, entry as usize));
+                    self.see_springs(c, position, &mut |spring, row| {
+                        *block += row * spring.row[position].1;
+                    });
+                }
+                if let Some(slopes) = self.pressed.get(a) {
+                    *block += block_of(slopes, &self.owners[a]);
+                }
+            }
+        });
+        blocks
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.pressed.is_empty()
+    }
+}
+
+impl<const D: usize> Stiffness<'_, D> {
+    /// What the support of c adds to the block of its member p on the diagonal.
+    fn own_block(&self, c: usize, p: &Member<D>) -> Tensor<D> {
+        let block = block_of(&self.contracted(c, &p.g), &p.g);
+        block + Tensor::identity() * (p.z - 2.0 * p.g.dot(&p.y))
+    }
+}
+
+/// `block_ik = sum_L slopes[k][L]_i g_L`.
+#[inline]
+fn block_of<const D: usize>(slopes: &[[Vector<D>; D]; D], g: &Vector<D>) -> Tensor<D> {
+    let mut block = Tensor::zeros();
+    for (k, row) in slopes.iter().enumerate() {
+        for (l, slope) in row.iter().enumerate() {
+            for i in 0..D {
+                block[(i, k)] += slope[i] * g[l];
+            }
+        }
+    }
+    block
+}
+
+/// Derivatives of `cof(F) w` by the entries of F.
+fn pressing_slopes<const D: usize>(f: &Tensor<D>, w: &Vector<D>) -> [[Vector<D>; D]; D] {
+    let mut slopes = [[Vector::zeros(); D]; D];
+    if w.amax() == 0.0 {
+        return slopes;
+    }
+    for (k, row) in slopes.iter_mut().enumerate() {
+        for (l, slope) in row.iter_mut().enumerate() {
+            let mut seeded = f.map(Dual64::from_re);
+            seeded[(k, l)] = seeded[(k, l)].derivative();
+            *slope = tensor::cofactor(&seeded).map(|entry| entry.eps) * w;
+        }
+    }
+    slopes
+}

@@ -1,0 +1,146 @@
+//! Direct solution by sparse `L D L^T`.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::{LdltParams, LdltRegularization};
+use faer::perm::PermRef;
+use faer::prelude::default;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side, Spec};
+use thiserror::Error;
+
+use super::SparseMatrix;
+
+/// The factors of a symmetric matrix on a fixed pattern.
+///
+/// On one thread: the result is the same for any number of them, and small systems are faster.
+pub struct Factor {
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
+    memory: MemBuffer,
+}
+
+/// A matrix that cannot be taken apart.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum FactorError {
+    /// There is not enough memory.
+    #[error("the factors of {unknowns} unknowns do not fit into memory; use the `krylov` solver")]
+    Memory {
+        /// Rows of the matrix.
+        unknowns: usize,
+    },
+    /// A pivot is zero or not a number.
+    #[error("the matrix is singular: pivot {index} vanishes or is no number")]
+    Singular {
+        /// Number of the unknown.
+        index: usize,
+    },
+}
+
+impl Factor {
+    /// Finds where the factors of matrices with the pattern of `matrix` have entries. The order of
+    /// the unknowns is kept: number them by [`dissect`](super::dissect).
+    ///
+    /// # Errors
+    /// [`FactorError::Memory`].
+    pub fn new(matrix: &SparseMatrix) -> Result<Self, FactorError> {
+        let unknowns = matrix.len();
+        let memory = FactorError::Memory { unknowns };
+        let (offsets, rows, _) = matrix.parts();
+        let pattern = SymbolicSparseColMatRef::new_checked(unknowns, unknowns, offsets, None, rows);
+        // The order is that of the unknowns. It is given as a permutation because the analysis of
+        // `SymmetricOrdering::Identity` does not find the elimination tree of a lower triangle.
+        let order: Vec<usize> = (0..unknowns).collect();
+        let order = PermRef::new_checked(&order, &order, unknowns);
+        let symbolic = factorize_symbolic_cholesky(
+            pattern,
+            Side::Lower,
+            SymmetricOrdering::Custom(order),
+            CholeskySymbolicParams::default(),
+        )
+        .map_err(|_| memory)?;
+        let request = symbolic
+            .factorize_numeric_ldlt_scratch::<f64>(Par::Seq, parameters())
+            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let buffer = MemBuffer::try_new(request).map_err(|_| memory)?;
+        let mut values = Vec::new();
+        values.try_reserve_exact(symbolic.len_val()).map_err(|_| memory)?;
+        values.resize(symbolic.len_val(), 0.0);
+        Ok(Self { symbolic, values, memory: buffer })
+    }
+
+    /// Takes a matrix with the pattern apart and returns how many pivots are negative: as many as
+    /// the matrix has negative eigenvalues.
+    ///
+    /// # Errors
+    /// [`FactorError::Singular`].
+    pub fn factorise(&mut self, matrix: &SparseMatrix) -> Result<usize, FactorError> {
+        let (offsets, rows, values) = matrix.parts();
+        let unknowns = matrix.len();
+        let pattern = SymbolicSparseColMatRef::new_checked(unknowns, unknowns, offsets, None, rows);
+        let matrix = SparseColMatRef::new(pattern, values);
+        let stack = MemStack::new(&mut self.memory);
+        self.symbolic
+            .factorize_numeric_ldlt(
+                &mut self.values,
+                matrix,
+                Side::Lower,
+                LdltRegularization::default(),
+                Par::Seq,
+                stack,
+                parameters(),
+            )
+            .map_err(|faer::linalg::cholesky::ldlt::factor::LdltError::ZeroPivot { index }| {
+                FactorError::Singular { index }
+            })?;
+        let (mut negative, mut broken) = (0, None);
+        self.pivots(|index, pivot| {
+            if !(pivot != 0.0 && pivot.is_finite()) {
+                broken.get_or_insert(index);
+            }
+            negative += usize::from(pivot < 0.0);
+        });
+        broken.map_or(Ok(negative), |index| Err(FactorError::Singular { index }))
+    }
+
+    /// Solves in place, with the factors of the last matrix.
+    pub fn solve(&mut self, right: &mut [f64]) {
+        let unknowns = right.len();
+        let stack = MemStack::new(&mut self.memory);
+        let right = MatMut::from_column_major_slice_mut(right, unknowns, 1);
+        let factors = LdltRef::new(&self.symbolic, &self.values);
+        factors.solve_in_place_with_conj(Conj::No, right, Par::Seq, stack);
+    }
+
+    /// Entries of the factor L.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Shows all entries of D.
+    fn pivots(&self, mut see: impl FnMut(usize, f64)) {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(factor) => {
+                let starts = &factor.col_ptr()[..factor.ncols()];
+                starts.iter().enumerate().for_each(|(index, &at)| see(index, self.values[at]));
+            }
+            SymbolicCholeskyRaw::Supernodal(factor) => {
+                for node in 0..factor.n_supernodes() {
+                    let first = factor.supernode_begin()[node];
+                    let columns = factor.supernode_end()[node] - first;
+                    let rows = columns + factor.supernode(node).pattern().len();
+                    let start = factor.col_ptr_for_val()[node];
+                    (0..columns).for_each(|j| see(first + j, self.values[start + j * rows + j]));
+                }
+            }
+        }
+    }
+}
+
+fn parameters() -> Spec<LdltParams, f64> {
+    default()
+}

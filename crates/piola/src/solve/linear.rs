@@ -1,0 +1,262 @@
+//! One face for direct and iterative solution.
+
+use thiserror::Error;
+
+use super::jacobi::BlockJacobi;
+use super::krylov::{Outcome, conjugate_gradients, gmres};
+use super::{Factor, FactorError, Reduction, SparseMatrix, dissect};
+use crate::{Tensor, Vector, parallel};
+
+/// The derivative of what a scheme's rows resist with, at the state it was made for.
+pub trait Tangent<const D: usize>: Sync {
+    /// Rows that row a shares a block with, itself among them.
+    fn coupled(&self, a: usize) -> Vec<u32>;
+
+    /// Calls `add(b, block)` for the blocks of row a, which add up where b comes again. What is not
+    /// symmetric in the tangent enters with its symmetric part.
+    fn add_row(&self, a: usize, add: &mut dyn FnMut(u32, &Tensor<D>));
+
+    /// `product = K direction`, with what is not symmetric in it.
+    fn apply(&mut self, direction: &[Vector<D>], product: &mut [Vector<D>]);
+
+    /// The blocks on the diagonal.
+    fn diagonal(&self) -> Vec<Tensor<D>>;
+
+    /// Whether the tangent is symmetric.
+    fn is_symmetric(&self) -> bool;
+}
+
+/// How linear equations are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LinearMethod {
+    /// Directly up to a number of unknowns that a factorisation is quick for, else iteratively.
+    #[default]
+    Automatic,
+    /// By `L D L^T`.
+    Direct,
+    /// By conjugate gradients with the blocks on the diagonal as preconditioner, GMRES where the
+    /// tangent is not symmetric.
+    Krylov,
+}
+
+impl LinearMethod {
+    /// Whether a system is to be factorised: factors grow with the number of unknowns to the power
+    /// of 1, about 1 and 4/3 in 1D, 2D and 3D, the work with that of 1, 3/2 and 2.
+    fn is_direct<const D: usize>(self, unknowns: usize) -> bool {
+        let most = [1_000_000, 150_000, 3_000][D - 1];
+        match self {
+            Self::Automatic => unknowns > 0 && unknowns <= most,
+            // Nothing can be factorised where all is held.
+            Self::Direct => unknowns > 0,
+            Self::Krylov => false,
+        }
+    }
+}
+
+/// Whether energy rises in all directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stability {
+    /// It rises, as far as was looked.
+    Stable,
+    /// It falls in some: in as many as the number says where they were counted.
+    Unstable(Option<usize>),
+    /// There is no energy: the tangent is not symmetric.
+    Unknown,
+}
+
+/// What a solution took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearReport {
+    /// Steps of the Krylov method, 0 for a direct solution.
+    pub steps: usize,
+    /// What was added to the diagonal to make the matrix positive definite.
+    pub shift: f64,
+    /// Whether the tangent as it is was found to be indefinite.
+    pub indefinite: bool,
+}
+
+/// Linear equations without a solution.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum LinearError {
+    /// No factors.
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    /// A Krylov method that does not get on.
+    #[error(
+        "the linear equations were not solved in {steps} steps, a residual of {residual:.1e} is \
+         left; use the `direct` solver, or smaller load steps"
+    )]
+    NoConvergence {
+        /// Steps taken.
+        steps: usize,
+        /// What is left of the right-hand side.
+        residual: f64,
+    },
+}
+
+/// Least reduction of a residual that a Krylov method may give up with.
+const POOREST: f64 = 0.5;
+/// Steps of a Krylov method that are always allowed; a slender body needs many.
+const LEAST_STEPS: usize = 5000;
+/// First shift of an indefinite matrix over its largest diagonal entry; each further one is ten
+/// times as large.
+const FIRST_SHIFT: f64 = 1e-4;
+
+/// A linear solver bound to the pattern of a tangent.
+pub struct LinearSolver<const D: usize> {
+    reduction: Reduction<D>,
+    /// None for a Krylov method.
+    direct: Option<(SparseMatrix, Factor)>,
+    jacobi: BlockJacobi<D>,
+    shift: f64,
+    /// Negative pivots of the tangent as it was loaded.
+    negative: usize,
+}
+
+impl<const D: usize> LinearSolver<D> {
+    /// A solver for tangents that couple the same rows as `tangent`; `build` makes the reduction
+    /// of an order of the rows at `points`.
+    ///
+    /// # Errors
+    /// [`LinearError::Factor`] where the factors do not fit into memory.
+    pub fn new<T: Tangent<D>>(
+        method: LinearMethod,
+        points: &[Vector<D>],
+        tangent: &T,
+        build: impl Fn(&[u32]) -> Reduction<D>,
+    ) -> Result<Self, LinearError> {
+        let plain: Vec<u32> = (0..points.len() as u32).collect();
+        let mut reduction = build(&plain);
+        let mut direct = None;
+        if method.is_direct::<D>(reduction.unknowns()) {
+            let mut coupled = vec![Vec::new(); points.len()];
+            parallel::for_each_chunk(&mut coupled, |first, rows| {
+                let rows = rows.iter_mut().enumerate();
+                rows.for_each(|(offset, row)| *row = tangent.coupled(first + offset));
+            });
+            reduction = build(&dissect(points, &coupled));
+            let matrix = SparseMatrix::new(&reduction, &coupled);
+            let factor = Factor::new(&matrix)?;
+            direct = Some((matrix, factor));
+        }
+        let jacobi = BlockJacobi::default();
+        Ok(Self { reduction, direct, jacobi, shift: 0.0, negative: 0 })
+    }
+
+    /// The unknowns it solves for.
+    pub fn reduction(&self) -> &Reduction<D> {
+        &self.reduction
+    }
+
+    /// Whether it factorises.
+    pub fn is_direct(&self) -> bool {
+        self.direct.is_some()
+    }
+
+    /// Takes a tangent in. With `definite` a direct solver makes it positive definite by a shift of
+    /// the diagonal where it is not.
+    ///
+    /// # Errors
+    /// [`LinearError::Factor`] for a singular matrix.
+    pub fn load<T: Tangent<D>>(&mut self, tangent: &T, definite: bool) -> Result<(), LinearError> {
+        (self.shift, self.negative) = (0.0, 0);
+        let Some((matrix, factor)) = &mut self.direct else {
+            self.jacobi = BlockJacobi::new(&self.reduction, &tangent.diagonal());
+            return Ok(());
+        };
+        matrix.assemble(&self.reduction, tangent);
+        let mut negative = factor.factorise(matrix)?;
+        self.negative = negative;
+        let largest = matrix.diagonal().iter().fold(0.0_f64, |largest, d| largest.max(d.abs()));
+        while definite && negative > 0 && self.shift < 1e3 * largest {
+            let next = if self.shift == 0.0 { FIRST_SHIFT * largest } else { 10.0 * self.shift };
+            matrix.add_to_diagonal(next - self.shift);
+            self.shift = next;
+            negative = factor.factorise(matrix)?;
+        }
+        Ok(())
+    }
+
+    /// Solves with the tangent that was loaded last, which is given once more for products.
+    ///
+    /// # Errors
+    /// [`LinearError::NoConvergence`].
+    pub fn solve<T: Tangent<D>>(
+        &mut self,
+        tangent: &mut T,
+        right: &[f64],
+        tolerance: f64,
+        solution: &mut [f64],
+    ) -> Result<LinearReport, LinearError> {
+        let (shift, mut steps) = (self.shift, 0);
+        let mut indefinite = tangent.is_symmetric() && self.negative > 0;
+        if tangent.is_symmetric() && self.is_direct() {
+            solution.copy_from_slice(right);
+            self.precondition_in_place(solution);
+        } else {
+            let outcome = self.iterate(tangent, right, tolerance);
+            if !outcome.negative_curvature && outcome.residual > POOREST {
+                let Outcome { steps, residual, .. } = outcome;
+                return Err(LinearError::NoConvergence { steps, residual });
+            }
+            solution.copy_from_slice(&outcome.solution);
+            steps = outcome.steps;
+            indefinite |= outcome.negative_curvature;
+        }
+        Ok(LinearReport { steps, shift, indefinite })
+    }
+
+    /// Whether the tangent that was loaded without a shift is positive definite. Iteratively this
+    /// is as much as conjugate gradients meet on their way from a start without any order.
+    pub fn stability<T: Tangent<D>>(&mut self, tangent: &mut T) -> Stability {
+        if !tangent.is_symmetric() {
+            return Stability::Unknown;
+        }
+        if self.is_direct() {
+            return match self.negative {
+                0 => Stability::Stable,
+                negative => Stability::Unstable(Some(negative)),
+            };
+        }
+        let golden = |k: usize| ((k + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5;
+        let start: Vec<f64> = (0..self.reduction.unknowns()).map(golden).collect();
+        match self.iterate(tangent, &start, 1e-6).negative_curvature {
+            true => Stability::Unstable(None),
+            false => Stability::Stable,
+        }
+    }
+
+    fn iterate<T: Tangent<D>>(
+        &mut self,
+        tangent: &mut T,
+        right: &[f64],
+        tolerance: f64,
+    ) -> Outcome {
+        let rows = self.reduction.rows();
+        let (mut full, mut image) = (vec![Vector::zeros(); rows], vec![Vector::zeros(); rows]);
+        let reduction = self.reduction.clone();
+        let symmetric = tangent.is_symmetric();
+        let product = |direction: &[f64], product: &mut [f64]| {
+            reduction.expand_free(direction, &mut full);
+            tangent.apply(&full, &mut image);
+            reduction.restrict(&image, product);
+        };
+        let precondition = |residual: &[f64], scaled: &mut [f64]| {
+            scaled.copy_from_slice(residual);
+            self.precondition_in_place(scaled);
+        };
+        let most = LEAST_STEPS + right.len() / 20;
+        match symmetric {
+            true => conjugate_gradients(product, precondition, right, tolerance, most),
+            false => gmres(product, precondition, right, tolerance, most),
+        }
+    }
+
+    fn precondition_in_place(&mut self, vector: &mut [f64]) {
+        match &mut self.direct {
+            Some((_, factor)) => factor.solve(vector),
+            None => self.jacobi.apply(&self.reduction, vector),
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! Newton's method with a line search.
+
+use std::fmt::Write;
+
+use thiserror::Error;
+
+use super::krylov::{advance, dot};
+use super::{LinearError, LinearReport, Stability};
+
+/// Equations `r(x, factor) = 0` in unknowns x, where the load factor takes the part of time.
+pub trait Equations {
+    /// Number of unknowns.
+    fn unknowns(&self) -> usize;
+
+    /// What a line search asks of a state.
+    fn trial(&mut self, factor: f64, x: &[f64]) -> Trial;
+
+    /// Writes the residual: what loads and inner forces leave, minus the slope of the potential
+    /// where there is one. Returns its norm over that of all that acts from outside.
+    fn residual(&mut self, factor: f64, x: &[f64], residual: &mut [f64]) -> f64;
+
+    /// Writes `dr/dfactor` with what moves with the factor on its own, at the state of the last
+    /// [`Self::linearise`].
+    fn load_rate(&mut self, factor: f64, rate: &mut [f64]);
+
+    /// Writes the residual that a step of the load factor leaves at the state of the last
+    /// [`Self::linearise`] if all but the loads is taken as linear.
+    fn step_residual(&mut self, from: f64, to: f64, residual: &mut [f64]);
+
+    /// Moves multipliers, where there are any, to a state with a residual of zero; whether the
+    /// residual has changed with them.
+    fn settle(&mut self, _factor: f64, _x: &[f64]) -> bool {
+        false
+    }
+
+    /// Makes the tangent `-dr/dx` of a state; `definite` allows it to be changed so that it is
+    /// positive definite.
+    ///
+    /// # Errors
+    /// Where it cannot be factorised.
+    fn linearise(&mut self, factor: f64, x: &[f64], definite: bool) -> Result<(), LinearError>;
+
+    /// Solves with that tangent down to a relative residual of `tolerance`.
+    ///
+    /// # Errors
+    /// Where no solution is found.
+    fn solve(
+        &mut self,
+        right: &[f64],
+        tolerance: f64,
+        solution: &mut [f64],
+    ) -> Result<LinearReport, LinearError>;
+
+    /// Whether that tangent, unchanged, is positive definite.
+    fn stability(&mut self) -> Stability;
+}
+
+/// A state as a line search sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// The potential in J, where the residual has one.
+    pub potential: Option<f64>,
+    /// A particle that is turned inside out, or whose state is not finite.
+    pub broken: Option<usize>,
+}
+
+/// One iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// Relative residual before it.
+    pub residual: f64,
+    /// Part of the step that was taken.
+    pub length: f64,
+    /// Steps of a Krylov method in it.
+    pub linear_steps: usize,
+    /// Whether the tangent was indefinite there.
+    pub indefinite: bool,
+}
+
+/// When Newton's method has arrived, and when it gives up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Newton {
+    /// Relative residual that counts as zero.
+    pub tolerance: f64,
+    /// Iterations before it gives up.
+    pub most_iterations: usize,
+    /// Halvings of a step before it gives up.
+    pub most_halvings: usize,
+}
+
+impl Default for Newton {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, most_iterations: 40, most_halvings: 12 }
+    }
+}
+
+/// A zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solved {
+    /// The iterations that led there.
+    pub iterations: Vec<Iteration>,
+    /// Relative residual that is left.
+    pub residual: f64,
+    /// Whether it is stable.
+    pub stability: Stability,
+}
+
+/// No zero.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum NewtonError {
+    /// The residual does not fall any more.
+    #[error("the residual went {}", listed(history, *residual))]
+    NoConvergence {
+        /// All iterations.
+        history: Vec<Iteration>,
+        /// Relative residual that is left.
+        residual: f64,
+    },
+    /// Every step along the direction turns a particle inside out.
+    #[error("particle {particle} is turned inside out; the residual went {}", listed(history, *residual))]
+    Broken {
+        /// Index of the particle in memory.
+        particle: usize,
+        /// All iterations.
+        history: Vec<Iteration>,
+        /// Relative residual that is left.
+        residual: f64,
+    },
+    /// The linear equations were not solved.
+    #[error("{source} (iteration {})", history.len() + 1)]
+    Linear {
+        /// Why.
+        source: LinearError,
+        /// All iterations.
+        history: Vec<Iteration>,
+    },
+}
+
+/// Part of the fall that the slope promises which a step has to bring.
+const SUFFICIENT: f64 = 1e-4;
+/// Change of a potential, over its size, that may be rounding.
+const NOISE: f64 = 1e-11;
+
+impl Newton {
+    /// Finds a zero from `x`, after the iterations `before` that a predictor took, and looks
+    /// whether it is stable.
+    ///
+    /// Along each direction a step is halved until the potential falls as its slope promises;
+    /// where the change is lost in rounding, or where there is no potential, until the residual
+    /// falls.
+    ///
+    /// # Errors
+    /// [`NewtonError`] with all iterations; `x` is then the last state.
+    pub fn solve<E: Equations + ?Sized>(
+        &self,
+        equations: &mut E,
+        factor: f64,
+        x: &mut Vec<f64>,
+        before: Vec<Iteration>,
+    ) -> Result<Solved, NewtonError> {
+        let mut history = before;
+        let mut left = vec![0.0; x.len()];
+        let mut direction = vec![0.0; x.len()];
+        let mut residual = equations.residual(factor, x, &mut left);
+        loop {
+            if residual <= self.tolerance && equations.settle(factor, x) {
+                residual = equations.residual(factor, x, &mut left);
+            }
+            if residual <= self.tolerance {
+                // Where the potential has a saddle a shift would hide it.
+                equations
+                    .linearise(factor, x, false)
+                    .map_err(|source| NewtonError::Linear { source, history: history.clone() })?;
+                let stability = equations.stability();
+                return Ok(Solved { iterations: history, residual, stability });
+            }
+            if history.len() >= self.most_iterations || !residual.is_finite() {
+                return Err(NewtonError::NoConvergence { history, residual });
+            }
+            let report = equations
+                .linearise(factor, x, true)
+                .and_then(|()| equations.solve(&left, self.forcing(residual), &mut direction))
+                .map_err(|source| NewtonError::Linear { source, history: history.clone() })?;
+            let start = Start { x: &*x, left: &left, direction: &direction, residual };
+            let step = self.search(equations, factor, &start);
+            let (length, next) = match step {
+                Ok(found) => found,
+                Err(Some(particle)) => {
+                    return Err(NewtonError::Broken { particle, history, residual });
+                }
+                Err(None) => return Err(NewtonError::NoConvergence { history, residual }),
+            };
+            *x = next;
+            let LinearReport { steps, indefinite, .. } = report;
+            history.push(Iteration { residual, length, linear_steps: steps, indefinite });
+            residual = equations.residual(factor, x, &mut left);
+        }
+    }
+
+    /// How well linear equations are to be solved: as well as keeps convergence quadratic, and no
+    /// better than the last iteration needs.
+    pub(super) fn forcing(&self, residual: f64) -> f64 {
+        (0.1 * residual).max(0.1 * self.tolerance / residual).min(1e-3)
+    }
+
+    /// A step length with the state it leads to, or a particle that stands in the way.
+    fn search<E: Equations + ?Sized>(
+        &self,
+        equations: &mut E,
+        factor: f64,
+        start: &Start<'_>,
+    ) -> Result<(f64, Vec<f64>), Option<usize>> {
+        let before = equations.trial(factor, start.x).potential;
+        let slope = dot(start.left, start.direction);
+        let mut left = vec![0.0; start.x.len()];
+        let mut length = 1.0;
+        let mut broken = None;
+        for _ in 0..=self.most_halvings {
+            let mut x = start.x.to_vec();
+            advance(&mut x, length, start.direction);
+            let trial = equations.trial(factor, &x);
+            broken = trial.broken;
+            if broken.is_none() {
+                let change = before
+                    .zip(trial.potential)
+                    .map(|(before, after)| (after - before, NOISE * before.abs().max(after.abs())));
+                let taken = match change {
+                    Some((change, noise)) if change.abs() > noise => {
+                        change <= -SUFFICIENT * length * slope
+                    }
+                    _ => {
+                        let after = equations.residual(factor, &x, &mut left);
+                        after <= (1.0 - SUFFICIENT * length) * start.residual
+                            || after <= self.tolerance
+                    }
+                };
+                if taken {
+                    return Ok((length, x));
+                }
+            }
+            length *= 0.5;
+        }
+        Err(broken)
+    }
+}
+
+/// Where a line search starts.
+struct Start<'a> {
+    x: &'a [f64],
+    left: &'a [f64],
+    direction: &'a [f64],
+    residual: f64,
+}
+
+/// The residuals of all iterations, with the lengths of those that were cut.
+fn listed(history: &[Iteration], last: f64) -> String {
+    let mut text = String::new();
+    for iteration in history {
+        let _ = write!(text, "{:.1e}", iteration.residual);
+        if iteration.length < 1.0 {
+            let _ = write!(text, " (step {:.1e})", iteration.length);
+        }
+        text.push_str(", ");
+    }
+    let _ = write!(text, "{last:.1e}");
+    text
+}
