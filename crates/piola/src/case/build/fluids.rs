@@ -33,6 +33,7 @@ pub(super) fn build<const D: usize>(
     let (normals, shape) = normals(case, &particles)?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
+    let lines = probes::lines(case, &particles);
     let motion = selections::prescribed(case, &particles, &mut problems);
     if !problems.is_empty() {
         return Err(problems);
@@ -86,6 +87,7 @@ pub(super) fn build<const D: usize>(
     Ok(Built {
         scheme: Box::new(scheme),
         probes,
+        lines,
         bodies: reports,
         neighbors,
         poorly_supported,
