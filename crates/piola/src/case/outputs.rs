@@ -16,6 +16,9 @@ use crate::output::{
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
 
+/// Points of a reference curve that are marked at most, so that the curve is seen between them.
+const MARKS: usize = 40;
+
 /// The results folder of a run and what is written into it.
 pub(super) struct Outputs {
     folder: ResultsFolder,
@@ -214,6 +217,10 @@ fn failure_table(trace: &Trace) -> Table {
 /// The chart of some columns, with the reference curves of checks.
 fn chart(case: &Case, plot: &model::Plot, tables: &Tables) -> output::Plot {
     let names: Vec<String> = plot.curves.iter().map(|quantity| quantity.name()).collect();
-    let report::Chart { across, series, .. } = charts::chart("", &names, Some(case), tables);
+    let report::Chart { across, mut series, .. } = charts::chart("", &names, Some(case), tables);
+    for reference in series.iter_mut().filter(|series| series.style == output::Style::Marks) {
+        let every = reference.points.len().div_ceil(MARKS).max(1);
+        reference.points = reference.points.iter().copied().step_by(every).collect();
+    }
     output::Plot { title: case.title.clone(), abscissa: across, series }
 }

@@ -80,7 +80,8 @@ impl Reader<'_, '_> {
             When::Coarse => self.setting.coarse,
             When::Always | When::Full => !self.setting.coarse,
         };
-        let end = known.end.filter(|_| of_this_run && at_this_setting);
+        // `at` is a place where the quantity is one of a line, which only the probes tell.
+        let end = known.end.filter(|_| of_this_run && at_this_setting && known.probes.is_some());
         let line = quantity.as_ref().zip(known.probes);
         let line = line.and_then(|(quantity, probes)| line_of(quantity, probes));
         let reduce = match line {
