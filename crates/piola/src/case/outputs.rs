@@ -5,15 +5,19 @@ use std::time::SystemTime;
 
 use super::build::{Built, bodies::BodyReport};
 use super::model::{self, Case};
+use super::report::charts;
 use super::resume::{Resumed, Store};
 use super::simulation::{Finished, RUN_QUANTITIES, RunError};
-use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, WrittenFiles};
+use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, Tables, WrittenFiles};
 use crate::output::checkpoint::Identity;
 use crate::output::{
     self, BodyRecord, Column, Compression, Curve, FigureRecord, ReferenceRecord, ResultsFolder,
-    RetryRecord, RunRecord, StageRecord, Table, atomic, timestamp,
+    RetryRecord, RunRecord, StageRecord, Table, atomic, report, timestamp,
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
+
+/// Points of a reference curve that are marked at most, so that the curve is seen between them.
+const MARKS: usize = 40;
 
 /// The results folder of a run and what is written into it.
 pub(super) struct Outputs {
@@ -130,7 +134,7 @@ impl Outputs {
     ) -> Result<Vec<PathBuf>, RunError> {
         for plot in &case.plots {
             let path = self.folder.plot(&plot.name)?;
-            chart(case, plot, finished).write_png(&path)?;
+            chart(case, plot, &finished.tables).write_png(&path)?;
             self.written.push(path);
         }
         self.copy_references(case)?;
@@ -210,21 +214,13 @@ fn failure_table(trace: &Trace) -> Table {
     table
 }
 
-/// The chart of some columns against time.
-fn chart(case: &Case, plot: &model::Plot, finished: &Finished) -> output::Plot {
-    let series = plot.curves.iter().filter_map(|quantity| {
-        let Some(Series::Curve { time, values, unit }) = finished.quantity(&quantity.name()) else {
-            return None;
-        };
-        Some(output::Series {
-            column: Column::new(quantity.name(), unit),
-            points: time.into_iter().zip(values).map(|(time, value)| [time, value]).collect(),
-            style: output::Style::Line,
-        })
-    });
-    output::Plot {
-        title: case.title.clone(),
-        abscissa: Column::new("time", "s"),
-        series: series.collect(),
+/// The chart of some columns, with the reference curves of checks.
+fn chart(case: &Case, plot: &model::Plot, tables: &Tables) -> output::Plot {
+    let names: Vec<String> = plot.curves.iter().map(|quantity| quantity.name()).collect();
+    let report::Chart { across, mut series, .. } = charts::chart("", &names, Some(case), tables);
+    for reference in series.iter_mut().filter(|series| series.style == output::Style::Marks) {
+        let every = reference.points.len().div_ceil(MARKS).max(1);
+        reference.points = reference.points.iter().copied().step_by(every).collect();
     }
+    output::Plot { title: case.title.clone(), abscissa: across, series }
 }

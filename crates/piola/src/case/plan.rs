@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::build::{self, bodies::BodyReport};
+use super::model;
 use super::simulation::Simulation;
 use crate::neighbors::NeighborStatistics;
 use crate::schemes::Particle;
@@ -129,6 +130,11 @@ impl Simulation {
                 *case.output.table_every
             ),
         ];
+        for line in case.probes.iter().filter(|probe| probe.kind.length().is_some()) {
+            let model::ProbeKind::Line { points, times, .. } = &line.kind else { continue };
+            let profiles = times.as_ref().map_or(count(*case.output.every), |it| it.len() as u64);
+            outputs.push(format!("{profiles} profiles of {points} places: {}", *line.name));
+        }
         let pictures: usize = case.pictures.iter().map(|picture| picture.times.len()).sum();
         if pictures + case.plots.len() > 0 {
             let plural = |count: usize| if count == 1 { "" } else { "s" };

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::model::{Case, Check, Reduction};
+use super::model::{Case, Check, ProbeKind, Reduction};
 use super::recorded;
 use super::verify::{CheckRow, Ending, RunResults, VariantRun, verify};
 use crate::observe::{Series, Tables};
@@ -17,7 +17,7 @@ use crate::output::{
     self, Column, Curve, OutputError, RecordError, ResultsFolder, RunRecord, Table,
 };
 
-mod charts;
+pub(super) mod charts;
 
 /// A report could not be made.
 #[derive(Debug, Error)]
@@ -45,7 +45,7 @@ pub fn write(folder: &Path) -> Result<PathBuf, ReportError> {
     let (folder, record) =
         ResultsFolder::of_run(folder).map_err(|source| ReportError::NoRun { source })?;
     let mut notes = Vec::new();
-    let tables = tables(&folder, &mut notes);
+    let mut tables = tables(&folder, &mut notes);
     let case = recorded(&record.case_text, record.variant.as_deref());
     let mut case = case
         .inspect_err(|_| {
@@ -58,6 +58,7 @@ pub fn write(folder: &Path) -> Result<PathBuf, ReportError> {
         .ok();
     if let Some(case) = &mut case {
         find_references(case, &folder, &record);
+        tables.profiles = profiles(case, &folder);
     }
     let run = Recorded { record: &record, tables };
     let page = Report {
@@ -93,7 +94,15 @@ fn tables(folder: &ResultsFolder, notes: &mut Vec<String>) -> Tables {
         energy: read(folder.energy()),
         momentum: read(folder.momentum()),
         steps: read(folder.steps()),
+        profiles: Vec::new(),
     }
+}
+
+/// The newest profile of each line of the case that has one.
+fn profiles(case: &Case, folder: &ResultsFolder) -> Vec<Table> {
+    let lines = case.probes.iter().filter(|probe| matches!(probe.kind, ProbeKind::Line { .. }));
+    let files = lines.filter_map(|line| folder.last_profile(&line.name));
+    files.filter_map(|file| Table::read_csv(&file).ok()).collect()
 }
 
 /// Turns the names of reference curves into the paths of their copies.

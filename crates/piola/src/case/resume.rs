@@ -65,13 +65,13 @@ fn without_free(mut tree: Table) -> Table {
 }
 
 /// Most bytes that a checkpoint of a run may have: its states, the tables with as many rows as the
-/// output asks for, twice over, and some room for names.
-pub(super) fn most_bytes(case: &Case, tables: &Tables, state_length: usize) -> u64 {
+/// output asks for, twice over, the numbers of `lines`, and some room for names.
+pub(super) fn most_bytes(case: &Case, tables: &Tables, lines: usize, state_length: usize) -> u64 {
     const ROOM: f64 = (64 << 20) as f64;
     const STATES: f64 = 3.0;
     let columns: usize = tables.all().iter().map(|table| table.columns().len()).sum();
     let rows = 2.0 * (*case.time.end / *case.output.table_every + 16.0);
-    (ROOM + 8.0 * (rows * columns as f64 + STATES * state_length as f64)) as u64
+    (ROOM + 8.0 * (rows * columns as f64 + lines as f64 + STATES * state_length as f64)) as u64
 }
 
 /// The newest sound checkpoint in `folder`; none if there are no checkpoints at all.

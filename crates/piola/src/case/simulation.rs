@@ -10,7 +10,7 @@ use super::model::Case;
 use super::outputs::Outputs;
 use super::report;
 use super::resume;
-use crate::observe::{Recorder, Series, Tables};
+use crate::observe::{ProfileRecorder, Recorder, Series, Tables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::Scheme;
 use crate::time::{Checkpoints, Executor, Misfit, ObserveError, Progress, Schedule, Summary};
@@ -117,7 +117,8 @@ impl Simulation {
         // Without a record there is nothing to go on from.
         let old = folder.filter(|_| resume).and_then(|path| ResultsFolder::of_run(path).ok());
         let columns = Recorder::columns(built.scheme.as_ref(), &built.probes);
-        let most = resume::most_bytes(&case, &columns, length);
+        let lines = built.lines.iter().map(|line| line.numbers(case.dimension)).sum();
+        let most = resume::most_bytes(&case, &columns, lines, length);
         let found =
             old.map(|(folder, _)| resume::find(&folder, &identity, most)).transpose()?.flatten();
         let (checkpoint, resumed) = found.unzip();
@@ -131,6 +132,11 @@ impl Simulation {
         );
         let tables = recorder.tables();
         let mut observers: Vec<Box<dyn crate::time::Observer>> = vec![Box::new(recorder)];
+        for line in built.lines {
+            let folder = outputs.as_ref().map(Outputs::for_tables);
+            let tables = tables.clone();
+            observers.push(Box::new(ProfileRecorder::new(line, case.dimension, tables, folder)));
+        }
         if let Some(outputs) = &outputs {
             observers.extend(outputs.observers(&case, &built.bodies));
         }

@@ -187,8 +187,8 @@ impl Comparison {
 
 /// A curve for a chart; numbers without history make none.
 pub(super) fn curve_series(name: &str, series: Series) -> Option<output::Series> {
-    let Series::Curve { time, values, unit } = series else { return None };
-    let points = time.into_iter().zip(values).map(|(time, value)| [time, value]).collect();
+    let Series::Curve { abscissa, values, unit, .. } = series else { return None };
+    let points = abscissa.into_iter().zip(values).map(|(x, value)| [x, value]).collect();
     Some(output::Series { column: Column::new(name, unit), points, style: Style::Line })
 }
 

@@ -1,7 +1,7 @@
 //! Numbers of chosen particles against time.
 
 use super::comparison::Deviation;
-use super::point::Interpolated;
+use super::interpolation::Interpolated;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
 use crate::schemes::Scheme;
@@ -41,7 +41,7 @@ pub enum ProbeKind {
         /// Their indices in memory, at least one.
         particles: Vec<u32>,
     },
-    /// Whole fields interpolated at a fixed point of space.
+    /// Whole fields interpolated at one fixed point of space.
     Point(Interpolated),
     /// How far a field is from a function of place and time.
     Error(Deviation),
@@ -52,25 +52,17 @@ impl Probe {
     pub fn columns(&self, dimension: usize) -> Vec<Column> {
         match &self.kind {
             ProbeKind::Particle { fields, .. } | ProbeKind::Point(Interpolated { fields, .. }) => {
-                fields.iter().flat_map(|field| self.components(field, dimension)).collect()
+                component_columns(&self.name, fields, dimension)
             }
-            ProbeKind::Sum { field, .. } => self.components(field, dimension),
+            ProbeKind::Sum { field, .. } => {
+                component_columns(&self.name, std::slice::from_ref(field), dimension)
+            }
             ProbeKind::Error(_) => vec![Column::new(format!("{}.error", self.name), "1")],
             ProbeKind::Extremum { field, .. } => {
                 let name = format!("{}.{}", self.name, field.name(dimension));
                 vec![Column::new(name, field.field.unit)]
             }
         }
-    }
-
-    /// A column for each component of a field.
-    fn components(&self, field: &FieldDescription, dimension: usize) -> Vec<Column> {
-        let column = |number: usize| {
-            let component = component_name(field.kind, number, dimension);
-            let dot = if component.is_empty() { "" } else { "." };
-            Column::new(format!("{}.{}{dot}{component}", self.name, field.name), field.unit)
-        };
-        (0..field.kind.components(dimension)).map(column).collect()
     }
 
     /// Appends its numbers to `row`. `scratch` is overwritten.
@@ -111,4 +103,23 @@ impl Probe {
             ProbeKind::Error(error) => row.push(error.record(scheme, time, state, scratch)),
         }
     }
+}
+
+/// A column for each component of each field, with names that start with that of a probe.
+pub(super) fn component_columns(
+    probe: &str,
+    fields: &[FieldDescription],
+    dimension: usize,
+) -> Vec<Column> {
+    let columns = |field: &FieldDescription| {
+        let (name, kind, unit) = (field.name, field.kind, field.unit);
+        let column = move |component: String| {
+            let dot = if component.is_empty() { "" } else { "." };
+            Column::new(format!("{probe}.{name}{dot}{component}"), unit)
+        };
+        let components =
+            (0..kind.components(dimension)).map(|number| component_name(kind, number, dimension));
+        components.map(column).collect::<Vec<_>>()
+    };
+    fields.iter().flat_map(columns).collect()
 }

@@ -125,6 +125,7 @@ impl Recorder {
             energy: Table::new(energy),
             momentum: Table::new(momentum),
             steps: Table::new(steps),
+            profiles: Vec::new(),
         }
     }
 

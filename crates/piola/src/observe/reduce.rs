@@ -105,7 +105,7 @@ registry! {
     "minimum", None, Self::Minimum, "the smallest value";
     "final", None, Self::Final, "the last value";
     "initial", None, Self::Initial, "the first value";
-    "at", Time, Self::At(_), "the value at a time, interpolated between rows";
+    "at", Time, Self::At(_), "the value at a time, or at a distance along a line, interpolated between rows";
     "mean", None, Self::Mean, "the mean over time";
     "range", None, Self::Range, "largest minus smallest value";
     "period", None, Self::Period,
@@ -120,7 +120,7 @@ registry! {
     "growth", None, Self::Growth, "last value over first value, minus 1";
     "curve", Reference, Self::Curve(_), "the largest absolute difference to a reference curve";
     "curve_rms", Reference, Self::CurveRms(_),
-        "the root mean square over time of the difference to a reference curve";
+        "the root mean square over time, or along a line, of the difference to a reference curve";
 }
 
 impl ReductionEntry {
@@ -251,7 +251,8 @@ impl Reduction {
 pub enum ReduceError {
     /// The history is too short.
     #[error(
-        "the table has {got} rows where at least {needed} are needed; lower output.table_every"
+        "the table has {got} rows where at least {needed} are needed; lower output.table_every, or give \
+         a line more points"
     )]
     TooFewRows {
         /// Rows needed.
@@ -268,7 +269,7 @@ pub enum ReduceError {
         values: usize,
     },
     /// A value is infinite or not a number.
-    #[error("the value in row {row} (t = {time} s) is {value}, which is no finite number")]
+    #[error("the value in row {row} (at {time}) is {value}, which is no finite number")]
     NotFinite {
         /// Row, from 1.
         row: usize,
@@ -278,7 +279,7 @@ pub enum ReduceError {
         value: f64,
     },
     /// A time is not finite or not later than the one before.
-    #[error("the time in row {row} is {time} s, which is not later than that of the row before")]
+    #[error("row {row} is at {time}, which is not beyond the row before")]
     TimeNotGrowing {
         /// Row, from 1.
         row: usize,
@@ -286,7 +287,7 @@ pub enum ReduceError {
         time: f64,
     },
     /// The time asked for is not covered.
-    #[error("t = {time} s lies outside of the table, which covers {first} s to {last} s")]
+    #[error("{time} lies outside of the table, which covers {first} to {last}")]
     TimeOutside {
         /// The time asked for in s.
         time: f64,
@@ -325,8 +326,8 @@ pub enum ReduceError {
     GrowthFromZero,
     /// History and reference have no time in common.
     #[error(
-        "the reference covers {} s to {} s and the table {} s to {} s: they have no time in \
-         common", reference[0], reference[1], history[0], history[1]
+        "the reference covers {} to {} and the table {} to {}: they have nothing in common",
+        reference[0], reference[1], history[0], history[1]
     )]
     NoOverlap {
         /// First and last time of the history in s.

@@ -1,8 +1,8 @@
 //! The tables of a run, and quantities found in them by name.
 
-use crate::output::Table;
+use crate::output::{Column, Table};
 
-/// Everything that is recorded against time. Each table's first column is the time in s.
+/// Everything that is recorded. The first column is the time in s, in profiles the distance in m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
     /// Columns `PROBE.FIELD` and `PROBE.FIELD.COMPONENT`.
@@ -13,15 +13,19 @@ pub struct Tables {
     pub momentum: Table,
     /// Steps: count, size, and health figures.
     pub steps: Table,
+    /// The last profile along each line: distance from its start, place, and the fields.
+    pub profiles: Vec<Table>,
 }
 
 /// What a name stands for in the record of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Series {
-    /// A column against time.
+    /// A column against time, or along a line.
     Curve {
-        /// Times in s, ascending.
-        time: Vec<f64>,
+        /// What it is against: the time in s, or the distance from the start of the line in m.
+        against: Column,
+        /// The numbers of that, ascending.
+        abscissa: Vec<f64>,
         /// The values, as many.
         values: Vec<f64>,
         /// Their unit.
@@ -39,7 +43,7 @@ pub enum Series {
 }
 
 impl Tables {
-    /// All tables.
+    /// All tables against time.
     pub fn all(&self) -> [&Table; 4] {
         [&self.probes, &self.energy, &self.momentum, &self.steps]
     }
@@ -50,17 +54,21 @@ impl Tables {
     }
 
     /// The column that `name` stands for: `energy.NAME`, `momentum.NAME`, `step.NAME`, or a column
-    /// of a probe.
+    /// of a probe, against time or along its line.
     pub fn curve(&self, name: &str) -> Option<Series> {
         let (table, column) = match name.split_once('.') {
             Some(("energy", column)) => (&self.energy, column),
             Some(("momentum", column)) => (&self.momentum, column),
             Some(("step", column)) => (&self.steps, column),
-            _ => (&self.probes, name),
+            _ => {
+                let profile = self.profiles.iter().find(|table| table.index(name).is_some());
+                (profile.unwrap_or(&self.probes), name)
+            }
         };
         let unit = table.columns()[table.index(column)?].unit.clone();
-        let time = table.column(0).collect();
-        Some(Series::Curve { time, values: table.values(column)?, unit })
+        let against = table.columns()[0].clone();
+        let abscissa = table.column(0).collect();
+        Some(Series::Curve { against, abscissa, values: table.values(column)?, unit })
     }
 
     /// The names that [`Tables::curve`] knows.
@@ -70,6 +78,9 @@ impl Tables {
             names.map(|column| format!("{prefix}{}", column.name)).collect()
         };
         let mut names = columns(&self.probes, "");
+        // Places of a line have no point in their names.
+        let profiles = self.profiles.iter().flat_map(|table| columns(table, ""));
+        names.extend(profiles.filter(|name| name.contains('.')));
         names.extend(columns(&self.energy, "energy."));
         names.extend(columns(&self.momentum, "momentum."));
         names.extend(columns(&self.steps, "step."));

@@ -8,7 +8,8 @@
 //! failure.csv                   where a run failed: the last steps of the first bad particle
 //! checkpoints/step_000000000128 where the run can go on from
 //! pictures/NAME_000012.png      particles coloured by a field
-//! plots/NAME.png                curves against time
+//! profiles/NAME_000012.csv      fields along a line at one instant
+//! plots/NAME.png                curves
 //! references/0_NAME.csv         reference curves of the case's checks
 //! report.html                   all of it in one page
 //! ```
@@ -25,6 +26,7 @@ const SERIES: &str = "particles.pvd";
 const TABLES: [&str; 5] = ["probes.csv", "energy.csv", "momentum.csv", "steps.csv", "failure.csv"];
 const PARTICLES: &str = "particles";
 const PICTURES: &str = "pictures";
+const PROFILES: &str = "profiles";
 const PLOTS: &str = "plots";
 const REFERENCES: &str = "references";
 const REPORT: &str = "report.html";
@@ -180,6 +182,14 @@ impl ResultsFolder {
         Ok(self.below(PICTURES)?.join(format!("{}_{frame:06}.png", file_name(name))))
     }
 
+    /// The profile number `frame` along the line called `name`; its folder is created if it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
+    pub fn profile(&self, name: &str, frame: u64) -> Result<PathBuf, OutputError> {
+        Ok(self.below(PROFILES)?.join(format!("{}_{frame:06}.csv", file_name(name))))
+    }
+
     /// The chart called `name`; its folder is created if it is missing. Letters of `name` that do
     /// not suit a file name become `_`.
     ///
@@ -206,6 +216,20 @@ impl ResultsFolder {
     /// The particle files that are there, in the order of their numbers.
     pub fn all_particles(&self) -> Vec<PathBuf> {
         self.numbered(PARTICLES, "vtp")
+    }
+
+    /// The profiles that are there, by name and number.
+    pub fn all_profiles(&self) -> Vec<PathBuf> {
+        self.numbered(PROFILES, "csv")
+    }
+
+    /// The newest profile of the line called `name`, if there is one.
+    pub fn last_profile(&self, name: &str) -> Option<PathBuf> {
+        let of_line = |path: &PathBuf| {
+            let stem = path.file_stem().and_then(|stem| stem.to_str());
+            stem.and_then(|stem| stem.rsplit_once('_')).is_some_and(|(start, _)| start == name)
+        };
+        self.all_profiles().into_iter().rfind(of_line)
     }
 
     /// The pictures that are there, by name and number.
@@ -272,7 +296,7 @@ impl ResultsFolder {
         let record = RunRecord::read(&self.record()).unwrap_or_default();
         let mut files: BTreeSet<PathBuf> =
             record.files.iter().filter_map(|file| own(file)).collect();
-        for folder in ["", PARTICLES, PICTURES, PLOTS, REFERENCES, CHECKPOINTS] {
+        for folder in ["", PARTICLES, PICTURES, PROFILES, PLOTS, REFERENCES, CHECKPOINTS] {
             let path = self.path.join(folder);
             // A link could lead anywhere.
             if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
@@ -327,6 +351,7 @@ fn is_known(folder: &str, name: &str) -> bool {
         "" => name == SERIES || name == REPORT || TABLES.contains(&name),
         PARTICLES => name.starts_with("frame_") && numbered(".vtp"),
         PICTURES => numbered(".png"),
+        PROFILES => numbered(".csv"),
         CHECKPOINTS => is_checkpoint(name),
         _ => false,
     };

@@ -6,8 +6,16 @@ use std::path::Path;
 use super::pages::{Page, all, page, root};
 
 /// First parts of paths that a run or a build makes.
-const MADE: [&str; 7] =
-    ["results", "target", "particles", "pictures", "plots", "checkpoints", "references"];
+const MADE: [&str; 8] = [
+    "results",
+    "target",
+    "particles",
+    "pictures",
+    "profiles",
+    "plots",
+    "checkpoints",
+    "references",
+];
 /// Endings of files that are paths even without a folder in front.
 const SOURCES: [&str; 3] = [".rs", ".md", ".bib"];
 /// Folders that commands between fences name.

@@ -99,6 +99,34 @@ fn the_inner_and_the_outer_ring_are_found() {
     }
 }
 
+/// Concentric spheres between two radii, one spacing apart, each with its points on a spiral: as many
+/// as squares of the spacing cover it.
+fn spheres(inner: usize, outer: usize) -> Vec<Vector<3>> {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    let mut positions = Vec::new();
+    for sphere in inner..=outer {
+        let count = (4.0 * PI * (sphere * sphere) as f64).round();
+        for k in 0..count as usize {
+            let z = 1.0 - (2 * k + 1) as f64 / count;
+            let (across, angle) = ((1.0 - z * z).sqrt(), golden * k as f64);
+            let direction = Vector::<3>::new(across * angle.cos(), across * angle.sin(), z);
+            positions.push(direction * (sphere as f64 * SPACING));
+        }
+    }
+    positions
+}
+
+#[test]
+fn the_outside_of_a_ball_and_both_sides_of_a_hollow_one_are_found() {
+    for inner in [1, 6] {
+        let positions = spheres(inner, 11);
+        for (x, found) in positions.iter().zip(is_found(&positions)) {
+            let sphere = (x.norm() / SPACING).round() as usize;
+            assert_eq!(found, sphere == 11 || sphere == 6 && inner == 6, "{x:?}");
+        }
+    }
+}
+
 #[test]
 fn normals_point_out_of_the_fluid() {
     let positions = rings(10, 20);

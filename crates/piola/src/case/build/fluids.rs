@@ -33,6 +33,7 @@ pub(super) fn build<const D: usize>(
     let (normals, shape) = normals(case, &particles)?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
+    let lines = probes::lines(case, &particles);
     let motion = selections::prescribed(case, &particles, &mut problems);
     if !problems.is_empty() {
         return Err(problems);
@@ -86,6 +87,7 @@ pub(super) fn build<const D: usize>(
     Ok(Built {
         scheme: Box::new(scheme),
         probes,
+        lines,
         bodies: reports,
         neighbors,
         poorly_supported,
@@ -133,15 +135,26 @@ fn normals<const D: usize>(
         return Ok((normals, None));
     }
     let (mut shapes, mut bounds) = (Vec::new(), None::<(Vector<D>, Vector<D>)>);
-    for (body, is_wall) in case.bodies.iter().zip(&is_wall) {
-        let shape: Shape<D> =
-            bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
-        let (low, high) = shape.bounding_box();
+    for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
+        let (low, high) = match (&body.shape.value, is_wall) {
+            (model::Shape::Points { .. }, false) => box_around(particles, number),
+            (model::Shape::Points { .. }, true) => {
+                let message = "points from a file have no faces, which a wall needs";
+                let help = Some("describe the wall by shapes".to_owned());
+                return Err(vec![case.problem_at(body.shape.place, message, "of a wall", help)]);
+            }
+            _ => {
+                let shape: Shape<D> =
+                    bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
+                let ends = shape.bounding_box();
+                if *is_wall {
+                    shapes.push(shape);
+                }
+                ends
+            }
+        };
         let (least, most) = bounds.unwrap_or((low, high));
         bounds = Some((least.inf(&low), most.sup(&high)));
-        if *is_wall {
-            shapes.push(shape);
-        }
     }
     let (Some(bounds), Ok(walls)) = (bounds, Shape::union(shapes)) else {
         return Ok((normals, None));
@@ -156,6 +169,14 @@ fn normals<const D: usize>(
         }
     });
     Ok((normals, Some(walls)))
+}
+
+/// The corners of the box around the particles of a body.
+fn box_around<const D: usize>(particles: &Particles<D>, body: usize) -> (Vector<D>, Vector<D>) {
+    let ends = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+    let own = particles.position.iter().zip(&particles.body);
+    own.filter(|(_, number)| **number as usize == body)
+        .fold(ends, |(least, most), (x, _)| (least.inf(x), most.sup(x)))
 }
 
 /// The velocities of surfaces that slide.

@@ -19,7 +19,7 @@ use super::simulation::Simulation;
 use super::source::Located;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
-use crate::observe::Probe;
+use crate::observe::{Line, Probe};
 use crate::operators::{Correction, GradientOperator, Support};
 use crate::schemes::Scheme;
 use crate::schemes::upwind::{
@@ -50,6 +50,7 @@ pub fn build(case: &Case) -> Result<Simulation, Problems> {
 pub(super) struct Built {
     pub scheme: Box<dyn Scheme>,
     pub probes: Vec<Probe>,
+    pub lines: Vec<Line>,
     pub bodies: Vec<BodyReport>,
     pub neighbors: crate::neighbors::NeighborStatistics,
     /// Particles with fewer neighbours than dimensions, by index in memory.
@@ -107,11 +108,13 @@ fn build_upwind<const D: usize>(
 
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
+    let lines = probes::lines(case, &particles);
     let scheme = upwind(case, settings, particles, support, &mut problems);
     match scheme {
         Some(scheme) if problems.is_empty() => Ok(Built {
             scheme: Box::new(scheme),
             probes,
+            lines,
             bodies,
             neighbors,
             poorly_supported,

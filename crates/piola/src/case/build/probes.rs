@@ -7,8 +7,10 @@ use super::selections::{function, select};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::case::source::Located;
+use crate::fields::FieldDescription;
 use crate::geometry::Particles;
-use crate::observe::{Deviation, Interpolated, Probe, ProbeKind};
+use crate::observe::{Deviation, Interpolated, Line, Probe, ProbeKind};
+use crate::time::Schedule;
 
 /// The probes of a case.
 pub(super) fn probes<const D: usize>(
@@ -38,23 +40,11 @@ pub(super) fn probes<const D: usize>(
                 particles: select(case, particles, region, body, problems),
             },
             model::ProbeKind::Point { at, fields } => {
-                let (kernel, ratio) = kernel_of(case);
-                let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
-                let of_body = |a: &u32| {
-                    body.is_none_or(|body| particles.body[*a as usize] as usize == body.value)
-                };
-                let period = |ends: &Option<Located<[f64; 2]>>| {
-                    ends.as_ref().map_or(f64::INFINITY, |ends| ends.value[1] - ends.value[0])
-                };
-                ProbeKind::Point(Interpolated {
-                    at: at.value.clone(),
-                    fields: fields.iter().map(|field| field.value).collect(),
-                    kernel,
-                    smoothing_length: ratio * spacing,
-                    periods: case.domain.periodic.iter().map(period).collect(),
-                    particles: (0..particles.len() as u32).filter(of_body).collect(),
-                })
+                let places = vec![at.value.clone()];
+                ProbeKind::Point(interpolated(case, particles, body, places, fields))
             }
+            // Those have tables of their own.
+            model::ProbeKind::Line { .. } => continue,
             model::ProbeKind::Error { field, exact, without_mean, region } => {
                 ProbeKind::Error(Deviation {
                     field: field.value,
@@ -72,6 +62,58 @@ pub(super) fn probes<const D: usize>(
         probes.push(Probe { name: probe.name.value.clone(), kind });
     }
     probes
+}
+
+/// The lines of a case.
+pub(super) fn lines<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<Line> {
+    let line = |probe: &model::Probe| {
+        let model::ProbeKind::Line { from, to, points, fields, times } = &probe.kind else {
+            return None;
+        };
+        let length = probe.kind.length()?;
+        let shares = (0..*points).map(|number| number as f64 / (points - 1) as f64);
+        let place = |share: f64| -> Vec<f64> {
+            let ends = from.iter().zip(&to.value);
+            // Both ends are met exactly.
+            ends.map(|(from, to)| from * (1.0 - share) + to * share).collect()
+        };
+        let places = shares.clone().map(place).collect();
+        Some(Line {
+            name: probe.name.value.clone(),
+            distances: shares.map(|share| share * length).collect(),
+            values: interpolated(case, particles, probe.body.as_ref(), places, fields),
+            schedule: match times {
+                Some(times) => Schedule::at(times.clone()),
+                None => Schedule::Every(*case.output.every),
+            },
+        })
+    };
+    case.probes.iter().filter_map(line).collect()
+}
+
+/// Fields of a body, or of all, at some places.
+fn interpolated<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    body: Option<&Located<usize>>,
+    places: Vec<Vec<f64>>,
+    fields: &[Located<FieldDescription>],
+) -> Interpolated {
+    let (kernel, ratio) = kernel_of(case);
+    let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
+    let of_body =
+        |a: &u32| body.is_none_or(|body| particles.body[*a as usize] as usize == body.value);
+    let period = |ends: &Option<Located<[f64; 2]>>| {
+        ends.as_ref().map_or(f64::INFINITY, |ends| ends.value[1] - ends.value[0])
+    };
+    Interpolated {
+        places,
+        fields: fields.iter().map(|field| field.value).collect(),
+        kernel,
+        smoothing_length: ratio * spacing,
+        periods: case.domain.periodic.iter().map(period).collect(),
+        particles: (0..particles.len() as u32).filter(of_body).collect(),
+    }
 }
 
 /// The kernel of the scheme, and its smoothing length in spacings, for points between particles.

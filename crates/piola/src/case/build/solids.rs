@@ -50,6 +50,7 @@ pub(super) fn build<const D: usize>(
 
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
+    let lines = probes::lines(case, &particles);
     let prescribed = selections::prescribed(case, &particles, &mut problems);
     let known = || {
         areas.clone().ok_or_else(|| {
@@ -87,6 +88,7 @@ pub(super) fn build<const D: usize>(
     Ok(Built {
         scheme: Box::new(scheme),
         probes,
+        lines,
         bodies: reports,
         neighbors,
         poorly_supported,

@@ -1,11 +1,13 @@
 //! Checks.
 
 use super::members::is_error;
+use super::observers::line_of;
 use super::sweeps::when;
 use super::*;
 use crate::case::model::{
     Check, Expectation, Probe, Quantity, Reduction, Sweep, Trend, When, member_of,
 };
+use crate::case::suggest::one_of;
 
 /// The ways to say what is expected, each with the keys that belong to it.
 const WAYS: [&[&str]; 7] = [
@@ -19,6 +21,19 @@ const WAYS: [&[&str]; 7] = [
 ];
 /// Those of them that say how the members of a sweep follow each other.
 const TRENDS: [&str; 3] = ["order", "monotone", "ratio"];
+/// The reductions that a profile has.
+const ALONG_LINES: [&str; 10] = [
+    "maximum",
+    "minimum",
+    "final",
+    "initial",
+    "at",
+    "mean",
+    "range",
+    "extremum",
+    "curve",
+    "curve_rms",
+];
 
 /// What a check may refer to, as far as it could be read.
 #[derive(Clone, Copy)]
@@ -65,8 +80,14 @@ impl Reader<'_, '_> {
             When::Coarse => self.setting.coarse,
             When::Always | When::Full => !self.setting.coarse,
         };
-        let end = known.end.filter(|_| of_this_run && at_this_setting);
-        let reduce = self.reduction(record, end);
+        // `at` is a place where the quantity is one of a line, which only the probes tell.
+        let end = known.end.filter(|_| of_this_run && at_this_setting && known.probes.is_some());
+        let line = quantity.as_ref().zip(known.probes);
+        let line = line.and_then(|(quantity, probes)| line_of(quantity, probes));
+        let reduce = match line {
+            Some(line) => self.along_line(record, line),
+            None => self.reduction(record, end),
+        };
         let is_outcome = quantity.as_deref() == Some(&Quantity::Run("outcome".to_owned()));
         let expectation = self.expectation(record, is_outcome);
         if let (Some(members), Some(reduce), Some(expectation)) = (&members, &reduce, &expectation)
@@ -137,6 +158,29 @@ impl Reader<'_, '_> {
             "final" => Reduction::Final,
             _ => return None,
         })
+    }
+
+    /// A reduction of a profile: one that has a meaning for values at places.
+    fn along_line(&mut self, record: &Record, line: &Probe) -> Option<Reduction> {
+        let name = record.text("reduce")?;
+        if ALONG_LINES.contains(&name.as_str()) {
+            let reduction = self.reduction(record, None)?;
+            let length = line.kind.length().unwrap_or_default();
+            if let Reduction::At(place) = reduction
+                && !(place <= length)
+            {
+                let message = format!("the line is {length} m long, and ends before {place} m");
+                let place = record.value_place("at");
+                return self.refuse(Problem::new(place, message, "after the end"));
+            }
+            return Some(reduction);
+        }
+        let message = format!(
+            "the reduction `{}` has no meaning along the line `{}`",
+            name.value, *line.name
+        );
+        let help = format!("expected {}", one_of(ALONG_LINES));
+        self.refuse(Problem::new(name.place, message, "no meaning here").help(help))
     }
 
     fn at(&mut self, time: Located<f64>, end: Option<f64>) -> Option<f64> {

@@ -139,9 +139,9 @@ impl Reader<'_, '_> {
                 let problem = Problem::new(text.place, message, "not recorded");
                 self.refuse(problem.help(format!("its column is `{name}.{own}`")))
             }
-            ProbeKind::Particle { fields, .. } | ProbeKind::Point { fields, .. } => {
-                self.whole_column(text, name, column, fields)
-            }
+            ProbeKind::Particle { fields, .. }
+            | ProbeKind::Point { fields, .. }
+            | ProbeKind::Line { fields, .. } => self.whole_column(text, name, column, fields),
             ProbeKind::Sum { field, .. } => {
                 self.whole_column(text, name, column, std::slice::from_ref(field))
             }

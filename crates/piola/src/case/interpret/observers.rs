@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::case::catalogue;
-use crate::case::model::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
+use crate::case::model::{
+    Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind, Quantity,
+};
+
 use crate::fields::FieldDescription;
 
 /// Particle files that a run may write at most.
@@ -21,6 +24,7 @@ impl Reader<'_, '_> {
             "point" => {
                 ProbeKind::Point { fields: self.whole_fields(record)?, at: record.numbers("at")? }
             }
+            "line" => self.line(record)?,
             "sum" => {
                 let name = record.text("field")?;
                 let field = Located::new(self.field(&name, name.place)?, name.place);
@@ -49,6 +53,28 @@ impl Reader<'_, '_> {
             _ => return None,
         };
         Some(Probe { name: record.text("name")?, body, kind })
+    }
+
+    fn line(&mut self, record: &Record) -> Option<ProbeKind> {
+        let times = record.list("times").iter().filter_map(|item| match item.value {
+            Datum::Number(time) => Some(time),
+            _ => None,
+        });
+        let line = ProbeKind::Line {
+            fields: self.whole_fields(record)?,
+            from: record.numbers("from")?,
+            to: record.numbers("to")?,
+            points: record.whole::<usize>("points")?.value,
+            times: record.has("times").then(|| times.collect()),
+        };
+        let length = line.length().unwrap_or_default();
+        if length.is_normal() {
+            return Some(line);
+        }
+        let place = record.value_place("to");
+        let message = format!("a line of {length} m has no direction");
+        let problem = Problem::new(place, message, "where it starts");
+        self.refuse(problem.help("`from` and `to` are two places"))
     }
 
     /// The fields that the key `fields` names.
@@ -132,7 +158,19 @@ impl Reader<'_, '_> {
     pub(super) fn plot(&mut self, record: &Record, probes: Option<&[Probe]>) -> Option<Plot> {
         let names = record.texts("curves");
         let curves: Vec<_> = names.iter().map(|name| self.quantity(name, probes)).collect();
-        let curves = curves.into_iter().collect::<Option<_>>()?;
+        let curves: Vec<Located<Quantity>> = curves.into_iter().collect::<Option<_>>()?;
+        let is_along = |curve: &Quantity| line_of(curve, probes?).map(|_| ());
+        if let Some(other) = curves.iter().find(|curve| is_along(curve) != is_along(&curves[0])) {
+            let message = "a plot has curves against time or curves along lines, not both";
+            let problem = Problem::new(other.place, message, "of the other kind");
+            return self.refuse(problem.help("make two plots of it"));
+        }
         Some(Plot { name: record.text("name")?, curves })
     }
+}
+
+/// The probe that a column belongs to, if that looks along a line.
+pub(super) fn line_of<'a>(quantity: &Quantity, probes: &'a [Probe]) -> Option<&'a Probe> {
+    let Quantity::Probe { probe: name, .. } = quantity else { return None };
+    probes.iter().find(|probe| *probe.name == *name && probe.kind.length().is_some())
 }

@@ -5,7 +5,7 @@ use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::fields::{FieldDescription, FieldSelector};
 
-/// Something recorded against time in the tables.
+/// Something recorded against time, or along a line.
 #[derive(Clone, Debug)]
 pub struct Probe {
     /// Unique name, the first part of its columns.
@@ -49,6 +49,19 @@ pub enum ProbeKind {
         /// The fields that are recorded, with all their components.
         fields: Vec<Located<FieldDescription>>,
     },
+    /// Fields interpolated at places along a straight line.
+    Line {
+        /// Where it starts, in m.
+        from: Located<Vec<f64>>,
+        /// Where it ends, in m.
+        to: Located<Vec<f64>>,
+        /// Number of places, at the same distance from each other.
+        points: usize,
+        /// The fields that are recorded, with all their components.
+        fields: Vec<Located<FieldDescription>>,
+        /// Times in s, `None` for those of the particle files.
+        times: Option<Vec<f64>>,
+    },
     /// The difference of a field from what it should be.
     Error {
         /// A single number of each particle.
@@ -60,6 +73,15 @@ pub enum ProbeKind {
         /// The particles.
         region: Located<Region>,
     },
+}
+
+impl ProbeKind {
+    /// The length of a line in m; of other probes none.
+    pub fn length(&self) -> Option<f64> {
+        let Self::Line { from, to, .. } = self else { return None };
+        let squares = from.iter().zip(&to.value).map(|(from, to)| (to - from).powi(2));
+        Some(squares.sum::<f64>().sqrt())
+    }
 }
 
 /// Largest or smallest.
@@ -106,11 +128,11 @@ pub struct Picture {
     pub range: Option<[f64; 2]>,
 }
 
-/// Curves of columns of the tables against time.
+/// Curves of columns of the tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
     /// Unique name of the file.
     pub name: Located<String>,
-    /// At least one column of the tables.
+    /// At least one column of the tables; all against time or all along lines.
     pub curves: Vec<Located<super::Quantity>>,
 }

@@ -16,11 +16,13 @@ pub(super) fn charts(case: &Case, page: &PageCase) -> Vec<(String, Plot)> {
     for plot in &case.plots {
         let curves: Vec<String> = plot.curves.iter().map(|curve| curve.name()).collect();
         let name = &plot.name.value;
-        charts.push((name.clone(), chart(&case.title, of_variants(case, page, &curves))));
+        let abscissa = abscissa(page, &curves[0]);
+        let all = of_variants(case, page, &curves);
+        charts.push((name.clone(), chart(&case.title, &abscissa, all)));
         for sweep in case.sweeps.iter().filter(|_| curves.len() == 1) {
             let title = format!("{}: {}", case.title, keys(sweep, case.is_coarse));
             let members = of_members(case, page, sweep, &curves[0]);
-            charts.push((format!("{name}-{}", *sweep.name), chart(&title, members)));
+            charts.push((format!("{name}-{}", *sweep.name), chart(&title, &abscissa, members)));
         }
     }
     charts.retain(|(_, chart)| chart.series.iter().any(|series| series.style == Style::Line));
@@ -28,8 +30,17 @@ pub(super) fn charts(case: &Case, page: &PageCase) -> Vec<(String, Plot)> {
     charts
 }
 
-fn chart(title: &str, series: Vec<Series>) -> Plot {
-    Plot { title: title.to_owned(), abscissa: Column::new("time", "s"), series }
+fn chart(title: &str, abscissa: &Column, series: Vec<Series>) -> Plot {
+    Plot { title: title.to_owned(), abscissa: abscissa.clone(), series }
+}
+
+/// What the curve called `name` is against.
+fn abscissa(page: &PageCase, name: &str) -> Column {
+    let found = page.runs.iter().find_map(|(_, finished)| match finished.quantity(name) {
+        Some(observe::Series::Curve { against, .. }) => Some(against),
+        _ => None,
+    });
+    found.unwrap_or(Column::new("time", "s"))
 }
 
 /// The last parts of the paths of the keys of a sweep.
@@ -90,9 +101,9 @@ fn expected(case: &Case, page: &PageCase, name: &str) -> Option<Series> {
 
 /// Points through which the curve of `name` of the case itself should go.
 fn references(case: &Case, name: &str, found: &observe::Series) -> Vec<[f64; 2]> {
-    let observe::Series::Curve { time, values, .. } = found else { return Vec::new() };
+    let observe::Series::Curve { abscissa, values, .. } = found else { return Vec::new() };
     let extremum = |sign: f64| {
-        let rows = time.iter().zip(values);
+        let rows = abscissa.iter().zip(values);
         rows.max_by(|one, other| (sign * one.1).total_cmp(&(sign * other.1))).map(|row| *row.0)
     };
     let mut points = Vec::new();
@@ -108,8 +119,8 @@ fn references(case: &Case, name: &str, found: &observe::Series) -> Vec<[f64; 2]>
         let Expectation::Value { expected, .. } = check.expectation else { continue };
         let time = match check.reduce {
             Reduction::At(time) => Some(time),
-            Reduction::Initial => time.first().copied(),
-            Reduction::Final => time.last().copied(),
+            Reduction::Initial => abscissa.first().copied(),
+            Reduction::Final => abscissa.last().copied(),
             Reduction::Maximum => extremum(1.0),
             Reduction::Minimum => extremum(-1.0),
             _ => None,

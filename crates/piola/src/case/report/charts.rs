@@ -75,15 +75,25 @@ pub(super) fn groups(case: Option<&Case>, tables: &Tables) -> Vec<ChartGroup> {
         .collect()
 }
 
-/// The columns called `names` against time, with the references of checks beside them.
-fn chart(title: &str, names: &[String], case: Option<&Case>, tables: &Tables) -> Chart {
+/// The columns called `names`, all against time or all along one line, with the references of checks
+/// beside them.
+pub(in crate::case) fn chart(
+    title: &str,
+    names: &[String],
+    case: Option<&Case>,
+    tables: &Tables,
+) -> Chart {
     let mut series = Vec::new();
     let mut sources = Vec::new();
+    let mut across = Column::new("time", "s");
     for name in names {
-        let Some(Series::Curve { time, values, unit }) = tables.curve(name) else { continue };
+        let Some(Series::Curve { against, abscissa, values, unit }) = tables.curve(name) else {
+            continue;
+        };
+        across = against;
         series.push(output::Series {
             column: Column::new(name, &unit),
-            points: time.into_iter().zip(values).map(|(time, value)| [time, value]).collect(),
+            points: abscissa.into_iter().zip(values).map(|(x, value)| [x, value]).collect(),
             style: output::Style::Line,
         });
         for (check, curve) in case.iter().flat_map(|case| references(case, name)) {
@@ -104,11 +114,14 @@ fn chart(title: &str, names: &[String], case: Option<&Case>, tables: &Tables) ->
             });
         }
     }
-    Chart { title: title.to_owned(), series, sources }
+    Chart { title: title.to_owned(), across, series, sources }
 }
 
 /// The reference curves that checks of this run compare the column `name` with.
-fn references<'a>(case: &'a Case, name: &str) -> impl Iterator<Item = (&'a Check, Curve)> {
+pub(in crate::case) fn references<'a>(
+    case: &'a Case,
+    name: &str,
+) -> impl Iterator<Item = (&'a Check, Curve)> {
     let checks = case.checks.iter().filter(move |check| {
         check.quantity.name() == name
             && check.variant.as_ref().map(|variant| &variant.value) == case.variant.as_ref()

@@ -97,7 +97,7 @@ pub(super) static CHECK: TableSpec = TableSpec {
             Kind::Number(Interval::NOT_NEGATIVE),
             "s",
             Optional,
-            "the time, for the reduction `at`",
+            "the time, or of a line the distance from its start in m, for the reduction `at`",
         ),
         key(
             "number",
@@ -111,7 +111,7 @@ pub(super) static CHECK: TableSpec = TableSpec {
             Kind::File,
             "",
             Optional,
-            "CSV file with the columns time and value, for `curve` and `curve_rms`",
+            "CSV file with the columns time, or distance along a line, and value, for `curve` and `curve_rms`",
         ),
         key(
             "expected",

@@ -4,7 +4,7 @@ use super::*;
 
 pub(super) static PROBE: TaggedSpec = TaggedSpec {
     title: "[[probe]]",
-    meaning: "Something recorded against time in the tables.",
+    meaning: "Something recorded against time in the tables, or along a line.",
     common: &[
         key("name", Kind::Text, "", Required, "unique name, the first part of its columns"),
         key("body", Kind::Text, "", Derived("all bodies"), "name of the body that it looks at"),
@@ -80,6 +80,48 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     "",
                     Required,
                     "names of fields, recorded with all their components",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "line",
+            meaning: "a profile: fields interpolated at places along a straight line, against the distance from its start; each in a file of its own, the last one for plots and checks",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "from",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "where it starts",
+                ),
+                key(
+                    "to",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "where it ends",
+                ),
+                key(
+                    "points",
+                    Kind::Integer(Interval::between(2.0, 10_000.0)),
+                    "1",
+                    Default("101"),
+                    "number of places, at the same distance from each other, both ends among them",
+                ),
+                key(
+                    "fields",
+                    Kind::List(&Kind::Text),
+                    "",
+                    Required,
+                    "names of fields, recorded with all their components",
+                ),
+                key(
+                    "times",
+                    Kind::Numbers(Length::Any, Interval::NOT_NEGATIVE),
+                    "s",
+                    Derived("those of the particle files, and the end"),
+                    "times of the profiles",
                 ),
             ],
         },
@@ -200,7 +242,7 @@ pub(super) static PICTURE: TableSpec = TableSpec {
 
 pub(super) static PLOT: TableSpec = TableSpec {
     title: "[[plot]]",
-    meaning: "Curves of the tables against time.",
+    meaning: "Curves of the tables against time, or along a line, with the reference curves of checks.",
     keys: &[
         key("name", Kind::Text, "", Required, "unique name of the picture"),
         key(
@@ -208,7 +250,7 @@ pub(super) static PLOT: TableSpec = TableSpec {
             Kind::List(&Kind::Text),
             "",
             Required,
-            "columns of the tables, for example `top.displacement.y` or `energy.total`",
+            "columns of the tables, for example `top.displacement.y` or `energy.total`; all against time, or all of lines",
         ),
     ],
 };

@@ -278,12 +278,12 @@ fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got,
         None => Err(format!("the run has no quantity `{name}`")),
         Some(Series::Text(text)) => Ok(Got::Text(text)),
         Some(Series::Number { value, unit }) => Ok(Got::Number(value, unit.to_owned())),
-        Some(Series::Curve { time, values, unit }) => {
+        Some(Series::Curve { abscissa, values, unit, .. }) => {
             let reduction = check
                 .reduce
                 .try_map(|file| Curve::read_csv(file))
                 .map_err(|error| format!("the reference curve cannot be used: {error}"))?;
-            let value = reduction.apply(&time, &values).map_err(|error| error.to_string())?;
+            let value = reduction.apply(&abscissa, &values).map_err(|error| error.to_string())?;
             Ok(Got::Number(value, reduction.unit(&unit).to_owned()))
         }
     }

@@ -3,6 +3,7 @@ use std::f64::consts::TAU;
 
 use super::*;
 use crate::case::{LoadOptions, parse};
+use crate::output::Column;
 use crate::schemes::Particle;
 use crate::time::Failure;
 
@@ -60,7 +61,12 @@ impl RunResults for Fake {
                 if let Some(row) = self.bad_row {
                     values[row] = f64::NAN;
                 }
-                Some(Series::Curve { time, values, unit: "m".into() })
+                Some(Series::Curve {
+                    against: Column::new("time", "s"),
+                    abscissa: time,
+                    values,
+                    unit: "m".into(),
+                })
             }
             "run.steps" => Some(Series::Number { value: 400.0, unit: "1" }),
             "run.first_step" => Some(Series::Number { value: f64::NAN, unit: "s" }),

@@ -1,4 +1,4 @@
-//! Curves against time as SVG inside the page, in the colours of its style.
+//! Curves against time or along lines as SVG inside the page, in the colours of its style.
 //!
 //! The drawing stands without a script; with one, the page reads values under the pointer from
 //! the points of the curves and the ranges noted on each panel.
@@ -34,7 +34,7 @@ pub fn chart(chart: &Chart) -> Markup {
             figcaption { (chart.title) }
             @for panel in &panels {
                 (legend(panel))
-                (drawing(&chart.title, panel, x))
+                (drawing(chart, panel, x))
             }
             @for source in &chart.sources {
                 p .source { (source) }
@@ -82,7 +82,8 @@ fn legend(panel: &[&Series]) -> Markup {
     }
 }
 
-fn drawing(title: &str, panel: &[&Series], x: [f64; 2]) -> Markup {
+fn drawing(chart: &Chart, panel: &[&Series], x: [f64; 2]) -> Markup {
+    let Chart { title, across: abscissa, .. } = chart;
     let y = plot::ordinates(panel);
     let unit = panel.first().map_or("", |series| &series.column.unit);
     let (across, up) = (Ticks::new(x, 7), Ticks::new(y, 6));
@@ -92,7 +93,8 @@ fn drawing(title: &str, panel: &[&Series], x: [f64; 2]) -> Markup {
     let y_label = ticks::label(&plot::common_name(panel), unit, up.exponent);
     html! {
         svg .panel viewBox=(format!("0 0 {WIDTH} {}", bottom + BELOW)) role="img"
-            aria-label=(format!("{title}: {y_label} against time"))
+            aria-label=(format!("{title}: {y_label} against {}", abscissa.name))
+            data-x-name=(abscissa.name) data-x-unit=(abscissa.unit)
             data-x0=(x[0]) data-x1=(x[1]) data-y0=(y[0]) data-y1=(y[1]) data-unit=(unit)
             data-left=(LEFT) data-right=(right) data-top=(TOP) data-bottom=(bottom)
         {
@@ -108,7 +110,7 @@ fn drawing(title: &str, panel: &[&Series], x: [f64; 2]) -> Markup {
             }
             path .frame d=(format!("M{LEFT} {TOP}V{bottom}H{right}")) {}
             text .axis.middle x=((LEFT + right) / 2.0) y=(bottom + 37.0) {
-                (ticks::label("time", "s", across.exponent))
+                (ticks::label(&abscissa.name, &abscissa.unit, across.exponent))
             }
             text .axis.middle transform=(format!("translate(13 {}) rotate(-90)", TOP + HEIGHT / 2.0)) {
                 (y_label)

@@ -19,7 +19,7 @@ mod viewer;
 use std::path::Path;
 
 use super::plot::Series;
-use super::{OutputError, ResultsFolder, RunRecord, Table, atomic};
+use super::{Column, OutputError, ResultsFolder, RunRecord, Table, atomic};
 
 /// All that a page shows. Particles and pictures are read from the folder.
 pub struct Report<'a> {
@@ -96,6 +96,8 @@ pub struct ChartGroup {
 pub struct Chart {
     /// What it shows.
     pub title: String,
+    /// What they are against.
+    pub across: Column,
     /// Its curves and references.
     pub series: Vec<Series>,
     /// Where the references come from.

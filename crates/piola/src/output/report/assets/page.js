@@ -61,7 +61,7 @@ function chart(panel) {
       layer.append(dot);
     }
     panel.append(layer);
-    const rows = ["time = " + written(xOf(nearest[0].point[0]), 4) + " s", ...nearest.map(({ name, point }) => name + " = " + written(yOf(point[1]), 4) + unit)];
+    const rows = [panel.dataset.xName + " = " + written(xOf(nearest[0].point[0]), 4) + " " + panel.dataset.xUnit, ...nearest.map(({ name, point }) => name + " = " + written(yOf(point[1]), 4) + unit)];
     tip.replaceChildren(...rows.map((row) => Object.assign(document.createElement("div"), { textContent: row })));
     tip.hidden = false;
     const x = nearest[0].point[0] / scale;

@@ -1,0 +1,151 @@
+//! The observer that records fields along a line.
+
+use super::files::WrittenFiles;
+use super::interpolation::Interpolated;
+use super::memory::{decode, encode, inside};
+use super::probe::component_columns;
+use super::recorder::SharedTables;
+use crate::output::{Column, ResultsFolder, Table};
+use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
+
+/// A probe that looks along a straight line.
+#[derive(Clone)]
+pub struct Line {
+    /// First part of the names of its columns and of its files.
+    pub name: String,
+    /// Distances of its places from the first one in m.
+    pub distances: Vec<f64>,
+    /// Its places, and what is recorded there.
+    pub values: Interpolated,
+    /// Times at which it is recorded.
+    pub schedule: Schedule,
+}
+
+impl Line {
+    /// Columns of its table: the distance, the place, and the fields.
+    fn columns(&self, dimension: usize) -> Vec<Column> {
+        let place = ["distance", "x", "y", "z"].into_iter().take(1 + dimension);
+        let place = place.map(|name| Column::new(name, "m"));
+        place.chain(component_columns(&self.name, &self.values.fields, dimension)).collect()
+    }
+
+    /// Numbers of its table in `dimension` dimensions.
+    pub fn numbers(&self, dimension: usize) -> usize {
+        self.columns(dimension).len() * self.distances.len()
+    }
+}
+
+/// Records a line at due times and in the last state of a run, writes each profile into a file of its
+/// own, and keeps the newest in the tables. With due times that are listed the last state counts only
+/// if some of them were not reached.
+pub struct ProfileRecorder {
+    line: Line,
+    folder: Option<(ResultsFolder, WrittenFiles)>,
+    tables: SharedTables,
+    /// Number of its table among the profiles.
+    number: usize,
+    /// The files so far, and the times of all profiles in s.
+    files: Vec<String>,
+    times: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl ProfileRecorder {
+    /// A recorder of `line` in `dimension` dimensions that adds its table to `tables`. With a folder
+    /// it writes a file for each profile, and notes it.
+    pub fn new(
+        line: Line,
+        dimension: usize,
+        tables: SharedTables,
+        folder: Option<(ResultsFolder, WrittenFiles)>,
+    ) -> Self {
+        let mut shared = tables.lock();
+        let number = shared.profiles.len();
+        shared.profiles.push(Table::new(line.columns(dimension)));
+        drop(shared);
+        let (files, times, scratch) = Default::default();
+        Self { line, folder, tables, number, files, times, scratch }
+    }
+
+    fn record(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
+        let mut values = Vec::new();
+        let interpolated = &self.line.values;
+        interpolated.record(
+            moment.scheme,
+            moment.time,
+            moment.state,
+            &mut self.scratch,
+            &mut values,
+        );
+        let width = values.len() / self.line.distances.len();
+        let places = self.line.distances.iter().zip(&interpolated.places);
+        let rows =
+            places.zip(values.chunks_exact(width)).flat_map(|((distance, place), values)| {
+                std::iter::once(distance).chain(place).chain(values).copied()
+            });
+        let mut tables = self.tables.lock();
+        let table = &mut tables.profiles[self.number];
+        table.set_numbers(rows.collect()).expect("a place has a number for each column");
+        self.times.push(moment.time);
+        let Some((folder, written)) = &self.folder else { return Ok(()) };
+        let fail = |source: crate::output::OutputError| ObserveError {
+            what: "writing a profile",
+            time: moment.time,
+            source: source.into(),
+        };
+        let path = folder.profile(&self.line.name, self.files.len() as u64).map_err(fail)?;
+        table.write_csv(&path).map_err(fail)?;
+        self.files.push(folder.relative(&path));
+        written.push(path);
+        Ok(())
+    }
+}
+
+impl Observer for ProfileRecorder {
+    fn schedule(&self) -> &Schedule {
+        &self.line.schedule
+    }
+
+    fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
+        let last = self.times.last().copied();
+        let asked_for = match self.line.schedule {
+            Schedule::At(_) => self.line.schedule.next_after(last.unwrap_or(-1.0)).is_some(),
+            _ => true,
+        };
+        if last == Some(moment.time) || (moment.last && !asked_for) {
+            return Ok(());
+        }
+        self.record(moment)
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let tables = self.tables.lock();
+        encode(&(&self.files, &self.times, tables.profiles[self.number].numbers()))
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
+        let what = format!("the line {}", self.line.name);
+        let numbers;
+        (self.files, self.times, numbers) = decode(saved, &what)?;
+        inside(&self.files)?;
+        let other = |columns| Misfit(format!("{what} has {columns} columns, and not in it"));
+        self.tables.lock().profiles[self.number].set_numbers(numbers).map_err(other)
+    }
+
+    fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {
+        let kept = self.times.partition_point(|known| *known <= time);
+        if kept == self.times.len() {
+            return Ok(());
+        }
+        self.times.truncate(kept);
+        if let Some((folder, written)) = &self.folder {
+            for file in self.files.drain(kept..) {
+                written.remove(&folder.path().join(file));
+            }
+        }
+        // What follows is recorded again, at the latest at the end of the run.
+        let mut tables = self.tables.lock();
+        tables.profiles[self.number].set_numbers(Vec::new()).expect("no rows are whole rows");
+        Ok(())
+    }
+}

@@ -1,0 +1,227 @@
+//! Profiles along lines: what they hold, when they come, and how checks and plots see them.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use piola::case::verify::{self, CheckRow, Got, VariantRun};
+use piola::case::{self, Case, Finished, LoadOptions};
+use piola::observe::Series;
+use piola::output::Table;
+use piola::time::{Outcome, Progress};
+
+/// A body whose velocity and pressure are linear in the place at the start.
+const CASE: &str = r#"
+version = 1
+title = "A linear velocity"
+dimension = 2
+
+[[body]]
+name = "block"
+shape = { kind = "box", min = [0.0, 0.0], max = [1.0, 2.0] }
+spacing = 0.1
+lattice = { on = "cells", jitter = 0.1 }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 10.0 }
+initial = { velocity = ["y", "1 - 3 * x"], pressure = "100 * y" }
+
+[scheme]
+kind = "transport_velocity"
+
+[time]
+end = 0.01
+step = 0.001
+
+[output]
+every = 0.004
+fields = []
+
+[[probe]]
+name = "up"
+kind = "line"
+from = [0.5, 0.0]
+to = [0.5, 2.0]
+points = 21
+fields = ["velocity", "pressure"]
+
+[[probe]]
+name = "across"
+kind = "line"
+from = [0.2, 0.4]
+to = [0.8, 1.2]
+points = 11
+times = [0.0, 0.003]
+fields = ["velocity"]
+
+[[plot]]
+name = "up"
+curves = ["up.velocity.x"]
+"#;
+
+fn parse(text: &str, folder: Option<&Path>) -> Case {
+    let file = folder.map_or(PathBuf::from("case.toml"), |folder| folder.join("case.toml"));
+    let options = LoadOptions::default();
+    match folder {
+        None => case::parse(text, "case.toml", &options),
+        Some(_) => {
+            fs::write(&file, text).unwrap();
+            case::load(&file, &options)
+        }
+    }
+    .unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn run(case: &Case, folder: Option<&Path>) -> Finished {
+    case::build(case).unwrap().run(folder, &AtomicBool::new(false), &mut |_| {}).unwrap()
+}
+
+/// The files of a line in the results, with their tables.
+fn profiles(out: &Path, line: &str) -> Vec<Table> {
+    let mut files: Vec<PathBuf> = fs::read_dir(out.join("profiles"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.file_name().unwrap().to_string_lossy().starts_with(line))
+        .collect();
+    files.sort();
+    files.iter().map(|file| Table::read_csv(file).unwrap()).collect()
+}
+
+fn values(finished: &Finished, name: &str) -> (Vec<f64>, Vec<f64>) {
+    match finished.quantity(name) {
+        Some(Series::Curve { against, abscissa, values, .. }) => {
+            assert_eq!(against.header(), "distance [m]");
+            (abscissa, values)
+        }
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+#[test]
+fn a_linear_field_is_met_along_a_line_to_its_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    run(&parse(CASE, None), Some(&out));
+    // Both ends lie on the edge of the body, half a spacing outside of the last particles.
+    let up = &profiles(&out, "up")[0];
+    let names: Vec<String> = up.columns().iter().map(|column| column.header()).collect();
+    let fields = ["up.velocity.x [m/s]", "up.velocity.y [m/s]", "up.pressure [Pa]"];
+    assert_eq!(names, [&["distance [m]", "x [m]", "y [m]"][..], &fields].concat());
+    assert_eq!(up.len(), 21);
+    for (number, row) in up.rows().enumerate() {
+        let [distance, x, y, u, v, p] = row.try_into().unwrap();
+        let expected = 0.1 * number as f64;
+        assert!((distance - expected).abs() < 1e-15 && (y - expected).abs() < 1e-15 && x == 0.5);
+        assert!((u - y).abs() < 1e-12 && (v + 0.5).abs() < 1e-12, "{row:?}");
+        assert!((p - 100.0 * y).abs() < 1e-10, "{row:?}");
+    }
+    let across = &profiles(&out, "across")[0];
+    for row in across.rows() {
+        assert!((row[0] - (row[1] - 0.2).hypot(row[2] - 0.4)).abs() < 1e-15, "{row:?}");
+        assert!((row[3] - row[2]).abs() < 1e-12 && (row[4] - 1.0 + 3.0 * row[1]).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn profiles_come_when_they_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let finished = run(&parse(CASE, None), Some(&out));
+    // With the particle files, 0, 4 and 8 ms, and at the end; and at 0 and 3 ms only.
+    assert_eq!(profiles(&out, "up").len(), 4);
+    assert_eq!(profiles(&out, "across").len(), 2);
+    // The tables hold the newest, with files and without.
+    let alone = run(&parse(CASE, None), None);
+    assert_eq!(finished.tables, alone.tables);
+    for (number, line) in ["up", "across"].into_iter().enumerate() {
+        let last = profiles(&out, line).pop().unwrap();
+        assert_eq!(last, finished.tables.profiles[number]);
+        assert_ne!(last, profiles(&out, line)[0], "{line} has changed");
+    }
+    assert!(out.join("plots/up.png").is_file());
+    // The report reads them from the folder.
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("data-x-name=\"distance\"") && page.contains("across.velocity.y"));
+}
+
+#[test]
+fn a_place_far_from_all_particles_has_no_value() {
+    let text = CASE.replace("to = [0.5, 2.0]", "to = [0.5, 4.0]");
+    let finished = run(&parse(&text, None), None);
+    let (distance, values) = values(&finished, "up.velocity.x");
+    for (distance, value) in distance.iter().zip(values) {
+        // The support of the default kernel is three spacings.
+        assert_eq!(value.is_nan(), *distance > 2.3, "{value} at {distance}");
+        // Where a straight line cannot be trusted it is the mean: no overshoot far outside.
+        assert!(!(value > 2.2), "{value} at {distance}");
+    }
+}
+
+/// What a check of the line `up` gives.
+fn row(lines: &str) -> CheckRow {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("line.csv"), "y,u\n0,0\n2,2\n").unwrap();
+    let text = format!("{CASE}\n[[check]]\nsource = \"s\"\n{lines}\n");
+    let text = text.replace("end = 0.01\nstep = 0.001", "end = 1e-9");
+    let case = parse(&text, Some(folder.path()));
+    let mut rows = verify::verify(&case, &mut |_| {
+        Ok(VariantRun { run: run(&case, None), case: case.clone() })
+    });
+    assert_eq!(rows.len(), 1);
+    rows.remove(0)
+}
+
+#[test]
+fn checks_look_along_the_line() {
+    for (lines, got) in [
+        ("reduce = \"curve\"\nreference = \"line.csv\"\nat_most = 1e-6", 0.0),
+        ("reduce = \"curve_rms\"\nreference = \"line.csv\"\nat_most = 1e-6", 0.0),
+        ("reduce = \"at\"\nat = 1.25\nexpected = 1.25\ntolerance = 1e-6", 1.25),
+        ("reduce = \"maximum\"\nexpected = 2\ntolerance = 1e-6", 2.0),
+        ("expected = 2\ntolerance = 1e-6", 2.0),
+        ("reduce = \"mean\"\nexpected = 1\ntolerance = 1e-6", 1.0),
+    ] {
+        let row = row(&format!("quantity = \"up.velocity.x\"\n{lines}"));
+        let Some(Got::Number(value, unit)) = &row.got else { panic!("{row:?}") };
+        assert!(row.pass && (value - got).abs() < 1e-6 && unit == "m/s", "{row:?}");
+    }
+    let lines =
+        "quantity = \"up.velocity.y\"\nreduce = \"curve\"\nreference = \"line.csv\"\nat_most = 1";
+    let row = row(lines);
+    // -0.5 against 2 at the end of the line.
+    let Some(Got::Number(value, _)) = row.got else { panic!("{row:?}") };
+    assert!(!row.pass && (value - 2.5).abs() < 1e-6, "{value}");
+}
+
+#[test]
+fn a_run_that_goes_back_or_is_resumed_keeps_its_profiles() {
+    let folder = tempfile::tempdir().unwrap();
+    let dam = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/upwind/dam-break/case.toml");
+    let line = "\n[[probe]]\nname = \"level\"\nkind = \"line\"\nfrom = [0.0, 0.1]\nto = [1.5, 0.1]\n\
+                fields = [\"pressure\"]\n";
+    let text = fs::read_to_string(dam).unwrap() + line;
+    let file = folder.path().join("case.toml");
+    fs::write(&file, text).unwrap();
+    // Too large a step: it fails, goes back and on with half of it.
+    let set = ["body.water.spacing=0.1", "time.cfl=2", "time.on_failure='retry'"];
+    let overrides = set.map(str::to_owned).to_vec();
+    let options = LoadOptions { overrides, coarse: true, ..LoadOptions::default() };
+    let case = case::load(&file, &options).unwrap_or_else(|problems| panic!("{problems}"));
+    let out = folder.path().join("out");
+    let whole = run(&case, Some(&out));
+    assert!(!whole.summary.retries.is_empty());
+    let frames = fs::read_dir(out.join("particles")).unwrap().count();
+    assert_eq!(profiles(&out, "level").len(), frames);
+    assert_eq!(profiles(&out, "level").last(), whole.tables.profiles.first());
+    let retry = &whole.summary.retries[0];
+    let stop = AtomicBool::new(false);
+    let mut until = |progress: &Progress| {
+        stop.store(progress.step + 2 >= retry.step, Ordering::Relaxed);
+    };
+    let broken = folder.path().join("broken");
+    let first = case::build(&case).unwrap().run(Some(&broken), &stop, &mut until).unwrap();
+    assert_eq!(first.summary.outcome, Outcome::Interrupted);
+    stop.store(false, Ordering::Relaxed);
+    let last = case::build(&case).unwrap().resume(&broken, &stop, &mut |_| {}).unwrap();
+    assert_eq!(last.tables, whole.tables);
+    assert_eq!(profiles(&broken, "level"), profiles(&out, "level"));
+}
