@@ -73,3 +73,34 @@ pub fn for_each_row<T: Send>(rows: &mut [T], length: usize, body: impl Fn(usize,
     let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
     chunks.for_each(|(number, rows)| chunk(number * CHUNK, rows));
 }
+
+/// Calls `body(first, values, rows)` for chunks of `rows`, with those `values` that belong to them:
+/// row `k` has the values from `start(k)` on, and those of the last row end the array.
+pub fn for_each_span<V: Send, T: Send>(
+    values: &mut [V],
+    rows: &mut [T],
+    start: &(impl Fn(usize) -> usize + Sync),
+    body: impl Fn(usize, &mut [V], &mut [T]) + Sync,
+) {
+    split_spans(0, values, rows, start, &body);
+}
+
+/// Halves the chunks until each is alone, as a list of them would have to be allocated.
+fn split_spans<V: Send, T: Send>(
+    first: usize,
+    values: &mut [V],
+    rows: &mut [T],
+    start: &(impl Fn(usize) -> usize + Sync),
+    body: &(impl Fn(usize, &mut [V], &mut [T]) + Sync),
+) {
+    if rows.len() <= CHUNK {
+        return body(first, values, rows);
+    }
+    let middle = rows.len().div_ceil(CHUNK) / 2 * CHUNK;
+    let (rows, later_rows) = rows.split_at_mut(middle);
+    let (values, later_values) = values.split_at_mut(start(first + middle) - start(first));
+    rayon::join(
+        || split_spans(first, values, rows, start, body),
+        || split_spans(first + middle, later_values, later_rows, start, body),
+    );
+}

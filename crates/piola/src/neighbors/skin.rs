@@ -1,5 +1,7 @@
 //! Neighbour lists of moving particles, kept over many steps.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::search::search_ranked;
 use super::{Domain, NeighborError, spatial_order};
 use crate::{Vector, parallel};
@@ -74,29 +76,34 @@ impl<const D: usize> SkinList<D> {
         Ok(list)
     }
 
-    /// Takes new positions in m by number, and makes the list anew where it no longer holds.
+    /// Takes new positions in m by number, and makes the list anew where it no longer holds. False
+    /// when everything is where it was.
     ///
     /// # Errors
     /// Those of [`search`](fn@super::search::search); the list then is as it was.
     pub fn update(
         &mut self,
         position: impl Fn(usize) -> Vector<D> + Sync,
-    ) -> Result<(), NeighborError> {
-        self.take(&position);
-        let (positions, made_at, domain) = (&self.positions, &self.made_at, &self.domain);
-        let moved = |k: usize| domain.separation(&made_at[k], &positions[k]).norm_squared();
-        if self.builds > 0
-            && !self.stale
-            && parallel::maximum(positions.len(), 0.0, moved) <= 0.25 * self.skin * self.skin
-        {
-            return Ok(());
+    ) -> Result<bool, NeighborError> {
+        let has_moved = self.take(&position);
+        if self.builds > 0 && !self.stale {
+            if !has_moved {
+                return Ok(false);
+            }
+            let (positions, made_at, domain) = (&self.positions, &self.made_at, &self.domain);
+            let moved = |k: usize| domain.separation(&made_at[k], &positions[k]).norm_squared();
+            if parallel::maximum(positions.len(), 0.0, moved) <= 0.25 * self.skin * self.skin {
+                return Ok(true);
+            }
         }
+        // Until it is made, the list does not belong to the positions.
+        self.stale = true;
         self.build()?;
         self.take(&position);
         self.made_at.clone_from(&self.positions);
         self.builds += 1;
         self.stale = false;
-        Ok(())
+        Ok(true)
     }
 
     /// Sets which particles are passive, and which neither see nor are seen, by number, from the
@@ -106,13 +113,22 @@ impl<const D: usize> SkinList<D> {
         (self.passive, self.excluded, self.stale) = (passive, excluded, true);
     }
 
-    fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) {
+    /// Takes positions, and returns whether any of them is another than before.
+    fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) -> bool {
         let (numbers, domain) = (&self.numbers, &self.domain);
+        let has_moved = AtomicBool::new(false);
         parallel::for_each_chunk(&mut self.positions, |first, rows| {
+            let mut moves = false;
             for (row, &number) in rows.iter_mut().zip(&numbers[first..]) {
-                *row = domain.wrap(&position(number as usize));
+                let position = domain.wrap(&position(number as usize));
+                moves |= *row != position;
+                *row = position;
+            }
+            if moves {
+                has_moved.store(true, Ordering::Relaxed);
             }
         });
+        has_moved.into_inner()
     }
 
     /// Renews the places and lists the candidates of the current positions.
@@ -176,6 +192,17 @@ impl<const D: usize> SkinList<D> {
     /// Whether the particle at a place is passive.
     pub fn is_passive(&self, place: usize) -> bool {
         self.passive[self.numbers[place] as usize]
+    }
+
+    /// Number of candidates of all particles.
+    pub fn entries(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Number of candidates of all particles before `place`.
+    #[inline]
+    pub fn offset(&self, place: usize) -> usize {
+        self.offsets[place]
     }
 
     /// Candidates of the particle at `place` that are not passive.

@@ -4,7 +4,7 @@ use multiversion::multiversion;
 use piola_formulas::fluid;
 
 use super::{DensityRule, Divergence, PressureRule, Side, TransportVelocity};
-use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, total};
+use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, all_of, total};
 use crate::{Vector, parallel};
 
 /// Rates of change of a particle's density and pressure, term by term, see
@@ -90,7 +90,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Slope, block) {
             for group in block.groups() {
-                let others = group.places.map(|b| &self.sides[b as usize]);
+                let others = all_of(&self.sides, group.places);
                 #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
                 for lane in 0..LANES {
                     sums.add::<D, CORRECTS>(

@@ -4,7 +4,9 @@ use piola_formulas::fluid;
 
 use super::{Dilatation, Forces, Side, TransportVelocity};
 use crate::Vector;
-use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, NeighborGroup, total};
+use crate::operators::{
+    LANES, Lanes, Needs, Neighbor, NeighborBlock, NeighborGroup, all_of, total,
+};
 
 /// Constants of one pass.
 pub(super) struct Constants {
@@ -58,7 +60,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, needs, block) {
             for group in block.groups() {
-                let others = group.places.map(|b| &self.sides[b as usize]);
+                let others = all_of(&self.sides, group.places);
                 #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
                 for lane in 0..LANES {
                     let neighbor = group.neighbor(lane);
@@ -85,8 +87,8 @@ impl<const D: usize> TransportVelocity<D> {
         constants: &Constants,
         sums: &mut Sums<Lanes, D>,
     ) {
-        let others = group.places.map(|b| &self.sides[b as usize]);
-        let shears = group.places.map(|b| &self.shear[b as usize]);
+        let others = all_of(&self.sides, group.places);
+        let shears = all_of(&self.shear, group.places);
         for lane in 0..LANES {
             let neighbor = group.neighbor(lane);
             let velocities = [&me.velocity, shears[lane]];
