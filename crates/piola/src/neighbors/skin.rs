@@ -1,9 +1,7 @@
 //! Neighbour lists of moving particles, kept over many steps.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::search::search_ranked;
-use super::{Domain, NeighborError, spatial_order};
+use super::{Domain, NeighborError, shorter_way, spatial_order};
 use crate::{Vector, parallel};
 
 /// Candidates for the neighbours of moving particles: all that were closer than the support
@@ -85,16 +83,9 @@ impl<const D: usize> SkinList<D> {
         &mut self,
         position: impl Fn(usize) -> Vector<D> + Sync,
     ) -> Result<bool, NeighborError> {
-        let has_moved = self.take(&position);
-        if self.builds > 0 && !self.stale {
-            if !has_moved {
-                return Ok(false);
-            }
-            let (positions, made_at, domain) = (&self.positions, &self.made_at, &self.domain);
-            let moved = |k: usize| domain.separation(&made_at[k], &positions[k]).norm_squared();
-            if parallel::maximum(positions.len(), 0.0, moved) <= 0.25 * self.skin * self.skin {
-                return Ok(true);
-            }
+        let most = self.take(&position);
+        if self.builds > 0 && !self.stale && most <= 0.25 * self.skin * self.skin {
+            return Ok(most >= 0.0);
         }
         // Until it is made, the list does not belong to the positions.
         self.stale = true;
@@ -113,22 +104,28 @@ impl<const D: usize> SkinList<D> {
         (self.passive, self.excluded, self.stale) = (passive, excluded, true);
     }
 
-    /// Takes positions, and returns whether any of them is another than before.
-    fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) -> bool {
-        let (numbers, domain) = (&self.numbers, &self.domain);
-        let has_moved = AtomicBool::new(false);
-        parallel::for_each_chunk(&mut self.positions, |first, rows| {
-            let mut moves = false;
-            for (row, &number) in rows.iter_mut().zip(&numbers[first..]) {
-                let position = domain.wrap(&position(number as usize));
-                moves |= *row != position;
+    /// Takes positions, and returns the square in m^2 of the longest way from where the list was
+    /// made, of those who moved; it is negative where nobody did.
+    fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) -> f64 {
+        let (numbers, domain, made_at) = (&self.numbers, &self.domain, &self.made_at);
+        let periods = domain.periods();
+        parallel::maximum_of_chunks(&mut self.positions, -1.0, |first, rows| {
+            let (mut has_moved, mut most) = (false, 0.0);
+            for (k, row) in rows.iter_mut().enumerate() {
+                let position = domain.wrap(&position(numbers[first + k] as usize));
+                has_moved |= *row != position;
                 *row = position;
+                let mut square = 0.0;
+                if let Some(made_at) = made_at.get(first + k) {
+                    for axis in 0..D {
+                        let way = shorter_way(position[axis] - made_at[axis], periods[axis]);
+                        square += way * way;
+                    }
+                }
+                most = parallel::larger(most, square);
             }
-            if moves {
-                has_moved.store(true, Ordering::Relaxed);
-            }
-        });
-        has_moved.into_inner()
+            if has_moved { most } else { -1.0 }
+        })
     }
 
     /// Renews the places and lists the candidates of the current positions.
@@ -190,6 +187,7 @@ impl<const D: usize> SkinList<D> {
     }
 
     /// Whether the particle at a place is passive.
+    #[inline]
     pub fn is_passive(&self, place: usize) -> bool {
         self.passive[self.numbers[place] as usize]
     }
@@ -197,6 +195,12 @@ impl<const D: usize> SkinList<D> {
     /// Number of candidates of all particles.
     pub fn entries(&self) -> usize {
         self.entries.len()
+    }
+
+    /// Whether a particle, by number, is passive.
+    #[inline]
+    pub fn is_passive_number(&self, number: usize) -> bool {
+        self.passive[number]
     }
 
     /// Number of candidates of all particles before `place`.

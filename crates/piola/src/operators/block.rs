@@ -2,6 +2,7 @@
 
 use super::{LANES, Lanes};
 use crate::Vector;
+use crate::neighbors::shorter_way;
 
 /// Neighbours a block, a multiple of the lanes.
 pub const BLOCK: usize = 128;
@@ -125,7 +126,7 @@ impl<const D: usize> NeighborBlock<D> {
                 for lane in 0..LANES {
                     let distance = here[axis] - others[lane][axis];
                     let distance = match WRAPS {
-                        true => shortest(distance, periods[axis]),
+                        true => shorter_way(distance, periods[axis]),
                         false => distance,
                     };
                     separations[lane] = distance;
@@ -157,12 +158,4 @@ pub(crate) fn all_of<'a, T>(array: &'a [T], places: &[u32; LANES]) -> [&'a T; LA
     let [a, b, c, d, e, f, g, h] = *places;
     let at = |place: u32| &array[place as usize];
     [at(a), at(b), at(c), at(d), at(e), at(f), at(g), at(h)]
-}
-
-/// The shorter way between points inside a period, without a branch.
-#[inline(always)]
-pub(super) fn shortest(distance: f64, period: f64) -> f64 {
-    let half = 0.5 * period;
-    let down = if distance > half { distance - period } else { distance };
-    if distance < -half { distance + period } else { down }
 }

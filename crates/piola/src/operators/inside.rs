@@ -3,8 +3,8 @@
 use multiversion::multiversion;
 
 use super::LANES;
-use super::block::{all_of, shortest};
-use crate::neighbors::SkinList;
+use super::block::all_of;
+use crate::neighbors::{SkinList, shorter_way};
 use crate::{Vector, parallel};
 
 /// For each particle those candidates of a [`SkinList`] that are inside the support at its current
@@ -107,17 +107,18 @@ fn pick<const D: usize>(
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         let here = &positions[place];
-        let keep = match reach.wraps(here) {
-            true => keep::<D, true>,
-            false => keep::<D, false>,
-        };
+        let wraps = reach.wraps(here);
         *row = Row { start: from + length, active: 0, passive: 0 };
         for (candidates, kept) in [
             (list.active_row(place), &mut row.active),
             (list.passive_row(place), &mut row.passive),
         ] {
             if !candidates.is_empty() {
-                let count = keep(here, candidates, positions, reach, &mut places[length..]);
+                let room = &mut places[length..];
+                let count = match wraps {
+                    true => keep::<D, true>(here, candidates, positions, reach, room),
+                    false => keep::<D, false>(here, candidates, positions, reach, room),
+                };
                 *kept = count as u32;
                 length += count.next_multiple_of(LANES);
             }
@@ -148,7 +149,7 @@ fn keep<const D: usize, const WRAPS: bool>(
             for lane in 0..LANES {
                 let distance = here[axis] - others[lane][axis];
                 let distance = match WRAPS {
-                    true => shortest(distance, reach.periods[axis]),
+                    true => shorter_way(distance, reach.periods[axis]),
                     false => distance,
                 };
                 squares[lane] += distance * distance;

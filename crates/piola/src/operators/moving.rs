@@ -61,17 +61,11 @@ impl<const D: usize> MovingSupport<D> {
     ) -> Result<Self, NeighborError> {
         let support = kernel.support_radius(smoothing_length);
         let list = SkinList::new(positions, passive, support, Self::SKIN * support, domain)?;
-        let length = |ends: Option<[f64; 2]>| ends.map_or(f64::INFINITY, |[low, high]| high - low);
-        // By the skin more than the support, so that rounding does not matter.
-        let margin = (1.0 + Self::SKIN) * support;
-        let within = |ends: Option<[f64; 2]>| match ends {
-            Some([low, high]) => [low + margin, high - margin],
-            None => [f64::NEG_INFINITY, f64::INFINITY],
-        };
         let reach = Reach {
             limit: support * support,
-            periods: domain.periodic().map(length),
-            within: domain.periodic().map(within),
+            periods: domain.periods(),
+            // By the skin more than the support, so that rounding does not matter.
+            within: domain.within((1.0 + Self::SKIN) * support),
         };
         let mut inside = InsideRows::default();
         inside.pick(&list, &reach);

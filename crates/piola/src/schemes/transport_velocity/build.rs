@@ -160,6 +160,7 @@ impl<const D: usize> TransportVelocity<D> {
             mass: mass.collect(),
             sides: vec![Side::default(); count],
             densities,
+            largest_speed: 0.0,
             rates: vec![Rates::default(); count],
             forces: vec![Forces::default(); count],
             shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],

@@ -53,15 +53,22 @@ impl<const D: usize> TransportVelocity<D> {
             let lost = |row: &[f64]| !Row::<D>::position(row).iter().all(|x| x.is_finite());
             state.chunks_exact(Row::<D>::LENGTH).position(lost).unwrap_or(0)
         });
-        let (numbers, mass) = (self.support.list().numbers(), &self.mass);
-        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+        let (list, mass) = (self.support.list(), &self.mass);
+        let numbers = list.numbers();
+        let fastest = parallel::maximum_of_chunks(&mut self.sides, 0.0, |first, sides| {
+            let mut fastest = 0.0;
             for (side, &number) in sides.iter_mut().zip(&numbers[first..]) {
                 let row = Row::<D>::of(state, number as usize);
                 side.velocity = Row::<D>::velocity(row);
                 side.deviation = Row::<D>::deviation(row);
                 side.mass = mass[number as usize];
                 side.set(row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
+                if !list.is_passive_number(number as usize) {
+                    fastest = parallel::larger(fastest, side.velocity.norm_squared());
+                }
             }
+            fastest
         });
+        self.largest_speed = fastest.sqrt();
     }
 }

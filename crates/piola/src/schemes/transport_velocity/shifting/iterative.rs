@@ -41,7 +41,7 @@ impl<const D: usize> TransportVelocity<D> {
         iteration.positions.clear();
         iteration.positions.extend((0..count).map(|number| Row::<D>::position(rows(number))));
         self.load(state);
-        let reach = self.largest_speed() * step;
+        let reach = self.largest_speed * step;
         if self.settings.free_surface {
             self.opening_pass();
             self.find_surfaces();

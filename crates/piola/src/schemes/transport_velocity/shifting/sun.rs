@@ -18,16 +18,18 @@ impl<const D: usize> TransportVelocity<D> {
     /// deviation is larger than half of the largest speed.
     pub(in super::super) fn shift(&mut self) {
         let Shifting::Sun { factor } = self.settings.shifting else { return };
-        let speed = self.largest_speed().min(MOST_MACH * self.fluid.wave_speed);
+        let speed = self.largest_speed.min(MOST_MACH * self.fluid.wave_speed);
         let scale = -factor * speed * 2.0 * self.support.smoothing_length();
         let most = 0.5 * speed;
         if self.settings.free_surface {
             self.find_surfaces();
         }
         let mut sides = std::mem::take(&mut self.sides);
-        let volumes = &mut self.densities;
-        volumes.clear();
-        volumes.extend(sides.iter().map(|side| side.volume));
+        if self.settings.free_surface {
+            let volumes = &mut self.densities;
+            volumes.clear();
+            volumes.extend(sides.iter().map(|side| side.volume));
+        }
         let (list, h) = (self.support.list(), self.support.smoothing_length());
         parallel::for_each_chunk(&mut sides, |first, sides| {
             let mut block = NeighborBlock::default();
@@ -78,17 +80,6 @@ impl<const D: usize> TransportVelocity<D> {
             }
         }
         sum
-    }
-
-    /// Largest speed of the fluid in m/s.
-    pub(in super::super) fn largest_speed(&self) -> f64 {
-        let list = self.support.list();
-        let square =
-            parallel::maximum(self.sides.len(), 0.0, |place| match list.is_passive(place) {
-                true => 0.0,
-                false => self.sides[place].velocity.norm_squared(),
-            });
-        square.sqrt()
     }
 
     /// The kernel at a distance of one spacing, in m^-D.
