@@ -104,18 +104,20 @@ pub fn sums_over_rows<const N: usize, T: Send>(
     add_up(&partials)
 }
 
-/// Calls `body(first, rows)` for chunks of `rows`, as [`for_each_chunk`], and returns the largest of
-/// what it returns, at least `least`.
-pub fn maximum_of_chunks<T: Send>(
+/// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them, and
+/// returns the largest of what it returns, at least `least`.
+pub fn maximum_of_chunks<T: Send, U: Send>(
     rows: &mut [T],
+    others: &mut [U],
     least: f64,
-    body: impl Fn(usize, &mut [T]) -> f64 + Sync,
+    body: impl Fn(usize, &mut [T], &mut [U]) -> f64 + Sync,
 ) -> f64 {
     if rows.len() <= CHUNK {
-        return body(0, rows).max(least);
+        return body(0, rows, others).max(least);
     }
-    let chunks = rows.par_chunks_mut(CHUNK).enumerate();
-    chunks.map(|(chunk, rows)| body(chunk * CHUNK, rows)).reduce(|| least, f64::max)
+    let chunks = rows.par_chunks_mut(CHUNK).zip(others.par_chunks_mut(CHUNK)).enumerate();
+    let largest = chunks.map(|(chunk, (rows, others))| body(chunk * CHUNK, rows, others));
+    largest.reduce(|| least, f64::max)
 }
 
 /// Calls `body(first, values, rows)` for chunks of `rows`, with those `values` that belong to them:

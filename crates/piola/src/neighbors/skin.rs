@@ -70,27 +70,29 @@ impl<const D: usize> SkinList<D> {
             entries: Vec::new(),
             builds: 0,
         };
-        list.update(|number| positions[number])?;
+        list.update(&mut vec![(); positions.len()], |number, ()| positions[number])?;
         Ok(list)
     }
 
-    /// Takes new positions in m by number, and makes the list anew where it no longer holds. False
-    /// when everything is where it was.
+    /// Takes new positions in m, and makes the list anew where it no longer holds: `take(number,
+    /// row)` is the position of a particle, and fills the row at its place, too. False when
+    /// everything is where it was.
     ///
     /// # Errors
     /// Those of [`search`](fn@super::search::search); the list then is as it was.
-    pub fn update(
+    pub fn update<T: Send>(
         &mut self,
-        position: impl Fn(usize) -> Vector<D> + Sync,
+        rows: &mut [T],
+        take: impl Fn(usize, &mut T) -> Vector<D> + Sync,
     ) -> Result<bool, NeighborError> {
-        let most = self.take(&position);
+        let most = self.take(rows, &take);
         if self.builds > 0 && !self.stale && most <= 0.25 * self.skin * self.skin {
             return Ok(most >= 0.0);
         }
         // Until it is made, the list does not belong to the positions.
         self.stale = true;
         self.build()?;
-        self.take(&position);
+        self.take(rows, &take);
         self.made_at.clone_from(&self.positions);
         self.builds += 1;
         self.stale = false;
@@ -106,15 +108,19 @@ impl<const D: usize> SkinList<D> {
 
     /// Takes positions, and returns the square in m^2 of the longest way from where the list was
     /// made, of those who moved; it is negative where nobody did.
-    fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) -> f64 {
+    fn take<T: Send>(
+        &mut self,
+        rows: &mut [T],
+        take: &(impl Fn(usize, &mut T) -> Vector<D> + Sync),
+    ) -> f64 {
         let (numbers, domain, made_at) = (&self.numbers, &self.domain, &self.made_at);
         let periods = domain.periods();
-        parallel::maximum_of_chunks(&mut self.positions, -1.0, |first, rows| {
+        parallel::maximum_of_chunks(&mut self.positions, rows, -1.0, |first, positions, rows| {
             let (mut has_moved, mut most) = (false, 0.0);
-            for (k, row) in rows.iter_mut().enumerate() {
-                let position = domain.wrap(&position(numbers[first + k] as usize));
-                has_moved |= *row != position;
-                *row = position;
+            for (k, (kept, row)) in positions.iter_mut().zip(rows).enumerate() {
+                let position = domain.wrap(&take(numbers[first + k] as usize, row));
+                has_moved |= *kept != position;
+                *kept = position;
                 let mut square = 0.0;
                 if let Some(made_at) = made_at.get(first + k) {
                     for axis in 0..D {
@@ -195,12 +201,6 @@ impl<const D: usize> SkinList<D> {
     /// Number of candidates of all particles.
     pub fn entries(&self) -> usize {
         self.entries.len()
-    }
-
-    /// Whether a particle, by number, is passive.
-    #[inline]
-    pub fn is_passive_number(&self, number: usize) -> bool {
-        self.passive[number]
     }
 
     /// Number of candidates of all particles before `place`.

@@ -155,13 +155,16 @@ fn keep<const D: usize, const WRAPS: bool>(
                 squares[lane] += distance * distance;
             }
         }
+        for lane in 0..LANES {
+            squares[lane] = if lane < count { squares[lane] } else { f64::INFINITY };
+        }
         // Every candidate is written and kept by the step of the counter, as a branch would be
         // guessed wrong every third time.
         let window = window(&mut kept[length..]);
         let mut more = 0;
         for lane in 0..LANES {
             window[more % LANES] = places[lane];
-            more += usize::from((squares[lane] < reach.limit) & (lane < count));
+            more += usize::from(squares[lane] < reach.limit);
         }
         length += more;
     }

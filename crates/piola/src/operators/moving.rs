@@ -17,6 +17,13 @@ pub struct Remaining<'a> {
     then: (&'a [u32], usize),
 }
 
+impl Remaining<'_> {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.row.0.is_empty() && self.then.0.is_empty()
+    }
+}
+
 /// What of the kernel a sum needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
@@ -87,7 +94,20 @@ impl<const D: usize> MovingSupport<D> {
         &mut self,
         position: impl Fn(usize) -> Vector<D> + Sync,
     ) -> Result<(), NeighborError> {
-        if self.list.update(position)? {
+        self.update_with(&mut vec![(); self.list.len()], |number, ()| position(number))
+    }
+
+    /// Takes new positions in m: `take(number, row)` is that of a particle, and fills the row at its
+    /// place, too.
+    ///
+    /// # Errors
+    /// When the search refuses them; the neighbours then are as they were.
+    pub fn update_with<T: Send>(
+        &mut self,
+        rows: &mut [T],
+        take: impl Fn(usize, &mut T) -> Vector<D> + Sync,
+    ) -> Result<(), NeighborError> {
+        if self.list.update(rows, take)? {
             self.inside.pick(&self.list, &self.reach);
         }
         Ok(())

@@ -160,7 +160,6 @@ impl<const D: usize> TransportVelocity<D> {
             mass: mass.collect(),
             sides: vec![Side::default(); count],
             densities,
-            largest_speed: 0.0,
             rates: vec![Rates::default(); count],
             forces: vec![Forces::default(); count],
             shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],

@@ -154,8 +154,7 @@ impl Sums {
         }
         let densities = me.density + other.density;
         let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
-        // The mass is made of what is read anyhow, as reading is what takes the time.
-        let slope = slope * other.density;
+        let slope = other.mass() * neighbor.slope;
         let exchange = fluid::diffusion(constants.diffusivity, neighbor.square, slope, scale);
         let excess = if FALLS { jump + at_rest.dot(&neighbor.separation) } else { jump };
         self.pressure_diffusion[lane] -= exchange * excess;
@@ -164,7 +163,7 @@ impl Sums {
 
 /// Fills some rows, with or without the transport terms, the deviation in the divergence, and body
 /// forces.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn fill<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,

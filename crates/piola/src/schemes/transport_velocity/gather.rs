@@ -135,7 +135,7 @@ pub(super) fn wall_force<const D: usize>(
     let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
     let exchange = fluid::diffusion(constants.viscosity, neighbor.square, neighbor.slope, scale);
     let pressure = neighbor.slope * (me.load + other.load);
-    ((velocity - other_velocity) * exchange - neighbor.separation * pressure) * other.mass
+    ((velocity - other_velocity) * exchange - neighbor.separation * pressure) * other.mass()
 }
 
 impl<const D: usize> Sums<Lanes, D> {
@@ -167,8 +167,7 @@ impl<const D: usize> Sums<Lanes, D> {
         neighbor: &Neighbor<D>,
         constants: &Constants,
     ) {
-        // The mass is made of what is read anyhow, as reading is what takes the time.
-        let slope = other.volume * other.density * neighbor.slope;
+        let slope = other.mass() * neighbor.slope;
         let jump = me.velocity - other.velocity;
         let densities = me.density + other.density;
         let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);

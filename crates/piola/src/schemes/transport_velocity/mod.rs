@@ -83,8 +83,6 @@ pub struct TransportVelocity<const D: usize> {
     // Scratch, by place.
     sides: Vec<Side<D>>,
     densities: Vec<f64>,
-    /// Largest speed of the fluid in m/s.
-    largest_speed: f64,
     rates: Vec<Rates>,
     forces: Vec<Forces<D>>,
     /// Velocity of each wall particle that viscous forces see.

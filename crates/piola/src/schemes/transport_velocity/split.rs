@@ -65,11 +65,11 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         let algebraic = self.settings.pressure == PressureRule::StateEquation;
         let before = if algebraic { self.compression_energy(state) } else { 0.0 };
         self.load(state);
-        self.update_density_and_pressure();
+        let fastest = self.update_density_and_pressure();
         self.wall_pass(time);
         self.force_pass();
         self.add_body_forces(time);
-        self.shift();
+        self.shift(fastest);
         let (rows, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
         let sums = parallel::sums_over_rows(rows, Row::<D>::LENGTH, |number, row, sums| {

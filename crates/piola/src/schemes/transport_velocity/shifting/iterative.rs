@@ -41,7 +41,7 @@ impl<const D: usize> TransportVelocity<D> {
         iteration.positions.clear();
         iteration.positions.extend((0..count).map(|number| Row::<D>::position(rows(number))));
         self.load(state);
-        let reach = self.largest_speed * step;
+        let reach = self.largest_speed() * step;
         if self.settings.free_surface {
             self.opening_pass();
             self.find_surfaces();
@@ -77,6 +77,17 @@ impl<const D: usize> TransportVelocity<D> {
         });
         state[count * Row::<D>::LENGTH + Tail::new(D).passes()] = passes;
         self.iteration = iteration;
+    }
+
+    /// Largest speed of the fluid in m/s.
+    fn largest_speed(&self) -> f64 {
+        let list = self.support.list();
+        let square =
+            parallel::maximum(self.sides.len(), 0.0, |place| match list.is_passive(place) {
+                true => 0.0,
+                false => self.sides[place].velocity.norm_squared(),
+            });
+        square.sqrt()
     }
 
     /// Notes how even the particles are at the places loaded last.
