@@ -1,5 +1,6 @@
 //! Neighbours of one particle in arrays, so that one operation acts on many of them.
 
+use super::inside::Reach;
 use super::{LANES, Lanes};
 use crate::Vector;
 use crate::neighbors::shorter_way;
@@ -7,10 +8,13 @@ use crate::neighbors::shorter_way;
 /// Neighbours a block, a multiple of the lanes.
 pub const BLOCK: usize = 128;
 
+/// Groups a block.
+const GROUPS: usize = BLOCK / LANES;
+
 /// Some neighbours b of one particle a, all inside its support, in arrays over neighbours.
 ///
-/// The last group of [`LANES`] is filled up with its last neighbour, and with values and slopes of
-/// zero.
+/// The last group of [`LANES`] is filled up with its last neighbour, at a distance at which values
+/// and slopes are zero.
 #[derive(Clone, Debug)]
 pub struct NeighborBlock<const D: usize> {
     length: usize,
@@ -105,14 +109,15 @@ impl<const D: usize> NeighborBlock<D> {
     }
 
     /// Takes the first `length` of the neighbours at `places`, whole groups that are at most
-    /// [`BLOCK`], of a particle at `here`. Where nothing `wraps`, no period is looked at.
+    /// [`BLOCK`], of a particle at `here`. Where nothing `wraps`, no period is looked at. What fills
+    /// up the last group is so far away that kernels vanish.
     #[inline(always)]
     pub(super) fn take<const WRAPS: bool>(
         &mut self,
         here: &Vector<D>,
         (places, length): (&[u32], usize),
         positions: &[Vector<D>],
-        periods: &[f64; D],
+        reach: &Reach<D>,
     ) {
         self.length = length;
         let groups = places.as_chunks::<LANES>().0;
@@ -126,7 +131,7 @@ impl<const D: usize> NeighborBlock<D> {
                 for lane in 0..LANES {
                     let distance = here[axis] - others[lane][axis];
                     let distance = match WRAPS {
-                        true => shorter_way(distance, periods[axis]),
+                        true => shorter_way(distance, reach.periods[axis]),
                         false => distance,
                     };
                     separations[lane] = distance;
@@ -135,17 +140,11 @@ impl<const D: usize> NeighborBlock<D> {
             }
             self.squares.as_chunks_mut::<LANES>().0[group] = squares;
         }
-    }
-
-    /// Sets values and slopes beyond the last neighbour to zero.
-    #[inline(always)]
-    pub(super) fn clear_rest(&mut self) {
-        let Some(last) = self.length.checked_sub(1) else { return };
-        let (group, last) = (last / LANES % (BLOCK / LANES), last % LANES);
-        for numbers in [&mut self.values, &mut self.slopes] {
-            let numbers = &mut numbers.as_chunks_mut::<LANES>().0[group];
-            for (lane, number) in numbers.iter_mut().enumerate() {
-                *number = if lane > last { 0.0 } else { *number };
+        if let Some(last) = length.checked_sub(1) {
+            let squares = &mut self.squares.as_chunks_mut::<LANES>().0[last / LANES % GROUPS];
+            for lane in 0..LANES {
+                let is_filled_up = lane > last % LANES;
+                squares[lane] = if is_filled_up { 4.0 * reach.limit } else { squares[lane] };
             }
         }
     }

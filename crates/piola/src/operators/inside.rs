@@ -93,7 +93,7 @@ fn start<const D: usize>(list: &SkinList<D>, row: usize) -> usize {
 }
 
 /// Picks the rows of some particles.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn pick<const D: usize>(
     list: &SkinList<D>,
     reach: &Reach<D>,
@@ -109,10 +109,9 @@ fn pick<const D: usize>(
         let here = &positions[place];
         let wraps = reach.wraps(here);
         *row = Row { start: from + length, active: 0, passive: 0 };
-        for (candidates, kept) in [
-            (list.active_row(place), &mut row.active),
-            (list.passive_row(place), &mut row.passive),
-        ] {
+        for (candidates, kept) in
+            [(list.active_row(place), &mut row.active), (list.passive_row(place), &mut row.passive)]
+        {
             if !candidates.is_empty() {
                 let room = &mut places[length..];
                 let count = match wraps {

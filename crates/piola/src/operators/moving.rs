@@ -186,7 +186,6 @@ impl<const D: usize> MovingSupport<D> {
             Needs::Slope => self.many.slopes(squares, slopes),
             Needs::Both => self.many.both(squares, values, slopes),
         }
-        block.clear_rest();
         true
     }
 
@@ -197,7 +196,7 @@ impl<const D: usize> MovingSupport<D> {
 }
 
 /// Fills `block` with the separations of some neighbours.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn separate<const D: usize>(
     reach: &Reach<D>,
     positions: &[Vector<D>],
@@ -207,7 +206,7 @@ fn separate<const D: usize>(
 ) {
     let here = &positions[place];
     match reach.wraps(here) {
-        true => block.take::<true>(here, neighbors, positions, &reach.periods),
-        false => block.take::<false>(here, neighbors, positions, &reach.periods),
+        true => block.take::<true>(here, neighbors, positions, reach),
+        false => block.take::<false>(here, neighbors, positions, reach),
     }
 }

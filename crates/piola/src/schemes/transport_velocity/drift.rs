@@ -175,10 +175,10 @@ fn fill<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bo
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         if !scheme.support.list().is_passive(place) {
-            let at_rest = if FALLS { scheme.gradient_at_rest(place, time) } else { Vector::zeros() };
-            let sums = scheme.gather_rates::<CORRECTS, MOVES, FALLS>(
-                place, constants, &at_rest, &mut block,
-            );
+            let at_rest =
+                if FALLS { scheme.gradient_at_rest(place, time) } else { Vector::zeros() };
+            let sums = scheme
+                .gather_rates::<CORRECTS, MOVES, FALLS>(place, constants, &at_rest, &mut block);
             *row = scheme.rates_of(&sums);
         }
     }

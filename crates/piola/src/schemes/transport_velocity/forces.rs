@@ -142,6 +142,7 @@ fn fill<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDI
     rows: &mut [Forces<D>],
 ) {
     let mut block = NeighborBlock::default();
+    let has_walls = !scheme.walls.is_empty();
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         if scheme.support.list().is_passive(place) {
@@ -149,6 +150,6 @@ fn fill<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDI
             continue;
         }
         let sums = scheme.gather::<CORRECTS, ARTIFICIAL, CROWDING>(place, constants, &mut block);
-        *row = sums.total().forces(&scheme.sides[place]);
+        *row = sums.total::<ARTIFICIAL>(has_walls).forces(&scheme.sides[place]);
     }
 }

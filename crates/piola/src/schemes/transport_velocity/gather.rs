@@ -234,12 +234,15 @@ impl<const D: usize> Sums<Lanes, D> {
     /// The sums over all lanes. Not inlined: what follows is work on single numbers, and mixed
     /// with it the compiler takes the lanes apart in the loop, too.
     #[inline(never)]
-    pub fn total(&self) -> Sums<f64, D> {
+    pub fn total<const ARTIFICIAL: bool>(&self, has_walls: bool) -> Sums<f64, D> {
         Sums {
             pressure: self.pressure.map(total),
             viscosity: self.viscosity.map(total),
-            artificial_viscosity: self.artificial_viscosity.map(total),
-            walls: self.walls.map(total),
+            artificial_viscosity: match ARTIFICIAL {
+                true => self.artificial_viscosity.map(total),
+                false => [0.0; D],
+            },
+            walls: if has_walls { self.walls.map(total) } else { [0.0; D] },
             carried: self.carried.map(total),
             stretch: total(self.stretch),
             volume: self.volume.map(total),
