@@ -210,3 +210,69 @@ fn separate<const D: usize>(
         false => block.take::<false>(here, neighbors, positions, reach),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    use super::*;
+
+    /// What [`MovingSupport`] shows of a particle: numbers in order, the passive ones last.
+    fn shown<const D: usize>(support: &MovingSupport<D>, number: usize) -> Vec<u32> {
+        let place = support.list().places()[number] as usize;
+        let (mut rest, mut block) = (support.all(place), NeighborBlock::default());
+        let mut numbers = Vec::new();
+        while support.fill(&mut rest, Needs::Both, &mut block) {
+            numbers.extend(block.iter().map(|b| support.list().numbers()[b.place]));
+            // Lanes that are filled up add nothing.
+            let (kernel, h) = (support.kernel(), support.smoothing_length());
+            let all: f64 = block.groups().flat_map(|group| group.values.to_vec()).sum();
+            let true_ones: f64 = block.iter().map(|b| kernel.value(D, b.square.sqrt(), h)).sum();
+            assert!((all - true_ones).abs() <= 1e-13 * all);
+        }
+        numbers
+    }
+
+    /// Particles that wander in a box that is periodic along all axes but the last, so that some
+    /// are near to its bounds, compared with a look at all pairs after each of several moves. The
+    /// steps are so short that most of the lists are old ones.
+    fn compare<const D: usize>(count: usize, h: f64) {
+        let domain = Domain::new(std::array::from_fn(|axis| (axis + 1 < D).then_some([0.0, 1.0])));
+        let domain = domain.expect("the bounds are in order");
+        let mut source = Pcg64::seed_from_u64(7);
+        let mut positions: Vec<Vector<D>> =
+            (0..count).map(|_| Vector::from_fn(|_, _| source.random_range(0.0..1.0))).collect();
+        let passive: Vec<bool> = (0..count).map(|number| number % 5 == 0).collect();
+        let kernel = Kernel::QuinticSpline;
+        let mut support =
+            MovingSupport::new(&positions, passive.clone(), kernel, h, domain).expect("it fits");
+        let radius = kernel.support_radius(h);
+        let reach = 0.04 * radius;
+        for _ in 0..6 {
+            for a in 0..count {
+                let is_near = |b: usize| {
+                    let separation = domain.separation(&positions[a], &positions[b]);
+                    b != a && separation.norm() < radius && !(passive[a] && passive[b])
+                };
+                let near = |is_passive: bool| {
+                    (0..count).filter(move |&b| passive[b] == is_passive && is_near(b))
+                };
+                let expected: Vec<u32> = near(false).chain(near(true)).map(|b| b as u32).collect();
+                assert_eq!(shown(&support, a), expected, "{D}D, particle {a}");
+            }
+            for position in &mut positions {
+                *position += Vector::from_fn(|_, _| source.random_range(-reach..reach));
+            }
+            support.update(|number| positions[number]).expect("it fits");
+        }
+        assert!((2..5).contains(&support.list().builds()), "{D}D {}", support.list().builds());
+    }
+
+    #[test]
+    fn neighbors_are_those_inside_the_support_in_the_order_of_their_numbers() {
+        compare::<1>(60, 0.05);
+        compare::<2>(400, 0.045);
+        compare::<3>(500, 0.08);
+    }
+}
