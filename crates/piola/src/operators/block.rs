@@ -142,9 +142,9 @@ impl<const D: usize> NeighborBlock<D> {
         }
         if let Some(last) = length.checked_sub(1) {
             let squares = &mut self.squares.as_chunks_mut::<LANES>().0[last / LANES % GROUPS];
-            for lane in 0..LANES {
+            for (lane, square) in squares.iter_mut().enumerate() {
                 let is_filled_up = lane > last % LANES;
-                squares[lane] = if is_filled_up { 4.0 * reach.limit } else { squares[lane] };
+                *square = if is_filled_up { 4.0 * reach.limit } else { *square };
             }
         }
     }

@@ -138,10 +138,8 @@ fn keep<const D: usize, const WRAPS: bool>(
     let mut length = 0;
     for candidates in candidates.chunks(LANES) {
         let count = candidates.len();
-        let places = match candidates.as_array() {
-            Some(whole) => *whole,
-            None => std::array::from_fn(|lane| candidates[lane.min(count - 1)]),
-        };
+        let places = <[u32; LANES]>::try_from(candidates)
+            .unwrap_or_else(|_| std::array::from_fn(|lane| candidates[lane.min(count - 1)]));
         let others = all_of(positions, &places);
         let mut squares = [0.0; LANES];
         for axis in 0..D {
@@ -154,6 +152,7 @@ fn keep<const D: usize, const WRAPS: bool>(
                 squares[lane] += distance * distance;
             }
         }
+        #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
         for lane in 0..LANES {
             squares[lane] = if lane < count { squares[lane] } else { f64::INFINITY };
         }

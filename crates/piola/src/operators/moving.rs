@@ -255,10 +255,11 @@ mod tests {
                     let separation = domain.separation(&positions[a], &positions[b]);
                     b != a && separation.norm() < radius && !(passive[a] && passive[b])
                 };
-                let near = |is_passive: bool| {
-                    (0..count).filter(move |&b| passive[b] == is_passive && is_near(b))
+                let near = |is_passive: bool| -> Vec<u32> {
+                    let others = (0..count).filter(|&b| passive[b] == is_passive && is_near(b));
+                    others.map(|b| b as u32).collect()
                 };
-                let expected: Vec<u32> = near(false).chain(near(true)).map(|b| b as u32).collect();
+                let expected = [near(false), near(true)].concat();
                 assert_eq!(shown(&support, a), expected, "{D}D, particle {a}");
             }
             for position in &mut positions {
