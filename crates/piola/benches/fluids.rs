@@ -2,8 +2,9 @@
 //! `cargo bench -p piola --bench fluids`.
 //!
 //! Taylor-Green vortices in periodic boxes with all corrections and SPST, one step at a time, best
-//! of several stretches of ten steps with the lists that they renew. Arguments that are numbers
-//! replace the sizes.
+//! of several stretches of thirty steps with the lists that they renew. Arguments that are numbers
+//! replace the sizes; `2d` and `3d` leave the other dimension out, `serial` the run on two threads,
+//! and `full` that without corrections.
 
 #[allow(dead_code, reason = "shared with another bench, which uses more of it")]
 #[path = "upwind/clock.rs"]
@@ -119,7 +120,10 @@ fn measure<const D: usize>(count: usize, name: &str, kernel: Kernel, h: f64) -> 
 }
 
 fn main() {
-    let given: Vec<usize> = std::env::args()
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let has = |word: &str| arguments.iter().any(|argument| argument == word);
+    let given: Vec<usize> = arguments
+        .iter()
         .filter_map(|argument| argument.parse::<f64>().ok())
         .map(|size| size as usize)
         .collect();
@@ -128,14 +132,22 @@ fn main() {
         "| D | threads | particles | neighbours | kernel | corrections | M steps/s | ns/particle |"
     );
     println!("|--:|--:|--:|--:|:--|:--|--:|--:|");
-    for threads in [1, 2] {
+    let threads: &[usize] = if has("serial") { &[1] } else { &[1, 2] };
+    for &threads in threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads can be started").install(|| {
             for &size in &sizes {
                 for name in ["full", "none"] {
-                    measure::<2>(size, name, Kernel::QuinticSpline, 1.0);
+                    if name == "none" && has("full") {
+                        continue;
+                    }
+                    if !has("3d") {
+                        measure::<2>(size, name, Kernel::QuinticSpline, 1.0);
+                    }
+                    if !has("2d") {
+                        measure::<3>(size, name, Kernel::WendlandC2, 1.25);
+                    }
                 }
-                measure::<3>(size, "full", Kernel::WendlandC2, 1.25);
             }
         });
     }

@@ -42,16 +42,24 @@ pub fn sums<const N: usize>(count: usize, add: impl Fn(usize, &mut [f64; N]) + S
         return partial(0);
     }
     let partials: Vec<[f64; N]> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
+    add_up(&partials)
+}
+
+fn add_up<const N: usize>(partials: &[[f64; N]]) -> [f64; N] {
     partials.iter().fold([0.0; N], |mut sums, part| {
         sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
         sums
     })
 }
 
+/// The larger of two numbers, infinite where the second is not a number.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
 /// The largest `term(i)` over `0..count`, at least `least`. A term that is not a number makes the
 /// result infinite.
 pub fn maximum(count: usize, least: f64, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let larger = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
     let largest = |range: std::ops::Range<usize>| range.map(&term).fold(least, larger);
     if count <= CHUNK {
         return largest(0..count);
@@ -72,4 +80,73 @@ pub fn for_each_row<T: Send>(rows: &mut [T], length: usize, body: impl Fn(usize,
     }
     let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
     chunks.for_each(|(number, rows)| chunk(number * CHUNK, rows));
+}
+
+/// Calls `body(number, row, sums)` for each row of `length` numbers, which changes the row and adds
+/// its terms to `N` sums, in the order of [`sums`].
+pub fn sums_over_rows<const N: usize, T: Send>(
+    rows: &mut [T],
+    length: usize,
+    body: impl Fn(usize, &mut [T], &mut [f64; N]) + Sync,
+) -> [f64; N] {
+    let chunk = |first: usize, rows: &mut [T]| {
+        let mut sums = [0.0; N];
+        let rows = rows.chunks_exact_mut(length).enumerate();
+        rows.for_each(|(k, row)| body(first + k, row, &mut sums));
+        sums
+    };
+    if rows.len() <= CHUNK * length {
+        return chunk(0, rows);
+    }
+    let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
+    let partials: Vec<[f64; N]> =
+        chunks.map(|(number, rows)| chunk(number * CHUNK, rows)).collect();
+    add_up(&partials)
+}
+
+/// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them, and
+/// returns the largest of what it returns, at least `least`.
+pub fn maximum_of_chunks<T: Send, U: Send>(
+    rows: &mut [T],
+    others: &mut [U],
+    least: f64,
+    body: impl Fn(usize, &mut [T], &mut [U]) -> f64 + Sync,
+) -> f64 {
+    if rows.len() <= CHUNK {
+        return body(0, rows, others).max(least);
+    }
+    let chunks = rows.par_chunks_mut(CHUNK).zip(others.par_chunks_mut(CHUNK)).enumerate();
+    let largest = chunks.map(|(chunk, (rows, others))| body(chunk * CHUNK, rows, others));
+    largest.reduce(|| least, f64::max)
+}
+
+/// Calls `body(first, values, rows)` for chunks of `rows`, with those `values` that belong to them:
+/// row `k` has the values from `start(k)` on, and those of the last row end the array.
+pub fn for_each_span<V: Send, T: Send>(
+    values: &mut [V],
+    rows: &mut [T],
+    start: &(impl Fn(usize) -> usize + Sync),
+    body: impl Fn(usize, &mut [V], &mut [T]) + Sync,
+) {
+    split_spans(0, values, rows, start, &body);
+}
+
+/// Halves the chunks until each is alone, as a list of them would have to be allocated.
+fn split_spans<V: Send, T: Send>(
+    first: usize,
+    values: &mut [V],
+    rows: &mut [T],
+    start: &(impl Fn(usize) -> usize + Sync),
+    body: &(impl Fn(usize, &mut [V], &mut [T]) + Sync),
+) {
+    if rows.len() <= CHUNK {
+        return body(first, values, rows);
+    }
+    let middle = rows.len().div_ceil(CHUNK) / 2 * CHUNK;
+    let (rows, later_rows) = rows.split_at_mut(middle);
+    let (values, later_values) = values.split_at_mut(start(first + middle) - start(first));
+    rayon::join(
+        || split_spans(first, values, rows, start, body),
+        || split_spans(first + middle, later_values, later_rows, start, body),
+    );
 }

@@ -33,7 +33,7 @@ impl<K: KernelShape, const D: usize> ManyDistances for ScaledKernel<K, D> {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn fill_values<K: KernelShape, const D: usize>(
     kernel: &ScaledKernel<K, D>,
     squares: &[f64],
@@ -44,7 +44,7 @@ fn fill_values<K: KernelShape, const D: usize>(
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn fill_slopes<K: KernelShape, const D: usize>(
     kernel: &ScaledKernel<K, D>,
     squares: &[f64],
@@ -55,7 +55,7 @@ fn fill_slopes<K: KernelShape, const D: usize>(
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn fill_both<K: KernelShape, const D: usize>(
     kernel: &ScaledKernel<K, D>,
     squares: &[f64],

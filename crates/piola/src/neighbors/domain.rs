@@ -47,6 +47,19 @@ impl<const D: usize> Domain<D> {
         self.periodic.iter().all(Option::is_none)
     }
 
+    /// Period of each axis in m, infinite where it is open.
+    pub(crate) fn periods(&self) -> [f64; D] {
+        self.periodic.map(|ends| ends.map_or(f64::INFINITY, |[low, high]| high - low))
+    }
+
+    /// The bounds in m between which a point is farther than `margin` m from all periodic ones.
+    pub(crate) fn within(&self, margin: f64) -> [[f64; 2]; D] {
+        self.periodic.map(|ends| match ends {
+            Some([low, high]) => [low + margin, high - margin],
+            None => [f64::NEG_INFINITY, f64::INFINITY],
+        })
+    }
+
     /// Minimal image of `to - from` in m: along a periodic axis the shortest way round.
     ///
     /// Exchanging the points changes the sign of the result and nothing else, to the bit. Points
@@ -110,6 +123,14 @@ pub(super) fn shortest(distance: f64, period: f64) -> f64 {
     } else {
         rest
     }
+}
+
+/// [`shortest`] between points that are both inside the bounds of a period, without a branch.
+#[inline(always)]
+pub(crate) fn shorter_way(distance: f64, period: f64) -> f64 {
+    let half = 0.5 * period;
+    let down = if distance > half { distance - period } else { distance };
+    if distance < -half { distance + period } else { down }
 }
 
 /// [`shortest`] for some distances, apart from the loops that rarely need it.

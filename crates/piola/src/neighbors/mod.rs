@@ -10,12 +10,14 @@ mod dual;
 mod error;
 mod grid;
 mod list;
+mod near;
 mod order;
 mod retain;
 mod search;
 mod skin;
 
 pub use domain::Domain;
+pub(crate) use domain::shorter_way;
 pub use error::NeighborError;
 pub use list::{NeighborList, NeighborStatistics};
 pub use order::spatial_order;

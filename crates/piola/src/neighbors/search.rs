@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::error::axis_name;
 use super::grid::CellGrid;
+use super::near::{Near, ROOM};
 use super::{Domain, LEAST_SUPPORT, MOST_ENTRIES, MOST_SUPPORT, NeighborError, NeighborList};
 use crate::Vector;
 
@@ -74,14 +75,9 @@ fn rows<const D: usize>(
     let grids = Grids::new(points, support, domain)?;
     let row = |state: &mut Candidates<D>, a: usize, rows: &mut Vec<u32>| {
         let (group, grid) = grids.of(support[a]);
-        let (center, limit) = (points[a], support[a] * support[a]);
+        let center = points[a];
         state.collect(group, grid, &center);
-        let found = if domain.is_open() {
-            state.near(grid, |b| (b - center).norm_squared() < limit)
-        } else {
-            let square = |b: &Vector<D>| domain.separation(&center, b).norm_squared();
-            state.near(grid, |b| square(b) < limit)
-        };
+        let found = state.near(grid, &Near::new(center, support[a], domain));
         append(found, a, rows);
     };
     let (particles, most) = (points.len(), MOST_ENTRIES);
@@ -249,26 +245,19 @@ impl<const D: usize> Candidates<D> {
         // Particles ordered along space have consecutive numbers in a cell. Cells in the order of
         // their first ones then give ascending rows, which cost next to nothing to sort.
         self.ranges.sort_unstable_by_key(|range| grid.ids()[range.start]);
-        let candidates = self.ranges.iter().map(Range::len).sum();
-        if self.near.len() < candidates {
-            self.near.resize(candidates, 0);
+        let candidates: usize = self.ranges.iter().map(Range::len).sum();
+        if self.near.len() < candidates + ROOM {
+            self.near.resize(candidates + ROOM, 0);
         }
     }
 
-    /// The candidates that are `near`.
+    /// The candidates that are near.
     #[inline]
-    fn near(&mut self, grid: &CellGrid<D>, near: impl Fn(&Vector<D>) -> bool) -> &mut [u32] {
-        let found = self.near.as_mut_slice();
+    fn near(&mut self, grid: &CellGrid<D>, near: &Near<D>) -> &mut [u32] {
         let mut count = 0;
         for range in &self.ranges {
-            let candidates = grid.points()[range.clone()].iter().zip(&grid.ids()[range.clone()]);
-            // Every candidate is written and kept by the step of the counter, as a branch would
-            // be guessed wrong every third time.
-            for (point, &b) in candidates {
-                found[count] = b;
-                count += usize::from(near(point));
-            }
+            count += near.append(grid, range.clone(), &mut self.near[count..]);
         }
-        &mut found[..count]
+        &mut self.near[..count]
     }
 }

@@ -1,7 +1,7 @@
 //! Neighbour lists of moving particles, kept over many steps.
 
 use super::search::search_ranked;
-use super::{Domain, NeighborError, spatial_order};
+use super::{Domain, NeighborError, shorter_way, spatial_order};
 use crate::{Vector, parallel};
 
 /// Candidates for the neighbours of moving particles: all that were closer than the support
@@ -70,33 +70,33 @@ impl<const D: usize> SkinList<D> {
             entries: Vec::new(),
             builds: 0,
         };
-        list.update(|number| positions[number])?;
+        list.update(&mut vec![(); positions.len()], |number, ()| positions[number])?;
         Ok(list)
     }
 
-    /// Takes new positions in m by number, and makes the list anew where it no longer holds.
+    /// Takes new positions in m, and makes the list anew where it no longer holds: `take(number,
+    /// row)` is the position of a particle, and fills the row at its place, too. False when
+    /// everything is where it was.
     ///
     /// # Errors
     /// Those of [`search`](fn@super::search::search); the list then is as it was.
-    pub fn update(
+    pub fn update<T: Send>(
         &mut self,
-        position: impl Fn(usize) -> Vector<D> + Sync,
-    ) -> Result<(), NeighborError> {
-        self.take(&position);
-        let (positions, made_at, domain) = (&self.positions, &self.made_at, &self.domain);
-        let moved = |k: usize| domain.separation(&made_at[k], &positions[k]).norm_squared();
-        if self.builds > 0
-            && !self.stale
-            && parallel::maximum(positions.len(), 0.0, moved) <= 0.25 * self.skin * self.skin
-        {
-            return Ok(());
+        rows: &mut [T],
+        take: impl Fn(usize, &mut T) -> Vector<D> + Sync,
+    ) -> Result<bool, NeighborError> {
+        let most = self.take(rows, &take);
+        if self.builds > 0 && !self.stale && most <= 0.25 * self.skin * self.skin {
+            return Ok(most >= 0.0);
         }
+        // Until it is made, the list does not belong to the positions.
+        self.stale = true;
         self.build()?;
-        self.take(&position);
+        self.take(rows, &take);
         self.made_at.clone_from(&self.positions);
         self.builds += 1;
         self.stale = false;
-        Ok(())
+        Ok(true)
     }
 
     /// Sets which particles are passive, and which neither see nor are seen, by number, from the
@@ -106,13 +106,32 @@ impl<const D: usize> SkinList<D> {
         (self.passive, self.excluded, self.stale) = (passive, excluded, true);
     }
 
-    fn take(&mut self, position: &(impl Fn(usize) -> Vector<D> + Sync)) {
-        let (numbers, domain) = (&self.numbers, &self.domain);
-        parallel::for_each_chunk(&mut self.positions, |first, rows| {
-            for (row, &number) in rows.iter_mut().zip(&numbers[first..]) {
-                *row = domain.wrap(&position(number as usize));
+    /// Takes positions, and returns the square in m^2 of the longest way from where the list was
+    /// made, of those who moved; it is negative where nobody did.
+    fn take<T: Send>(
+        &mut self,
+        rows: &mut [T],
+        take: &(impl Fn(usize, &mut T) -> Vector<D> + Sync),
+    ) -> f64 {
+        let (numbers, domain, made_at) = (&self.numbers, &self.domain, &self.made_at);
+        let periods = domain.periods();
+        parallel::maximum_of_chunks(&mut self.positions, rows, -1.0, |first, positions, rows| {
+            let (mut has_moved, mut most) = (false, 0.0);
+            for (k, (kept, row)) in positions.iter_mut().zip(rows).enumerate() {
+                let position = domain.wrap(&take(numbers[first + k] as usize, row));
+                has_moved |= *kept != position;
+                *kept = position;
+                let mut square = 0.0;
+                if let Some(made_at) = made_at.get(first + k) {
+                    for axis in 0..D {
+                        let way = shorter_way(position[axis] - made_at[axis], periods[axis]);
+                        square += way * way;
+                    }
+                }
+                most = parallel::larger(most, square);
             }
-        });
+            if has_moved { most } else { -1.0 }
+        })
     }
 
     /// Renews the places and lists the candidates of the current positions.
@@ -174,8 +193,20 @@ impl<const D: usize> SkinList<D> {
     }
 
     /// Whether the particle at a place is passive.
+    #[inline]
     pub fn is_passive(&self, place: usize) -> bool {
         self.passive[self.numbers[place] as usize]
+    }
+
+    /// Number of candidates of all particles.
+    pub fn entries(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Number of candidates of all particles before `place`.
+    #[inline]
+    pub fn offset(&self, place: usize) -> usize {
+        self.offsets[place]
     }
 
     /// Candidates of the particle at `place` that are not passive.

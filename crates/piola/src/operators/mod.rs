@@ -6,10 +6,12 @@
 //! particles that move: it shows the neighbours of the moment to the sums of a scheme.
 
 mod areas;
+mod block;
 mod directed;
 mod dual_gradient;
 mod error;
 mod gradient;
+mod inside;
 mod interpolation;
 mod lattice_areas;
 mod least_squares;
@@ -20,6 +22,8 @@ mod trace;
 
 pub(crate) use areas::total;
 pub use areas::{Block, LANES, Lanes, PairAreas};
+pub(crate) use block::all_of;
+pub use block::{Neighbor, NeighborBlock, NeighborGroup};
 pub use directed::{DirectedSupport, nearest_radii};
 pub use dual_gradient::DualGradient;
 pub(crate) use dual_gradient::dual_row;
@@ -28,6 +32,6 @@ pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
 pub use lattice_areas::lattice_areas;
 pub use least_squares::LeastSquares;
-pub use moving::{Candidates, MovingSupport, Needs, Neighbor, NeighborBlock, NeighborGroup};
+pub use moving::{MovingSupport, Needs, Remaining};
 pub use support::Support;
 pub use trace::{Face, Trace};

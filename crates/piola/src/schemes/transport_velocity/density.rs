@@ -2,7 +2,7 @@
 
 use piola_formulas::fluid;
 
-use super::{DensityRule, PressureRule, TransportVelocity};
+use super::{DensityRule, PressureRule, Side, TransportVelocity};
 use crate::operators::{Needs, NeighborBlock};
 use crate::parallel;
 
@@ -15,11 +15,11 @@ impl<const D: usize> TransportVelocity<D> {
             let mut block = NeighborBlock::default();
             for (offset, density) in rows.iter_mut().enumerate() {
                 let place = first + offset;
-                let mut sum = sides[place].mass * centre;
+                let mut sum = sides[place].mass() * centre;
                 let mut rest = support.all(place);
                 while support.fill(&mut rest, Needs::Value, &mut block) {
                     for neighbor in block.iter() {
-                        sum += sides[neighbor.place].mass * neighbor.value;
+                        sum += sides[neighbor.place].mass() * neighbor.value;
                     }
                 }
                 *density = sum;
@@ -29,8 +29,9 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Gives the fluid the density and pressure that are functions of where particles are, or of
-    /// each other, and ties a density that has drifted to its pressure again.
-    pub(super) fn update_density_and_pressure(&mut self) {
+    /// each other, and ties a density that has drifted to its pressure again. Returns the largest
+    /// speed of the fluid in m/s, as it passes over all particles anyhow.
+    pub(super) fn update_density_and_pressure(&mut self) -> f64 {
         let sums = self.settings.density == DensityRule::Summation;
         let algebraic = self.settings.pressure == PressureRule::StateEquation;
         if sums {
@@ -38,7 +39,9 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let drift = self.settings.density_drift * self.fluid.density;
         let (densities, list, fluid) = (&self.densities, self.support.list(), self.fluid);
-        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+        let nothing = &mut vec![(); self.sides.len()];
+        let update = |first: usize, sides: &mut [Side<D>], _: &mut [()]| {
+            let mut fastest = 0.0;
             for (offset, side) in sides.iter_mut().enumerate() {
                 let place = first + offset;
                 if list.is_passive(place) {
@@ -54,8 +57,13 @@ impl<const D: usize> TransportVelocity<D> {
                     true => fluid::pressure(density, fluid.density, fluid.wave_speed),
                     false => side.pressure,
                 };
-                side.set(density, pressure);
+                if (density, pressure) != (side.density, side.pressure) {
+                    side.set(side.mass(), density, pressure);
+                }
+                fastest = parallel::larger(fastest, side.velocity.norm_squared());
             }
-        });
+            fastest
+        };
+        parallel::maximum_of_chunks(&mut self.sides, nothing, 0.0, update).sqrt()
     }
 }

@@ -4,7 +4,7 @@ use multiversion::multiversion;
 use piola_formulas::fluid;
 
 use super::{DensityRule, Divergence, PressureRule, Side, TransportVelocity};
-use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, total};
+use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, all_of, total};
 use crate::{Vector, parallel};
 
 /// Rates of change of a particle's density and pressure, term by term, see
@@ -25,8 +25,6 @@ pub struct Rates {
 struct Constants {
     softening: f64,
     diffusivity: f64,
-    /// 1 where `div uhat` is asked for, 0 for `div u`.
-    moves: f64,
 }
 
 /// Sums over neighbours, a lane each.
@@ -51,11 +49,18 @@ impl<const D: usize> TransportVelocity<D> {
                 }
                 PressureRule::StateEquation => 0.0,
             },
-            moves: f64::from(u8::from(corrections.divergence == Divergence::Transport)),
         };
-        let fill = match corrections.density || corrections.pressure {
-            true => fill::<D, true>,
-            false => fill::<D, false>,
+        let corrects = corrections.density || corrections.pressure;
+        let moves = corrections.divergence == Divergence::Transport;
+        let fill = match (corrects, moves, !self.body_forces.is_empty()) {
+            (true, true, true) => fill::<D, true, true, true>,
+            (true, true, false) => fill::<D, true, true, false>,
+            (true, false, true) => fill::<D, true, false, true>,
+            (true, false, false) => fill::<D, true, false, false>,
+            (false, true, true) => fill::<D, false, true, true>,
+            (false, true, false) => fill::<D, false, true, false>,
+            (false, false, true) => fill::<D, false, false, true>,
+            (false, false, false) => fill::<D, false, false, false>,
         };
         parallel::for_each_chunk(&mut rates, |first, rows| {
             fill(self, &constants, time, first, rows);
@@ -72,7 +77,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The sums of the particle at `place`, returned by value as those of the accelerations.
     #[inline(always)]
-    fn gather_rates<const CORRECTS: bool>(
+    fn gather_rates<const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(
         &self,
         place: usize,
         constants: &Constants,
@@ -90,10 +95,10 @@ impl<const D: usize> TransportVelocity<D> {
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Slope, block) {
             for group in block.groups() {
-                let others = group.places.map(|b| &self.sides[b as usize]);
+                let others = all_of(&self.sides, group.places);
                 #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
                 for lane in 0..LANES {
-                    sums.add::<D, CORRECTS>(
+                    sums.add::<D, CORRECTS, MOVES, FALLS>(
                         lane,
                         me,
                         others[lane],
@@ -126,7 +131,7 @@ impl Sums {
     /// Adds the terms of one neighbour to those of its lane. Always inlined, for the compiler to
     /// turn the loop over lanes into operations on vectors.
     #[inline(always)]
-    fn add<const D: usize, const CORRECTS: bool>(
+    fn add<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(
         &mut self,
         lane: usize,
         me: &Side<D>,
@@ -135,28 +140,31 @@ impl Sums {
         constants: &Constants,
         at_rest: &Vector<D>,
     ) {
-        let gradient = neighbor.separation * neighbor.slope;
-        let flow =
-            (me.velocity - other.velocity) + (me.deviation - other.deviation) * constants.moves;
-        self.divergence[lane] -= other.volume * flow.dot(&gradient);
+        let slope = other.volume * neighbor.slope;
+        let mut flow = me.velocity - other.velocity;
+        if MOVES {
+            flow += me.deviation - other.deviation;
+        }
+        self.divergence[lane] -= flow.dot(&neighbor.separation) * slope;
         let jump = other.pressure - me.pressure;
         if CORRECTS {
-            let carried = other.volume * other.deviation.dot(&gradient);
+            let carried = other.deviation.dot(&neighbor.separation) * slope;
             self.density_transport[lane] += carried * (other.density - me.density);
             self.pressure_transport[lane] += carried * jump;
         }
         let densities = me.density + other.density;
         let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
-        let exchange =
-            fluid::diffusion(constants.diffusivity, neighbor.square, neighbor.slope, scale);
-        let excess = jump + at_rest.dot(&neighbor.separation);
-        self.pressure_diffusion[lane] -= other.mass * exchange * excess;
+        let slope = other.mass() * neighbor.slope;
+        let exchange = fluid::diffusion(constants.diffusivity, neighbor.square, slope, scale);
+        let excess = if FALLS { jump + at_rest.dot(&neighbor.separation) } else { jump };
+        self.pressure_diffusion[lane] -= exchange * excess;
     }
 }
 
-/// Fills some rows, with or without the transport terms.
-#[multiversion(targets("x86_64+avx2"))]
-fn fill<const D: usize, const CORRECTS: bool>(
+/// Fills some rows, with or without the transport terms, the deviation in the divergence, and body
+/// forces.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn fill<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
     time: f64,
@@ -167,8 +175,10 @@ fn fill<const D: usize, const CORRECTS: bool>(
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         if !scheme.support.list().is_passive(place) {
-            let at_rest = scheme.gradient_at_rest(place, time);
-            let sums = scheme.gather_rates::<CORRECTS>(place, constants, &at_rest, &mut block);
+            let at_rest =
+                if FALLS { scheme.gradient_at_rest(place, time) } else { Vector::zeros() };
+            let sums = scheme
+                .gather_rates::<CORRECTS, MOVES, FALLS>(place, constants, &at_rest, &mut block);
             *row = scheme.rates_of(&sums);
         }
     }

@@ -122,8 +122,12 @@ impl<const D: usize> TransportVelocity<D> {
         }) {
             return Some(None);
         }
+        let mut rest = self.support.passive(place);
+        if rest.is_empty() {
+            return None;
+        }
         let mut nearest = None::<(f64, Vector<D>, usize)>;
-        let (mut block, mut rest) = (NeighborBlock::default(), self.support.passive(place));
+        let mut block = NeighborBlock::default();
         while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
             for neighbor in block.iter() {
                 if nearest.is_none_or(|(square, ..)| neighbor.square < square) {

@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 use piola_formulas::fluid;
 
-use super::gather::{Constants, wall_force};
+use super::gather::{Constants, FULL, MIXED, NONE, kind_of, wall_force};
 use super::{Dilatation, Shifting, TransportVelocity};
 use crate::operators::{Needs, NeighborBlock};
 use crate::{Vector, parallel};
@@ -25,7 +25,7 @@ pub struct Forces<const D: usize> {
     pub body_force: Vector<D>,
     /// `sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab` of CTVF (35), in 1/m.
     pub crowding: Vector<D>,
-    /// `-sum V_b grad W_ab` of CTVF (42), in 1/m.
+    /// `-sum V_b grad W_ab` of CTVF (42), in 1/m, where particles are shifted by (35).
     pub opening: Vector<D>,
 }
 
@@ -79,6 +79,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut forces = std::mem::take(&mut self.forces);
         let h = self.support.smoothing_length();
         let corrections = &self.settings.corrections;
+        let one_if = |is_on: bool| f64::from(u8::from(is_on));
         let crowding = match self.settings.shifting {
             Shifting::Sun { .. } => Some(1.0 / self.value_at_spacing(h)),
             _ => None,
@@ -87,20 +88,24 @@ impl<const D: usize> TransportVelocity<D> {
             softening: fluid::softening(h),
             viscosity: self.fluid.viscosity,
             artificial: self.settings.artificial_viscosity * h * self.fluid.wave_speed,
-            stress: corrections.stress,
-            dilatation: corrections.dilatation,
+            stress: one_if(corrections.stress),
+            deviation: one_if(corrections.dilatation == Dilatation::Deviation),
+            transport: one_if(corrections.dilatation == Dilatation::Transport),
             crowding: crowding.unwrap_or(0.0),
         };
-        let corrects = corrections.stress || corrections.dilatation != Dilatation::None;
-        let fill = match (corrects, constants.artificial > 0.0, crowding.is_some()) {
-            (false, false, false) => fill::<D, false, false, false>,
-            (false, false, true) => fill::<D, false, false, true>,
-            (false, true, false) => fill::<D, false, true, false>,
-            (false, true, true) => fill::<D, false, true, true>,
-            (true, false, false) => fill::<D, true, false, false>,
-            (true, false, true) => fill::<D, true, false, true>,
-            (true, true, false) => fill::<D, true, true, false>,
-            (true, true, true) => fill::<D, true, true, true>,
+        let fill = match (kind_of(corrections), constants.artificial > 0.0, crowding.is_some()) {
+            (NONE, false, false) => fill::<D, NONE, false, false>,
+            (NONE, false, true) => fill::<D, NONE, false, true>,
+            (NONE, true, false) => fill::<D, NONE, true, false>,
+            (NONE, true, true) => fill::<D, NONE, true, true>,
+            (FULL, false, false) => fill::<D, FULL, false, false>,
+            (FULL, false, true) => fill::<D, FULL, false, true>,
+            (FULL, true, false) => fill::<D, FULL, true, false>,
+            (FULL, true, true) => fill::<D, FULL, true, true>,
+            (_, false, false) => fill::<D, MIXED, false, false>,
+            (_, false, true) => fill::<D, MIXED, false, true>,
+            (_, true, false) => fill::<D, MIXED, true, false>,
+            (_, true, true) => fill::<D, MIXED, true, true>,
         };
         parallel::for_each_chunk(&mut forces, |first, rows| fill(self, &constants, first, rows));
         self.forces = forces;
@@ -129,14 +134,15 @@ impl<const D: usize> TransportVelocity<D> {
 
 /// Fills some rows, with or without the terms of the corrections, the artificial viscosity and
 /// the shifting.
-#[multiversion(targets("x86_64+avx2"))]
-fn fill<const D: usize, const CORRECTS: bool, const ARTIFICIAL: bool, const CROWDING: bool>(
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn fill<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
     first: usize,
     rows: &mut [Forces<D>],
 ) {
     let mut block = NeighborBlock::default();
+    let has_walls = !scheme.walls.is_empty();
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         if scheme.support.list().is_passive(place) {
@@ -144,6 +150,6 @@ fn fill<const D: usize, const CORRECTS: bool, const ARTIFICIAL: bool, const CROW
             continue;
         }
         let sums = scheme.gather::<CORRECTS, ARTIFICIAL, CROWDING>(place, constants, &mut block);
-        *row = sums.total().forces(&scheme.sides[place], constants);
+        *row = sums.total::<ARTIFICIAL>(has_walls).forces(&scheme.sides[place]);
     }
 }

@@ -2,9 +2,27 @@
 
 use piola_formulas::fluid;
 
-use super::{Dilatation, Forces, Side, TransportVelocity};
+use super::{Corrections, Dilatation, Forces, Side, TransportVelocity};
 use crate::Vector;
-use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, NeighborGroup, total};
+use crate::operators::{
+    LANES, Lanes, Needs, Neighbor, NeighborBlock, NeighborGroup, all_of, total,
+};
+
+/// Which corrections of the momentum equation a loop is made for: none of them,
+pub(super) const NONE: u8 = 0;
+/// the stress with the dilatation of the deviation,
+pub(super) const FULL: u8 = 1;
+/// or any of them, by the factors of [`Constants`].
+pub(super) const MIXED: u8 = 2;
+
+/// The loop that a set of corrections needs.
+pub(super) fn kind_of(corrections: &Corrections) -> u8 {
+    match (corrections.stress, corrections.dilatation) {
+        (false, Dilatation::None) => NONE,
+        (true, Dilatation::Deviation) => FULL,
+        _ => MIXED,
+    }
+}
 
 /// Constants of one pass.
 pub(super) struct Constants {
@@ -12,32 +30,35 @@ pub(super) struct Constants {
     pub viscosity: f64,
     /// `alpha h c` of CTVF (28).
     pub artificial: f64,
-    pub stress: bool,
-    pub dilatation: Dilatation,
+    /// 1 for each correction that is on: the stress, and the dilatation of the deviation or that
+    /// of the transport velocity.
+    pub stress: f64,
+    pub deviation: f64,
+    pub transport: f64,
     /// `1 / W(dx)` where particles are shifted by SPST.
     pub crowding: f64,
 }
 
-/// Sums over neighbours: `T` is `f64`, or [`Lanes`] while they grow. What is of a itself stands
-/// outside of those for the corrections.
+/// Sums over neighbours: `T` is `f64`, or [`Lanes`] while they grow.
 pub(super) struct Sums<T, const D: usize> {
     pressure: [T; D],
     viscosity: [T; D],
     artificial_viscosity: [T; D],
     walls: [T; D],
+    /// `sum V_b u_b d_b . grad W_ab`.
+    carried: [T; D],
+    /// What stands before `u_a` in the corrections.
+    stretch: T,
     /// `sum V_b grad W_ab`.
     volume: [T; D],
-    /// `sum m_b grad W_ab`.
-    mass: [T; D],
-    /// `sum m_b d_b . grad W_ab`.
-    mass_deviation: T,
-    /// `sum V_b d_b . grad W_ab`.
-    deviation: T,
-    /// `sum V_b u_b . grad W_ab`.
-    velocity: T,
-    /// `sum V_b u_b d_b . grad W_ab`.
-    momentum: [T; D],
     crowding: [T; D],
+}
+
+/// What the particle itself brings to its sums.
+struct Center<'a, const D: usize> {
+    side: &'a Side<D>,
+    /// `1 / rho_a`.
+    inverse_density: f64,
 }
 
 impl<const D: usize> TransportVelocity<D> {
@@ -46,31 +67,33 @@ impl<const D: usize> TransportVelocity<D> {
     /// Returned by value: as no pointer to them leaves the loop, the compiler sees that they are
     /// apart from what it reads.
     #[inline(always)]
-    pub(super) fn gather<const CORRECTS: bool, const ARTIFICIAL: bool, const CROWDING: bool>(
+    pub(super) fn gather<const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
         &self,
         place: usize,
         constants: &Constants,
         block: &mut NeighborBlock<D>,
     ) -> Sums<Lanes, D> {
-        let me = &self.sides[place];
+        let side = &self.sides[place];
+        let me = Center { side, inverse_density: 1.0 / side.density };
         let needs = if CROWDING { Needs::Both } else { Needs::Slope };
         let mut sums = Sums::zero();
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, needs, block) {
             for group in block.groups() {
-                let others = group.places.map(|b| &self.sides[b as usize]);
+                let others = all_of(&self.sides, group.places);
                 #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
                 for lane in 0..LANES {
                     let neighbor = group.neighbor(lane);
-                    sums.add_fluid::<ARTIFICIAL>(lane, me, others[lane], &neighbor, constants);
-                    sums.carry::<CORRECTS, CROWDING>(lane, others[lane], &neighbor, constants);
+                    let other = others[lane];
+                    sums.add_fluid::<ARTIFICIAL>(lane, side, other, &neighbor, constants);
+                    sums.carry::<CORRECTS, CROWDING>(lane, &me, other, &neighbor, constants);
                 }
             }
         }
         let mut rest = self.support.passive(place);
         while self.support.fill(&mut rest, needs, block) {
             for group in block.groups() {
-                self.add_walls::<CORRECTS, CROWDING>(me, &group, constants, &mut sums);
+                self.add_walls::<CORRECTS, CROWDING>(&me, &group, constants, &mut sums);
             }
         }
         sums
@@ -78,23 +101,23 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Adds the terms of wall particles.
     #[inline(always)]
-    fn add_walls<const CORRECTS: bool, const CROWDING: bool>(
+    fn add_walls<const CORRECTS: u8, const CROWDING: bool>(
         &self,
-        me: &Side<D>,
+        me: &Center<D>,
         group: &NeighborGroup<'_, D>,
         constants: &Constants,
         sums: &mut Sums<Lanes, D>,
     ) {
-        let others = group.places.map(|b| &self.sides[b as usize]);
-        let shears = group.places.map(|b| &self.shear[b as usize]);
+        let others = all_of(&self.sides, group.places);
+        let shears = all_of(&self.shear, group.places);
         for lane in 0..LANES {
             let neighbor = group.neighbor(lane);
-            let velocities = [&me.velocity, shears[lane]];
-            let force = wall_force([me, others[lane]], velocities, &neighbor, constants);
+            let velocities = [&me.side.velocity, shears[lane]];
+            let force = wall_force([me.side, others[lane]], velocities, &neighbor, constants);
             for i in 0..D {
                 sums.walls[i][lane] += force[i];
             }
-            sums.carry::<CORRECTS, CROWDING>(lane, others[lane], &neighbor, constants);
+            sums.carry::<CORRECTS, CROWDING>(lane, me, others[lane], &neighbor, constants);
         }
     }
 }
@@ -112,7 +135,7 @@ pub(super) fn wall_force<const D: usize>(
     let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
     let exchange = fluid::diffusion(constants.viscosity, neighbor.square, neighbor.slope, scale);
     let pressure = neighbor.slope * (me.load + other.load);
-    ((velocity - other_velocity) * exchange - neighbor.separation * pressure) * other.mass
+    ((velocity - other_velocity) * exchange - neighbor.separation * pressure) * other.mass()
 }
 
 impl<const D: usize> Sums<Lanes, D> {
@@ -124,12 +147,9 @@ impl<const D: usize> Sums<Lanes, D> {
             viscosity: [zero; D],
             artificial_viscosity: [zero; D],
             walls: [zero; D],
+            carried: [zero; D],
+            stretch: zero,
             volume: [zero; D],
-            mass: [zero; D],
-            mass_deviation: zero,
-            deviation: zero,
-            velocity: zero,
-            momentum: [zero; D],
             crowding: [zero; D],
         }
     }
@@ -147,14 +167,13 @@ impl<const D: usize> Sums<Lanes, D> {
         neighbor: &Neighbor<D>,
         constants: &Constants,
     ) {
-        let gradient = neighbor.separation * neighbor.slope;
+        let slope = other.mass() * neighbor.slope;
         let jump = me.velocity - other.velocity;
         let densities = me.density + other.density;
         let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
-        let exchange =
-            fluid::diffusion(constants.viscosity, neighbor.square, neighbor.slope, scale);
-        let pressure = gradient * (other.mass * (me.load + other.load));
-        let viscosity = jump * (other.mass * exchange);
+        let exchange = fluid::diffusion(constants.viscosity, neighbor.square, slope, scale);
+        let pressure = neighbor.separation * (slope * (me.load + other.load));
+        let viscosity = jump * exchange;
         for i in 0..D {
             self.pressure[i][lane] -= pressure[i];
             self.viscosity[i][lane] += viscosity[i];
@@ -162,7 +181,7 @@ impl<const D: usize> Sums<Lanes, D> {
         if ARTIFICIAL {
             let approach = jump.dot(&neighbor.separation);
             let artificial = fluid::artificial_viscosity(constants.artificial, approach, scale);
-            let artificial = gradient * (other.mass * artificial);
+            let artificial = neighbor.separation * (slope * artificial);
             for i in 0..D {
                 self.artificial_viscosity[i][lane] -= artificial[i];
             }
@@ -171,31 +190,42 @@ impl<const D: usize> Sums<Lanes, D> {
 
     /// Adds what the corrections and the shifting need to the sums of one lane.
     #[inline(always)]
-    fn carry<const CORRECTS: bool, const CROWDING: bool>(
+    fn carry<const CORRECTS: u8, const CROWDING: bool>(
         &mut self,
         lane: usize,
+        me: &Center<D>,
         other: &Side<D>,
         neighbor: &Neighbor<D>,
         constants: &Constants,
     ) {
-        let gradient = neighbor.separation * neighbor.slope;
-        let area = gradient * other.volume;
-        for i in 0..D {
-            self.volume[i][lane] += area[i];
-        }
-        if CORRECTS {
-            let carried = other.deviation.dot(&area);
-            for i in 0..D {
-                self.mass[i][lane] += gradient[i] * other.mass;
-                self.momentum[i][lane] += other.velocity[i] * carried;
+        let slope = other.volume * neighbor.slope;
+        if CORRECTS != NONE {
+            // V_b d_b . grad W_ab, and the same with the deviation of a.
+            let carried = other.deviation.dot(&neighbor.separation) * slope;
+            let mine = me.side.deviation.dot(&neighbor.separation) * slope;
+            let ratio = other.density * me.inverse_density;
+            if CORRECTS == FULL {
+                for i in 0..D {
+                    self.carried[i][lane] += other.velocity[i] * carried;
+                }
+                self.stretch[lane] += mine + (mine - carried) * ratio;
+            } else {
+                let Constants { stress, deviation, transport, .. } = constants;
+                let jump = me.side.velocity - other.velocity;
+                let opening = jump.dot(&neighbor.separation) * slope;
+                for i in 0..D {
+                    self.carried[i][lane] += other.velocity[i] * carried * stress;
+                }
+                self.stretch[lane] += mine * ratio * stress
+                    + (mine - carried * ratio) * deviation
+                    + (mine - carried + opening) * transport;
             }
-            self.deviation[lane] += carried;
-            self.mass_deviation[lane] += carried * other.density;
-            self.velocity[lane] += other.velocity.dot(&area);
         }
         if CROWDING {
             let factor = fluid::repulsion(neighbor.value * constants.crowding);
+            let area = neighbor.separation * slope;
             for i in 0..D {
+                self.volume[i][lane] += area[i];
                 self.crowding[i][lane] += area[i] * factor;
             }
         }
@@ -204,18 +234,18 @@ impl<const D: usize> Sums<Lanes, D> {
     /// The sums over all lanes. Not inlined: what follows is work on single numbers, and mixed
     /// with it the compiler takes the lanes apart in the loop, too.
     #[inline(never)]
-    pub fn total(&self) -> Sums<f64, D> {
+    pub fn total<const ARTIFICIAL: bool>(&self, has_walls: bool) -> Sums<f64, D> {
         Sums {
             pressure: self.pressure.map(total),
             viscosity: self.viscosity.map(total),
-            artificial_viscosity: self.artificial_viscosity.map(total),
-            walls: self.walls.map(total),
+            artificial_viscosity: match ARTIFICIAL {
+                true => self.artificial_viscosity.map(total),
+                false => [0.0; D],
+            },
+            walls: if has_walls { self.walls.map(total) } else { [0.0; D] },
+            carried: self.carried.map(total),
+            stretch: total(self.stretch),
             volume: self.volume.map(total),
-            mass: self.mass.map(total),
-            mass_deviation: total(self.mass_deviation),
-            deviation: total(self.deviation),
-            velocity: total(self.velocity),
-            momentum: self.momentum.map(total),
             crowding: self.crowding.map(total),
         }
     }
@@ -223,35 +253,16 @@ impl<const D: usize> Sums<Lanes, D> {
 
 impl<const D: usize> Sums<f64, D> {
     /// The accelerations of a particle with these sums, without body forces.
-    pub fn forces(&self, me: &Side<D>, constants: &Constants) -> Forces<D> {
+    pub fn forces(&self, me: &Side<D>) -> Forces<D> {
         Forces {
             pressure: self.pressure.into(),
             viscosity: self.viscosity.into(),
             artificial_viscosity: self.artificial_viscosity.into(),
-            transport: self.transport(me, constants),
+            transport: me.velocity * self.stretch + Vector::from(self.carried),
             walls: self.walls.into(),
             body_force: Vector::zeros(),
             crowding: self.crowding.into(),
             opening: -Vector::from(self.volume),
         }
-    }
-
-    /// The corrections of the momentum equation.
-    fn transport(&self, me: &Side<D>, constants: &Constants) -> Vector<D> {
-        let mut sum = Vector::zeros();
-        if constants.stress {
-            let mine = me.deviation.dot(&Vector::from(self.mass)) / me.density;
-            sum += me.velocity * mine + Vector::from(self.momentum);
-        }
-        let volume = Vector::from(self.volume);
-        let mine = me.deviation.dot(&volume);
-        sum + me.velocity
-            * match constants.dilatation {
-                Dilatation::None => 0.0,
-                Dilatation::Deviation => mine - self.mass_deviation / me.density,
-                Dilatation::Transport => {
-                    mine - self.deviation + me.velocity.dot(&volume) - self.velocity
-                }
-            }
     }
 }

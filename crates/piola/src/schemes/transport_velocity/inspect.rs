@@ -82,14 +82,22 @@ impl<const D: usize> TransportVelocity<D> {
                 continue;
             }
             let speed = Row::<D>::velocity(row).norm_squared();
-            let mut figures = ChunkFigures { speed: (speed, number), ..ChunkFigures::NEUTRAL };
-            if !self.is_wall[number] {
-                // The inverse has the sign of the density, and is the volume ratio.
-                figures.health.smallest_ratio = self.fluid.density / row[Row::<D>::DENSITY];
-                figures.health.smallest_ratio_particle = number;
-                figures.acceleration = (Row::<D>::acceleration(row).norm_squared(), number);
+            if speed > worst.speed.0 {
+                worst.speed = (speed, number);
             }
-            worst = worst.worse(figures);
+            if self.is_wall[number] {
+                continue;
+            }
+            // The inverse has the sign of the density, and is the volume ratio.
+            let ratio = self.fluid.density / row[Row::<D>::DENSITY];
+            if ratio < worst.health.smallest_ratio {
+                worst.health.smallest_ratio = ratio;
+                worst.health.smallest_ratio_particle = number;
+            }
+            let acceleration = Row::<D>::acceleration(row).norm_squared();
+            if acceleration > worst.acceleration.0 {
+                worst.acceleration = (acceleration, number);
+            }
         }
         worst.health.largest_speed = worst.speed.0.sqrt();
         worst.health.largest_speed_particle = worst.speed.1;

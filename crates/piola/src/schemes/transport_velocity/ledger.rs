@@ -20,8 +20,11 @@ pub(super) struct Tail {
     components: usize,
 }
 
-/// Numbers that a kick needs of each particle.
-const KICK: usize = 2 * ACCELERATING + ENTERING * MOST_COMPONENTS;
+/// Sums over particles that a kick needs.
+type Kick = [f64; 2 * ACCELERATING + ENTERING * MOST_COMPONENTS];
+
+/// Sums over particles that a drift needs: energies, then impulses.
+type Drift = [f64; 3 + MOST_COMPONENTS];
 
 impl Tail {
     pub fn new(dimension: usize) -> Self {
@@ -121,26 +124,30 @@ impl<const D: usize> TransportVelocity<D> {
         }
     }
 
-    /// Puts power and force of all accelerations into the tail, for the kicks to come.
-    pub(super) fn book_powers(&self, rows: &[f64], tail: &mut [f64]) {
-        let (forces, places) = (&self.forces, self.support.list().places());
-        let sums = parallel::sums::<KICK>(self.particles.len(), |number, sums| {
-            if self.is_wall[number] {
-                return;
-            }
-            let forces = &forces[places[number] as usize];
-            let row = Row::<D>::of(rows, number);
-            let (velocity, position) = (Row::<D>::velocity(row), Row::<D>::position(row));
-            let (mass, total) = (self.mass[number], forces.total());
-            for (k, term) in forces.terms().into_iter().enumerate() {
+    /// Adds power and force of the accelerations of a particle of the fluid, at a place, to sums
+    /// for [`Self::book_powers`].
+    #[inline]
+    pub(super) fn add_powers(&self, number: usize, place: usize, row: &[f64], sums: &mut Kick) {
+        let (forces, mass) = (&self.forces[place], self.mass[number]);
+        let (velocity, position) = (Row::<D>::velocity(row), Row::<D>::position(row));
+        let (total, zero) = (forces.total(), Vector::<D>::zeros());
+        // What acts nowhere costs nothing.
+        for (k, term) in forces.terms().into_iter().enumerate() {
+            if *term != zero {
                 sums[k] += mass * term.dot(&velocity);
                 sums[ACCELERATING + k] += mass * term.dot(&total);
             }
-            let ways = sums[2 * ACCELERATING..].chunks_exact_mut(MOST_COMPONENTS);
-            for (way, term) in ways.zip(forces.ways_in()) {
+        }
+        let ways = sums[2 * ACCELERATING..].chunks_exact_mut(MOST_COMPONENTS);
+        for (way, term) in ways.zip(forces.ways_in()) {
+            if *term != zero {
                 momentum::add_moments(&position, &(term * mass), way);
             }
-        });
+        }
+    }
+
+    /// Puts power and force of all accelerations into the tail, for the kicks to come.
+    pub(super) fn book_powers(sums: &Kick, tail: &mut [f64]) {
         let layout = Tail::new(D);
         let (energy, momentum) = tail[layout.kick()].split_at_mut(2 * ACCELERATING);
         energy.copy_from_slice(&sums[..2 * ACCELERATING]);
@@ -150,29 +157,34 @@ impl<const D: usize> TransportVelocity<D> {
         }
     }
 
-    /// Books what a drift from `rows` by `step` s does to the energy of compression, if the
-    /// pressure drifts, and to angular momentum, by particles that move across their velocity.
-    pub(super) fn book_drift(&self, step: f64, diffuses: bool, rows: &[f64], tail: &mut [f64]) {
-        let (places, compliance) = (self.support.list().places(), self.compliance());
-        let sums =
-            parallel::sums::<{ 3 + MOST_COMPONENTS }>(self.particles.len(), |number, sums| {
-                if self.is_wall[number] {
-                    return;
-                }
-                let (row, mass) = (Row::<D>::of(rows, number), self.mass[number]);
-                if diffuses {
-                    let rates = self.pressure_rates(places[number] as usize);
-                    let mean = row[Row::<D>::PRESSURE] + 0.5 * step * rates.iter().sum::<f64>();
-                    for (sum, rate) in sums.iter_mut().zip(rates) {
-                        *sum += step * mass * compliance * mean * rate;
-                    }
-                }
-                let momentum = Row::<D>::velocity(row) * (step * mass);
-                let (moments, count) = momentum::moments(&Row::<D>::deviation(row), &momentum);
-                for component in D..count {
-                    sums[3 + component] += moments[component];
-                }
-            });
+    /// Adds what a drift of `step` s does to a particle of the fluid, at a place, to sums for
+    /// [`Self::book_drift`]: `row` is as it was before, `diffuses` says whether the pressure drifts.
+    #[inline]
+    pub(super) fn add_drift(
+        &self,
+        (number, place): (usize, usize),
+        (step, diffuses): (f64, bool),
+        row: &[f64],
+        sums: &mut Drift,
+    ) {
+        let mass = self.mass[number];
+        if diffuses {
+            let (rates, compliance) = (self.pressure_rates(place), self.compliance());
+            let mean = row[Row::<D>::PRESSURE] + 0.5 * step * rates.iter().sum::<f64>();
+            for (sum, rate) in sums.iter_mut().zip(rates) {
+                *sum += step * mass * compliance * mean * rate;
+            }
+        }
+        let momentum = Row::<D>::velocity(row) * (step * mass);
+        let (moments, count) = momentum::moments(&Row::<D>::deviation(row), &momentum);
+        for component in D..count {
+            sums[3 + component] += moments[component];
+        }
+    }
+
+    /// Books what a drift does to the energy of compression, and to angular momentum, by particles
+    /// that move across their velocity.
+    pub(super) fn book_drift(sums: &Drift, tail: &mut [f64]) {
         tail[PRESSURE] += sums[0];
         tail[TRANSPORT] += sums[1];
         tail[PRESSURE_DIFFUSION] += sums[2];

@@ -109,11 +109,11 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The sum of masses, theory (26).
     fn summed_density(&self, place: usize) -> f64 {
-        let mut sum = self.sides[place].mass * self.support.centre();
+        let mut sum = self.sides[place].mass() * self.support.centre();
         let mut block = NeighborBlock::default();
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Value, &mut block) {
-            sum += block.iter().map(|b| self.sides[b.place].mass * b.value).sum::<f64>();
+            sum += block.iter().map(|b| self.sides[b.place].mass() * b.value).sum::<f64>();
         }
         sum
     }

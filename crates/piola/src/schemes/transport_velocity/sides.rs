@@ -1,7 +1,7 @@
 //! What neighbours gather of a particle, filled from a state.
 
 use super::{Row, TransportVelocity};
-use crate::{Vector, parallel};
+use crate::Vector;
 
 /// A particle as its neighbours see it, in one place so that it costs one stretch of memory.
 #[derive(Clone, Copy, Debug)]
@@ -18,26 +18,30 @@ pub(super) struct Side<const D: usize> {
     pub load: f64,
     /// `m / rho` in m^D.
     pub volume: f64,
-    /// Mass in kg.
-    pub mass: f64,
 }
 
 impl<const D: usize> Default for Side<D> {
     fn default() -> Self {
         let zero = Vector::zeros();
         let (velocity, deviation) = (zero, zero);
-        Self { velocity, deviation, density: 0.0, pressure: 0.0, load: 0.0, volume: 0.0, mass: 0.0 }
+        Self { velocity, deviation, density: 0.0, pressure: 0.0, load: 0.0, volume: 0.0 }
     }
 }
 
 impl<const D: usize> Side<D> {
-    /// Sets density and pressure and what follows from them.
+    /// Mass in kg.
     #[inline]
-    pub fn set(&mut self, density: f64, pressure: f64) {
+    pub fn mass(&self) -> f64 {
+        self.volume * self.density
+    }
+
+    /// Sets density and pressure and what follows from them and the mass in kg.
+    #[inline]
+    pub fn set(&mut self, mass: f64, density: f64, pressure: f64) {
         self.density = density;
         self.pressure = pressure;
         self.load = pressure / (density * density);
-        self.volume = self.mass / density;
+        self.volume = mass / density;
     }
 }
 
@@ -48,20 +52,17 @@ impl<const D: usize> TransportVelocity<D> {
         if !self.removed.is_empty() {
             self.follow_removals(state);
         }
-        let updated = self.support.update(|number| Row::<D>::position(Row::<D>::of(state, number)));
+        let (mass, sides) = (&self.mass, &mut self.sides);
+        let updated = self.support.update_with(sides, |number, side| {
+            let row = Row::<D>::of(state, number);
+            side.velocity = Row::<D>::velocity(row);
+            side.deviation = Row::<D>::deviation(row);
+            side.set(mass[number], row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
+            Row::<D>::position(row)
+        });
         self.lost = updated.is_err().then(|| {
             let lost = |row: &[f64]| !Row::<D>::position(row).iter().all(|x| x.is_finite());
             state.chunks_exact(Row::<D>::LENGTH).position(lost).unwrap_or(0)
-        });
-        let (numbers, mass) = (self.support.list().numbers(), &self.mass);
-        parallel::for_each_chunk(&mut self.sides, |first, sides| {
-            for (side, &number) in sides.iter_mut().zip(&numbers[first..]) {
-                let row = Row::<D>::of(state, number as usize);
-                side.velocity = Row::<D>::velocity(row);
-                side.deviation = Row::<D>::deviation(row);
-                side.mass = mass[number as usize];
-                side.set(row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
-            }
         });
     }
 }

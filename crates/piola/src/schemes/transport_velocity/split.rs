@@ -32,13 +32,13 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
             self.rate_pass(middle);
         }
         let (rows, tail) = self.parts(state);
-        self.book_drift(step, diffuses, rows, tail);
         let (scheme, places) = (&*self, self.support.list().places());
-        parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
+        let sums = parallel::sums_over_rows(rows, Row::<D>::LENGTH, |number, row, sums| {
             if scheme.is_wall[number] {
                 return;
             }
             let place = places[number] as usize;
+            scheme.add_drift((number, place), (step, diffuses), row, sums);
             if evolves {
                 row[Row::<D>::DENSITY] += step * scheme.density_rate(place);
             }
@@ -51,6 +51,7 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
             }
             scheme.wrap(row);
         });
+        Self::book_drift(&sums, tail);
         for entry in self.motion.iter() {
             let number = self.walls[entry.particle].number as usize;
             let row = &mut rows[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
@@ -64,17 +65,21 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         let algebraic = self.settings.pressure == PressureRule::StateEquation;
         let before = if algebraic { self.compression_energy(state) } else { 0.0 };
         self.load(state);
-        self.update_density_and_pressure();
+        let fastest = self.update_density_and_pressure();
         self.wall_pass(time);
         self.force_pass();
         self.add_body_forces(time);
-        self.shift();
+        self.shift(fastest);
         let (rows, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
-        parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
-            scheme.store(number, places[number] as usize, row);
+        let sums = parallel::sums_over_rows(rows, Row::<D>::LENGTH, |number, row, sums| {
+            let place = places[number] as usize;
+            scheme.store(number, place, row);
+            if !scheme.is_wall[number] {
+                scheme.add_powers(number, place, row, sums);
+            }
         });
-        self.book_powers(rows, tail);
+        Self::book_powers(&sums, tail);
         if let Some(number) = self.lost {
             state[number * Row::<D>::LENGTH + Row::<D>::ACCELERATION] = f64::NAN;
         }
@@ -114,6 +119,9 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Adds the body forces to the accelerations of the fluid.
     pub(super) fn add_body_forces(&mut self, time: f64) {
+        if self.body_forces.is_empty() {
+            return;
+        }
         let mut forces = std::mem::take(&mut self.forces);
         let list = self.support.list();
         parallel::for_each_chunk(&mut forces, |first, rows| {

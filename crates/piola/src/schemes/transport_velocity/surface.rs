@@ -117,13 +117,13 @@ impl<const D: usize> TransportVelocity<D> {
         block: &mut NeighborBlock<D>,
     ) -> (Vector<D>, bool) {
         let (support, me) = (&self.support, &self.sides[place]);
-        let mut density = me.mass * support.centre();
+        let mut density = me.mass() * support.centre();
         let mut normal = openings[place].sharp * (me.volume * support.centre());
         let mut rest = support.all(place);
         while support.fill(&mut rest, Needs::Value, block) {
             for neighbor in block.iter() {
                 let other = &self.sides[neighbor.place];
-                density += other.mass * neighbor.value;
+                density += other.mass() * neighbor.value;
                 normal += openings[neighbor.place].sharp * (other.volume * neighbor.value);
             }
         }

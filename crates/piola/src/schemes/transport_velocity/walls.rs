@@ -65,7 +65,8 @@ impl<const D: usize> TransportVelocity<D> {
             side.velocity = values.velocity;
             side.deviation = values.deviation;
             let pressure = values.pressure;
-            side.set(fluid::density(pressure, self.fluid.density, self.fluid.wave_speed), pressure);
+            let density = fluid::density(pressure, self.fluid.density, self.fluid.wave_speed);
+            side.set(self.mass[wall.number as usize], density, pressure);
             self.shear[place] = values.shear;
         }
         self.wall_values = values;

@@ -79,6 +79,17 @@ impl<const D: usize> TransportVelocity<D> {
         self.iteration = iteration;
     }
 
+    /// Largest speed of the fluid in m/s.
+    fn largest_speed(&self) -> f64 {
+        let list = self.support.list();
+        let square =
+            parallel::maximum(self.sides.len(), 0.0, |place| match list.is_passive(place) {
+                true => 0.0,
+                false => self.sides[place].velocity.norm_squared(),
+            });
+        square.sqrt()
+    }
+
     /// Notes how even the particles are at the places loaded last.
     pub(in super::super) fn note_evenness(&mut self) {
         let mut iteration = std::mem::take(&mut self.iteration);

@@ -13,21 +13,23 @@ const MOST_MACH: f64 = 0.25;
 impl<const D: usize> TransportVelocity<D> {
     /// Replaces the deviations of the sides by those of the current places,
     /// `d_a = -f Ma 2h c sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab`, CTVF (35), where the Mach
-    /// number is that of the largest speed now: `Ma c = max |u|`. Near free surfaces the sum has
+    /// number is that of the largest speed now: `Ma c = max |u|`, `fastest` in m/s. Near free surfaces the sum has
     /// the smaller support of CTVF algorithm 1, and (44) holds: theory (27), (30). As in the method's source, no
     /// deviation is larger than half of the largest speed.
-    pub(in super::super) fn shift(&mut self) {
+    pub(in super::super) fn shift(&mut self, fastest: f64) {
         let Shifting::Sun { factor } = self.settings.shifting else { return };
-        let speed = self.largest_speed().min(MOST_MACH * self.fluid.wave_speed);
+        let speed = fastest.min(MOST_MACH * self.fluid.wave_speed);
         let scale = -factor * speed * 2.0 * self.support.smoothing_length();
         let most = 0.5 * speed;
         if self.settings.free_surface {
             self.find_surfaces();
         }
         let mut sides = std::mem::take(&mut self.sides);
-        let volumes = &mut self.densities;
-        volumes.clear();
-        volumes.extend(sides.iter().map(|side| side.volume));
+        if self.settings.free_surface {
+            let volumes = &mut self.densities;
+            volumes.clear();
+            volumes.extend(sides.iter().map(|side| side.volume));
+        }
         let (list, h) = (self.support.list(), self.support.smoothing_length());
         parallel::for_each_chunk(&mut sides, |first, sides| {
             let mut block = NeighborBlock::default();
@@ -78,17 +80,6 @@ impl<const D: usize> TransportVelocity<D> {
             }
         }
         sum
-    }
-
-    /// Largest speed of the fluid in m/s.
-    pub(in super::super) fn largest_speed(&self) -> f64 {
-        let list = self.support.list();
-        let square =
-            parallel::maximum(self.sides.len(), 0.0, |place| match list.is_passive(place) {
-                true => 0.0,
-                false => self.sides[place].velocity.norm_squared(),
-            });
-        square.sqrt()
     }
 
     /// The kernel at a distance of one spacing, in m^-D.

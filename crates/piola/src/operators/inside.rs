@@ -1,0 +1,180 @@
+//! The neighbours inside the support, picked from the candidates of a list.
+
+use multiversion::multiversion;
+
+use super::LANES;
+use super::block::all_of;
+use crate::neighbors::{SkinList, shorter_way};
+use crate::{Vector, parallel};
+
+/// For each particle those candidates of a [`SkinList`] that are inside the support at its current
+/// positions, in the order of the list, filled up to whole groups with the last of them.
+///
+/// They are picked once for all the sums at these positions: a choice costs as much as the terms
+/// of a simple sum.
+#[derive(Clone, Debug, Default)]
+pub(super) struct InsideRows {
+    /// Rows one after the other, from the start of each chunk of particles on.
+    places: Vec<u32>,
+    rows: Vec<Row>,
+}
+
+/// Where a row stands.
+#[derive(Clone, Copy, Debug, Default)]
+struct Row {
+    start: usize,
+    /// How many are not passive, in the groups that stand first, and how many are passive.
+    active: u32,
+    passive: u32,
+}
+
+/// Entries of a row beyond its candidates: what fills up the groups of both kinds.
+const ROOM: usize = 2 * LANES;
+
+/// The part of space in which neighbours are looked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach<const D: usize> {
+    /// Square of the support radius in m^2.
+    pub limit: f64,
+    /// Periods in m, infinite along open axes.
+    pub periods: [f64; D],
+    /// Between these bounds in m a particle has no neighbour across a periodic one.
+    pub within: [[f64; 2]; D],
+}
+
+impl<const D: usize> Reach<D> {
+    /// Whether neighbours of a particle may lie across a periodic bound.
+    #[inline]
+    pub fn wraps(&self, position: &Vector<D>) -> bool {
+        let is_within = |(x, [low, high]): (&f64, &[f64; 2])| low <= x && x <= high;
+        !position.iter().zip(&self.within).all(is_within)
+    }
+}
+
+impl InsideRows {
+    /// Picks the rows anew.
+    pub fn pick<const D: usize>(&mut self, list: &SkinList<D>, reach: &Reach<D>) {
+        self.rows.resize(list.len(), Row::default());
+        self.places.resize(list.entries() + ROOM * list.len(), 0);
+        parallel::for_each_span(
+            &mut self.places,
+            &mut self.rows,
+            &|row| start(list, row),
+            |first, places, rows| pick(list, reach, first, places, rows),
+        );
+    }
+
+    /// The neighbours of a particle that are not passive, in whole groups, and how many they are.
+    #[inline]
+    pub fn active(&self, place: usize) -> (&[u32], usize) {
+        let row = &self.rows[place];
+        let length = row.active as usize;
+        (&self.places[row.start..][..length.next_multiple_of(LANES)], length)
+    }
+
+    /// The passive neighbours of a particle, as [`Self::active`] has the others.
+    #[inline]
+    pub fn passive(&self, place: usize) -> (&[u32], usize) {
+        let row = &self.rows[place];
+        let length = row.passive as usize;
+        let start = row.start + (row.active as usize).next_multiple_of(LANES);
+        (&self.places[start..][..length.next_multiple_of(LANES)], length)
+    }
+
+    /// Bytes of all arrays.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.places.as_slice()) + size_of_val(self.rows.as_slice())
+    }
+}
+
+/// Where there is room for a row.
+fn start<const D: usize>(list: &SkinList<D>, row: usize) -> usize {
+    list.offset(row) + ROOM * row
+}
+
+/// Picks the rows of some particles.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn pick<const D: usize>(
+    list: &SkinList<D>,
+    reach: &Reach<D>,
+    first: usize,
+    places: &mut [u32],
+    rows: &mut [Row],
+) {
+    let positions = list.positions();
+    let from = start(list, first);
+    let mut length = 0;
+    for (offset, row) in rows.iter_mut().enumerate() {
+        let place = first + offset;
+        let here = &positions[place];
+        let wraps = reach.wraps(here);
+        *row = Row { start: from + length, active: 0, passive: 0 };
+        for (candidates, kept) in
+            [(list.active_row(place), &mut row.active), (list.passive_row(place), &mut row.passive)]
+        {
+            if !candidates.is_empty() {
+                let room = &mut places[length..];
+                let count = match wraps {
+                    true => keep::<D, true>(here, candidates, positions, reach, room),
+                    false => keep::<D, false>(here, candidates, positions, reach, room),
+                };
+                *kept = count as u32;
+                length += count.next_multiple_of(LANES);
+            }
+        }
+    }
+}
+
+/// Writes those candidates that are inside the support to the front of `kept`, which has room for
+/// all of them and a group, fills up their last group, and returns how many they are.
+#[inline(always)]
+fn keep<const D: usize, const WRAPS: bool>(
+    here: &Vector<D>,
+    candidates: &[u32],
+    positions: &[Vector<D>],
+    reach: &Reach<D>,
+    kept: &mut [u32],
+) -> usize {
+    let mut length = 0;
+    for candidates in candidates.chunks(LANES) {
+        let count = candidates.len();
+        let places = <[u32; LANES]>::try_from(candidates)
+            .unwrap_or_else(|_| std::array::from_fn(|lane| candidates[lane.min(count - 1)]));
+        let others = all_of(positions, &places);
+        let mut squares = [0.0; LANES];
+        for axis in 0..D {
+            for lane in 0..LANES {
+                let distance = here[axis] - others[lane][axis];
+                let distance = match WRAPS {
+                    true => shorter_way(distance, reach.periods[axis]),
+                    false => distance,
+                };
+                squares[lane] += distance * distance;
+            }
+        }
+        #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
+        for lane in 0..LANES {
+            squares[lane] = if lane < count { squares[lane] } else { f64::INFINITY };
+        }
+        // Every candidate is written and kept by the step of the counter, as a branch would be
+        // guessed wrong every third time.
+        let window = window(&mut kept[length..]);
+        let mut more = 0;
+        for lane in 0..LANES {
+            window[more % LANES] = places[lane];
+            more += usize::from(squares[lane] < reach.limit);
+        }
+        length += more;
+    }
+    if let Some(last) = length.checked_sub(1) {
+        let last = kept[last];
+        *window(&mut kept[length..]) = [last; LANES];
+    }
+    length
+}
+
+/// The first entries of what there is room for.
+#[inline(always)]
+fn window(kept: &mut [u32]) -> &mut [u32; LANES] {
+    kept.first_chunk_mut().expect("there is room for a group beyond the candidates")
+}
