@@ -20,7 +20,7 @@ pub struct OgdenTerm {
 /// stretches `lbar_i = J^(-1/3) l_i`: theory (42).
 ///
 /// The shear modulus of small strains is `1/2 sum_k mu_k alpha_k`. One term of exponent 2 is the
-/// neo-Hookean law (23), terms of 2 and -2 are Mooney and Rivlin's (25).
+/// neo-Hookean law (39), terms of 2 and -2 are Mooney and Rivlin's (41).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ogden {
     /// Up to three terms; those left out have a modulus of zero and any exponent but zero.
