@@ -46,8 +46,7 @@ pub(super) fn build<const D: usize>(
         *areas = order.iter().map(|&number| areas[number as usize]).collect();
     }
     let radius = radii(&particles).map_err(refuse)?;
-    let support =
-        DirectedSupport::new(&particles, kernel, radius, domain.clone()).map_err(refuse)?;
+    let support = DirectedSupport::new(&particles, kernel, radius, domain).map_err(refuse)?;
     let rows = 0..particles.len();
     let poorly_supported =
         rows.filter(|&a| support.list.row(a).len() < D).map(|a| a as u32).collect();

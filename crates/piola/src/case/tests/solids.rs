@@ -100,7 +100,7 @@ fn what_does_not_fit_is_refused_with_what_does() {
 #[test]
 fn a_lattice_has_the_areas_of_its_box() {
     let text = GOOD.replace("spacing = 0.1", "spacing = [0.1, 0.2]");
-    let case = read_with(&text, &["body.block.lattice={jitter=0.3}".into()]).expect("a good case");
+    let case = read_with(&text, &["body.block.lattice={jitter=0.3}"]).expect("a good case");
     let mut simulation = crate::case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
     // A cloud whose areas did not close its volume would have been refused; particles that carry
     // areas are on their sites, and corrected gradients exist.
@@ -123,7 +123,7 @@ fn statics_has_its_own_steps_and_prescribes_displacements() {
     let held = &case.boundaries[0];
     assert!(held.displacement.iter().all(Option::is_some));
     assert!(held.velocity.iter().all(Option::is_none));
-    let case = read_with(&text, &["time.step=0.25".into(), "time.on_failure='retry'".into()]);
+    let case = read_with(&text, &["time.step=0.25", "time.on_failure='retry'"]);
     assert_eq!(case.expect("a good case").time.step.value, StepControl::AtMost(0.25));
 
     for (from, to, parts) in [
