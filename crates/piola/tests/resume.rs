@@ -102,7 +102,9 @@ fn every_case_resumes_to_the_bit() {
         let mut case = load(&path, &["output.compression='none'"]);
         let end = *case.time.end;
         case.output.every.value = end / 5.0;
-        case.output.table_every.value = end / 50.0;
+        // Steps of loads are large, each of them takes a whole iteration.
+        let rows = if *case.time.integrator == "static" { 10.0 } else { 50.0 };
+        case.output.table_every.value = end / rows;
         case.pictures.truncate(1);
         let folder = tempfile::tempdir().unwrap();
         let (whole, broken) = (folder.path().join("whole"), folder.path().join("broken"));

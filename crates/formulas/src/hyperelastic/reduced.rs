@@ -46,6 +46,9 @@ pub struct ReducedError {
 /// Steps after which a stretch across is given up; laws in use need up to ten.
 const MOST_STEPS: usize = 200;
 
+/// Step, over the stretch across, that is rounding; the steps of derivatives are further ones.
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
 /// Trials for a bracket of the stretch across, each with a larger factor than the one before.
 const WIDEST_BRACKET: u32 = 16;
 
@@ -155,11 +158,15 @@ impl<const D: usize> Reduced<D> {
                 high = across;
             }
             let newton = across - stress.re / stress.eps;
-            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+            if (newton - across).abs() <= ROUND_OFF * (1.0 + across).abs().min(1.0) {
+                return Some((newton, stress.eps));
+            }
+            // Ends of the bracket are excluded, between which rounding could send the steps for ever.
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if !next.is_finite() {
                 return None;
             }
-            if (next - across).abs() <= 4.0 * f64::EPSILON * (1.0 + across).abs().min(1.0) {
+            if next == across {
                 return Some((next, stress.eps));
             }
             across = next;

@@ -31,6 +31,9 @@ pub fn integrators() -> Vec<Choice> {
     let meaning = |kind: IntegratorKind| match kind {
         IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
         IntegratorKind::KickDriftKick => "kick-drift-kick, CTVF (54) to (60)",
+        IntegratorKind::Static => {
+            "no motion: equilibrium under loads that grow with the time, which is the load factor; `dual_support` only"
+        }
     };
     IntegratorKind::ALL.map(|kind| Choice { name: kind.name(), meaning: meaning(kind) }).to_vec()
 }
@@ -81,6 +84,7 @@ pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
 pub fn step_columns(scheme: &str) -> Vec<&'static str> {
     let figures: &[(&str, &str)] = match scheme {
         "transport_velocity" => &transport_velocity::FIGURES,
+        "dual_support" => &dual_support::FIGURES,
         _ => &[],
     };
     observe::STEP_COLUMNS.iter().chain(figures).map(|(name, _)| *name).collect()

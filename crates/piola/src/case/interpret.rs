@@ -46,6 +46,8 @@ pub(super) fn case(
     let domain = reader.domain(record.record("domain"));
     let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
     let time = record.record("time").and_then(|time| reader.time(time));
+    reader.names.is_static =
+        time.as_ref().is_some_and(|time| *time.integrator == IntegratorKind::Static.name());
     let end = time.as_ref().map(|time| *time.end);
     let checkpoint = match record.record("checkpoint") {
         Some(record) => Reader::checkpoint(record),
@@ -117,6 +119,7 @@ struct Names {
     bodies: Vec<String>,
     variants: Vec<String>,
     scheme: &'static str,
+    is_static: bool,
 }
 
 impl Reader<'_, '_> {
@@ -215,7 +218,18 @@ impl Reader<'_, '_> {
                     .help("`cfl` follows the stable step, `step` is fixed: remove one of them"),
             );
         }
+        let integrator_name = record.text("integrator");
+        let is_static =
+            integrator_name.as_ref().is_some_and(|name| **name == IntegratorKind::Static.name());
+        if is_static {
+            self.meaningless(record, "cfl", "in statics");
+        }
         let step = match (cfl, step) {
+            (_, Some(step)) if is_static => step.map(StepControl::AtMost),
+            _ if is_static => {
+                let end = record.number("end")?;
+                Located::new(StepControl::AtMost(0.1 * *end), record.place)
+            }
             (_, Some(step)) => step.map(StepControl::Fixed),
             (Some(cfl), None) => cfl.map(StepControl::Cfl),
             (None, None) => {
@@ -228,7 +242,7 @@ impl Reader<'_, '_> {
             }
         };
         let natural = if splits { IntegratorKind::KickDriftKick } else { IntegratorKind::TvdRk2 };
-        let integrator = match record.text("integrator") {
+        let integrator = match integrator_name {
             Some(name) => name,
             None => Located::new(natural.name().to_owned(), record.place),
         };
@@ -239,7 +253,12 @@ impl Reader<'_, '_> {
                 Problem::new(integrator.place, message, "of another scheme").help("use `tvd_rk2`"),
             );
         }
-        if only_splits && integrator.value != IntegratorKind::KickDriftKick.name() {
+        if is_static && scheme != "dual_support" {
+            let message = format!("the scheme `{scheme}` knows no statics");
+            let problem = Problem::new(integrator.place, message, "of another scheme");
+            let help = format!("use `{}`, or the scheme `dual_support`", natural.name());
+            self.report(problem.help(help));
+        } else if only_splits && integrator.value != IntegratorKind::KickDriftKick.name() {
             let message =
                 format!("the scheme `{}` keeps its accelerations in its state", self.names.scheme);
             self.report(
@@ -254,17 +273,17 @@ impl Reader<'_, '_> {
             max_steps: record.whole("max_steps").map(|steps| steps.value),
             min_step: record.number("min_step").map(|step| step.value),
             max_speed: record.number("max_speed").map(|speed| speed.value),
-            retries: self.retries(record)?,
+            retries: self.retries(record, is_static)?,
         })
     }
 
-    fn retries(&mut self, record: &Record) -> Option<u64> {
+    fn retries(&mut self, record: &Record, is_static: bool) -> Option<u64> {
         let number = record.whole("retries").map(|number| number.value);
         if record.text("on_failure")?.value != "retry" {
             self.meaningless(record, "retries", "without `on_failure = \"retry\"`");
             return Some(0);
         }
-        if let Some(place) = record.key_place("step") {
+        if let Some(place) = record.key_place("step").filter(|_| !is_static) {
             let problem =
                 Problem::new(place, "a fixed step cannot be retried with a smaller one", "fixed");
             self.report(problem.help("set `cfl` instead, or `on_failure = \"stop\"`"));

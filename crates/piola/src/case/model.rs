@@ -188,7 +188,9 @@ impl Case {
             body.initial.velocity.iter().chain(std::iter::once(&body.initial.pressure))
         });
         let loads = self.loads.iter().flat_map(|load| load.kind.components());
-        let boundaries = self.boundaries.iter().flat_map(|wall| wall.velocity.iter().flatten());
+        let boundaries = self.boundaries.iter();
+        let boundaries =
+            boundaries.flat_map(|wall| wall.velocity.iter().chain(&wall.displacement).flatten());
         let walls = self.bodies.iter().filter_map(|body| body.wall.as_ref());
         let sliding = walls.flat_map(|wall| wall.sliding.iter().flatten());
         initial.chain(loads).chain(boundaries).chain(sliding)

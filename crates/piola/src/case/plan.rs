@@ -64,7 +64,7 @@ impl Simulation {
         let health = scheme.inspect(&state, &mut found);
         let number = match control {
             StepControl::Cfl(number) => number,
-            StepControl::Fixed(_) => 1.0,
+            StepControl::Fixed(_) | StepControl::AtMost(_) => 1.0,
         };
         let mut limits: Vec<PlannedLimit> = found
             .iter()

@@ -207,7 +207,7 @@ fn unbalanced(tables: &Tables) -> Option<String> {
     (share > UNBALANCED).then(|| {
         format!(
             "{:.1} % of the largest energy is not accounted for: the steps are too large for what \
-             happens; lower `time.cfl` and compare",
+             happens; lower `time.cfl`, or `time.step` where it is given, and compare",
             100.0 * share
         )
     })

@@ -239,8 +239,8 @@ static TIME: TableSpec = TableSpec {
             "step",
             Kind::Number(Interval::POSITIVE),
             "s",
-            Optional,
-            "fixed time step instead of `cfl`, checked against the stable step",
+            Derived("none; a tenth of `end` with the integrator `static`"),
+            "fixed time step instead of `cfl`, checked against the stable step; with the integrator `static` the largest step of the loads, shortened to meet output",
         ),
         key(
             "max_steps",
@@ -284,7 +284,7 @@ const REACTIONS: Choices = choices(&[
     choice("stop", "the run ends with the last good state"),
     choice(
         "retry",
-        "the run goes back some steps and on with half the step, and stops after too many retries; not for a fixed step",
+        "the run goes back some steps and on with half the step, and stops after too many retries; not for a fixed step of time",
     ),
 ]);
 
@@ -382,7 +382,7 @@ static LOAD: TaggedSpec = TaggedSpec {
 
 static BOUNDARY: TableSpec = TableSpec {
     title: "[[boundary]]",
-    meaning: "Prescribed velocity components on a selection of particles.",
+    meaning: "Prescribed velocities, in statics displacements, of a selection of particles.",
     keys: &[
         key("name", Kind::Text, "", Required, "unique name"),
         key("body", Kind::Text, "", Derived("all bodies"), "name of the body"),
@@ -397,8 +397,15 @@ static BOUNDARY: TableSpec = TableSpec {
             "velocity",
             Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
             "m/s",
-            Required,
+            Optional,
             "the components that are prescribed, as expressions of the reference position and time",
+        ),
+        key(
+            "displacement",
+            Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
+            "m",
+            Optional,
+            "with the integrator `static`: the components that are prescribed, as expressions of the reference position and the load factor `t`",
         ),
     ],
 };

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::SplitScheme;
+use super::{SplitScheme, StaticScheme};
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
@@ -103,6 +103,11 @@ pub trait Scheme: Send {
 
     /// Bytes that the scheme holds, without states.
     fn memory(&self) -> usize;
+
+    /// The formulation as one that finds equilibria, if it is one and was built for that.
+    fn equilibrium(&mut self) -> Option<&mut dyn StaticScheme> {
+        None
+    }
 
     /// The formulation as one whose steps can be split, if it is one.
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

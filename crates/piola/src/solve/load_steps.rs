@@ -144,16 +144,23 @@ pub fn follow<E: Equations + ?Sized>(
     Ok(())
 }
 
-/// The last two states.
-struct Path {
-    before: Option<(f64, Vec<f64>)>,
-    factor: f64,
-    x: Vec<f64>,
+/// Where load steps have come to: the last two states.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// Load factor and unknowns of the state before; none at the start.
+    pub before: Option<(f64, Vec<f64>)>,
+    /// Load factor of the last state.
+    pub factor: f64,
+    /// Its unknowns.
+    pub x: Vec<f64>,
 }
 
 impl Path {
-    /// The state at a load factor; with `near` only one that belongs to the path so far.
-    fn attempt<E: Equations + ?Sized>(
+    /// The state at a load factor, in one step; with `near` only one that belongs to the path so far.
+    ///
+    /// # Errors
+    /// [`LoadError`] where none is found, or none that stays.
+    pub fn attempt<E: Equations + ?Sized>(
         &self,
         equations: &mut E,
         newton: &Newton,

@@ -29,7 +29,7 @@ pub use dissection::dissect;
 pub use factor::{Factor, FactorError};
 pub use krylov::{Outcome, conjugate_gradients, gmres};
 pub use linear::{LinearError, LinearMethod, LinearReport, LinearSolver, Stability, Tangent};
-pub use load_steps::{Increment, LoadError, LoadSteps, follow};
+pub use load_steps::{Increment, LoadError, LoadSteps, Path, follow};
 pub use newton::{Equations, Iteration, Newton, NewtonError, Solved, Trial};
 pub use reduction::{Local, Reduction};
 pub use sparse::SparseMatrix;

@@ -125,6 +125,18 @@ impl<const D: usize> Reduction<D> {
         }
     }
 
+    /// The unknowns of rows that [`Self::expand`] made.
+    pub fn collect(&self, rows: &[Vector<D>], unknowns: &mut [f64]) {
+        for (a, row) in rows.iter().enumerate() {
+            let local = self.frames[a].tr_mul(row);
+            for i in 0..D {
+                if let Local::Free(number) = self.locals[a][i] {
+                    unknowns[number as usize] = local[i];
+                }
+            }
+        }
+    }
+
     /// The part of a row along held directions.
     pub fn held_part(&self, a: usize, row: &Vector<D>) -> Vector<D> {
         let mut local = self.frames[a].tr_mul(row);

@@ -152,9 +152,17 @@ impl Executor {
             let soonest = run.due.iter().flatten().copied().fold(self.end, f64::min);
             let met = self.control.meet(chosen, run.clock.time, soonest);
             let (scheme, integrator) = (self.scheme.as_mut(), self.integrator.as_mut());
-            run.tally.watches.step.time(|| {
-                integrator.step(scheme, run.clock.time, met.step, &run.state, &mut next);
-            });
+            let taken =
+                run.tally.watches.step.time(|| {
+                    integrator.step(scheme, run.clock.time, met.step, &run.state, &mut next)
+                });
+            if let Err(failure) = taken {
+                if run.tally.retries.len() < self.retries && self.control.adapts() {
+                    run.shorten(&failure);
+                    continue;
+                }
+                break Outcome::Failed(failure);
+            }
             previous.0 = run.clock;
             std::mem::swap(&mut previous.1, &mut run.state);
             std::mem::swap(&mut run.state, &mut next);
@@ -234,9 +242,8 @@ impl Executor {
             run.warnings.extend(supersonic(tally.start_speeds));
         }
         if let Some(failure) = self.broken(&health, state, clock, tally.start_speeds) {
-            let may_retry = run.tally.retries.len() < self.retries
-                && clock.step > 0
-                && matches!(self.control, StepControl::Cfl(_));
+            let may_retry =
+                run.tally.retries.len() < self.retries && clock.step > 0 && self.control.adapts();
             if !may_retry {
                 return Ok(Verdict::End(Outcome::Failed(failure)));
             }
@@ -341,6 +348,16 @@ impl Executor {
 }
 
 impl Run {
+    /// Halves the steps from here on, after one that did not end anywhere.
+    fn shorten(&mut self, failure: &Failure) {
+        let Clock { step, time, .. } = self.clock;
+        self.tally.factor *= Executor::RETRY_FACTOR;
+        let factor = self.tally.factor;
+        let kind = failure.kind().to_owned();
+        let failure = failure.to_string();
+        self.tally.retries.push(Retry { kind, failure, step, time, back_to: time, factor });
+    }
+
     /// Moves the clock on by the step `met`, which ends at `soonest` if it was shortened to.
     fn advance(&mut self, control: StepControl, met: ChosenStep, soonest: f64) {
         let Self { clock, tally, history, .. } = self;
@@ -348,8 +365,8 @@ impl Run {
         clock.step += 1;
         clock.time = match control {
             StepControl::Fixed(step) => clock.step as f64 * step,
-            StepControl::Cfl(_) if met.step == soonest - clock.time => soonest,
-            StepControl::Cfl(_) => clock.time + met.step,
+            _ if met.step == soonest - clock.time => soonest,
+            _ => clock.time + met.step,
         };
         clock.chosen = met;
         let [smallest, largest] = tally.step_range;

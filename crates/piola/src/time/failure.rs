@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::schemes::{Escape, Particle};
+use crate::schemes::{Escape, Missed, NoEquilibrium, Particle};
 
 /// What went wrong, where and when, with what to do about it.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -153,6 +153,9 @@ pub enum Failure {
         /// The likely cause and what to change.
         advice: String,
     },
+    /// A step of the loads does not end in equilibrium.
+    #[error(transparent)]
+    NoEquilibrium(NoEquilibrium),
     /// The number of steps allowed is used up.
     #[error(
         "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
@@ -175,6 +178,11 @@ impl Failure {
             Self::TooFast { .. } => "too_fast",
             Self::FixedStepTooLarge { .. } => "fixed_step_too_large",
             Self::StepBelowFloor { .. } => "step_below_floor",
+            Self::NoEquilibrium(missed) => match missed.kind {
+                Missed::NoConvergence => "no_convergence",
+                Missed::Inverted => "inverted",
+                Missed::Unstable => "unstable",
+            },
             Self::TooManySteps { .. } => "too_many_steps",
         }
     }
@@ -188,7 +196,8 @@ impl Failure {
             | Self::TooFast { index, .. }
             | Self::FixedStepTooLarge { index, .. }
             | Self::StepBelowFloor { index, .. } => Some(*index),
-            Self::TooManySteps { .. } => None,
+            // What led there is in its message; to take the steps once more would take long.
+            Self::NoEquilibrium(_) | Self::TooManySteps { .. } => None,
         }
     }
 }

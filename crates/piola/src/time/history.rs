@@ -100,7 +100,9 @@ impl History {
         let first = self.older.clock.step;
         let shown = self.steps.len().saturating_sub(Trace::STEPS);
         for (count, &(time, size)) in self.steps.iter().enumerate() {
-            integrator.step(scheme, time, size, &state, &mut next);
+            if integrator.step(scheme, time, size, &state, &mut next).is_err() {
+                break;
+            }
             std::mem::swap(&mut state, &mut next);
             if count >= shown {
                 trace.record(scheme, first + count as u64 + 1, time + size, size, &state);

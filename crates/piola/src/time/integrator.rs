@@ -1,6 +1,8 @@
 //! Time integration of a state that it knows only as numbers.
 
+use super::failure::Failure;
 use super::kick_drift_kick::KickDriftKick;
+use super::load_steps::LoadStepping;
 use super::tvd_rk2::TvdRk2;
 use crate::schemes::Scheme;
 
@@ -14,7 +16,17 @@ pub trait Integrator: Send {
 
     /// Writes the state at `time + step` to `new`, from `old` at `time`. Both have the layout of
     /// the scheme's state; `old` satisfies the constraints at `time`.
-    fn step(&mut self, scheme: &mut dyn Scheme, time: f64, step: f64, old: &[f64], new: &mut [f64]);
+    ///
+    /// # Errors
+    /// There is no such state, as far as was looked. Explicit methods always find one.
+    fn step(
+        &mut self,
+        scheme: &mut dyn Scheme,
+        time: f64,
+        step: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), Failure>;
 }
 
 /// The integrators by name.
@@ -24,17 +36,20 @@ pub enum IntegratorKind {
     TvdRk2,
     /// Kick-drift-kick, CTVF (54) to (60), for schemes that can be split.
     KickDriftKick,
+    /// Equilibrium under loads that grow, for schemes that know it.
+    Static,
 }
 
 impl IntegratorKind {
     /// All integrators.
-    pub const ALL: [Self; 2] = [Self::TvdRk2, Self::KickDriftKick];
+    pub const ALL: [Self; 3] = [Self::TvdRk2, Self::KickDriftKick, Self::Static];
 
     /// Name in a case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::TvdRk2 => "tvd_rk2",
             Self::KickDriftKick => "kick_drift_kick",
+            Self::Static => "static",
         }
     }
 
@@ -48,6 +63,7 @@ impl IntegratorKind {
         match self {
             Self::TvdRk2 => Box::new(TvdRk2::new(length)),
             Self::KickDriftKick => Box::new(KickDriftKick),
+            Self::Static => Box::new(LoadStepping),
         }
     }
 }

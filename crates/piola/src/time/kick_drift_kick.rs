@@ -1,5 +1,6 @@
 //! The kick-drift-kick method.
 
+use super::failure::Failure;
 use super::integrator::Integrator;
 use crate::schemes::Scheme;
 
@@ -27,13 +28,14 @@ impl Integrator for KickDriftKick {
         step: f64,
         old: &[f64],
         new: &mut [f64],
-    ) {
+    ) -> Result<(), Failure> {
         new.copy_from_slice(old);
-        let Some(split) = scheme.split() else { return };
+        let Some(split) = scheme.split() else { return Ok(()) };
         split.kick(0.5 * step, new);
         split.drift(time, step, new);
         split.constrain(time + step, new);
         split.accelerate(time + step, new);
         split.kick(0.5 * step, new);
+        Ok(())
     }
 }

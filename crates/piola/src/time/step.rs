@@ -12,6 +12,8 @@ pub enum StepControl {
     Cfl(f64),
     /// A fixed step in s, checked against the stable step at a CFL number of one.
     Fixed(f64),
+    /// At most this, whatever the stable step is: steps of loads.
+    AtMost(f64),
 }
 
 /// A step with what limited it.
@@ -63,6 +65,7 @@ impl StepControl {
         let number = match self {
             Self::Cfl(number) => number,
             Self::Fixed(_) => 1.0,
+            Self::AtMost(step) => return Ok(ChosenStep { step, limiter: "load", particle: 0 }),
         };
         let unlimited = ChosenStep { step: f64::INFINITY, limiter: "none", particle: 0 };
         let bound = limits.iter().fold(unlimited, |best, limit| {
@@ -75,7 +78,7 @@ impl StepControl {
             }
         });
         match self {
-            Self::Cfl(_) => Ok(bound),
+            Self::Cfl(_) | Self::AtMost(_) => Ok(bound),
             Self::Fixed(step) if !(step <= bound.step * (1.0 + ROUND_OFF)) => {
                 Err(StepTooLarge { step, bound })
             }
@@ -85,6 +88,11 @@ impl StepControl {
         }
     }
 
+    /// Whether steps may be shortened: to meet a due time, or to try once more.
+    pub fn adapts(self) -> bool {
+        !matches!(self, Self::Fixed(_))
+    }
+
     /// Shortens `chosen` so that equal steps end exactly at `due`. A fixed step stays as it is: it
     /// meets times that are its multiples, and others at the first step after them.
     ///
@@ -92,7 +100,9 @@ impl StepControl {
     /// undamped waves by parametric resonance, far below the largest stable step.
     pub fn meet(self, chosen: ChosenStep, time: f64, due: f64) -> ChosenStep {
         let left = due - time;
-        let Self::Cfl(_) = self else { return chosen };
+        if !self.adapts() {
+            return chosen;
+        }
         if chosen.step * (1.0 + ROUND_OFF) >= left {
             return ChosenStep { step: left, limiter: "output", ..chosen };
         }

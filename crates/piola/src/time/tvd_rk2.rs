@@ -1,5 +1,6 @@
 //! The two-stage total-variation-diminishing Runge-Kutta method.
 
+use super::failure::Failure;
 use super::integrator::Integrator;
 use crate::parallel;
 use crate::schemes::Scheme;
@@ -56,12 +57,13 @@ impl Integrator for TvdRk2 {
         step: f64,
         old: &[f64],
         new: &mut [f64],
-    ) {
+    ) -> Result<(), Failure> {
         scheme.rates(time, old, &mut self.rate);
         predict(step, old, &self.rate, new);
         scheme.constrain(time + step, new);
         scheme.rates(time + step, new, &mut self.rate);
         correct(step, old, &self.rate, new);
         scheme.constrain(time + step, new);
+        Ok(())
     }
 }

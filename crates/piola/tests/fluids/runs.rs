@@ -16,7 +16,9 @@ fn advance(scheme: &mut dyn Scheme, mut state: Vec<f64>, first: usize, steps: us
     let mut new = state.clone();
     let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
     for count in first..first + steps {
-        integrator.step(scheme, count as f64 * STEP, STEP, &state, &mut new);
+        integrator
+            .step(scheme, count as f64 * STEP, STEP, &state, &mut new)
+            .expect("explicit methods always find a state");
         std::mem::swap(&mut state, &mut new);
     }
     state

@@ -35,6 +35,7 @@ fn input<const D: usize>(
         body_forces: Vec::new(),
         tractions: Vec::new(),
         prescribed: Vec::new(),
+        statics: None,
     }
 }
 
@@ -61,7 +62,9 @@ fn swing<const D: usize>(scheme: &mut DualSupport<D>, step: f64, steps: usize) -
     let mut new = state.clone();
     let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
     for count in 0..steps {
-        integrator.step(scheme, count as f64 * step, step, &state, &mut new);
+        integrator
+            .step(scheme, count as f64 * step, step, &state, &mut new)
+            .expect("explicit methods always find a state");
         std::mem::swap(&mut state, &mut new);
     }
     state

@@ -196,7 +196,9 @@ pub fn march_from(
     let mut new = state.clone();
     let mut integrator = IntegratorKind::TvdRk2.build(state.len());
     for count in 1..=steps {
-        integrator.step(scheme, (count - 1) as f64 * step, step, &state, &mut new);
+        integrator
+            .step(scheme, (count - 1) as f64 * step, step, &state, &mut new)
+            .expect("explicit methods always find a state");
         std::mem::swap(&mut state, &mut new);
         show(count as f64 * step, &state);
     }

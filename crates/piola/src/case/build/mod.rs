@@ -273,6 +273,7 @@ pub(super) fn step_control(case: &Case) -> StepControl {
     match case.time.step.value {
         model::StepControl::Cfl(number) => StepControl::Cfl(number),
         model::StepControl::Fixed(step) => StepControl::Fixed(step),
+        model::StepControl::AtMost(step) => StepControl::AtMost(step),
     }
 }
 

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::bodies::vector;
 use crate::Vector;
-use crate::boundaries::{BodyForce, PrescribedVelocity, SpaceTime, Traction};
+use crate::boundaries::{
+    BodyForce, PrescribedDisplacement, PrescribedVelocity, SpaceTime, Traction,
+};
 use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
 use crate::case::model::{self, Case, LoadKind};
@@ -85,6 +87,27 @@ pub(super) fn prescribed<const D: usize>(
                     component,
                     value: function(value),
                 });
+            }
+        }
+    }
+    conditions
+}
+
+/// The prescribed displacements of all boundaries.
+pub(super) fn held<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    problems: &mut Vec<Problem>,
+) -> Vec<PrescribedDisplacement<D>> {
+    let mut conditions = Vec::new();
+    for boundary in &case.boundaries {
+        let selected = select(case, particles, &boundary.region, boundary.body.as_ref(), problems);
+        for (component, value) in boundary.displacement.iter().enumerate() {
+            if let Some(value) = value {
+                let (name, value) = (boundary.name.value.clone(), function(value));
+                let selected = selected.clone();
+                conditions
+                    .push(PrescribedDisplacement::component(name, selected, component, value));
             }
         }
     }

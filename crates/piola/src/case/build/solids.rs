@@ -3,7 +3,7 @@
 use piola_formulas::hyperelastic::Reduced;
 
 use super::bodies::{self, BodyReport};
-use super::{Built, initial, kernel, probes, selections};
+use super::{Built, initial, integrator, kernel, probes, selections};
 use crate::Vector;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, GradientKind, SupportSize};
@@ -11,8 +11,10 @@ use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::{DirectedSupport, lattice_areas, nearest_radii};
 use crate::schemes::dual_support::{
-    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Settings,
+    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Settings, StaticsError,
+    StaticsInput,
 };
+use crate::time::IntegratorKind;
 
 /// Builds the scheme `dual_support`.
 pub(super) fn build<const D: usize>(
@@ -23,6 +25,9 @@ pub(super) fn build<const D: usize>(
     domain: Domain<D>,
 ) -> Result<Built, Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
+    if settings.weights == model::Weights::Volume {
+        particles.weight.clone_from(&particles.volume);
+    }
     let mut areas = areas(case, &mut particles, &domain)?;
     let place = settings.support.place;
     let refuse = |error: NeighborError| {
@@ -41,8 +46,7 @@ pub(super) fn build<const D: usize>(
         *areas = order.iter().map(|&number| areas[number as usize]).collect();
     }
     let radius = radii(&particles).map_err(refuse)?;
-    let support =
-        DirectedSupport::new(&particles, kernel, radius, domain.clone()).map_err(refuse)?;
+    let support = DirectedSupport::new(&particles, kernel, radius, domain).map_err(refuse)?;
     let rows = 0..particles.len();
     let poorly_supported =
         rows.filter(|&a| support.list.row(a).len() < D).map(|a| a as u32).collect();
@@ -51,7 +55,14 @@ pub(super) fn build<const D: usize>(
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
-    let prescribed = selections::prescribed(case, &particles, &mut problems);
+    let is_static = integrator(case) == IntegratorKind::Static;
+    let (prescribed, statics) = match is_static {
+        true => {
+            let prescribed = selections::held(case, &particles, &mut problems);
+            (Vec::new(), Some(StaticsInput { prescribed, ..StaticsInput::default() }))
+        }
+        false => (selections::prescribed(case, &particles, &mut problems), None),
+    };
     let known = || {
         areas.clone().ok_or_else(|| {
             "a traction needs the areas of the particles, which are not known of points from a file"
@@ -75,12 +86,17 @@ pub(super) fn build<const D: usize>(
         velocity,
         tractions,
         prescribed,
+        statics,
     });
     let scheme = scheme.map_err(|error| {
         let (place, label) = match &error {
             DualSupportError::Velocity { .. } => {
                 (case.bodies[0].name.place, "initial values of a body")
             }
+            DualSupportError::Statics(StaticsError::Free { .. }) => {
+                (case.time.integrator.place, "statics needs a body that is held")
+            }
+            DualSupportError::Statics(_) => (case.time.integrator.place, "in statics"),
             _ => (place, "with these supports"),
         };
         vec![case.problem_at(place, error.to_string(), label, None)]

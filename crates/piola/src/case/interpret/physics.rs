@@ -17,10 +17,7 @@ pub(super) fn upwind(record: &Record) -> Option<Upwind> {
         kernel: record.text("kernel")?,
         smoothing_length: record.number("smoothing_length")?,
         correction,
-        weights: match record.text("weights")?.as_str() {
-            "volume" => Weights::Volume,
-            _ => Weights::Lattice,
-        },
+        weights: weights(record)?,
         tau_velocity: record.number("tau_velocity")?.value,
         tau_pressure: record.number("tau_pressure")?.value,
         reconstruction: record.boolean("reconstruction")?,
@@ -28,6 +25,14 @@ pub(super) fn upwind(record: &Record) -> Option<Upwind> {
             "stretch" => ReferenceWaveSpeed::Stretch,
             _ => ReferenceWaveSpeed::Constant,
         },
+    })
+}
+
+/// What is summed under a kernel.
+pub(super) fn weights(record: &Record) -> Option<Weights> {
+    Some(match record.text("weights")?.as_str() {
+        "volume" => Weights::Volume,
+        _ => Weights::Lattice,
     })
 }
 
@@ -66,7 +71,24 @@ impl Reader<'_, '_> {
     pub(super) fn boundary(&mut self, record: &Record) -> Option<Boundary> {
         let body = self.body_of(record);
         let region = record.record("where").and_then(|region| self.region(region));
-        let velocity = expressions_per_axis(record, "velocity");
-        Some(Boundary { name: record.text("name")?, body, region: region?, velocity })
+        let (known, other, why) = match self.names.is_static {
+            true => {
+                ("displacement", "velocity", "with the integrator `static`, where nothing moves")
+            }
+            false => ("velocity", "displacement", "without the integrator `static`"),
+        };
+        self.meaningless(record, other, why);
+        if !record.has(known) && !record.has(other) {
+            let message = format!("the boundary needs the key `{known}`");
+            let problem = Problem::new(record.place, message, "prescribes nothing");
+            self.report(problem.help(format!("add `{known} = {{ x = \"0\" }}`")));
+        }
+        Some(Boundary {
+            name: record.text("name")?,
+            body,
+            region: region?,
+            velocity: expressions_per_axis(record, "velocity"),
+            displacement: expressions_per_axis(record, "displacement"),
+        })
     }
 }

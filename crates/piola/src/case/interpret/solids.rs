@@ -33,6 +33,7 @@ impl Reader<'_, '_> {
         });
         Some(DualSupport {
             kernel: record.text("kernel")?,
+            weights: super::physics::weights(record)?,
             support: count.or(radius).unwrap_or(usual),
             gradients,
             hourglass: number(record, "hourglass"),

@@ -190,6 +190,8 @@ pub struct TransportVelocity {
 pub struct DualSupport {
     /// Name in the kernel registry.
     pub kernel: Located<String>,
+    /// What weighs a kernel.
+    pub weights: Weights,
     /// How large supports are.
     pub support: Located<SupportSize>,
     /// Coefficients of the deformation gradient; `None` for the better ones that there are.
@@ -302,6 +304,8 @@ pub enum StepControl {
     Cfl(f64),
     /// This many seconds, checked against the stable step.
     Fixed(f64),
+    /// At most this much of the load factor.
+    AtMost(f64),
 }
 
 /// A force on particles.
@@ -342,7 +346,7 @@ impl LoadKind {
     }
 }
 
-/// Prescribed velocity components on a selection of particles.
+/// Prescribed velocities or displacements on a selection of particles.
 #[derive(Clone, Debug)]
 pub struct Boundary {
     /// Unique name.
@@ -354,4 +358,7 @@ pub struct Boundary {
     /// Per component, the velocity in m/s as an expression of the reference position and time, or
     /// `None` where the particle is free.
     pub velocity: Vec<Option<Expression>>,
+    /// In statics, per component, the displacement in m as an expression of the reference position
+    /// and the load factor, or `None` where the particle is free.
+    pub displacement: Vec<Option<Expression>>,
 }

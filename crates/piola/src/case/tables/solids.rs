@@ -16,6 +16,13 @@ pub(super) const DUAL_SUPPORT: KindSpec = KindSpec {
             "kernel that weighs the neighbours",
         ),
         key(
+            "weights",
+            Kind::Name(super::WEIGHTS),
+            "",
+            Default("\"lattice\""),
+            "what is summed under the kernel",
+        ),
+        key(
             "support",
             Kind::Number(Interval::POSITIVE),
             "spacings",

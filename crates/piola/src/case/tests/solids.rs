@@ -1,7 +1,7 @@
 //! Elastic solids in a case file.
 
 use super::*;
-use crate::case::model::{Material, PlaneState, SupportSize};
+use crate::case::model::{Material, PlaneState, StepControl, SupportSize};
 
 const GOOD: &str = "\
 version = 1
@@ -100,9 +100,58 @@ fn what_does_not_fit_is_refused_with_what_does() {
 #[test]
 fn a_lattice_has_the_areas_of_its_box() {
     let text = GOOD.replace("spacing = 0.1", "spacing = [0.1, 0.2]");
-    let case = read_with(&text, &["body.block.lattice={jitter=0.3}".into()]).expect("a good case");
+    let case = read_with(&text, &["body.block.lattice={jitter=0.3}"]).expect("a good case");
     let mut simulation = crate::case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
     // A cloud whose areas did not close its volume would have been refused; particles that carry
     // areas are on their sites, and corrected gradients exist.
     assert!(simulation.plan().warnings.is_empty());
+}
+
+/// The block, held at its left side, in statics.
+fn in_statics() -> String {
+    let held = "\n[[boundary]]\nname = \"wall\"\n\
+                where = { kind = \"plane\", point = [0.0, 0.0], normal = [-1.0, 0.0] }\n\
+                displacement = { x = \"0\", y = \"0\" }\n";
+    GOOD.replace("end = 0.01\n", "end = 1.0\nintegrator = \"static\"\n") + held
+}
+
+#[test]
+fn statics_has_its_own_steps_and_prescribes_displacements() {
+    let text = in_statics();
+    let case = read_with(&text, &[]).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(case.time.step.value, StepControl::AtMost(0.1));
+    let held = &case.boundaries[0];
+    assert!(held.displacement.iter().all(Option::is_some));
+    assert!(held.velocity.iter().all(Option::is_none));
+    let case = read_with(&text, &["time.step=0.25", "time.on_failure='retry'"]);
+    assert_eq!(case.expect("a good case").time.step.value, StepControl::AtMost(0.25));
+
+    for (from, to, parts) in [
+        ("integrator", "cfl = 0.5\nintegrator", ["`cfl` has no meaning in statics", "remove it"]),
+        ("displacement", "velocity", ["`velocity` has no meaning", "nothing moves"]),
+        ("displacement = { x = \"0\", y = \"0\" }\n", "", ["needs the key", "`displacement`"]),
+        ("\"static\"", "\"kick_drift_kick\"", ["`displacement` has no meaning", "without the"]),
+        (
+            "dual_support\"",
+            "upwind\"\nsmoothing_length = 1.0",
+            ["knows no statics", "or the scheme `dual_support`"],
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let message = read_with(&text.replacen(from, to, 1), &[]).expect_err(to).to_string();
+        for part in parts {
+            assert!(message.contains(part), "{to}: {message}");
+        }
+    }
+}
+
+#[test]
+fn a_body_that_is_free_to_move_is_refused_where_statics_is_asked_for() {
+    let text = in_statics().replace("x = \"0\", y = \"0\"", "x = \"0\"");
+    let case = read_with(&text, &[]).unwrap_or_else(|problems| panic!("{problems}"));
+    let Err(problems) = crate::case::build(&case) else { panic!("it can shift along y") };
+    let message = problems.to_string();
+    for part in ["shift along y", "statics needs a body that is held", "\"static\""] {
+        assert!(message.contains(part), "{message}");
+    }
 }

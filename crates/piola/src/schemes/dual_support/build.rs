@@ -1,11 +1,16 @@
 //! From particles and settings to a scheme that is ready to run.
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 use super::external::Loaded;
 use super::inspect::largest_wave_modulus;
 use super::stable_step::stable_step;
-use super::{Discrete, DualSupport, Gradients, Material, Row, Settings, Side};
+use super::{
+    Discrete, DualSupport, Gradients, Material, Row, Settings, Side, Statics, StaticsError,
+    StaticsInput,
+};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction, padded};
 use crate::geometry::Particles;
@@ -30,6 +35,9 @@ pub struct DualSupportInput<const D: usize> {
     pub tractions: Vec<Traction<D>>,
     /// Prescribed velocity components.
     pub prescribed: Vec<PrescribedVelocity>,
+    /// In statics, what holds the body and how equilibrium is found; body forces and tractions are
+    /// those above.
+    pub statics: Option<StaticsInput<D>>,
 }
 
 /// Input that the formulation cannot work with.
@@ -39,6 +47,9 @@ pub enum DualSupportError {
     /// A gradient does not exist.
     #[error(transparent)]
     Operator(#[from] OperatorError),
+    /// Statics that cannot be done.
+    #[error(transparent)]
+    Statics(#[from] StaticsError),
     /// An array that does not have one entry for each particle.
     #[error("{what} has {got} entries, expected one for each of the {expected} particles")]
     Length {
@@ -136,7 +147,7 @@ impl<const D: usize> DualSupport<D> {
             return Err(DualSupportError::Length { what, expected: count, got: velocity.len() });
         }
         check_conditions(count, D, &input.tractions, &input.prescribed)?;
-        let discrete = Discrete::new(particles, support, &settings, materials)?;
+        let discrete = Arc::new(Discrete::new(particles, support, &settings, materials)?);
         let particles = &discrete.particles;
         let mut mass = Vec::with_capacity(count);
         for (a, velocity) in velocity.iter().enumerate() {
@@ -161,11 +172,19 @@ impl<const D: usize> DualSupport<D> {
         });
         let at_rest =
             |material: &Material<D>| largest_wave_modulus(&material.law, &Tensor::zeros());
-        let (stable_step, stiffest) = stable_step(&discrete, &mass);
+        let (stable_step, stiffest) = match &input.statics {
+            Some(_) => (f64::INFINITY, 0),
+            None => stable_step(&discrete, &mass),
+        };
+        let statics = input.statics.map(|statics| {
+            let (body_forces, tractions) = (input.body_forces.clone(), input.tractions.clone());
+            Statics::new(discrete.clone(), StaticsInput { body_forces, tractions, ..statics })
+        });
         Ok(Self {
             loaded: loaded.collect(),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
             modulus_at_rest: discrete.materials.iter().map(at_rest).collect(),
+            statics: statics.transpose()?.map(Box::new),
             stable_step,
             stiffest,
             body_forces: input.body_forces,

@@ -33,9 +33,10 @@ impl<const D: usize> DualSupport<D> {
         MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len()
     }
 
-    /// Numbers behind the rows: the ledger, its rates, and how fast its powers grow in a kick.
+    /// Numbers behind the rows: the ledger, its rates, how fast its powers grow in a kick, and in
+    /// statics the iterations of the last step.
     pub(super) fn tail_length() -> usize {
-        2 * Self::ledger_length() + MECHANISMS.len()
+        2 * Self::ledger_length() + MECHANISMS.len() + 1
     }
 
     /// Current position of particle a in m, of its row of a state.
@@ -105,6 +106,9 @@ impl<const D: usize> DualSupport<D> {
 
     /// Momentum of all particles together.
     pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        if self.statics.is_some() {
+            return [0.0; MOST_COMPONENTS];
+        }
         parallel::sums(self.mass.len(), |a, sum| {
             let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
             let momentum = Row::<D>::velocity(row) * self.mass[a];

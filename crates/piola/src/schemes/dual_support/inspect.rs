@@ -37,6 +37,10 @@ impl<const D: usize> DualSupport<D> {
             }
         }
         limits.clear();
+        if self.statics.is_some() {
+            // Nothing moves: rows hold another rate.
+            return Health { largest_speed: 0.0, ..worst.health };
+        }
         limits.push(StepLimit {
             name: "eigenvalue",
             step: self.stable_step / worst.stiffening,

@@ -12,9 +12,12 @@
 //! Forces are the exact gradient of E, whatever the supports, the weights and the correction, so
 //! that energy and momentum are kept by construction; dual supports come out of the derivative by
 //! themselves. Displacements instead of positions keep the digits of small strains.
+//!
+//! In statics the potential is stationary, and v is the rate of u by the load factor.
 
 mod build;
 mod discrete;
+mod equilibrium;
 mod external;
 mod inspect;
 mod sample;
@@ -27,8 +30,11 @@ mod statics;
 pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
 pub use sample::FIELDS;
+pub use scheme::FIGURES;
 pub use settings::{Gradients, Material, Settings};
-pub use statics::{Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness};
+pub use statics::{Known, Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness};
+
+use std::sync::Arc;
 
 use crate::Vector;
 use crate::boundaries::{BodyForce, prescribed::PrescribedComponents};
@@ -37,7 +43,9 @@ use external::Loaded;
 
 /// The dual-support formulation bound to its particles.
 pub struct DualSupport<const D: usize> {
-    discrete: Discrete<D>,
+    discrete: Arc<Discrete<D>>,
+    /// In statics, loads and supports.
+    statics: Option<Box<Statics<D>>>,
     /// Mass of each particle in kg (per unit of the missing dimensions).
     mass: Vec<f64>,
     initial_velocity: Vec<Vector<D>>,

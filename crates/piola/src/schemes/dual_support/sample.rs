@@ -19,12 +19,13 @@ const fn field(
 }
 
 /// The fields of the formulation.
-pub const FIELDS: [FieldDescription; 14] = [
+pub const FIELDS: [FieldDescription; 15] = [
     field("position", "m", FieldKind::Vector, "current position x"),
     field("displacement", "m", FieldKind::Vector, "displacement u = x - X"),
     field("velocity", "m/s", FieldKind::Vector, "velocity v"),
     field("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
     field("internal_force", "N", FieldKind::Vector, "force of the strain energy on the particle"),
+    field("reaction", "N", FieldKind::Vector, "what holds the particle where it is prescribed"),
     field("deformation_gradient", "1", FieldKind::Tensor, "deformation gradient F, row by row"),
     field("determinant", "1", FieldKind::Scalar, "determinant of F in the resolved dimensions"),
     field("stress", "Pa", FieldKind::Tensor, "first Piola-Kirchhoff stress P, row by row"),
@@ -47,7 +48,9 @@ impl<const D: usize> DualSupport<D> {
         values: &mut Vec<f64>,
     ) {
         let mut rate = Vec::new();
+        let mut reactions = Vec::new();
         match field {
+            "reaction" => reactions = self.reactions(time, state),
             "acceleration" | "internal_force" => {
                 rate.resize(state.len(), 0.0);
                 self.rates(time, state, &mut rate);
@@ -66,6 +69,7 @@ impl<const D: usize> DualSupport<D> {
                 "velocity" => values.extend_from_slice(&row[..D]),
                 "acceleration" => values.extend_from_slice(&rate[start..][..D]),
                 "internal_force" => values.extend_from_slice(self.force[a].as_slice()),
+                "reaction" => values.extend_from_slice(reactions[a].as_slice()),
                 "neighbors" => values.push(self.discrete.support.list.row(a).len() as f64),
                 "volume" => values.push(self.discrete.particles.volume[a]),
                 _ => self.sample_material(field, a, values),

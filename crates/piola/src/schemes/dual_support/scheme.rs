@@ -2,8 +2,11 @@
 
 use super::{DualSupport, ENERGIES, FIELDS, IMPULSES, MECHANISMS, Row};
 use crate::fields::FieldDescription;
-use crate::schemes::{Health, Particle, Scheme, SplitScheme, StepLimit};
+use crate::schemes::{Health, Particle, Scheme, SplitScheme, StaticScheme, StepLimit};
 use crate::{Vector, parallel};
+
+/// Figures of its own in the table of steps.
+pub const FIGURES: [(&str, &str); 1] = [("newton_iterations", "1")];
 
 impl<const D: usize> Scheme for DualSupport<D> {
     fn name(&self) -> &'static str {
@@ -69,12 +72,22 @@ impl<const D: usize> Scheme for DualSupport<D> {
         self.look(state, limits)
     }
 
+    fn figure_names(&self) -> &'static [(&'static str, &'static str)] {
+        &FIGURES
+    }
+
+    fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
+        figures.extend(state.last());
+    }
+
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
         let displacement: Vec<_> =
             (0..self.mass.len()).map(|a| Row::<D>::displacement(row(a))).collect();
         let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
-            sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
+            if self.statics.is_none() {
+                sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
+            }
             let [strain, hourglass] = self.discrete.energy_of(&displacement, a);
             sums[1] += strain;
             sums[2] += hourglass;
@@ -121,6 +134,10 @@ impl<const D: usize> Scheme for DualSupport<D> {
         all.sort_unstable();
         all.dedup();
         all
+    }
+
+    fn equilibrium(&mut self) -> Option<&mut dyn StaticScheme> {
+        if self.statics.is_some() { Some(self) } else { None }
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

@@ -1,6 +1,6 @@
 //! The formulation as kick-drift-kick integrators see it: central differences.
 
-use super::{BODY_FORCE, DualSupport, Row, TRACTION};
+use super::{BODY_FORCE, DualSupport, MECHANISMS, Row, TRACTION};
 use crate::schemes::SplitScheme;
 use crate::{Vector, parallel};
 
@@ -18,7 +18,7 @@ impl<const D: usize> SplitScheme for DualSupport<D> {
         let (rates, growths) = rest.split_at_mut(sums.len());
         // Of a power that grows evenly, that half way is the mean.
         let grow = |rates: &mut [f64]| {
-            for (power, growth) in rates.iter_mut().zip(&*growths) {
+            for (power, growth) in rates.iter_mut().zip(&growths[..MECHANISMS.len()]) {
                 *power += 0.5 * duration * growth;
             }
         };
@@ -78,7 +78,7 @@ impl<const D: usize> DualSupport<D> {
         let traction = loads.map(|load| load.force(time).dot(&acceleration(load.particle))).sum();
         let ledger = Self::ledger_length();
         tail[ledger..2 * ledger].copy_from_slice(&rate[rows.len()..][..ledger]);
-        let growths = &mut tail[2 * ledger..];
+        let growths = &mut tail[2 * ledger..][..MECHANISMS.len()];
         growths.fill(0.0);
         (growths[BODY_FORCE], growths[TRACTION]) = (body, traction);
     }

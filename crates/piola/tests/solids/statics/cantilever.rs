@@ -62,7 +62,7 @@ fn solve(
     prescribed: Vec<PrescribedDisplacement<3>>,
 ) -> StaticState<3> {
     let input = StaticsInput { tractions: forces(loads), prescribed, ..StaticsInput::default() };
-    let mut statics = Statics::new(body, input).unwrap();
+    let mut statics = Statics::new(body.clone().into(), input).unwrap();
     statics.solve(&LoadSteps::Given(vec![1.0])).unwrap().remove(0)
 }
 

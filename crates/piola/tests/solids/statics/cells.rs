@@ -147,7 +147,8 @@ fn the_patch_test_holds_on_cell_centres() {
     for input in [points, sides(LinearMethod::Direct), sides(LinearMethod::Krylov)] {
         let newton = Newton { tolerance: 1e-11, ..Newton::default() };
         let is_held = input.trace.is_some();
-        let mut statics = Statics::new(&body, StaticsInput { newton, ..input }).unwrap();
+        let mut statics =
+            Statics::new(body.clone().into(), StaticsInput { newton, ..input }).unwrap();
         let state = statics.solve(&LoadSteps::Given(vec![0.5, 1.0])).unwrap().remove(1);
         for (u, x) in state.displacement.iter().zip(&places) {
             assert!((u - slope * x).amax() < 1e-8, "{u} {:?}", state.solved);
@@ -179,7 +180,7 @@ fn faces_that_do_not_exist_or_do_not_hold_are_named() {
         };
         let prescribed_faces = vec![held(Vector::<2>::x()), held(Vector::<2>::y())];
         let input = StaticsInput { trace, prescribed_faces, ..StaticsInput::default() };
-        Statics::new(&body, input).err().expect("it is refused")
+        Statics::new(body.clone().into(), input).err().expect("it is refused")
     };
     let error = refused(vec![99], Some(trace.clone()));
     assert!(matches!(error, StaticsError::Index { got: 99, count: 12, .. }), "{error}");

@@ -73,7 +73,7 @@ fn cube(intervals: usize, method: LinearMethod) -> Vec<Level> {
         newton: Newton { tolerance: 1e-6, ..Newton::default() },
         ..StaticsInput::default()
     };
-    let mut statics = Statics::new(&body, input).unwrap();
+    let mut statics = Statics::new(body.clone().into(), input).unwrap();
     let states = statics.solve(&LoadSteps::Given(vec![0.25, 0.5, 0.75, 1.0])).unwrap();
     let level = |state: StaticState<3>| {
         let top = state.reactions[2].force[2];

@@ -36,7 +36,7 @@ impl<const D: usize> Uniform<'_, D> {
             ..StaticsInput::default()
         };
         let steps = self.steps.clone().unwrap_or(LoadSteps::Given(vec![0.5, 1.0]));
-        Statics::new(&body, input)?.solve(&steps)
+        Statics::new(body.clone().into(), input)?.solve(&steps)
     }
 
     /// The patch test: on any cloud displacements are linear, and supports have nothing to do.
@@ -180,7 +180,7 @@ fn newtons_method_converges_quadratically_and_reactions_balance_loads() {
             method,
             ..StaticsInput::default()
         };
-        let mut statics = Statics::new(&body, input).unwrap();
+        let mut statics = Statics::new(body.clone().into(), input).unwrap();
         statics.solve(&LoadSteps::Given(vec![1.0])).unwrap().remove(0)
     };
     let direct = solve(LinearMethod::Direct);
@@ -217,7 +217,8 @@ fn a_tied_platen_moves_as_one_that_is_prescribed() {
             method,
             ..StaticsInput::default()
         };
-        let pressed = Statics::new(&body, input).unwrap().solve(&LoadSteps::Given(vec![1.0]));
+        let pressed =
+            Statics::new(body.clone().into(), input).unwrap().solve(&LoadSteps::Given(vec![1.0]));
         let pressed = pressed.unwrap().remove(0);
         let platen = pressed.displacement[top[0] as usize];
         assert!(top.iter().all(|&a| pressed.displacement[a as usize] == platen));
@@ -231,7 +232,9 @@ fn a_tied_platen_moves_as_one_that_is_prescribed() {
         }
         let newton = Newton { tolerance: 1e-10, ..Newton::default() };
         let input = StaticsInput { prescribed, method, newton, ..StaticsInput::default() };
-        let moved = Statics::new(&body, input).unwrap().solve(&LoadSteps::Given(vec![0.5, 1.0]));
+        let moved = Statics::new(body.clone().into(), input)
+            .unwrap()
+            .solve(&LoadSteps::Given(vec![0.5, 1.0]));
         let moved = moved.unwrap().remove(1);
         let apart = pressed.displacement.iter().zip(&moved.displacement);
         let apart = apart.map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
@@ -257,12 +260,14 @@ fn automatic_steps_are_cut_and_meet_their_levels() {
         StaticsInput { prescribed, ..StaticsInput::default() }
     };
     // Through its own foot: in one step particles are turned inside out.
-    let through = Statics::new(&body, squeezed(-1.2)).unwrap().solve(&LoadSteps::Given(vec![1.0]));
+    let through = Statics::new(body.clone().into(), squeezed(-1.2))
+        .unwrap()
+        .solve(&LoadSteps::Given(vec![1.0]));
     let error = through.unwrap_err();
     assert!(matches!(error, StaticsError::Inverted { factor: 1.0, reached: 0.0, .. }), "{error}");
     let input = || squeezed(-0.35);
     let steps = LoadSteps::Automatic { levels: vec![0.5, 1.0], first: 1.0, least: 1e-3 };
-    let states = Statics::new(&body, input()).unwrap().solve(&steps).unwrap();
+    let states = Statics::new(body.clone().into(), input()).unwrap().solve(&steps).unwrap();
     let factors: Vec<f64> = states.iter().map(|state| state.factor).collect();
     assert!(factors.contains(&0.5) && factors.last() == Some(&1.0), "{factors:?}");
     assert!(factors.windows(2).all(|pair| pair[0] < pair[1]), "{factors:?}");
@@ -278,7 +283,8 @@ fn automatic_steps_are_cut_and_meet_their_levels() {
     // What the platen puts in is the energy of the body, to the error of the trapezoidal sum.
     let energy: f64 = states.last().unwrap().energies.iter().sum();
     let even: Vec<f64> = (1..=40).map(|k| f64::from(k) / 40.0).collect();
-    let fine = Statics::new(&body, input()).unwrap().solve(&LoadSteps::Given(even)).unwrap();
+    let fine =
+        Statics::new(body.clone().into(), input()).unwrap().solve(&LoadSteps::Given(even)).unwrap();
     assert!((work(&fine) / energy - 1.0).abs() < 3e-3, "{} {energy}", work(&fine));
     let last = fine.last().unwrap().energies.iter().sum::<f64>();
     assert!((last / energy - 1.0).abs() < 1e-8, "the path does not matter: {last} {energy}");
@@ -302,7 +308,10 @@ fn results_do_not_depend_on_the_number_of_threads() {
                 method,
                 ..StaticsInput::default()
             };
-            Statics::new(&body, input).unwrap().solve(&LoadSteps::Given(vec![1.0])).unwrap()
+            Statics::new(body.clone().into(), input)
+                .unwrap()
+                .solve(&LoadSteps::Given(vec![1.0]))
+                .unwrap()
         })
     };
     for method in [LinearMethod::Direct, LinearMethod::Krylov] {
@@ -316,7 +325,7 @@ fn what_is_wrong_with_supports_is_named() {
     let body = body(&cloud, HyperelasticLaw::neo_hookean(constants()), StressState::PlaneStrain);
     let refused = |prescribed: Vec<PrescribedDisplacement<2>>, ties: Vec<Tie>| {
         let input = StaticsInput { prescribed, ties, ..StaticsInput::default() };
-        Statics::new(&body, input).err().expect("it is refused")
+        Statics::new(body.clone().into(), input).err().expect("it is refused")
     };
     let held = |components: &[(usize, usize)]| -> Vec<PrescribedDisplacement<2>> {
         components.iter().map(|&(a, i)| moved(a, i, 0.0)).collect()
@@ -356,7 +365,8 @@ fn a_body_that_is_held_throughout_has_reactions() {
     for method in [LinearMethod::Automatic, LinearMethod::Direct, LinearMethod::Krylov] {
         let prescribed = prescribed.clone().collect();
         let input = StaticsInput { prescribed, method, ..StaticsInput::default() };
-        let state = Statics::new(&body, input).unwrap().solve(&LoadSteps::Given(vec![1.0]));
+        let state =
+            Statics::new(body.clone().into(), input).unwrap().solve(&LoadSteps::Given(vec![1.0]));
         let state = state.unwrap().remove(0);
         let stress = Reduced::<2>::new(law, StressState::PlaneStrain).unwrap().stress(&slope);
         for (force, area) in state.support_force.iter().zip(&cloud.areas) {
@@ -378,7 +388,7 @@ fn a_failure_shows_its_iterations() {
         newton: Newton { most_iterations: 2, ..Newton::default() },
         ..StaticsInput::default()
     };
-    let mut statics = Statics::new(&body, input).unwrap();
+    let mut statics = Statics::new(body.clone().into(), input).unwrap();
     let error = statics.solve(&LoadSteps::Given(vec![1.0])).unwrap_err();
     let StaticsError::Load(LoadError::Newton { source, .. }) = &error else { panic!("{error}") };
     let NewtonError::NoConvergence { history, .. } = source else { panic!("{error}") };

@@ -22,7 +22,7 @@ fn unstable_equilibrium_is_reported_as_what_it_is() {
         prescribed: vec![moved(0, 0, 0.0), moved(16, 0, -0.5 * length)],
         ..StaticsInput::default()
     };
-    let mut statics = Statics::new(&body, input()).unwrap();
+    let mut statics = Statics::new(body.clone().into(), input()).unwrap();
     let stable = statics.solve(&LoadSteps::Given(vec![0.5, 0.8])).unwrap();
     // P = (lambda + 2 mu) l (l^2 - 1)/2 at a stretch of 0.6.
     let expected = constants().pressure_wave_modulus() * 0.6 * (0.36 - 1.0) / 2.0;
@@ -37,7 +37,7 @@ fn unstable_equilibrium_is_reported_as_what_it_is() {
     // Steps that adapt find where: at a shortening of 1 - 1/sqrt(3), at a load factor of 0.845,
     // from which on the least disorder lets one part of the bar shorten alone.
     let steps = LoadSteps::Automatic { levels: vec![1.0], first: 0.25, least: 1e-3 };
-    let error = Statics::new(&body, input()).unwrap().solve(&steps).unwrap_err();
+    let error = Statics::new(body.clone().into(), input()).unwrap().solve(&steps).unwrap_err();
     let StaticsError::Load(LoadError::Unstable { reached, .. }) = error else { panic!("{error}") };
     let limit = 2.0 * (1.0 - 1.0 / 3.0_f64.sqrt());
     assert!((reached - limit).abs() < 0.01, "{reached} {limit}");
@@ -78,7 +78,7 @@ fn arc_length_follows_an_arch_through_its_limit() {
     };
     let mut points = Vec::new();
     let arc = ArcLength { first: 0.1, ..ArcLength::default() };
-    let mut statics = Statics::new(&body, input()).unwrap();
+    let mut statics = Statics::new(body.clone().into(), input()).unwrap();
     statics
         .follow_arc(&arc, |state| {
             let unstable = matches!(state.solved.stability, Stability::Unstable(_));
@@ -94,7 +94,7 @@ fn arc_length_follows_an_arch_through_its_limit() {
     assert!(!points[0].2 && !points[points.len() - 1].2, "{points:?}");
     // Under a dead load that grows the body is reported to be unstable there, and does not jump.
     let steps = LoadSteps::Automatic { levels: vec![2.0], first: 0.1, least: 1e-3 };
-    let error = Statics::new(&body, input()).unwrap().solve(&steps).unwrap_err();
+    let error = Statics::new(body.clone().into(), input()).unwrap().solve(&steps).unwrap_err();
     let StaticsError::Load(LoadError::Unstable { reached, .. }) = error else { panic!("{error}") };
     let highest = points.iter().take(valley).map(|point| point.1).fold(0.0, f64::max) / force;
     assert!(reached < 1.01 * highest && reached > 0.97 * highest, "{reached} {highest}");
@@ -108,7 +108,8 @@ fn arc_length_follows_an_arch_through_its_limit() {
     ));
     let input = StaticsInput { prescribed, newton, ..StaticsInput::default() };
     let levels = points.iter().map(|point| point.0).collect();
-    let states = Statics::new(&body, input).unwrap().solve(&LoadSteps::Given(levels)).unwrap();
+    let states =
+        Statics::new(body.clone().into(), input).unwrap().solve(&LoadSteps::Given(levels)).unwrap();
     let scale = points[limit].1;
     for (state, point) in states.iter().zip(&points) {
         let load = -state.reactions[2].force[1];

@@ -36,7 +36,7 @@ fn a_body_under_pressure_all_around_shrinks_evenly() {
             method,
             ..StaticsInput::default()
         };
-        let mut statics = Statics::new(&body, input).unwrap();
+        let mut statics = Statics::new(body.clone().into(), input).unwrap();
         let state = statics.solve(&LoadSteps::Given(vec![1.0])).unwrap().remove(0);
         for (u, x) in state.displacement.iter().zip(&cloud.particles.position) {
             assert!((u - x * (stretch - 1.0)).amax() < 1e-8, "{u}");
@@ -69,7 +69,7 @@ fn the_tangent_of_an_open_pressure_is_exact() {
         newton: Newton { tolerance: 1e-11, ..Newton::default() },
         ..StaticsInput::default()
     };
-    let mut statics = Statics::new(&body, input).unwrap();
+    let mut statics = Statics::new(body.clone().into(), input).unwrap();
     let states = statics.solve(&LoadSteps::Given(vec![0.5, 1.0])).unwrap();
     for state in &states {
         let solved = &state.solved;

@@ -39,7 +39,7 @@ fn pulled(disorder: f64) -> ([f64; 3], usize) {
     let input = StaticsInput { prescribed, ..StaticsInput::default() };
     let levels = vec![0.2, 0.6, 1.0];
     let steps = LoadSteps::Automatic { levels: levels.clone(), first: 0.05, least: 1e-3 };
-    let states = Statics::new(&body, input).unwrap().solve(&steps).unwrap();
+    let states = Statics::new(body.clone().into(), input).unwrap().solve(&steps).unwrap();
     let at = |level: f64| states.iter().find(|state| state.factor == level).unwrap();
     let forces = levels.iter().map(|&level| at(level).reactions[3].force[1]);
     let iterations = states.iter().map(|state| state.solved.iterations.len()).sum();

@@ -15,7 +15,7 @@ use crate::support::noise;
 fn check_blocks<const D: usize>(cloud: &Cloud<D>, law: HyperelasticLaw, state: StressState) {
     let body = body(cloud, law, state);
     let displacement = disorder(&cloud.particles, 0.05);
-    let mut stiffness = Stiffness::new(&body);
+    let mut stiffness = Stiffness::new(body.clone().into());
     stiffness.load(&displacement, &[]);
     let diagonal = stiffness.diagonal();
     let mut product = vec![Vector::zeros(); body.len()];
@@ -61,7 +61,7 @@ fn pressure_adds_the_slope_of_the_pressing_force() {
     let direction: Vec<Vector<3>> =
         (0..body.len()).map(|a| Vector::from_fn(|i, _| noise(3 * a + i))).collect();
     let product = |pressing: &[Vector<3>]| {
-        let mut stiffness = Stiffness::new(&body);
+        let mut stiffness = Stiffness::new(body.clone().into());
         stiffness.load(&displacement, pressing);
         let mut product = vec![Vector::zeros(); body.len()];
         stiffness.apply(&direction, &mut product);
@@ -91,7 +91,7 @@ fn the_matrix_in_reduced_unknowns_is_solved() {
     let law = HyperelasticLaw::neo_hookean(constants());
     let body = body(&cloud, law, StressState::PlaneStrain);
     let count = body.len();
-    let mut stiffness = Stiffness::new(&body);
+    let mut stiffness = Stiffness::new(body.clone().into());
     stiffness.load(&disorder(&cloud.particles, 0.05), &[]);
     let coupled: Vec<Vec<u32>> = (0..count).map(|a| stiffness.coupled(a)).collect();
     let order = dissect(&cloud.particles.position, &coupled);

@@ -7,7 +7,7 @@ use super::loads::press;
 use crate::solve::{Equations, LinearError, LinearReport, Stability, Tangent, Trial};
 use crate::{Tensor, Vector, parallel};
 
-impl<const D: usize> Statics<'_, D> {
+impl<const D: usize> Statics<D> {
     /// Displacements of unknowns at a load factor.
     fn displace(&mut self, factor: f64, x: &[f64]) {
         let held = self.supports.values(factor, false);
@@ -27,14 +27,14 @@ impl<const D: usize> Statics<'_, D> {
     /// All loads at a load factor in N, on the displaced body, and what holds its faces.
     fn outside(&mut self, factor: f64) -> Vec<Vector<D>> {
         let mut outside = self.dead_loads(factor).to_vec();
-        let pressing = self.loads.pressing(self.discrete, factor, false);
-        press(self.discrete, &self.displacement, &pressing, &mut outside);
+        let pressing = self.loads.pressing(&self.discrete, factor, false);
+        press(&self.discrete, &self.displacement, &pressing, &mut outside);
         self.faces.add_forces(&self.displacement, factor, &mut outside);
         outside
     }
 
     fn dead_loads(&mut self, factor: f64) -> &[Vector<D>] {
-        let (loads, discrete) = (&self.loads, self.discrete);
+        let (loads, discrete) = (&self.loads, &*self.discrete);
         let fresh = || (factor, loads.dead(discrete, factor, false));
         if self.dead.as_ref().is_none_or(|(known, _)| *known != factor) {
             self.dead = Some(fresh());
@@ -56,7 +56,7 @@ impl<const D: usize> Statics<'_, D> {
     }
 }
 
-impl<const D: usize> Equations for Statics<'_, D> {
+impl<const D: usize> Equations for Statics<D> {
     fn unknowns(&self) -> usize {
         self.solver.reduction().unknowns()
     }
@@ -64,7 +64,7 @@ impl<const D: usize> Equations for Statics<'_, D> {
     fn trial(&mut self, factor: f64, x: &[f64]) -> Trial {
         self.displace(factor, x);
         self.dead_loads(factor);
-        let (discrete, displacement) = (self.discrete, &self.displacement);
+        let (discrete, displacement) = (&*self.discrete, &self.displacement);
         let dead = self.dead.as_ref().map_or([].as_slice(), |(_, dead)| dead);
         let is_broken = |a: usize, energy: f64| {
             let law = discrete.material(a).law.law();
@@ -99,9 +99,9 @@ impl<const D: usize> Equations for Statics<'_, D> {
     }
 
     fn load_rate(&mut self, factor: f64, rate: &mut [f64]) {
-        let mut forces = self.loads.dead(self.discrete, factor, true);
-        let pressing = self.loads.pressing(self.discrete, factor, true);
-        press(self.discrete, &self.displacement, &pressing, &mut forces);
+        let mut forces = self.loads.dead(&self.discrete, factor, true);
+        let pressing = self.loads.pressing(&self.discrete, factor, true);
+        press(&self.discrete, &self.displacement, &pressing, &mut forces);
         self.faces.add_rates(factor, &mut forces);
         let held = self.supports.values(factor, true);
         self.restricted(&held, forces, rate);
@@ -123,7 +123,7 @@ impl<const D: usize> Equations for Statics<'_, D> {
 
     fn linearise(&mut self, factor: f64, x: &[f64], definite: bool) -> Result<(), LinearError> {
         self.displace(factor, x);
-        let pressing = self.loads.pressing(self.discrete, factor, false);
+        let pressing = self.loads.pressing(&self.discrete, factor, false);
         self.stiffness.load(&self.displacement, &pressing);
         self.solver.load(&self.stiffness, definite && pressing.is_empty())
     }

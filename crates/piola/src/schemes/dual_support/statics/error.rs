@@ -88,12 +88,26 @@ pub enum StaticsError {
         /// The last one with an equilibrium.
         reached: f64,
     },
+    /// Newton's method has not arrived.
+    #[error(
+        "{source}; the largest force that is left, {force:.1e} N, is at particle {id} at {position:?}"
+    )]
+    Residual {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+        /// The force in N.
+        force: f64,
+        /// How it failed.
+        source: LoadError,
+    },
     /// There is no further equilibrium.
     #[error(transparent)]
     Load(LoadError),
 }
 
-impl<const D: usize> Statics<'_, D> {
+impl<const D: usize> Statics<D> {
     /// An error of the load steps with the particle that it is about.
     pub(super) fn named(&self, error: LoadError) -> StaticsError {
         match error {

@@ -4,6 +4,7 @@
 //! free; its Hessian is the [`Stiffness`]. How zeros are found, and in which steps, is the part of
 //! [`crate::solve`].
 
+mod advance;
 mod equations;
 mod error;
 mod faces;
@@ -12,8 +13,11 @@ mod rigid;
 mod stiffness;
 mod supports;
 
+pub use advance::Known;
 pub use error::StaticsError;
 pub use stiffness::Stiffness;
+
+use std::sync::Arc;
 
 use super::{Discrete, Side};
 use crate::Vector;
@@ -55,13 +59,13 @@ pub struct StaticsInput<const D: usize> {
 }
 
 /// A body with loads and supports.
-pub struct Statics<'a, const D: usize> {
-    discrete: &'a Discrete<D>,
+pub struct Statics<const D: usize> {
+    discrete: Arc<Discrete<D>>,
     loads: Loads<D>,
     supports: Supports<D>,
     faces: Faces<D>,
     solver: LinearSolver<D>,
-    stiffness: Stiffness<'a, D>,
+    stiffness: Stiffness<D>,
     newton: Newton,
     displacement: Vec<Vector<D>>,
     sides: Vec<Side<f64, D>>,
@@ -97,13 +101,13 @@ pub struct Reaction<const D: usize> {
     pub force: Vector<D>,
 }
 
-impl<'a, const D: usize> Statics<'a, D> {
+impl<const D: usize> Statics<D> {
     /// Binds loads and supports to a body, and finds the pattern of its stiffness.
     ///
     /// # Errors
     /// [`StaticsError`] for conditions on what does not exist or that contradict each other, and
     /// for bodies that are free to move as a whole.
-    pub fn new(discrete: &'a Discrete<D>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
+    pub fn new(discrete: Arc<Discrete<D>>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
         let StaticsInput {
             body_forces,
             tractions,
@@ -126,12 +130,11 @@ impl<'a, const D: usize> Statics<'a, D> {
         if let Some((body, motion)) = free_motion(&discrete.particles, &supports, faces.springs()) {
             return Err(StaticsError::Free { body, motion });
         }
-        let mut stiffness = Stiffness::new(discrete);
+        let mut stiffness = Stiffness::new(discrete.clone());
         stiffness.hold(faces.springs());
+        let places = &discrete.particles.position;
         let solver =
-            LinearSolver::new(input.method, &discrete.particles.position, &stiffness, |order| {
-                supports.reduction(order)
-            })?;
+            LinearSolver::new(input.method, places, &stiffness, |order| supports.reduction(order))?;
         Ok(Self {
             discrete,
             loads: Loads { body_forces, tractions, pressures },

@@ -24,8 +24,8 @@ use crate::{Tensor, Vector, parallel};
 ///
 /// with `M = sum_b c_cb X_cb (x) X_cb`, `y_b = 2 c_cb X_cb`, `z_bb = 2 c_cb`, and for the owner
 /// what makes sums over p vanish.
-pub struct Stiffness<'a, const D: usize> {
-    discrete: &'a Discrete<D>,
+pub struct Stiffness<const D: usize> {
+    discrete: Arc<Discrete<D>>,
     /// `sum_b c_ab X_ab (x) X_ab` of each support, J.
     moments: Vec<Tensor<D>>,
     /// Coefficient of the owner of each support in its displacement gradient, 1/m.
@@ -52,9 +52,9 @@ struct Member<const D: usize> {
     z: f64,
 }
 
-impl<'a, const D: usize> Stiffness<'a, D> {
+impl<const D: usize> Stiffness<D> {
     /// The stiffness of a body, for now at rest.
-    pub fn new(discrete: &'a Discrete<D>) -> Self {
+    pub fn new(discrete: Arc<Discrete<D>>) -> Self {
         let count = discrete.len();
         let list = &discrete.support.list;
         let owner = |a: usize| {
@@ -69,10 +69,12 @@ impl<'a, const D: usize> Stiffness<'a, D> {
             });
             squares.sum()
         };
+        let moments = (0..count).map(moment).collect();
+        let owners = (0..count).map(owner).collect();
         let mut stiffness = Self {
             discrete,
-            moments: (0..count).map(moment).collect(),
-            owners: (0..count).map(owner).collect(),
+            moments,
+            owners,
             tangents: vec![[[Tensor::zeros(); D]; D]; count],
             pressed: Vec::new(),
             springs: Arc::default(),
@@ -94,7 +96,7 @@ impl<'a, const D: usize> Stiffness<'a, D> {
     /// Takes in displacements in m, and the force `p N_a` of follower pressures on each particle
     /// per area ratio in N, empty without pressure.
     pub fn load(&mut self, displacement: &[Vector<D>], pressing: &[Vector<D>]) {
-        let discrete = self.discrete;
+        let discrete = &*self.discrete;
         parallel::for_each_chunk(&mut self.tangents, |first, tangents| {
             for (offset, tangent) in tangents.iter_mut().enumerate() {
                 let a = first + offset;
@@ -115,7 +117,7 @@ impl<'a, const D: usize> Stiffness<'a, D> {
     /// The particle at an entry of the support of c.
     #[inline]
     fn member(&self, c: usize, number: u32, entry: usize) -> Member<D> {
-        let discrete = self.discrete;
+        let discrete = &*self.discrete;
         let z = 2.0 * discrete.hourglass[c] * discrete.gradient.weight(entry as u32);
         let separation = discrete.support.separation(&discrete.particles.position, c, number);
         let g = Vector::from(*discrete.gradient.coefficient(entry as u32));
@@ -203,7 +205,7 @@ impl<'a, const D: usize> Stiffness<'a, D> {
     }
 }
 
-impl<const D: usize> Tangent<D> for Stiffness<'_, D> {
+impl<const D: usize> Tangent<D> for Stiffness<D> {
     fn coupled(&self, a: usize) -> Vec<u32> {
         let support = &self.discrete.support;
         let mut all = vec![a as u32];
@@ -238,7 +240,7 @@ impl<const D: usize> Tangent<D> for Stiffness<'_, D> {
     /// The same two passes as the forces', with the linear stress `dP/dF : A`: the hourglass force
     /// is linear as it is.
     fn apply(&mut self, direction: &[Vector<D>], product: &mut [Vector<D>]) {
-        let (discrete, tangents) = (self.discrete, &self.tangents);
+        let (discrete, tangents) = (&*self.discrete, &self.tangents);
         parallel::for_each_chunk(&mut self.sides, |first, sides| {
             for (offset, side) in sides.iter_mut().enumerate() {
                 let a = first + offset;
@@ -299,7 +301,7 @@ impl<const D: usize> Tangent<D> for Stiffness<'_, D> {
     }
 }
 
-impl<const D: usize> Stiffness<'_, D> {
+impl<const D: usize> Stiffness<D> {
     /// What the support of c adds to the block of its member p on the diagonal.
     fn own_block(&self, c: usize, p: &Member<D>) -> Tensor<D> {
         let block = block_of(&self.contracted(c, &p.g), &p.g);

@@ -1,0 +1,102 @@
+//! The formulation where there is no motion: states in equilibrium, with the work that led there.
+
+use super::external::Loaded;
+use super::statics::Known;
+use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, Row, StaticsError, TRACTION};
+use crate::schemes::{Missed, NoEquilibrium, Scheme, StaticScheme};
+use crate::solve::{LoadError, NewtonError};
+use crate::{Vector, parallel};
+
+impl<const D: usize> StaticScheme for DualSupport<D> {
+    /// Rows hold the rate of the displacement by the load factor in place of a velocity: with it a
+    /// step starts where the last two states lead. Work is added up by the trapezoidal rule, exact
+    /// where the material is linear, of second order in the steps elsewhere.
+    fn equilibrate(
+        &mut self,
+        from: f64,
+        to: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), NoEquilibrium> {
+        let length = Row::<D>::LENGTH;
+        new.copy_from_slice(old);
+        let count = self.mass.len();
+        let rows = || old.chunks_exact(length).take(count);
+        let known = Known {
+            factor: from,
+            displacement: rows().map(Row::<D>::displacement).collect(),
+            rate: (from > 0.0).then(|| rows().map(Row::<D>::velocity).collect()),
+        };
+        let Some(statics) = &mut self.statics else { return Ok(()) };
+        let held_before = statics.support_forces(from, &known.displacement);
+        let state = statics.advance(&known, to).map_err(|error| NoEquilibrium {
+            kind: kind(&error),
+            factor: to,
+            reached: from,
+            message: advised(&error),
+        })?;
+        let moved: Vec<Vector<D>> =
+            state.displacement.iter().zip(&known.displacement).map(|(u, last)| u - last).collect();
+        for (a, row) in new.chunks_exact_mut(length).take(count).enumerate() {
+            row[..D].copy_from_slice((moved[a] / (to - from)).as_slice());
+            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(state.displacement[a].as_slice());
+        }
+        let body = parallel::sum(count, |a| {
+            let both = self.body_acceleration(a, from) + self.body_acceleration(a, to);
+            0.5 * self.mass[a] * both.dot(&moved[a])
+        });
+        let of =
+            |load: &Loaded<D>| 0.5 * (load.force(from) + load.force(to)).dot(&moved[load.particle]);
+        let traction: f64 = self.loaded.iter().map(of).sum();
+        let supports = parallel::sum(count, |a| {
+            0.5 * (held_before[a] + state.support_force[a]).dot(&moved[a])
+        });
+        let tail = &mut new[count * length..];
+        tail[BODY_FORCE] += body;
+        tail[TRACTION] += traction;
+        tail[BOUNDARY_MOTION] += supports;
+        tail[Self::tail_length() - 1] = state.solved.iterations.len() as f64;
+        Ok(())
+    }
+}
+
+impl<const D: usize> DualSupport<D> {
+    /// What supports and prescribed motions hold each particle with, N.
+    pub(super) fn reactions(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
+        self.load(state);
+        if let Some(statics) = &mut self.statics {
+            return statics.support_forces(time, &self.displacement);
+        }
+        let mut rate = std::mem::take(&mut self.rate);
+        self.rates(time, state, &mut rate);
+        let mut loads = vec![Vector::zeros(); self.mass.len()];
+        for load in &self.loaded {
+            loads[load.particle] += load.force(time);
+        }
+        let mut reactions = vec![Vector::zeros(); self.mass.len()];
+        for entry in self.prescribed.iter() {
+            let (a, component) = (entry.particle, entry.component);
+            let inertia = self.mass[a] * rate[a * Row::<D>::LENGTH + component];
+            let body = self.mass[a] * self.body_acceleration(a, time)[component];
+            reactions[a][component] =
+                inertia - self.force[a][component] - loads[a][component] - body;
+        }
+        self.rate = rate;
+        reactions
+    }
+}
+
+fn kind(error: &StaticsError) -> Missed {
+    match error {
+        StaticsError::Inverted { .. } => Missed::Inverted,
+        StaticsError::Load(LoadError::Unstable { .. }) => Missed::Unstable,
+        StaticsError::Load(LoadError::Newton { source: NewtonError::Broken { .. }, .. }) => {
+            Missed::Inverted
+        }
+        _ => Missed::NoConvergence,
+    }
+}
+
+fn advised(error: &StaticsError) -> String {
+    format!("{error}; lower `time.step`, or let `time.on_failure = \"retry\"` halve it")
+}

@@ -1,0 +1,74 @@
+//! One step of the loads, from a state that is known from elsewhere.
+
+use super::{StaticState, Statics, StaticsError};
+use crate::Vector;
+use crate::solve::{LoadError, NewtonError, Path};
+
+/// A state that a step starts from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known<const D: usize> {
+    /// Its load factor.
+    pub factor: f64,
+    /// Its displacements in m.
+    pub displacement: Vec<Vector<D>>,
+    /// Their rate by the load factor in the step that led there, in m; none at the start.
+    pub rate: Option<Vec<Vector<D>>>,
+}
+
+impl<const D: usize> Statics<D> {
+    /// The state at a load factor, one step after a known one: Newton's method starts where the rate
+    /// leads, or the tangent where there is none.
+    ///
+    /// # Errors
+    /// [`StaticsError`] where none is found, or none that stays.
+    pub fn advance(
+        &mut self,
+        known: &Known<D>,
+        factor: f64,
+    ) -> Result<StaticState<D>, StaticsError> {
+        let unknowns = |rows: &[Vector<D>]| {
+            let mut x = vec![0.0; self.unknowns()];
+            self.solver.reduction().collect(rows, &mut x);
+            x
+        };
+        let x = unknowns(&known.displacement);
+        let step = factor - known.factor;
+        let before = known.rate.as_ref().map(|rate| {
+            let last = x.iter().zip(unknowns(rate)).map(|(x, rate)| x - step * rate);
+            (known.factor - step, last.collect())
+        });
+        self.faces.reset();
+        let path = Path { before, factor: known.factor, x };
+        let newton = self.newton;
+        let increment =
+            path.attempt(self, &newton, factor, false).map_err(|error| self.located(error))?;
+        Ok(self.state(increment))
+    }
+
+    /// Force of the supports on each particle in N at displacements and a load factor.
+    pub fn support_forces(&mut self, factor: f64, displacement: &[Vector<D>]) -> Vec<Vector<D>> {
+        let mut x = vec![0.0; self.unknowns()];
+        self.solver.reduction().collect(displacement, &mut x);
+        self.balance(factor, &x);
+        let reduction = self.solver.reduction();
+        self.left.iter().enumerate().map(|(a, left)| -reduction.held_part(a, left)).collect()
+    }
+
+    /// An error with the particle where most force is left, if that is what went wrong.
+    fn located(&self, error: LoadError) -> StaticsError {
+        let LoadError::Newton { source: NewtonError::NoConvergence { .. }, .. } = error else {
+            return self.named(error);
+        };
+        let reduction = self.solver.reduction();
+        let free = |a: usize| (self.left[a] - reduction.held_part(a, &self.left[a])).norm();
+        let worse = |worst: usize, a: usize| if free(a) > free(worst) { a } else { worst };
+        let particle = (1..self.left.len()).fold(0, worse);
+        let particles = &self.discrete.particles;
+        StaticsError::Residual {
+            id: particles.id[particle],
+            position: particles.position[particle].iter().copied().collect(),
+            force: free(particle),
+            source: error,
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! What a formulation offers where there is no motion, only loads that grow.
+
+use thiserror::Error;
+
+use super::Scheme;
+
+/// A formulation that finds states in equilibrium. The load factor takes the part of the time.
+pub trait StaticScheme: Scheme {
+    /// Writes the state in equilibrium with the loads of a factor of `to` to `new`, from `old`,
+    /// which is the reference state where `from` is 0 and in equilibrium with the loads of `from`
+    /// elsewhere. All that it depends on is in its arguments.
+    ///
+    /// # Errors
+    /// [`NoEquilibrium`]; `new` is of no use then.
+    fn equilibrate(
+        &mut self,
+        from: f64,
+        to: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), NoEquilibrium>;
+}
+
+/// Why there is no state in equilibrium, as far as was looked.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{message}")]
+pub struct NoEquilibrium {
+    /// In which way it was missed.
+    pub kind: Missed,
+    /// The load factor without equilibrium.
+    pub factor: f64,
+    /// The last one with it.
+    pub reached: f64,
+    /// What happened, where, and what to do about it.
+    pub message: String,
+}
+
+/// Ways to miss an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Missed {
+    /// The iteration did not get there.
+    NoConvergence,
+    /// Every way there turned a particle inside out.
+    Inverted,
+    /// What was found does not stay.
+    Unstable,
+}
