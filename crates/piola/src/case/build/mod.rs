@@ -147,7 +147,7 @@ fn upwind<const D: usize>(
     let prescribed = selections::prescribed(case, &particles, problems);
     let body_forces = selections::body_forces(case);
     let correction = correction(settings);
-    // Theory (14).
+    // The areas of theory (14).
     let areas = || {
         let operator = GradientOperator::new(&particles, &support, correction);
         operator
