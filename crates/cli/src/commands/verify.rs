@@ -122,6 +122,7 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Option<Pa
         link: path.display().to_string(),
         rows: Vec::new(),
         runs: Vec::new(),
+        pictures: Vec::new(),
     };
     let base = match read(None) {
         Ok(base) => base,

@@ -30,6 +30,7 @@ fn a_page_of_a_coarse_case_is_as_expected() {
     let place = Place::new();
     place.write("cases/bar/case.toml", BAR.to_owned() + CHECKS);
     place.write("cases/bar/README.md", "# T1");
+    place.write("cases/bar/impact.png", "a picture of its page");
     let (stdout, _) = place.run("verify cases --page docs/page.md", 1);
     assert_contains(&stdout, &["3 checks of 1 case", "wrote docs/page.md with 3 charts"]);
     let page = place.read("docs/page.md");
@@ -54,6 +55,7 @@ fn a_page_of_a_coarse_case_is_as_expected() {
             "| wrong on purpose | **no** |",
             "![bar, tip](page/bar-tip.png)",
             "![bar, mesh-run-first_step](page/bar-mesh-run-first_step.png)",
+            "![bar, impact](../cases/bar/impact.png)",
         ],
     );
     // A second time it is the same to the byte, charts too.

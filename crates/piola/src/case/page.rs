@@ -24,6 +24,8 @@ pub struct PageCase {
     pub rows: Vec<CheckRow>,
     /// What was run, `None` for the case itself.
     pub runs: Vec<(Option<String>, Rc<Finished>)>,
+    /// Pictures that its page shows: name, and link relative to the validation page.
+    pub pictures: Vec<(String, String)>,
 }
 
 /// A page and the charts that it shows.
@@ -157,6 +159,9 @@ fn section(page: &mut Page, case: &PageCase, folder: &str) {
             &format!("\n![{}, {}]({folder}/{file})\n", case.name, cell(&name)),
         );
         page.charts.push((file, chart));
+    }
+    for (name, link) in &case.pictures {
+        push(&mut page.markdown, &format!("\n![{}, {}]({link})\n", case.name, cell(name)));
     }
 }
 

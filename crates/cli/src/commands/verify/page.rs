@@ -27,6 +27,9 @@ pub fn write(file: &Path, mut cases: Vec<PageCase>, full: bool) -> Result<(), Fa
     fs::create_dir_all(above).map_err(|error| fault(above, &error))?;
     for case in &mut cases {
         let target = Path::new(&case.link).with_file_name("README.md");
+        if target.is_file() {
+            case.pictures = pictures(&target, above);
+        }
         let target = if target.is_file() { target } else { PathBuf::from(&case.link) };
         case.link = relative(above, &target);
     }
@@ -48,6 +51,19 @@ pub fn write(file: &Path, mut cases: Vec<PageCase>, full: bool) -> Result<(), Fa
     }
     let charts = count(made.charts.len() as u64, "chart");
     terminal::print(&format!("wrote {} with {charts}\n", file.display()))
+}
+
+/// The pictures beside the page of a case, by name, with their links from the folder `from`.
+fn pictures(page: &Path, from: &Path) -> Vec<(String, String)> {
+    let entries = page.parent().and_then(|folder| fs::read_dir(folder).ok());
+    let mut files: Vec<PathBuf> =
+        entries.into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "png"));
+    files.sort();
+    let name = |file: &Path| {
+        file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+    };
+    files.iter().map(|file| (name(file), relative(from, file))).collect()
 }
 
 /// The charts in the folder `name` that a page shows.
