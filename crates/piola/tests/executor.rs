@@ -4,8 +4,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use piola::fields::FieldDescription;
-use piola::schemes::{Health, Particle, Scheme, StepLimit};
+use piola::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit};
 use piola::time::{
     Executor, Failure, IntegratorKind, Moment, ObserveError, Observer, Outcome, Schedule,
     StepControl, Summary,
@@ -20,8 +19,15 @@ struct Pendulum {
 const PENDULUM: Pendulum = Pendulum { limit: |_| 0.1, ratio: |_| 1.0 };
 
 impl Scheme for Pendulum {
-    fn name(&self) -> &'static str {
-        "pendulum"
+    fn description(&self) -> &'static SchemeDescription {
+        &SchemeDescription {
+            name: "pendulum",
+            fields: &[],
+            energies: &[],
+            mechanisms: &[],
+            impulses: &[],
+            figures: &[],
+        }
     }
 
     fn dimension(&self) -> usize {
@@ -34,22 +40,6 @@ impl Scheme for Pendulum {
 
     fn row_length(&self) -> usize {
         3
-    }
-
-    fn fields(&self) -> &'static [FieldDescription] {
-        &[]
-    }
-
-    fn mechanisms(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    fn impulses(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    fn energy_names(&self) -> &'static [&'static str] {
-        &[]
     }
 
     fn initial_state(&self) -> Vec<f64> {

@@ -10,7 +10,11 @@ use piola::observe::Series;
 use piola::time::{Failure, Outcome, Progress};
 
 fn load(name: &str, set: &[&str]) -> Case {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/upwind").join(name);
+    load_of("upwind", name, set)
+}
+
+fn load_of(scheme: &str, name: &str, set: &[&str]) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(scheme).join(name);
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
     let options = LoadOptions { overrides, ..LoadOptions::default() };
     case::load(&path.join("case.toml"), &options).unwrap_or_else(|problems| panic!("{problems}"))
@@ -241,4 +245,35 @@ fn a_retried_run_resumes_to_the_bit() {
     let last = case::build(&case).unwrap().resume(&out, &stop, &mut |_| {}).unwrap();
     assert_eq!(last.tables, whole.tables);
     assert_eq!(last.summary.retries, whole.summary.retries);
+}
+
+/// A sheet of rubber is pressed together: a slender one buckles, and steps that are far too large
+/// turn it inside out or lead nowhere.
+#[test]
+fn what_statics_misses_is_named() {
+    let missed = |set: &[&str]| {
+        let coarse = ["parameters.dx='side / 10'", "time.on_failure='stop'"];
+        let finished = run(&load_of("dual-support", "rubber", &[&coarse, set].concat()), None);
+        let failure = failure(&finished);
+        let kind = failure.kind();
+        (kind, failure.to_string(), finished.summary.time)
+    };
+    let slender = "body.sheet.shape.max=['side / 5', 'side']";
+    let (kind, message, reached) = missed(&[slender, "parameters.pull='-0.3 * side'"]);
+    assert_eq!(kind, "unstable");
+    // Clamped at both ends, Euler's strain is 4 pi^2 / (12 * 25) = 0.1316, at a load factor of 0.439.
+    let named = ["buckles", "load factor of 0.45", "stable at 0.4", "one direction"];
+    assert!(named.iter().all(|text| message.contains(text)), "{message}");
+    assert!((reached - 0.4).abs() < 1e-12, "it is left where it was sound: {reached}");
+
+    let at_once = ["time.step=1", "output.every=1", "output.table_every=1"];
+    let (kind, message, reached) =
+        missed(&[&at_once[..], &["parameters.pull='-2 * side'"]].concat());
+    assert_eq!((kind, reached), ("inverted", 0.0));
+    assert!(message.contains("turned inside out") && message.contains("`time.step`"), "{message}");
+    let (kind, message, reached) =
+        missed(&[&at_once[..], &["parameters.pull='500 * side'"]].concat());
+    assert_eq!((kind, reached), ("no_convergence", 0.0));
+    let named = ["the residual went 1.0e0", "particle 107", "`time.step`", "halves it"];
+    assert!(named.iter().all(|text| message.contains(text)), "{message}");
 }

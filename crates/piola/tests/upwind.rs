@@ -374,7 +374,7 @@ fn every_described_field_has_values() {
     let mut scheme =
         Choice::new(lattice([3.0, 5.0], [6, 8]), gamma()).build(|_| Vector::<2>::zeros());
     let state = disturbed(&scheme, 0.01);
-    for field in scheme.fields() {
+    for field in scheme.description().fields {
         let mut values = Vec::new();
         scheme.sample(0.0, &state, field.name, &[3, 11], &mut values);
         assert_eq!(values.len(), 2 * field.kind.components(2), "{}", field.name);

@@ -5,7 +5,7 @@ mod function;
 mod held;
 pub(crate) mod prescribed;
 mod pressure;
-mod traction;
+pub(crate) mod traction;
 
 pub use body_force::BodyForce;
 pub use function::{SpaceTime, padded};

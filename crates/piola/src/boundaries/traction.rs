@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::function::SpaceTime;
+use super::function::{SpaceTime, padded};
+use crate::Vector;
 
 /// A traction in Pa of the reference area on a set of particles that carry areas: `A_a t_a / V_a`
 /// of Upwind (3.39).
@@ -21,4 +22,33 @@ pub struct Traction<const D: usize> {
     pub areas: Vec<f64>,
     /// The traction vector in Pa.
     pub value: [Arc<dyn SpaceTime>; D],
+}
+
+impl<const D: usize> Traction<D> {
+    /// The load on each of its particles, of which all are at `positions` in m.
+    pub(crate) fn loaded(&self, positions: &[Vector<D>]) -> impl Iterator<Item = Loaded<D>> {
+        self.particles.iter().zip(&self.areas).map(|(&particle, &area)| Loaded {
+            particle: particle as usize,
+            area,
+            place: padded(&positions[particle as usize]),
+            value: self.value.clone(),
+        })
+    }
+}
+
+/// A traction at one particle.
+pub(crate) struct Loaded<const D: usize> {
+    /// Index of the particle in memory.
+    pub particle: usize,
+    /// Reference area in m^(D-1).
+    area: f64,
+    place: [f64; 3],
+    value: [Arc<dyn SpaceTime>; D],
+}
+
+impl<const D: usize> Loaded<D> {
+    /// The force in N at a time in s.
+    pub fn force(&self, time: f64) -> Vector<D> {
+        Vector::from_fn(|i, _| self.area * self.value[i].value(self.place, time))
+    }
 }

@@ -9,7 +9,7 @@ use super::spec::Choice;
 use crate::fields::FieldDescription;
 use crate::observe;
 use crate::observe::reduce::{REDUCTIONS, ReductionEntry};
-use crate::schemes::{dual_support, momentum_components, transport_velocity, upwind};
+use crate::schemes::{SchemeDescription, momentum_components};
 use crate::time::IntegratorKind;
 
 /// The kernels.
@@ -46,47 +46,25 @@ pub fn reductions() -> Vec<Choice> {
 
 /// The fields of the scheme called `scheme`.
 pub fn fields(scheme: &str) -> &'static [FieldDescription] {
-    match scheme {
-        "upwind" => &upwind::FIELDS,
-        "transport_velocity" => &transport_velocity::FIELDS,
-        "dual_support" => &dual_support::FIELDS,
-        _ => &[],
-    }
+    SchemeDescription::of(scheme).map_or(&[], |scheme| scheme.fields)
 }
 
 /// Columns of the energy table, after `energy.`.
 pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
-    match scheme {
-        "upwind" => observe::energy_columns(&upwind::ENERGIES, &upwind::MECHANISMS),
-        "transport_velocity" => {
-            observe::energy_columns(&transport_velocity::ENERGIES, &transport_velocity::MECHANISMS)
-        }
-        "dual_support" => {
-            observe::energy_columns(&dual_support::ENERGIES, &dual_support::MECHANISMS)
-        }
-        _ => Vec::new(),
-    }
+    SchemeDescription::of(scheme)
+        .map_or_else(Vec::new, |s| observe::energy_columns(s.energies, s.mechanisms))
 }
 
 /// Columns of the momentum table in `dimension` dimensions, after `momentum.`.
 pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
-    let impulses: &[&str] = match scheme {
-        "upwind" => &upwind::IMPULSES,
-        "transport_velocity" => &transport_velocity::IMPULSES,
-        "dual_support" => &dual_support::IMPULSES,
-        _ => return Vec::new(),
-    };
-    let columns = observe::momentum_columns(momentum_components(dimension), impulses);
-    columns.into_iter().map(|(name, _)| name).collect()
+    let columns = SchemeDescription::of(scheme)
+        .map(|scheme| observe::momentum_columns(momentum_components(dimension), scheme.impulses));
+    columns.into_iter().flatten().map(|(name, _)| name).collect()
 }
 
 /// Columns of the table of steps, after `step.`.
 pub fn step_columns(scheme: &str) -> Vec<&'static str> {
-    let figures: &[(&str, &str)] = match scheme {
-        "transport_velocity" => &transport_velocity::FIGURES,
-        "dual_support" => &dual_support::FIGURES,
-        _ => &[],
-    };
+    let figures = SchemeDescription::of(scheme).map_or(&[][..], |scheme| scheme.figures);
     observe::STEP_COLUMNS.iter().chain(figures).map(|(name, _)| *name).collect()
 }
 

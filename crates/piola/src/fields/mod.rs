@@ -30,6 +30,18 @@ pub struct FieldDescription {
     pub meaning: &'static str,
 }
 
+impl FieldDescription {
+    /// A field, all of it.
+    pub const fn new(
+        name: &'static str,
+        unit: &'static str,
+        kind: FieldKind,
+        meaning: &'static str,
+    ) -> Self {
+        Self { name, unit, kind, meaning }
+    }
+}
+
 impl FieldKind {
     /// Number of components a particle in `dimension` dimensions.
     pub fn components(self, dimension: usize) -> usize {

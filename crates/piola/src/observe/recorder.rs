@@ -107,17 +107,18 @@ impl Recorder {
     /// The tables that a recorder of `probes` fills, without rows.
     pub fn columns(scheme: &dyn Scheme, probes: &[Probe]) -> Tables {
         let time = || Column::new("time", "s");
+        let description = scheme.description();
         let mut probe_columns = vec![time()];
         probe_columns.extend(probes.iter().flat_map(|probe| probe.columns(scheme.dimension())));
-        let energy_names = energy_columns(scheme.energy_names(), scheme.mechanisms());
+        let energy_names = energy_columns(description.energies, description.mechanisms);
         let energy_columns = energy_names.into_iter().map(|name| Column::new(name, "J"));
         let energy = std::iter::once(time()).chain(energy_columns).collect();
         let components = momentum_components(scheme.dimension());
-        let momentum_columns = momentum_columns(components, scheme.impulses());
+        let momentum_columns = momentum_columns(components, description.impulses);
         let momentum_columns =
             momentum_columns.into_iter().map(|(name, unit)| Column::new(name, unit));
         let momentum = std::iter::once(time()).chain(momentum_columns).collect();
-        let step_columns = STEP_COLUMNS.iter().chain(scheme.figure_names());
+        let step_columns = STEP_COLUMNS.iter().chain(description.figures);
         let step_columns = step_columns.map(|&(name, unit)| Column::new(name, unit));
         let steps = std::iter::once(time()).chain(step_columns).collect();
         Tables {
@@ -147,7 +148,7 @@ impl Recorder {
         tables.probes.push_row(row).expect(complete);
 
         let ledger = Ledger::of(moment.scheme, moment.state);
-        let energies = moment.scheme.energy_names().len();
+        let energies = moment.scheme.description().energies.len();
         row.clear();
         row.resize(1 + energies, 0.0);
         row[0] = moment.time;

@@ -1,16 +1,20 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
+mod description;
 pub mod dual_support;
 mod equilibrium;
 mod initial;
+pub(crate) mod input;
 pub mod momentum;
 mod scheme;
 mod split;
 pub mod transport_velocity;
 pub mod upwind;
 
+pub use description::SchemeDescription;
 pub use equilibrium::{Missed, NoEquilibrium, StaticScheme};
 pub use initial::Initial;
+pub use input::InputError;
 pub use momentum::{MomentumComponent, momentum_components};
 pub use scheme::{Escape, Health, Ledger, Particle, Scheme, StepLimit, snapshot};
 pub use split::SplitScheme;

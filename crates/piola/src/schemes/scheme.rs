@@ -2,19 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{SplitScheme, StaticScheme};
+use super::{SchemeDescription, SplitScheme, StaticScheme};
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
 ///
 /// The state is one flat slice: `particle_count` rows of `row_length` numbers, followed by the
-/// running integrals of the [`Ledger`]: the work of each of [`Scheme::mechanisms`], then the
-/// impulse of each of [`Scheme::impulses`] with as many numbers as momentum has components. The
+/// running integrals of the [`Ledger`]: the work of each of its mechanisms, then the
+/// impulse of each way in, as its [`SchemeDescription`] has them, with as many numbers as momentum has components. The
 /// rate of an integral is a power or a force, so an integrator carries the bookkeeping to its own
 /// order without knowing of it, theory (18), and a copy of the state is all there is to save.
 pub trait Scheme: Send {
-    /// Name in a case file.
-    fn name(&self) -> &'static str;
+    /// What it is called and what it shows.
+    fn description(&self) -> &'static SchemeDescription;
 
     /// 1, 2 or 3.
     fn dimension(&self) -> usize;
@@ -24,19 +24,6 @@ pub trait Scheme: Send {
 
     /// Numbers of state a particle.
     fn row_length(&self) -> usize;
-
-    /// The fields that [`Scheme::sample`] and [`snapshot`] can give.
-    fn fields(&self) -> &'static [FieldDescription];
-
-    /// The mechanisms that give or take energy, in the order of the state's tail. Work done on
-    /// the body is positive; what a dissipative mechanism takes is negative.
-    fn mechanisms(&self) -> &'static [&'static str];
-
-    /// The ways in which momentum enters from outside, in the order of the state's tail.
-    fn impulses(&self) -> &'static [&'static str];
-
-    /// The names of the energies of [`Scheme::energies`].
-    fn energy_names(&self) -> &'static [&'static str];
 
     /// The state at the start, with zero integrals.
     fn initial_state(&self) -> Vec<f64>;
@@ -57,22 +44,17 @@ pub trait Scheme: Send {
         None
     }
 
-    /// Names and units of figures of its own, which the table of steps records.
-    fn figure_names(&self) -> &'static [(&'static str, &'static str)] {
-        &[]
-    }
-
-    /// Appends the values of [`Scheme::figure_names`] at `state`.
+    /// Appends the values of its own [`figures`](SchemeDescription::figures) at `state`.
     fn figures(&self, _state: &[f64], _figures: &mut Vec<f64>) {}
 
-    /// The energies of `state` in J, in the order of [`Scheme::energy_names`].
+    /// The energies of `state` in J, in the order of its description.
     fn energies(&self, state: &[f64], energies: &mut [f64]);
 
     /// The momentum of `state`, one number for each of
     /// [`momentum_components`](super::momentum_components).
     fn momentum(&self, state: &[f64], momentum: &mut [f64]);
 
-    /// Appends the components of one of [`Scheme::fields`] at `state` for each of `particles`
+    /// Appends the components of one of its [`fields`](SchemeDescription::fields) at `state` for each of `particles`
     /// (indices in memory) to `values`. A field of another name appends nothing.
     fn sample(
         &mut self,
@@ -128,10 +110,11 @@ impl<'a> Ledger<'a> {
     /// The integrals of `state`.
     pub fn of(scheme: &dyn Scheme, state: &'a [f64]) -> Self {
         let tail = &state[scheme.particle_count() * scheme.row_length()..];
-        let (work, rest) = tail.split_at(scheme.mechanisms().len());
+        let description = scheme.description();
+        let (work, rest) = tail.split_at(description.mechanisms.len());
         let components = super::momentum_components(scheme.dimension()).len();
         // What a scheme keeps behind its ledger is its own.
-        Self { work, impulses: &rest[..scheme.impulses().len() * components] }
+        Self { work, impulses: &rest[..description.impulses.len() * components] }
     }
 }
 
@@ -153,6 +136,8 @@ pub struct Escape {
     pub speed: f64,
     /// Name of the wall that it has gone through; `None` if it has left the box around everything.
     pub wall: Option<String>,
+    /// What to change.
+    pub advice: &'static str,
 }
 
 /// Figures that tell whether a state is sound.
@@ -239,7 +224,7 @@ pub fn snapshot(
     names: &[&str],
 ) -> Snapshot {
     let particles: Vec<u32> = (0..scheme.particle_count() as u32).collect();
-    let fields = scheme.fields().iter().filter(|field| names.contains(&field.name));
+    let fields = scheme.description().fields.iter().filter(|field| names.contains(&field.name));
     let described: Vec<FieldDescription> = fields.copied().collect();
     let mut all = |name: &str| {
         let mut values = Vec::new();

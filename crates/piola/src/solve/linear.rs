@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::jacobi::BlockJacobi;
 use super::krylov::{Outcome, conjugate_gradients, gmres};
-use super::{Factor, FactorError, Reduction, SparseMatrix, dissect};
+use super::{Factor, FactorError, Reduction, SparseMatrix, dissect, irregular};
 use crate::{Tensor, Vector, parallel};
 
 /// The derivative of what a scheme's rows resist with, at the state it was made for.
@@ -219,8 +219,7 @@ impl<const D: usize> LinearSolver<D> {
                 negative => Stability::Unstable(Some(negative)),
             };
         }
-        let golden = |k: usize| ((k + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5;
-        let start: Vec<f64> = (0..self.reduction.unknowns()).map(golden).collect();
+        let start: Vec<f64> = (0..self.reduction.unknowns()).map(irregular).collect();
         match self.iterate(tangent, &start, 1e-6).negative_curvature {
             true => Stability::Unstable(None),
             false => Stability::Stable,

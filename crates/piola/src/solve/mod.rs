@@ -9,6 +9,7 @@
 //! - [`Factor`] takes it apart as `L D L^T`, in the order of [`dissect`], and counts the negative
 //!   pivots: a direction in which the energy falls for each of them;
 //! - [`conjugate_gradients`] and [`gmres`] need products only;
+//! - [`largest_mode`] finds the fastest of all vibrations, which bounds explicit steps;
 //! - [`LinearSolver`] is one of both ways behind one face;
 //! - [`Newton`] finds the zero of a residual, [`follow`] a row of them under growing loads, and
 //!   [`follow_arc`] a path on which loads may fall again.
@@ -18,6 +19,7 @@ mod dissection;
 mod factor;
 mod jacobi;
 mod krylov;
+mod lanczos;
 mod linear;
 mod load_steps;
 mod newton;
@@ -28,6 +30,7 @@ pub use arc_length::{ArcLength, follow_arc};
 pub use dissection::dissect;
 pub use factor::{Factor, FactorError};
 pub use krylov::{Outcome, conjugate_gradients, gmres};
+pub use lanczos::{Mode, irregular, largest_mode};
 pub use linear::{LinearError, LinearMethod, LinearReport, LinearSolver, Stability, Tangent};
 pub use load_steps::{Increment, LoadError, LoadSteps, Path, follow};
 pub use newton::{Equations, Iteration, Newton, NewtonError, Solved, Trial};

@@ -52,9 +52,7 @@ pub enum Failure {
     /// A particle is where it must not be.
     #[error(
         "particle {} (reference position {:?} m) {} at {:?} m with {:.4e} m/s, after step {step}, \
-         t = {time:.6} s; if a few lost drops do not matter, `scheme.escaped = \"remove\"` takes them \
-         out and counts them; otherwise make the wall thicker than the support of the kernel and \
-         without holes, raise the wave speed of the fluid, or lower `time.cfl`",
+         t = {time:.6} s; {}",
         particle.id,
         particle.reference,
         match &escape.wall {
@@ -62,7 +60,8 @@ pub enum Failure {
             None => "has left the box around everything, and is".into(),
         },
         escape.position,
-        escape.speed
+        escape.speed,
+        escape.advice
     )]
     Escaped {
         /// Index of the particle in memory.
@@ -70,7 +69,7 @@ pub enum Failure {
         /// The particle.
         particle: Particle,
         /// Where it is, how fast, and through which wall.
-        escape: Escape,
+        escape: Box<Escape>,
         /// Steps taken.
         step: u64,
         /// Simulated time in s.

@@ -140,7 +140,7 @@ impl Trace {
         let head = head.into_iter().chain([("is_bad", "1")]);
         let mut columns: Vec<_> = head.map(|(name, unit)| (name.to_owned(), unit)).collect();
         let dimension = scheme.dimension();
-        for field in scheme.fields() {
+        for field in scheme.description().fields {
             columns.extend((0..field.kind.components(dimension)).map(|number| {
                 let component = component_name(field.kind, number, dimension);
                 let dot = if component.is_empty() { "" } else { "." };
@@ -153,7 +153,8 @@ impl Trace {
     fn record(&mut self, scheme: &mut dyn Scheme, step: u64, time: f64, size: f64, state: &[f64]) {
         let dimension = scheme.dimension();
         let fields: Vec<(usize, Vec<f64>)> = scheme
-            .fields()
+            .description()
+            .fields
             .iter()
             .map(|field| {
                 let mut values = Vec::new();

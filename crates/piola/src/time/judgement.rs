@@ -51,6 +51,7 @@ impl Executor {
             && let Some(escape) = self.scheme.escape(index, state)
         {
             let particle = self.scheme.particle(index);
+            let escape = Box::new(escape);
             return Some(Failure::Escaped { index, particle, escape, step, time });
         }
         if health.largest_speed > speed_limit {

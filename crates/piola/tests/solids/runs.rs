@@ -7,7 +7,7 @@ use piola::boundaries::{PrescribedVelocity, Traction};
 use piola::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Settings,
 };
-use piola::schemes::{Scheme, momentum_components};
+use piola::schemes::{InputError, Scheme, momentum_components};
 use piola::time::IntegratorKind;
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
 use piola_formulas::volumetric::StressState;
@@ -284,13 +284,13 @@ fn impossible_input_is_refused() {
         "the hourglass coefficient must be at least 0 and finite, got -0.1"
     );
     let error = refused(&|input| input.velocity[3][0] = f64::NAN);
-    assert!(matches!(error, DualSupportError::Velocity { id: 3, .. }));
+    assert!(matches!(error, DualSupportError::Input(InputError::Velocity { id: 3, .. })));
     let error = refused(&|input| input.materials[0].density = 0.0);
-    assert!(matches!(error, DualSupportError::Mass { id: 0, .. }));
+    assert!(matches!(error, DualSupportError::Input(InputError::Mass { id: 0, .. })));
     let error = refused(&|input| input.particles.body[7] = 2);
-    assert!(matches!(error, DualSupportError::Index { got: 2, count: 1, .. }));
+    assert!(matches!(error, DualSupportError::Input(InputError::Index { got: 2, count: 1, .. })));
     let error = refused(&|input| input.velocity.truncate(3));
-    assert!(matches!(error, DualSupportError::Length { got: 3, .. }));
+    assert!(matches!(error, DualSupportError::Input(InputError::Length { got: 3, .. })));
     let gradients = Gradients::PatchConsistent { areas: vec![Vector::zeros(); 25] };
     let error = refused(&|input| input.settings.gradients = gradients.clone());
     assert!(matches!(error, DualSupportError::Operator(_)));

@@ -21,10 +21,10 @@ use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::observe::{Line, Probe};
 use crate::operators::{Correction, GradientOperator, Support};
-use crate::schemes::Scheme;
 use crate::schemes::upwind::{
     Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
 };
+use crate::schemes::{InputError, Scheme};
 use crate::time::{CheckpointPolicy, IntegratorKind, StepControl};
 
 use bodies::BodyReport;
@@ -180,7 +180,7 @@ fn upwind<const D: usize>(
     built
         .map_err(|error| {
             let (place, label) = match &error {
-                UpwindError::Prestress { .. } | UpwindError::Velocity { .. } => {
+                UpwindError::Prestress { .. } | UpwindError::Input(InputError::Velocity { .. }) => {
                     (case.bodies[0].name.place, "initial values of a body")
                 }
                 _ => (settings.smoothing_length.place, "with this smoothing length"),

@@ -10,6 +10,7 @@ use crate::case::model::{self, Case, GradientKind, SupportSize};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::{DirectedSupport, lattice_areas, nearest_radii};
+use crate::schemes::InputError;
 use crate::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Settings, StaticsError,
     StaticsInput,
@@ -90,7 +91,7 @@ pub(super) fn build<const D: usize>(
     });
     let scheme = scheme.map_err(|error| {
         let (place, label) = match &error {
-            DualSupportError::Velocity { .. } => {
+            DualSupportError::Input(InputError::Velocity { .. }) => {
                 (case.bodies[0].name.place, "initial values of a body")
             }
             DualSupportError::Statics(StaticsError::Free { .. }) => {

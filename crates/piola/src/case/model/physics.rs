@@ -6,7 +6,7 @@ use piola_formulas::volumetric::{self, StressState};
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::schemes::transport_velocity;
+use crate::schemes::{dual_support, transport_velocity, upwind};
 
 /// What a body is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,11 +143,12 @@ pub enum Scheme {
 impl Scheme {
     /// Its name in a case file.
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::Upwind(_) => "upwind",
-            Self::TransportVelocity(_) => "transport_velocity",
-            Self::DualSupport(_) => "dual_support",
-        }
+        let description = match self {
+            Self::Upwind(_) => upwind::DESCRIPTION,
+            Self::TransportVelocity(_) => transport_velocity::DESCRIPTION,
+            Self::DualSupport(_) => dual_support::DESCRIPTION,
+        };
+        description.name
     }
 }
 

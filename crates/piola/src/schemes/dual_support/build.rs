@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::external::Loaded;
 use super::inspect::largest_wave_modulus;
 use super::stable_step::stable_step;
 use super::{
@@ -12,9 +11,13 @@ use super::{
     StaticsInput,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{BodyForce, PrescribedVelocity, Traction, padded};
+use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
 use crate::geometry::Particles;
 use crate::operators::{DirectedSupport, DualGradient, OperatorError};
+use crate::schemes::InputError;
+use crate::schemes::input::{
+    check_conditions, check_lengths, check_materials, check_particle, check_particles,
+};
 use crate::{Tensor, Vector};
 
 /// All that the formulation is bound to.
@@ -50,47 +53,9 @@ pub enum DualSupportError {
     /// Statics that cannot be done.
     #[error(transparent)]
     Statics(#[from] StaticsError),
-    /// An array that does not have one entry for each particle.
-    #[error("{what} has {got} entries, expected one for each of the {expected} particles")]
-    Length {
-        /// The array.
-        what: &'static str,
-        /// Number of particles.
-        expected: usize,
-        /// Its length.
-        got: usize,
-    },
-    /// The number of a particle, of a component or of a body that does not exist.
-    #[error("{what} {got} does not exist, expected a number below {count}")]
-    Index {
-        /// What is numbered, and where.
-        what: String,
-        /// The number.
-        got: usize,
-        /// How many there are.
-        count: usize,
-    },
-    /// A particle without mass.
-    #[error(
-        "particle {id} at {position:?} has a mass of {mass} kg; its volume and the density of its \
-         material must be positive"
-    )]
-    Mass {
-        /// Number of the particle in the order of creation.
-        id: u32,
-        /// Its reference position in m.
-        position: Vec<f64>,
-        /// Its mass in kg.
-        mass: f64,
-    },
-    /// An initial velocity that is no number.
-    #[error("the initial velocity of particle {id} at {position:?} is not finite")]
-    Velocity {
-        /// Number of the particle in the order of creation.
-        id: u32,
-        /// Its reference position in m.
-        position: Vec<f64>,
-    },
+    /// Parts that do not fit together.
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// A hourglass coefficient that takes stiffness away.
     #[error("the hourglass coefficient must be at least 0 and finite, got {value}")]
     Hourglass {
@@ -112,11 +77,15 @@ impl<const D: usize> Discrete<D> {
         materials: Vec<Material<D>>,
     ) -> Result<Self, DualSupportError> {
         let count = particles.len();
-        check_lengths(&particles, &support, settings)?;
-        let bodies = materials.len();
-        if let Some(&body) = particles.body.iter().find(|&&body| body as usize >= bodies) {
-            return Err(index("the material of body", body as usize, bodies));
-        }
+        check_particles(&particles)?;
+        check_materials(&particles, materials.len())?;
+        let areas = match &settings.gradients {
+            Gradients::PatchConsistent { areas } => areas.len(),
+            Gradients::Plain => count,
+        };
+        let lists =
+            [("the neighbour list", support.list.len()), ("the list of boundary areas", areas)];
+        check_lengths(count, &lists)?;
         if !(settings.hourglass >= 0.0 && settings.hourglass.is_finite()) {
             return Err(DualSupportError::Hourglass { value: settings.hourglass });
         }
@@ -142,34 +111,17 @@ impl<const D: usize> DualSupport<D> {
     pub fn new(input: DualSupportInput<D>) -> Result<Self, DualSupportError> {
         let DualSupportInput { particles, support, settings, materials, velocity, .. } = input;
         let count = particles.len();
-        if velocity.len() != count {
-            let what = "the initial velocity";
-            return Err(DualSupportError::Length { what, expected: count, got: velocity.len() });
-        }
-        check_conditions(count, D, &input.tractions, &input.prescribed)?;
+        check_lengths(count, &[("the initial velocity", velocity.len())])?;
+        check_conditions(count, &input.tractions, &input.prescribed)?;
         let discrete = Arc::new(Discrete::new(particles, support, &settings, materials)?);
         let particles = &discrete.particles;
         let mut mass = Vec::with_capacity(count);
         for (a, velocity) in velocity.iter().enumerate() {
-            let (id, position) = (particles.id[a], || particles.position[a].as_slice().to_vec());
             let own = discrete.material(a).density * particles.volume[a];
-            if !(own > 0.0 && own.is_finite()) {
-                return Err(DualSupportError::Mass { id, position: position(), mass: own });
-            }
-            if velocity.iter().any(|v| !v.is_finite()) {
-                return Err(DualSupportError::Velocity { id, position: position() });
-            }
+            check_particle(particles, a, own, velocity)?;
             mass.push(own);
         }
         let positions = &particles.position;
-        let loaded = input.tractions.iter().flat_map(|traction| {
-            traction.particles.iter().zip(&traction.areas).map(|(&particle, &area)| Loaded {
-                particle: particle as usize,
-                area,
-                place: padded(&positions[particle as usize]),
-                value: traction.value.clone(),
-            })
-        });
         let at_rest =
             |material: &Material<D>| largest_wave_modulus(&material.law, &Tensor::zeros());
         let (stable_step, stiffest) = match &input.statics {
@@ -181,7 +133,7 @@ impl<const D: usize> DualSupport<D> {
             Statics::new(discrete.clone(), StaticsInput { body_forces, tractions, ..statics })
         });
         Ok(Self {
-            loaded: loaded.collect(),
+            loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
             modulus_at_rest: discrete.materials.iter().map(at_rest).collect(),
             statics: statics.transpose()?.map(Box::new),
@@ -197,66 +149,4 @@ impl<const D: usize> DualSupport<D> {
             discrete,
         })
     }
-}
-
-fn check_lengths<const D: usize>(
-    particles: &Particles<D>,
-    support: &DirectedSupport<D>,
-    settings: &Settings<D>,
-) -> Result<(), DualSupportError> {
-    let expected = particles.len();
-    let areas = match &settings.gradients {
-        Gradients::PatchConsistent { areas } => areas.len(),
-        Gradients::Plain => expected,
-    };
-    for (what, got) in [
-        ("the list of volumes", particles.volume.len()),
-        ("the list of weights", particles.weight.len()),
-        ("the list of bodies", particles.body.len()),
-        ("the list of ids", particles.id.len()),
-        ("the neighbour list", support.list.len()),
-        ("the list of boundary areas", areas),
-    ] {
-        if got != expected {
-            return Err(DualSupportError::Length { what, expected, got });
-        }
-    }
-    Ok(())
-}
-
-fn check_conditions<const D: usize>(
-    count: usize,
-    dimension: usize,
-    tractions: &[Traction<D>],
-    prescribed: &[PrescribedVelocity],
-) -> Result<(), DualSupportError> {
-    let selected = |name: &str, particles: &[u32]| {
-        let missing = particles.iter().find(|&&particle| particle as usize >= count);
-        missing.map_or(Ok(()), |&particle| {
-            Err(index(format!("`{name}`: particle"), particle as usize, count))
-        })
-    };
-    for traction in tractions {
-        let (expected, got) = (traction.particles.len(), traction.areas.len());
-        if expected != got {
-            return Err(DualSupportError::Length {
-                what: "the areas of a traction",
-                expected,
-                got,
-            });
-        }
-        selected(&traction.name, &traction.particles)?;
-    }
-    for condition in prescribed {
-        selected(&condition.name, &condition.particles)?;
-        if condition.component >= dimension {
-            let what = format!("`{}`: velocity component", condition.name);
-            return Err(index(what, condition.component, dimension));
-        }
-    }
-    Ok(())
-}
-
-fn index(what: impl Into<String>, got: usize, count: usize) -> DualSupportError {
-    DualSupportError::Index { what: what.into(), got, count }
 }

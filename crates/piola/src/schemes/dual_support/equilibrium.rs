@@ -1,8 +1,8 @@
 //! The formulation where there is no motion: states in equilibrium, with the work that led there.
 
-use super::external::Loaded;
 use super::statics::Known;
 use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, Row, StaticsError, TRACTION};
+use crate::boundaries::traction::Loaded;
 use crate::schemes::{Missed, NoEquilibrium, Scheme, StaticScheme};
 use crate::solve::{LoadError, NewtonError};
 use crate::{Vector, parallel};
@@ -98,5 +98,8 @@ fn kind(error: &StaticsError) -> Missed {
 }
 
 fn advised(error: &StaticsError) -> String {
-    format!("{error}; lower `time.step`, or let `time.on_failure = \"retry\"` halve it")
+    if kind(error) == Missed::Unstable {
+        return error.to_string();
+    }
+    format!("{error} (a load step is `time.step`; `time.on_failure = \"retry\"` halves it)")
 }

@@ -1,27 +1,9 @@
 //! What acts on the body from outside, with the work and the momentum that enter with it.
 
-use std::sync::Arc;
-
 use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, IMPULSES, MECHANISMS, Row, TRACTION};
-use crate::boundaries::{BodyForce, SpaceTime};
+use crate::boundaries::BodyForce;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use crate::{Vector, parallel};
-
-/// A traction at one particle.
-pub(super) struct Loaded<const D: usize> {
-    pub particle: usize,
-    /// Reference area in m^(D-1).
-    pub area: f64,
-    pub place: [f64; 3],
-    pub value: [Arc<dyn SpaceTime>; D],
-}
-
-impl<const D: usize> Loaded<D> {
-    /// The force in N at a time in s.
-    pub fn force(&self, time: f64) -> Vector<D> {
-        Vector::from_fn(|i, _| self.area * self.value[i].value(self.place, time))
-    }
-}
 
 /// Power, force and moment of the body forces.
 const BODY_SUMS: usize = 1 + MOST_COMPONENTS;

@@ -29,17 +29,15 @@ mod statics;
 
 pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
-pub use sample::FIELDS;
-pub use scheme::FIGURES;
+pub use scheme::DESCRIPTION;
 pub use settings::{Gradients, Material, Settings};
 pub use statics::{Known, Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness};
 
 use std::sync::Arc;
 
 use crate::Vector;
-use crate::boundaries::{BodyForce, prescribed::PrescribedComponents};
-
-use external::Loaded;
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::boundaries::{BodyForce, traction::Loaded};
 
 /// The dual-support formulation bound to its particles.
 pub struct DualSupport<const D: usize> {
@@ -65,13 +63,13 @@ pub struct DualSupport<const D: usize> {
 }
 
 /// The energies of the formulation.
-pub const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
+const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
 
 /// The mechanisms of its ledger, in the order of the state's tail.
-pub const MECHANISMS: [&str; 3] = ["body_force", "traction", "boundary_motion"];
+const MECHANISMS: [&str; 3] = ["body_force", "traction", "boundary_motion"];
 
 /// The ways in which momentum enters: all mechanisms, since forces between particles cancel.
-pub const IMPULSES: [&str; 3] = MECHANISMS;
+const IMPULSES: [&str; 3] = MECHANISMS;
 
 const BODY_FORCE: usize = 0;
 const TRACTION: usize = 1;

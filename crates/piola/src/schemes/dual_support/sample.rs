@@ -9,32 +9,67 @@ use crate::Tensor;
 use crate::fields::{FieldDescription, FieldKind};
 use crate::schemes::Scheme;
 
-const fn field(
-    name: &'static str,
-    unit: &'static str,
-    kind: FieldKind,
-    meaning: &'static str,
-) -> FieldDescription {
-    FieldDescription { name, unit, kind, meaning }
-}
-
-/// The fields of the formulation.
-pub const FIELDS: [FieldDescription; 15] = [
-    field("position", "m", FieldKind::Vector, "current position x"),
-    field("displacement", "m", FieldKind::Vector, "displacement u = x - X"),
-    field("velocity", "m/s", FieldKind::Vector, "velocity v"),
-    field("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
-    field("internal_force", "N", FieldKind::Vector, "force of the strain energy on the particle"),
-    field("reaction", "N", FieldKind::Vector, "what holds the particle where it is prescribed"),
-    field("deformation_gradient", "1", FieldKind::Tensor, "deformation gradient F, row by row"),
-    field("determinant", "1", FieldKind::Scalar, "determinant of F in the resolved dimensions"),
-    field("stress", "Pa", FieldKind::Tensor, "first Piola-Kirchhoff stress P, row by row"),
-    field("cauchy_stress", "Pa", FieldKind::Tensor, "Cauchy stress, row by row"),
-    field("von_mises", "Pa", FieldKind::Scalar, "von Mises stress of all three dimensions"),
-    field("strain_energy", "J/m3", FieldKind::Scalar, "strain energy per reference volume"),
-    field("hourglass_energy", "J/m3", FieldKind::Scalar, "hourglass energy per reference volume"),
-    field("neighbors", "1", FieldKind::Scalar, "number of particles in the support"),
-    field("volume", "m3", FieldKind::Scalar, "reference quadrature volume V"),
+pub(super) const FIELDS: [FieldDescription; 15] = [
+    FieldDescription::new("position", "m", FieldKind::Vector, "current position x"),
+    FieldDescription::new("displacement", "m", FieldKind::Vector, "displacement u = x - X"),
+    FieldDescription::new("velocity", "m/s", FieldKind::Vector, "velocity v"),
+    FieldDescription::new("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
+    FieldDescription::new(
+        "internal_force",
+        "N",
+        FieldKind::Vector,
+        "force of the strain energy on the particle",
+    ),
+    FieldDescription::new(
+        "reaction",
+        "N",
+        FieldKind::Vector,
+        "what holds the particle where it is prescribed",
+    ),
+    FieldDescription::new(
+        "deformation_gradient",
+        "1",
+        FieldKind::Tensor,
+        "deformation gradient F, row by row",
+    ),
+    FieldDescription::new(
+        "determinant",
+        "1",
+        FieldKind::Scalar,
+        "determinant of F in the resolved dimensions",
+    ),
+    FieldDescription::new(
+        "stress",
+        "Pa",
+        FieldKind::Tensor,
+        "first Piola-Kirchhoff stress P, row by row",
+    ),
+    FieldDescription::new("cauchy_stress", "Pa", FieldKind::Tensor, "Cauchy stress, row by row"),
+    FieldDescription::new(
+        "von_mises",
+        "Pa",
+        FieldKind::Scalar,
+        "von Mises stress of all three dimensions",
+    ),
+    FieldDescription::new(
+        "strain_energy",
+        "J/m3",
+        FieldKind::Scalar,
+        "strain energy per reference volume",
+    ),
+    FieldDescription::new(
+        "hourglass_energy",
+        "J/m3",
+        FieldKind::Scalar,
+        "hourglass energy per reference volume",
+    ),
+    FieldDescription::new(
+        "neighbors",
+        "1",
+        FieldKind::Scalar,
+        "number of particles in the support",
+    ),
+    FieldDescription::new("volume", "m3", FieldKind::Scalar, "reference quadrature volume V"),
 ];
 
 impl<const D: usize> DualSupport<D> {

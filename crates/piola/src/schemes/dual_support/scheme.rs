@@ -1,16 +1,27 @@
 //! The dual-support formulation as integrators, clock and output see it.
 
-use super::{DualSupport, ENERGIES, FIELDS, IMPULSES, MECHANISMS, Row};
-use crate::fields::FieldDescription;
-use crate::schemes::{Health, Particle, Scheme, SplitScheme, StaticScheme, StepLimit};
+use super::sample::FIELDS;
+use super::{DualSupport, ENERGIES, IMPULSES, MECHANISMS, Row};
+use crate::schemes::{
+    Health, Particle, Scheme, SchemeDescription, SplitScheme, StaticScheme, StepLimit,
+};
 use crate::{Vector, parallel};
 
-/// Figures of its own in the table of steps.
-pub const FIGURES: [(&str, &str); 1] = [("newton_iterations", "1")];
+const FIGURES: [(&str, &str); 1] = [("newton_iterations", "1")];
+
+/// What the formulation is called and what it shows.
+pub const DESCRIPTION: SchemeDescription = SchemeDescription {
+    name: "dual_support",
+    fields: &FIELDS,
+    energies: &ENERGIES,
+    mechanisms: &MECHANISMS,
+    impulses: &IMPULSES,
+    figures: &FIGURES,
+};
 
 impl<const D: usize> Scheme for DualSupport<D> {
-    fn name(&self) -> &'static str {
-        "dual_support"
+    fn description(&self) -> &'static SchemeDescription {
+        &DESCRIPTION
     }
 
     fn dimension(&self) -> usize {
@@ -23,22 +34,6 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn row_length(&self) -> usize {
         Row::<D>::LENGTH
-    }
-
-    fn fields(&self) -> &'static [FieldDescription] {
-        &FIELDS
-    }
-
-    fn mechanisms(&self) -> &'static [&'static str] {
-        &MECHANISMS
-    }
-
-    fn impulses(&self) -> &'static [&'static str] {
-        &IMPULSES
-    }
-
-    fn energy_names(&self) -> &'static [&'static str] {
-        &ENERGIES
     }
 
     fn initial_state(&self) -> Vec<f64> {
@@ -70,10 +65,6 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.look(state, limits)
-    }
-
-    fn figure_names(&self) -> &'static [(&'static str, &'static str)] {
-        &FIGURES
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {

@@ -16,7 +16,8 @@ use crate::boundaries::{BodyForce, PrescribedVelocity};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError};
 use crate::operators::MovingSupport;
-use crate::schemes::{Initial, SplitScheme};
+use crate::schemes::input::{check_index, check_lengths, check_particles};
+use crate::schemes::{Initial, InputError, SplitScheme};
 use crate::{Vector, parallel};
 
 /// A body that is a wall.
@@ -79,16 +80,9 @@ pub enum TransportVelocityError {
         /// Its own in m.
         got: f64,
     },
-    /// An array that does not have one entry for each particle.
-    #[error("{what} has {got} entries, expected one for each of the {expected} particles")]
-    Length {
-        /// The array.
-        what: &'static str,
-        /// Number of particles.
-        expected: usize,
-        /// Its length.
-        got: usize,
-    },
+    /// Parts that do not fit together.
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// A constant that must be positive.
     #[error("{what} is {got}, expected a positive number")]
     NotPositive {
@@ -235,19 +229,18 @@ fn start_density(settings: &Settings, fluid: &Fluid, pressure: f64) -> f64 {
 
 fn check<const D: usize>(input: &TransportVelocityInput<D>) -> Result<(), TransportVelocityError> {
     let (particles, initial) = (&input.particles, &input.initial);
-    let expected = particles.len();
-    for (what, got) in [
-        ("the list of volumes", particles.volume.len()),
-        ("the list of spacings", particles.spacing.len()),
-        ("the list of bodies", particles.body.len()),
-        ("the list of ids", particles.id.len()),
-        ("the list of normals", input.normals.len()),
-        ("the initial velocity", initial.velocity.len()),
-        ("the initial pressure", initial.pressure.len()),
-    ] {
-        if got != expected {
-            return Err(TransportVelocityError::Length { what, expected, got });
-        }
+    check_particles(particles)?;
+    check_lengths(
+        particles.len(),
+        &[
+            ("the list of normals", input.normals.len()),
+            ("the initial velocity", initial.velocity.len()),
+            ("the initial pressure", initial.pressure.len()),
+        ],
+    )?;
+    for condition in input.motion.iter().chain(&input.sliding) {
+        let what = || format!("`{}`: velocity component", condition.name);
+        check_index(what, condition.component, D)?;
     }
     let positive = [
         ("the smoothing length", input.smoothing_length),

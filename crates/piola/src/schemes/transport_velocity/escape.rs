@@ -23,6 +23,11 @@ const TOLERANCE: f64 = 0.1;
 /// The density in a row that says that its particle has been removed.
 const REMOVED: f64 = 0.0;
 
+/// What to change where particles escape.
+const ADVICE: &str = "if a few lost drops do not matter, `scheme.escaped = \"remove\"` takes them \
+    out and counts them; otherwise make the wall thicker than the support of the kernel and without \
+    holes, raise the wave speed of the fluid, or lower `time.cfl`";
+
 impl<const D: usize> TransportVelocity<D> {
     /// Lets the scheme look for particles that escape. Without walls there is nothing to escape
     /// from.
@@ -92,6 +97,7 @@ impl<const D: usize> TransportVelocity<D> {
             position: Row::<D>::position(row).iter().copied().collect(),
             speed: Row::<D>::velocity(row).norm(),
             wall: wall.map(|wall| name(wall).cloned().unwrap_or_default()),
+            advice: ADVICE,
         })
     }
 

@@ -51,7 +51,7 @@ pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
 pub use drift::Rates;
 pub use escape::Guard;
 pub use forces::Forces;
-pub use scheme::{FIELDS, FIGURES};
+pub use scheme::DESCRIPTION;
 pub use settings::{
     Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings, Shifting, Slip,
 };
@@ -102,13 +102,13 @@ pub struct TransportVelocity<const D: usize> {
 }
 
 /// The energies of the formulation.
-pub const ENERGIES: [&str; 2] = ["kinetic", "compression"];
+const ENERGIES: [&str; 2] = ["kinetic", "compression"];
 
 /// The mechanisms of its ledger, in the order of the state's tail.
 ///
 /// `pressure` is what the exchange between kinetic energy and that of compression fails to
 /// conserve: the discrete force and divergence are not exact adjoints.
-pub const MECHANISMS: [&str; 8] = [
+const MECHANISMS: [&str; 8] = [
     "pressure",
     "viscosity",
     "artificial_viscosity",
@@ -122,7 +122,7 @@ pub const MECHANISMS: [&str; 8] = [
 /// The ways in which momentum enters, in the order of the state's tail. Viscous forces act along
 /// `u_ab` and turn the fluid; the corrections neither come in pairs, nor do particles move along
 /// their velocity. What is removed takes its momentum along.
-pub const IMPULSES: [&str; 5] = ["walls", "body_force", "viscosity", "corrections", "removed"];
+const IMPULSES: [&str; 5] = ["walls", "body_force", "viscosity", "corrections", "removed"];
 
 const PRESSURE: usize = 0;
 const TRANSPORT: usize = 3;

@@ -3,43 +3,98 @@
 use super::ledger::Tail;
 use super::{ENERGIES, IMPULSES, MECHANISMS, Row, TransportVelocity};
 use crate::fields::{FieldDescription, FieldKind};
-use crate::schemes::{Escape, Health, Particle, Scheme, SplitScheme, StepLimit};
+use crate::schemes::{Escape, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
 
-const fn field(
-    name: &'static str,
-    unit: &'static str,
-    kind: FieldKind,
-    meaning: &'static str,
-) -> FieldDescription {
-    FieldDescription { name, unit, kind, meaning }
-}
-
-/// The fields of the formulation.
-pub const FIELDS: [FieldDescription; 16] = [
-    field("position", "m", FieldKind::Vector, "current position, inside the periodic box"),
-    field("velocity", "m/s", FieldKind::Vector, "momentum velocity u"),
-    field("transport_velocity", "m/s", FieldKind::Vector, "velocity uhat of the particle itself"),
-    field("acceleration", "m/s2", FieldKind::Vector, "rate of the momentum velocity"),
-    field("force", "N", FieldKind::Vector, "total force; on a wall that of the fluid"),
-    field("pressure", "Pa", FieldKind::Scalar, "pressure p, positive in compression"),
-    field("density", "kg/m3", FieldKind::Scalar, "density rho as the scheme has it"),
-    field("summed_density", "kg/m3", FieldKind::Scalar, "density as the sum over masses"),
-    field("vorticity", "1/s", FieldKind::Scalar, "curl of u, in 3D its magnitude"),
-    field("divergence", "1/s", FieldKind::Scalar, "divergence of u"),
-    field("surface", "1", FieldKind::Scalar, "1 on a free surface, if they are looked for"),
-    field("surface_normal", "1", FieldKind::Vector, "unit normal near a free surface"),
-    field("wall", "1", FieldKind::Scalar, "1 for particles of walls, 0 for fluid"),
-    field("normal", "1", FieldKind::Vector, "unit normal of walls, towards the fluid"),
-    field("neighbors", "1", FieldKind::Scalar, "number of neighbours inside the support"),
-    field("mass", "kg", FieldKind::Scalar, "mass, for 1 m in missing dimensions"),
+const FIELDS: [FieldDescription; 16] = [
+    FieldDescription::new(
+        "position",
+        "m",
+        FieldKind::Vector,
+        "current position, inside the periodic box",
+    ),
+    FieldDescription::new("velocity", "m/s", FieldKind::Vector, "momentum velocity u"),
+    FieldDescription::new(
+        "transport_velocity",
+        "m/s",
+        FieldKind::Vector,
+        "velocity uhat of the particle itself",
+    ),
+    FieldDescription::new(
+        "acceleration",
+        "m/s2",
+        FieldKind::Vector,
+        "rate of the momentum velocity",
+    ),
+    FieldDescription::new(
+        "force",
+        "N",
+        FieldKind::Vector,
+        "total force; on a wall that of the fluid",
+    ),
+    FieldDescription::new(
+        "pressure",
+        "Pa",
+        FieldKind::Scalar,
+        "pressure p, positive in compression",
+    ),
+    FieldDescription::new(
+        "density",
+        "kg/m3",
+        FieldKind::Scalar,
+        "density rho as the scheme has it",
+    ),
+    FieldDescription::new(
+        "summed_density",
+        "kg/m3",
+        FieldKind::Scalar,
+        "density as the sum over masses",
+    ),
+    FieldDescription::new("vorticity", "1/s", FieldKind::Scalar, "curl of u, in 3D its magnitude"),
+    FieldDescription::new("divergence", "1/s", FieldKind::Scalar, "divergence of u"),
+    FieldDescription::new(
+        "surface",
+        "1",
+        FieldKind::Scalar,
+        "1 on a free surface, if they are looked for",
+    ),
+    FieldDescription::new(
+        "surface_normal",
+        "1",
+        FieldKind::Vector,
+        "unit normal near a free surface",
+    ),
+    FieldDescription::new("wall", "1", FieldKind::Scalar, "1 for particles of walls, 0 for fluid"),
+    FieldDescription::new(
+        "normal",
+        "1",
+        FieldKind::Vector,
+        "unit normal of walls, towards the fluid",
+    ),
+    FieldDescription::new(
+        "neighbors",
+        "1",
+        FieldKind::Scalar,
+        "number of neighbours inside the support",
+    ),
+    FieldDescription::new("mass", "kg", FieldKind::Scalar, "mass, for 1 m in missing dimensions"),
 ];
 
 /// Names and units of the figures of the formulation.
-pub const FIGURES: [(&str, &str); 2] = [("shifting_passes", "1"), ("removed", "1")];
+const FIGURES: [(&str, &str); 2] = [("shifting_passes", "1"), ("removed", "1")];
+
+/// What the formulation is called and what it shows.
+pub const DESCRIPTION: SchemeDescription = SchemeDescription {
+    name: "transport_velocity",
+    fields: &FIELDS,
+    energies: &ENERGIES,
+    mechanisms: &MECHANISMS,
+    impulses: &IMPULSES,
+    figures: &FIGURES,
+};
 
 impl<const D: usize> Scheme for TransportVelocity<D> {
-    fn name(&self) -> &'static str {
-        "transport_velocity"
+    fn description(&self) -> &'static SchemeDescription {
+        &DESCRIPTION
     }
 
     fn dimension(&self) -> usize {
@@ -52,22 +107,6 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
 
     fn row_length(&self) -> usize {
         Row::<D>::LENGTH
-    }
-
-    fn fields(&self) -> &'static [FieldDescription] {
-        &FIELDS
-    }
-
-    fn mechanisms(&self) -> &'static [&'static str] {
-        &MECHANISMS
-    }
-
-    fn impulses(&self) -> &'static [&'static str] {
-        &IMPULSES
-    }
-
-    fn energy_names(&self) -> &'static [&'static str] {
-        &ENERGIES
     }
 
     fn initial_state(&self) -> Vec<f64> {
@@ -108,10 +147,6 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
 
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
         self.escape_of(index, state)
-    }
-
-    fn figure_names(&self) -> &'static [(&'static str, &'static str)] {
-        &FIGURES
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {

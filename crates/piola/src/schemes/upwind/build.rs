@@ -3,15 +3,18 @@
 use piola_formulas::volumetric::{Prestressed, VolumetricResponse};
 use thiserror::Error;
 
-use super::check::check;
 use super::inspect::ChunkFigures;
 use super::local::Side;
 use super::reconstruction::Slope;
-use super::{Initial, Loaded, Material, Powers, Reference, Settings, Upwind};
+use super::{Initial, Material, Powers, Reference, Settings, Upwind};
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{BodyForce, PrescribedVelocity, Traction, padded};
+use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
 use crate::geometry::Particles;
 use crate::operators::{GradientOperator, LeastSquares, OperatorError, PairAreas, Support};
+use crate::schemes::InputError;
+use crate::schemes::input::{
+    check_conditions, check_lengths, check_materials, check_particle, check_particles,
+};
 use crate::{Vector, parallel};
 
 /// All that the formulation is bound to.
@@ -54,47 +57,9 @@ pub enum UpwindError {
         /// The pressure in Pa.
         pressure: f64,
     },
-    /// An array that does not have one entry for each particle.
-    #[error("{what} has {got} entries, expected one for each of the {expected} particles")]
-    Length {
-        /// The array.
-        what: &'static str,
-        /// Number of particles.
-        expected: usize,
-        /// Its length.
-        got: usize,
-    },
-    /// The number of a particle, of a component or of a body that does not exist.
-    #[error("{what} {got} does not exist, expected a number below {count}")]
-    Index {
-        /// What is numbered, and where.
-        what: String,
-        /// The number.
-        got: usize,
-        /// How many there are.
-        count: usize,
-    },
-    /// A particle without mass.
-    #[error(
-        "particle {id} at {position:?} has a mass of {mass} kg; its volume and the density of its \
-         material must be positive"
-    )]
-    Mass {
-        /// Number of the particle in the order of creation.
-        id: u32,
-        /// Its reference position in m.
-        position: Vec<f64>,
-        /// Its mass in kg.
-        mass: f64,
-    },
-    /// An initial velocity that is no number.
-    #[error("the initial velocity of particle {id} at {position:?} is not finite")]
-    Velocity {
-        /// Number of the particle in the order of creation.
-        id: u32,
-        /// Its reference position in m.
-        position: Vec<f64>,
-    },
+    /// Parts that do not fit together.
+    #[error(transparent)]
+    Input(#[from] InputError),
 }
 
 impl<const D: usize> Upwind<D> {
@@ -104,7 +69,18 @@ impl<const D: usize> Upwind<D> {
     /// [`UpwindError`] for arrays that do not fit together, particles without mass or gradient,
     /// and impossible initial values.
     pub fn new(input: UpwindInput<D>) -> Result<Self, UpwindError> {
-        check(&input)?;
+        check_particles(&input.particles)?;
+        check_materials(&input.particles, input.materials.len())?;
+        let count = input.particles.len();
+        check_lengths(
+            count,
+            &[
+                ("the neighbour list", input.support.list.len()),
+                ("the initial velocity", input.initial.velocity.len()),
+                ("the initial pressure", input.initial.pressure.len()),
+            ],
+        )?;
+        check_conditions(count, &input.tractions, &input.prescribed)?;
         let UpwindInput { particles, support, settings, materials, initial, .. } = input;
         let nearest = nearest(&particles, &support)?;
         let gradient = GradientOperator::new(&particles, &support, settings.correction)?;
@@ -113,17 +89,8 @@ impl<const D: usize> Upwind<D> {
             false => None,
         };
         let reference = references(&particles, &materials, &initial)?;
-        let count = particles.len();
         let chunks = count.div_ceil(parallel::CHUNK);
         let positions = &particles.position;
-        let loaded = input.tractions.iter().flat_map(|traction| {
-            traction.particles.iter().zip(&traction.areas).map(|(&particle, &area)| Loaded {
-                particle: particle as usize,
-                area,
-                place: padded(&positions[particle as usize]),
-                value: traction.value.clone(),
-            })
-        });
         let mut scheme = Self {
             nearest,
             areas: PairAreas::new(&gradient, &support.list, &particles.volume),
@@ -132,7 +99,7 @@ impl<const D: usize> Upwind<D> {
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
             steady_body_force: input.body_forces.iter().all(BodyForce::is_steady),
             body_acceleration: vec![Vector::zeros(); count],
-            loaded: loaded.collect(),
+            loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
             sides: vec![Side::default(); count],
             slopes: vec![Slope::ZERO; if settings.reconstruction { count } else { 0 }],
             chunk_powers: vec![Powers::default(); chunks],
@@ -170,20 +137,14 @@ fn references<const D: usize>(
 ) -> Result<Vec<Reference>, UpwindError> {
     (0..particles.len())
         .map(|a| {
-            let (id, position) = (particles.id[a], || particles.position[a].iter().copied());
-            if initial.velocity[a].iter().any(|v| !v.is_finite()) {
-                return Err(UpwindError::Velocity { id, position: position().collect() });
-            }
             let Material { density, law } = materials[particles.body[a] as usize];
             let pressure = initial.pressure[a];
             let ratio = law.volume_ratio_at_pressure(pressure).ok_or_else(|| {
-                UpwindError::Prestress { id, position: position().collect(), pressure }
+                let position = particles.position[a].as_slice().to_vec();
+                UpwindError::Prestress { id: particles.id[a], position, pressure }
             })?;
             let density = density / ratio;
-            let mass = density * particles.volume[a];
-            if !(mass > 0.0 && mass.is_finite()) {
-                return Err(UpwindError::Mass { id, position: position().collect(), mass });
-            }
+            check_particle(particles, a, density * particles.volume[a], &initial.velocity[a])?;
             let prestressed = Prestressed { law, reference_ratio: ratio };
             Ok(Reference { density, ratio, wave_speed: prestressed.wave_speed(1.0, density) })
         })

@@ -23,10 +23,7 @@ impl<const D: usize> Upwind<D> {
         // The first are those of body forces, which the pair pass has added up.
         let (traction, boundary) = impulses[components..].split_at_mut(components);
         for load in &self.loaded {
-            let a = load.particle;
-            let force = Vector::<D>::from_fn(|component, _| {
-                load.area * load.value[component].value(load.place, time)
-            });
+            let (a, force) = (load.particle, load.force(time));
             let row = &mut rows[a * Row::<D>::LENGTH..][..D];
             for (component, force) in force.iter().enumerate() {
                 row[component] += force / self.mass(a);

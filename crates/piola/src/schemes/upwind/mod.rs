@@ -17,7 +17,6 @@
 //! a free surface needs no treatment.
 
 mod build;
-mod check;
 mod external;
 mod gather;
 mod inspect;
@@ -32,14 +31,15 @@ mod settings;
 use piola_formulas::volumetric::{Prestressed, VolumetricLaw};
 
 use crate::Vector;
-use crate::boundaries::{SpaceTime, prescribed::PrescribedComponents};
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::boundaries::traction::Loaded;
 use crate::geometry::Particles;
 use crate::operators::{LeastSquares, PairAreas, Support};
 use crate::schemes::momentum::MOST_COMPONENTS;
 
 pub use build::{UpwindError, UpwindInput};
 pub use passes::PASSES;
-pub use scheme::FIELDS;
+pub use scheme::DESCRIPTION;
 pub use settings::{Material, Settings, WaveSpeed};
 
 pub use crate::boundaries::BodyForce;
@@ -90,24 +90,16 @@ struct Reference {
     wave_speed: f64,
 }
 
-/// A traction evaluated at one particle.
-struct Loaded<const D: usize> {
-    particle: usize,
-    area: f64,
-    place: [f64; 3],
-    value: [std::sync::Arc<dyn SpaceTime>; D],
-}
-
 /// The energies of the formulation.
-pub const ENERGIES: [&str; 2] = ["kinetic", "strain"];
+const ENERGIES: [&str; 2] = ["kinetic", "strain"];
 
 /// The mechanisms of its ledger, in the order of the state's tail.
-pub const MECHANISMS: [&str; 5] =
+const MECHANISMS: [&str; 5] =
     ["body_force", "traction", "boundary_motion", "upwind_velocity", "upwind_pressure"];
 
 /// The ways in which momentum enters. Pairs exchange what one of them loses, so that internal
 /// forces and dissipation are not among them.
-pub const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
+const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
 
 /// What the pair pass adds up of some particles.
 #[derive(Clone, Copy, Debug, Default)]

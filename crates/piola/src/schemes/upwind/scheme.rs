@@ -7,37 +7,62 @@ use super::local::deformation;
 use super::{ENERGIES, IMPULSES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::parallel;
-use crate::schemes::{Health, Particle, Scheme, StepLimit};
+use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit};
 
-const fn field(
-    name: &'static str,
-    unit: &'static str,
-    kind: FieldKind,
-    meaning: &'static str,
-) -> FieldDescription {
-    FieldDescription { name, unit, kind, meaning }
-}
-
-/// The fields of the formulation.
-pub const FIELDS: [FieldDescription; 13] = [
-    field("position", "m", FieldKind::Vector, "current position x"),
-    field("displacement", "m", FieldKind::Vector, "x - X"),
-    field("velocity", "m/s", FieldKind::Vector, "velocity v"),
-    field("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
-    field("pressure", "Pa", FieldKind::Scalar, "pressure p(J), positive in compression"),
-    field("volume_ratio", "1", FieldKind::Scalar, "volume ratio J as evolved"),
-    field("determinant", "1", FieldKind::Scalar, "determinant of the deformation gradient"),
-    field("deformation_gradient", "1", FieldKind::Tensor, "deformation gradient F, row by row"),
-    field("density", "kg/m3", FieldKind::Scalar, "current density, from the evolved J"),
-    field("wave_speed", "m/s", FieldKind::Scalar, "fastest wave, measured on the reference"),
-    field("smoothing_length", "m", FieldKind::Scalar, "smoothing length h"),
-    field("neighbors", "1", FieldKind::Scalar, "number of neighbours"),
-    field("volume", "m3", FieldKind::Scalar, "reference quadrature volume V"),
+const FIELDS: [FieldDescription; 13] = [
+    FieldDescription::new("position", "m", FieldKind::Vector, "current position x"),
+    FieldDescription::new("displacement", "m", FieldKind::Vector, "x - X"),
+    FieldDescription::new("velocity", "m/s", FieldKind::Vector, "velocity v"),
+    FieldDescription::new("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
+    FieldDescription::new(
+        "pressure",
+        "Pa",
+        FieldKind::Scalar,
+        "pressure p(J), positive in compression",
+    ),
+    FieldDescription::new("volume_ratio", "1", FieldKind::Scalar, "volume ratio J as evolved"),
+    FieldDescription::new(
+        "determinant",
+        "1",
+        FieldKind::Scalar,
+        "determinant of the deformation gradient",
+    ),
+    FieldDescription::new(
+        "deformation_gradient",
+        "1",
+        FieldKind::Tensor,
+        "deformation gradient F, row by row",
+    ),
+    FieldDescription::new(
+        "density",
+        "kg/m3",
+        FieldKind::Scalar,
+        "current density, from the evolved J",
+    ),
+    FieldDescription::new(
+        "wave_speed",
+        "m/s",
+        FieldKind::Scalar,
+        "fastest wave, measured on the reference",
+    ),
+    FieldDescription::new("smoothing_length", "m", FieldKind::Scalar, "smoothing length h"),
+    FieldDescription::new("neighbors", "1", FieldKind::Scalar, "number of neighbours"),
+    FieldDescription::new("volume", "m3", FieldKind::Scalar, "reference quadrature volume V"),
 ];
 
+/// What the formulation is called and what it shows.
+pub const DESCRIPTION: SchemeDescription = SchemeDescription {
+    name: "upwind",
+    fields: &FIELDS,
+    energies: &ENERGIES,
+    mechanisms: &MECHANISMS,
+    impulses: &IMPULSES,
+    figures: &[],
+};
+
 impl<const D: usize> Scheme for Upwind<D> {
-    fn name(&self) -> &'static str {
-        "upwind"
+    fn description(&self) -> &'static SchemeDescription {
+        &DESCRIPTION
     }
 
     fn dimension(&self) -> usize {
@@ -50,22 +75,6 @@ impl<const D: usize> Scheme for Upwind<D> {
 
     fn row_length(&self) -> usize {
         Row::<D>::LENGTH
-    }
-
-    fn fields(&self) -> &'static [FieldDescription] {
-        &FIELDS
-    }
-
-    fn mechanisms(&self) -> &'static [&'static str] {
-        &MECHANISMS
-    }
-
-    fn impulses(&self) -> &'static [&'static str] {
-        &IMPULSES
-    }
-
-    fn energy_names(&self) -> &'static [&'static str] {
-        &ENERGIES
     }
 
     fn initial_state(&self) -> Vec<f64> {

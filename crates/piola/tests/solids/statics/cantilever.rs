@@ -151,7 +151,6 @@ fn the_bending_of_a_cantilever_converges() {
 }
 
 #[test]
-#[ignore = "larger clouds: most of a minute"]
 fn the_bending_of_fine_cantilevers_converges() {
     // 2016 and 11 115 particles, 0.0054 and 0.0034 where this was written.
     for (intervals, most) in [([20, 11, 7], 0.012), ([38, 18, 14], 0.006)] {

@@ -6,6 +6,7 @@ use piola::boundaries::PrescribedFaces;
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{DirectedSupport, DualGradient, Face, Trace, nearest_radii};
+use piola::schemes::InputError;
 use piola::schemes::dual_support::{
     Discrete, Gradients, Material, Settings, Statics, StaticsError, StaticsInput,
 };
@@ -183,9 +184,15 @@ fn faces_that_do_not_exist_or_do_not_hold_are_named() {
         Statics::new(body.clone().into(), input).err().expect("it is refused")
     };
     let error = refused(vec![99], Some(trace.clone()));
-    assert!(matches!(error, StaticsError::Index { got: 99, count: 12, .. }), "{error}");
+    assert!(
+        matches!(error, StaticsError::Input(InputError::Index { got: 99, count: 12, .. })),
+        "{error}"
+    );
     let error = refused(vec![0], None);
-    assert!(matches!(error, StaticsError::Index { got: 0, count: 0, .. }), "{error}");
+    assert!(
+        matches!(error, StaticsError::Input(InputError::Index { got: 0, count: 0, .. })),
+        "{error}"
+    );
     let error = refused(vec![0], Some(trace));
     assert!(matches!(error, StaticsError::Free { .. }), "{error}");
 }

@@ -107,7 +107,6 @@ fn a_coarse_cube_bends_nearly_as_finite_elements_do() {
 }
 
 #[test]
-#[ignore = "the size of the source: most of a minute"]
 fn the_cube_of_the_source_bends_as_finite_elements_do() {
     let levels = cube(20, LinearMethod::Automatic);
     check(&levels, [0.015; 4]);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use piola::boundaries::{BodyForce, PrescribedDisplacement, Tie};
+use piola::schemes::InputError;
 use piola::schemes::dual_support::{StaticState, Statics, StaticsError, StaticsInput};
 use piola::solve::{LinearMethod, LoadError, LoadSteps, Newton, NewtonError};
 use piola::{Tensor, Vector};
@@ -334,7 +335,10 @@ fn what_is_wrong_with_supports_is_named() {
     assert_eq!(refused(held(&[(0, 0), (0, 1)]), Vec::new()), free("turn about z"));
     assert_eq!(refused(held(&[(0, 1), (6, 1)]), Vec::new()), free("shift along x"));
     let error = refused(held(&[(99, 0)]), Vec::new());
-    assert!(matches!(error, StaticsError::Index { got: 99, count: 28, .. }), "{error}");
+    assert!(
+        matches!(error, StaticsError::Input(InputError::Index { got: 99, count: 28, .. })),
+        "{error}"
+    );
     let error = refused(held(&[(0, 2)]), Vec::new());
     assert!(matches!(error, StaticsError::Direction { .. }), "{error}");
     let mut three = held(&[(0, 0), (0, 1), (6, 1)]);

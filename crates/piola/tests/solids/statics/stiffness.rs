@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use piola::schemes::dual_support::Stiffness;
-use piola::solve::{Factor, Local, Reduction, SparseMatrix, Tangent, dissect, gmres};
+use piola::solve::{Factor, Local, Reduction, SparseMatrix, Tangent, dissect, gmres, largest_mode};
 use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::HyperelasticLaw;
 use piola_formulas::tensor;
@@ -160,4 +160,25 @@ fn the_matrix_in_reduced_unknowns_is_solved() {
     let outcome = gmres(product, precondition, &right, 1e-10, 500);
     assert!(residual(&outcome.solution, &turned) < 1e-9, "{} steps", outcome.steps);
     assert!(outcome.steps > 2, "the part that is not symmetric matters");
+}
+
+/// A chain of 400 springs, one of which is a thousand times as stiff: its mode is known from the two
+/// ends of that spring, and no start without pattern has more than a small share in it.
+#[test]
+fn the_largest_mode_is_found_where_it_is_local() {
+    let (size, stiff) = (400, 123);
+    let spring = |k: usize| if k == stiff { 1000.0 } else { 1.0 };
+    let mode = largest_mode(size, |x, y| {
+        y.fill(0.0);
+        for k in 0..size - 1 {
+            let force = spring(k) * (x[k + 1] - x[k]);
+            y[k] -= force;
+            y[k + 1] += force;
+        }
+    });
+    // 2 k + 1 up to terms of 1 / k.
+    assert!((mode.value / 2001.0 - 1.0).abs() < 1e-3 && mode.value < 2001.01, "{}", mode.value);
+    let length: f64 = mode.vector.iter().map(|entry| entry * entry).sum();
+    let ends = mode.vector[stiff] * mode.vector[stiff + 1];
+    assert!((length - 1.0).abs() < 1e-6 && (ends + 0.5).abs() < 1e-3, "{length} {ends}");
 }

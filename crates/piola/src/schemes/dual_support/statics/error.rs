@@ -3,32 +3,16 @@
 use thiserror::Error;
 
 use super::Statics;
+use crate::schemes::InputError;
 use crate::solve::{LinearError, LoadError, NewtonError};
 
 /// Statics that cannot be done.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum StaticsError {
-    /// A particle that does not exist.
-    #[error("`{name}`: particle {got} does not exist, expected a number below {count}")]
-    Index {
-        /// Name of the condition.
-        name: String,
-        /// The number.
-        got: u32,
-        /// How many there are.
-        count: usize,
-    },
-    /// A load without one area for each of its particles.
-    #[error("`{name}` has {got} areas for {expected} particles")]
-    Areas {
-        /// Name of the load.
-        name: String,
-        /// Number of particles.
-        expected: usize,
-        /// Number of areas.
-        got: usize,
-    },
+    /// Parts that do not fit together.
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// A direction without length, or a component that does not exist.
     #[error("`{name}` prescribes a component or direction that does not exist")]
     Direction {
@@ -123,24 +107,4 @@ impl<const D: usize> Statics<D> {
             error => StaticsError::Load(error),
         }
     }
-}
-
-pub(super) fn check_index(name: &str, particle: u32, count: usize) -> Result<(), StaticsError> {
-    match (particle as usize) < count {
-        true => Ok(()),
-        false => Err(StaticsError::Index { name: name.to_owned(), got: particle, count }),
-    }
-}
-
-pub(super) fn check_areas(
-    name: &str,
-    particles: &[u32],
-    areas: usize,
-    count: usize,
-) -> Result<(), StaticsError> {
-    if particles.len() != areas {
-        let (name, expected) = (name.to_owned(), particles.len());
-        return Err(StaticsError::Areas { name, expected, got: areas });
-    }
-    particles.iter().try_for_each(|&particle| check_index(name, particle, count))
 }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{StaticsError, error};
+use super::StaticsError;
 use crate::Vector;
 use crate::boundaries::{PrescribedFaces, SpaceTime, padded};
 use crate::operators::Trace;
+use crate::schemes::input::check_index;
 
 /// Stiffness of a held face, times shear modulus and area over the size of its cell, all in one
 /// number: high enough that multipliers settle in a few iterations.
@@ -59,7 +60,7 @@ impl<const D: usize> Faces<D> {
             }
             for index in faces {
                 let known = trace.map_or(0, |trace| trace.faces().len());
-                error::check_index(&name, index, known)?;
+                check_index(|| format!("`{name}`: face"), index as usize, known)?;
                 let Some(trace) = trace else { continue };
                 let face = trace.faces()[index as usize];
                 // Area over size of the cell is as the size to the power of D - 2.

@@ -25,10 +25,10 @@ use crate::boundaries::{
     BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
 };
 use crate::operators::Trace;
+use crate::schemes::input::check_areas;
 use crate::solve::{
     ArcLength, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow, follow_arc,
 };
-use error::check_index;
 use faces::Faces;
 use loads::Loads;
 use rigid::free_motion;
@@ -119,10 +119,10 @@ impl<const D: usize> Statics<D> {
         } = input;
         let count = discrete.len();
         for traction in &tractions {
-            error::check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
+            check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
         }
         for pressure in &pressures {
-            error::check_areas(&pressure.name, &pressure.particles, pressure.areas.len(), count)?;
+            check_areas(&pressure.name, &pressure.particles, pressure.areas.len(), count)?;
         }
         let supports = Supports::new(&discrete.particles, prescribed, ties)?;
         let shear = |a: usize| discrete.material(a).law.law().small_strain().mu;

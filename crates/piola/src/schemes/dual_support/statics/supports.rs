@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::StaticsError;
 use crate::boundaries::{PrescribedDisplacement, SpaceTime, Tie, padded};
 use crate::geometry::Particles;
+use crate::schemes::input::check_selected;
 use crate::solve::Reduction;
 use crate::{Tensor, Vector};
 
@@ -47,8 +48,8 @@ impl<const D: usize> Supports<D> {
             if !(length > 0.0 && length.is_finite()) {
                 return Err(StaticsError::Direction { name: condition.name.clone() });
             }
+            check_selected(&condition.name, &condition.particles, count)?;
             for &a in &condition.particles {
-                super::check_index(&condition.name, a, count)?;
                 all[a as usize].push(index);
             }
         }
@@ -122,8 +123,8 @@ impl<const D: usize> Supports<D> {
             if tie.component >= D {
                 return Err(StaticsError::Direction { name: tie.name });
             }
+            check_selected(&tie.name, &tie.particles, count)?;
             for &a in &tie.particles {
-                super::check_index(&tie.name, a, count)?;
                 let row = a as usize;
                 let is_turned = self.frames[row] != Tensor::<D>::identity();
                 if is_turned || self.held[row][tie.component] || tied[row][tie.component] {
