@@ -57,6 +57,11 @@ pub fn largest_mode(size: usize, mut product: impl FnMut(&[f64], &mut [f64])) ->
         }
         lanczos.advance(&mut product);
     }
+    // Directions lose their right angles once a mode is found, and then its copies cancel in part.
+    let length = dot(&vector, &vector).sqrt();
+    if length > 0.0 {
+        vector.iter_mut().for_each(|entry| *entry /= length);
+    }
     Mode { value: largest, vector }
 }
 
