@@ -18,6 +18,11 @@ pub fn for_each_chunk<T: Send>(rows: &mut [T], body: impl Fn(usize, &mut [T]) + 
     rows.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, rows)| body(chunk * CHUNK, rows));
 }
 
+/// Calls `body(number, item)` for each item, of which each is worth a thread's while.
+pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sync) {
+    items.par_iter_mut().enumerate().for_each(|(number, item)| body(number, item));
+}
+
 /// Sums `term(i)` over `0..count` in an order that does not depend on the number of threads.
 pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let partial = |chunk: usize| -> f64 {

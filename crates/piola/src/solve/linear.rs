@@ -1,7 +1,10 @@
 //! One face for direct and iterative solution.
 
+use std::time::{Duration, Instant};
+
 use thiserror::Error;
 
+use super::coarse::Coarse;
 use super::jacobi::BlockJacobi;
 use super::krylov::{Outcome, conjugate_gradients, gmres};
 use super::{Factor, FactorError, Reduction, SparseMatrix, dissect, irregular};
@@ -34,8 +37,8 @@ pub enum LinearMethod {
     Automatic,
     /// By `L D L^T`.
     Direct,
-    /// By conjugate gradients with the blocks on the diagonal as preconditioner, GMRES where the
-    /// tangent is not symmetric.
+    /// By conjugate gradients, GMRES where the tangent is not symmetric. The preconditioner is
+    /// the blocks on the diagonal and a coarse correction by the motions of parts as rigid bodies.
     Krylov,
 }
 
@@ -75,6 +78,23 @@ pub struct LinearReport {
     pub indefinite: bool,
 }
 
+/// What all solutions so far took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Costs {
+    /// Entries of the lower triangle that is factorised, of the coarse one where it is iterated.
+    pub entries: usize,
+    /// Entries of its factors.
+    pub factor_entries: usize,
+    /// Steps of Krylov methods.
+    pub steps: u64,
+    /// Wall time for entries and blocks.
+    pub assembly: Duration,
+    /// Wall time for factors.
+    pub factorisation: Duration,
+    /// Wall time for solutions.
+    pub solution: Duration,
+}
+
 /// Linear equations without a solution.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -109,9 +129,14 @@ pub struct LinearSolver<const D: usize> {
     /// None for a Krylov method.
     direct: Option<(SparseMatrix, Factor)>,
     jacobi: BlockJacobi<D>,
+    /// None for a direct method, and for few unknowns.
+    coarse: Option<Coarse<D>>,
     shift: f64,
-    /// Negative pivots of the tangent as it was loaded.
+    /// Negative pivots of the tangent as it was loaded, in the coarse space without a direct method.
     negative: usize,
+    /// Whether the coarse tangent is of another path of states.
+    is_stale: bool,
+    costs: Costs,
 }
 
 impl<const D: usize> LinearSolver<D> {
@@ -128,20 +153,40 @@ impl<const D: usize> LinearSolver<D> {
     ) -> Result<Self, LinearError> {
         let plain: Vec<u32> = (0..points.len() as u32).collect();
         let mut reduction = build(&plain);
-        let mut direct = None;
+        let (mut direct, mut coarse) = (None, None);
+        let mut coupled = vec![Vec::new(); points.len()];
+        parallel::for_each_chunk(&mut coupled, |first, rows| {
+            let rows = rows.iter_mut().enumerate();
+            rows.for_each(|(offset, row)| *row = tangent.coupled(first + offset));
+        });
         if method.is_direct::<D>(reduction.unknowns()) {
-            let mut coupled = vec![Vec::new(); points.len()];
-            parallel::for_each_chunk(&mut coupled, |first, rows| {
-                let rows = rows.iter_mut().enumerate();
-                rows.for_each(|(offset, row)| *row = tangent.coupled(first + offset));
-            });
             reduction = build(&dissect(points, &coupled));
             let matrix = SparseMatrix::new(&reduction, &coupled);
             let factor = Factor::new(&matrix)?;
             direct = Some((matrix, factor));
+        } else {
+            coarse = Coarse::new(points, &reduction, &coupled)?;
         }
         let jacobi = BlockJacobi::default();
-        Ok(Self { reduction, direct, jacobi, shift: 0.0, negative: 0 })
+        let parts = direct.as_ref().map(|(matrix, factor)| (matrix, factor));
+        let costs = match parts.or(coarse.as_ref().map(Coarse::parts)) {
+            Some((matrix, factor)) => Costs {
+                entries: matrix.entries(),
+                factor_entries: factor.entries(),
+                ..Costs::default()
+            },
+            None => Costs::default(),
+        };
+        Ok(Self {
+            reduction,
+            direct,
+            jacobi,
+            coarse,
+            shift: 0.0,
+            negative: 0,
+            is_stale: true,
+            costs,
+        })
     }
 
     /// The unknowns it solves for.
@@ -149,23 +194,50 @@ impl<const D: usize> LinearSolver<D> {
         &self.reduction
     }
 
+    /// What all solutions so far took.
+    pub fn costs(&self) -> Costs {
+        self.costs
+    }
+
     /// Whether it factorises.
     pub fn is_direct(&self) -> bool {
         self.direct.is_some()
     }
 
+    /// Whether the tangent that was loaded last was made positive definite by a shift.
+    pub fn is_shifted(&self) -> bool {
+        self.shift > 0.0
+    }
+
+    /// Begins anew: what is found next depends on nothing that was loaded before.
+    pub fn restart(&mut self) {
+        self.is_stale = true;
+    }
+
     /// Takes a tangent in. With `definite` a direct solver makes it positive definite by a shift of
-    /// the diagonal where it is not.
+    /// the diagonal where it is not, and the coarse space keeps the tangent of the first state since
+    /// [`Self::restart`], as it serves for all that are near.
     ///
     /// # Errors
     /// [`LinearError::Factor`] for a singular matrix.
     pub fn load<T: Tangent<D>>(&mut self, tangent: &T, definite: bool) -> Result<(), LinearError> {
         (self.shift, self.negative) = (0.0, 0);
+        let start = Instant::now();
         let Some((matrix, factor)) = &mut self.direct else {
             self.jacobi = BlockJacobi::new(&self.reduction, &tangent.diagonal());
+            if let Some(coarse) = self.coarse.as_mut().filter(|_| self.is_stale || !definite) {
+                self.is_stale = false;
+                coarse.assemble(tangent);
+                self.costs.assembly += start.elapsed();
+                let start = Instant::now();
+                self.negative = coarse.factorise()?;
+                self.costs.factorisation += start.elapsed();
+            }
             return Ok(());
         };
         matrix.assemble(&self.reduction, tangent);
+        self.costs.assembly += start.elapsed();
+        let start = Instant::now();
         let mut negative = factor.factorise(matrix)?;
         self.negative = negative;
         let largest = matrix.diagonal().iter().fold(0.0_f64, |largest, d| largest.max(d.abs()));
@@ -175,6 +247,7 @@ impl<const D: usize> LinearSolver<D> {
             self.shift = next;
             negative = factor.factorise(matrix)?;
         }
+        self.costs.factorisation += start.elapsed();
         Ok(())
     }
 
@@ -189,11 +262,10 @@ impl<const D: usize> LinearSolver<D> {
         tolerance: f64,
         solution: &mut [f64],
     ) -> Result<LinearReport, LinearError> {
-        let (shift, mut steps) = (self.shift, 0);
+        let (start, shift, mut steps) = (Instant::now(), self.shift, 0);
         let mut indefinite = tangent.is_symmetric() && self.negative > 0;
         if tangent.is_symmetric() && self.is_direct() {
-            solution.copy_from_slice(right);
-            self.precondition_in_place(solution);
+            self.precondition(right, solution);
         } else {
             let outcome = self.iterate(tangent, right, tolerance);
             if !outcome.negative_curvature && outcome.residual > POOREST {
@@ -204,11 +276,13 @@ impl<const D: usize> LinearSolver<D> {
             steps = outcome.steps;
             indefinite |= outcome.negative_curvature;
         }
+        self.costs.solution += start.elapsed();
         Ok(LinearReport { steps, shift, indefinite })
     }
 
     /// Whether the tangent that was loaded without a shift is positive definite. Iteratively this
-    /// is as much as conjugate gradients meet on their way from a start without any order.
+    /// is what the coarse space shows, and as much as conjugate gradients meet on their way from a
+    /// start without any order.
     pub fn stability<T: Tangent<D>>(&mut self, tangent: &mut T) -> Stability {
         if !tangent.is_symmetric() {
             return Stability::Unknown;
@@ -218,6 +292,9 @@ impl<const D: usize> LinearSolver<D> {
                 0 => Stability::Stable,
                 negative => Stability::Unstable(Some(negative)),
             };
+        }
+        if self.negative > 0 {
+            return Stability::Unstable(None);
         }
         let start: Vec<f64> = (0..self.reduction.unknowns()).map(irregular).collect();
         match self.iterate(tangent, &start, 1e-6).negative_curvature {
@@ -242,20 +319,26 @@ impl<const D: usize> LinearSolver<D> {
             reduction.restrict(&image, product);
         };
         let precondition = |residual: &[f64], scaled: &mut [f64]| {
-            scaled.copy_from_slice(residual);
-            self.precondition_in_place(scaled);
+            self.precondition(residual, scaled);
         };
         let most = LEAST_STEPS + right.len() / 20;
-        match symmetric {
+        let outcome = match symmetric {
             true => conjugate_gradients(product, precondition, right, tolerance, most),
             false => gmres(product, precondition, right, tolerance, most),
-        }
+        };
+        self.costs.steps += outcome.steps as u64;
+        outcome
     }
 
-    fn precondition_in_place(&mut self, vector: &mut [f64]) {
-        match &mut self.direct {
-            Some((_, factor)) => factor.solve(vector),
-            None => self.jacobi.apply(&self.reduction, vector),
+    /// Solves roughly where it iterates, exactly where it factorises.
+    fn precondition(&mut self, residual: &[f64], scaled: &mut [f64]) {
+        scaled.copy_from_slice(residual);
+        if let Some((_, factor)) = &mut self.direct {
+            return factor.solve(scaled);
+        }
+        self.jacobi.apply(&self.reduction, scaled);
+        if let Some(coarse) = &mut self.coarse {
+            coarse.add(residual, scaled);
         }
     }
 }

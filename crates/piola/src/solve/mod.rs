@@ -8,13 +8,15 @@
 //!   so that it is the same to the bit for any number of threads;
 //! - [`Factor`] takes it apart as `L D L^T`, in the order of [`dissect`], and counts the negative
 //!   pivots: a direction in which the energy falls for each of them;
-//! - [`conjugate_gradients`] and [`gmres`] need products only;
+//! - [`conjugate_gradients`] and [`gmres`] need products only, and are preconditioned by the blocks
+//!   on the diagonal and by the motions of a few parts as rigid bodies;
 //! - [`largest_mode`] finds the fastest of all vibrations, which bounds explicit steps;
 //! - [`LinearSolver`] is one of both ways behind one face;
 //! - [`Newton`] finds the zero of a residual, [`follow`] a row of them under growing loads, and
 //!   [`follow_arc`] a path on which loads may fall again.
 
 mod arc_length;
+mod coarse;
 mod dissection;
 mod factor;
 mod jacobi;
@@ -31,8 +33,10 @@ pub use dissection::dissect;
 pub use factor::{Factor, FactorError};
 pub use krylov::{Outcome, conjugate_gradients, gmres};
 pub use lanczos::{Mode, irregular, largest_mode};
-pub use linear::{LinearError, LinearMethod, LinearReport, LinearSolver, Stability, Tangent};
+pub use linear::{
+    Costs, LinearError, LinearMethod, LinearReport, LinearSolver, Stability, Tangent,
+};
 pub use load_steps::{Increment, LoadError, LoadSteps, Path, follow};
-pub use newton::{Equations, Iteration, Newton, NewtonError, Solved, Trial};
+pub use newton::{Equations, Found, Iteration, Newton, NewtonError, Solved, Trial};
 pub use reduction::{Local, Reduction};
 pub use sparse::SparseMatrix;

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::krylov::{advance, dot};
 use super::{LinearError, LinearReport, Stability};
+use crate::parallel::larger;
 
 /// Equations `r(x, factor) = 0` in unknowns x, where the load factor takes the part of time.
 pub trait Equations {
@@ -96,6 +97,15 @@ impl Default for Newton {
 
 /// A zero.
 #[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The iterations that led there.
+    pub iterations: Vec<Iteration>,
+    /// Relative residual that is left.
+    pub residual: f64,
+}
+
+/// A zero of which it is known whether it stays.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Solved {
     /// The iterations that led there.
     pub iterations: Vec<Iteration>,
@@ -141,17 +151,15 @@ pub enum NewtonError {
 const SUFFICIENT: f64 = 1e-4;
 /// Change of a potential, over its size, that may be rounding.
 const NOISE: f64 = 1e-11;
+/// Change of unknowns, over the largest of them, that is rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Newton {
     /// Finds a zero from `x`, after the iterations `before` that a predictor took, and looks
     /// whether it is stable.
     ///
-    /// Along each direction a step is halved until the potential falls as its slope promises;
-    /// where the change is lost in rounding, or where there is no potential, until the residual
-    /// falls.
-    ///
     /// # Errors
-    /// [`NewtonError`] with all iterations; `x` is then the last state.
+    /// As [`Self::find`].
     pub fn solve<E: Equations + ?Sized>(
         &self,
         equations: &mut E,
@@ -159,6 +167,30 @@ impl Newton {
         x: &mut Vec<f64>,
         before: Vec<Iteration>,
     ) -> Result<Solved, NewtonError> {
+        let Found { iterations, residual } = self.find(equations, factor, x, before)?;
+        // Where the potential has a saddle a shift would hide it.
+        if let Err(source) = equations.linearise(factor, x, false) {
+            return Err(NewtonError::Linear { source, history: iterations });
+        }
+        let stability = equations.stability();
+        Ok(Solved { iterations, residual, stability })
+    }
+
+    /// Finds a zero from `x`, after the iterations `before` that a predictor took.
+    ///
+    /// Along each direction a step is halved until the potential falls as its slope promises;
+    /// where the change is lost in rounding, or where there is no potential, until the residual
+    /// falls.
+    ///
+    /// # Errors
+    /// [`NewtonError`] with all iterations; `x` is then the last state.
+    pub fn find<E: Equations + ?Sized>(
+        &self,
+        equations: &mut E,
+        factor: f64,
+        x: &mut Vec<f64>,
+        before: Vec<Iteration>,
+    ) -> Result<Found, NewtonError> {
         let mut history = before;
         let mut left = vec![0.0; x.len()];
         let mut direction = vec![0.0; x.len()];
@@ -168,12 +200,7 @@ impl Newton {
                 residual = equations.residual(factor, x, &mut left);
             }
             if residual <= self.tolerance {
-                // Where the potential has a saddle a shift would hide it.
-                equations
-                    .linearise(factor, x, false)
-                    .map_err(|source| NewtonError::Linear { source, history: history.clone() })?;
-                let stability = equations.stability();
-                return Ok(Solved { iterations: history, residual, stability });
+                return Ok(Found { iterations: history, residual });
             }
             if history.len() >= self.most_iterations || !residual.is_finite() {
                 return Err(NewtonError::NoConvergence { history, residual });
@@ -182,6 +209,10 @@ impl Newton {
                 .linearise(factor, x, true)
                 .and_then(|()| equations.solve(&left, self.forcing(residual), &mut direction))
                 .map_err(|source| NewtonError::Linear { source, history: history.clone() })?;
+            // Nothing that the unknowns could still hold: the residual is their rounding.
+            if largest(&direction) <= ROUNDING * largest(x) {
+                return Ok(Found { iterations: history, residual });
+            }
             let start = Start { x: &*x, left: &left, direction: &direction, residual };
             let step = self.search(equations, factor, &start);
             let (length, next) = match step {
@@ -251,6 +282,11 @@ struct Start<'a> {
     left: &'a [f64],
     direction: &'a [f64],
     residual: f64,
+}
+
+/// The largest of some numbers by size, infinite if one is no number.
+fn largest(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |largest, number| larger(largest, number.abs()))
 }
 
 /// The residuals of all iterations, with the lengths of those that were cut.

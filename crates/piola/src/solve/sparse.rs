@@ -34,6 +34,32 @@ impl SparseMatrix {
         Self { offsets, rows, values }
     }
 
+    /// A pattern by columns, each with its rows in ascending order, the first on the diagonal; with
+    /// zeros.
+    pub(super) fn of_columns(columns: impl Iterator<Item = Vec<usize>>) -> Self {
+        let (mut offsets, mut rows) = (vec![0], Vec::new());
+        for column in columns {
+            rows.extend(column);
+            offsets.push(rows.len());
+        }
+        let values = vec![0.0; rows.len()];
+        Self { offsets, rows, values }
+    }
+
+    /// Takes the values of all entries in, column by column.
+    pub(super) fn set_values(&mut self, values: Vec<f64>) {
+        debug_assert_eq!(values.len(), self.rows.len(), "one value an entry");
+        self.values = values;
+    }
+
+    /// Raises each entry on the diagonal by a share of itself, and puts 1 where it is zero.
+    pub(super) fn regularise(&mut self, share: f64) {
+        for column in 0..self.len() {
+            let entry = &mut self.values[self.offsets[column]];
+            *entry = if *entry == 0.0 { 1.0 } else { *entry + share * entry.abs() };
+        }
+    }
+
     /// Number of rows and columns.
     pub fn len(&self) -> usize {
         self.offsets.len() - 1
