@@ -97,35 +97,48 @@ fn cases() -> Vec<PathBuf> {
 /// has the bytes of the run that was never broken off.
 #[test]
 fn every_case_resumes_to_the_bit() {
-    for path in cases() {
-        // What is drawn and packed only takes time here; one picture and five files have it all.
-        let mut case = load(&path, &["output.compression='none'"]);
-        let end = *case.time.end;
-        case.output.every.value = end / 5.0;
-        // Steps of loads are large, each of them takes a whole iteration.
-        let rows = if *case.time.integrator == "static" { 10.0 } else { 50.0 };
-        case.output.table_every.value = end / rows;
-        case.pictures.truncate(1);
-        let folder = tempfile::tempdir().unwrap();
-        let (whole, broken) = (folder.path().join("whole"), folder.path().join("broken"));
-        let unbroken = run(&case, &whole, false, 1, u64::MAX);
-        let steps = unbroken.summary.steps;
-        assert!(steps >= 4, "{}", path.display());
+    cases().iter().for_each(|path| resumes_to_the_bit(path, None));
+}
 
-        let first = run(&case, &broken, false, 2, steps / 3);
-        assert_eq!(first.summary.outcome, Outcome::Interrupted, "{}", path.display());
-        let second = run(&case, &broken, true, 1, 3 * steps / 4);
-        assert_eq!(second.summary.resumed, Some((first.summary.time, first.summary.steps)));
-        let last = run(&case, &broken, true, 3, u64::MAX);
-        assert_eq!(last.summary.resumed.map(|(_, steps)| steps), Some(3 * steps / 4));
+/// The integrators that no base case has.
+#[test]
+fn implicit_steps_resume_to_the_bit() {
+    let all = cases();
+    let path = all.iter().find(|path| path.ends_with("free-vibration/case.toml")).unwrap();
+    ["implicit", "damped"].map(|variant| resumes_to_the_bit(path, Some(variant)));
+}
 
-        assert_same(&whole, &broken, &path.display().to_string());
-        assert_eq!(last.tables, unbroken.tables, "{}", path.display());
-        let (mut last, unbroken) = (last.summary, unbroken.summary);
-        assert!(unbroken.trace.is_some() == matches!(unbroken.outcome, Outcome::Failed(_)));
-        (last.timings, last.resumed) = (unbroken.timings.clone(), None);
-        assert_eq!(last, unbroken, "{}", path.display());
-    }
+fn resumes_to_the_bit(path: &Path, variant: Option<&str>) {
+    // What is drawn and packed only takes time here; one picture and five files have it all.
+    let overrides = vec!["output.compression='none'".to_owned()];
+    let variant = variant.map(str::to_owned);
+    let options = LoadOptions { overrides, variant, coarse: true, ..LoadOptions::default() };
+    let mut case = case::load(path, &options).unwrap_or_else(|problems| panic!("{problems}"));
+    let end = *case.time.end;
+    case.output.every.value = end / 5.0;
+    // Steps of loads are large, each of them takes a whole iteration.
+    let rows = if *case.time.integrator == "static" { 10.0 } else { 50.0 };
+    case.output.table_every.value = end / rows;
+    case.pictures.truncate(1);
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, broken) = (folder.path().join("whole"), folder.path().join("broken"));
+    let unbroken = run(&case, &whole, false, 1, u64::MAX);
+    let steps = unbroken.summary.steps;
+    assert!(steps >= 4, "{}", path.display());
+
+    let first = run(&case, &broken, false, 2, steps / 3);
+    assert_eq!(first.summary.outcome, Outcome::Interrupted, "{}", path.display());
+    let second = run(&case, &broken, true, 1, 3 * steps / 4);
+    assert_eq!(second.summary.resumed, Some((first.summary.time, first.summary.steps)));
+    let last = run(&case, &broken, true, 3, u64::MAX);
+    assert_eq!(last.summary.resumed.map(|(_, steps)| steps), Some(3 * steps / 4));
+
+    assert_same(&whole, &broken, &path.display().to_string());
+    assert_eq!(last.tables, unbroken.tables, "{}", path.display());
+    let (mut last, unbroken) = (last.summary, unbroken.summary);
+    assert!(unbroken.trace.is_some() == matches!(unbroken.outcome, Outcome::Failed(_)));
+    (last.timings, last.resumed) = (unbroken.timings.clone(), None);
+    assert_eq!(last, unbroken, "{}", path.display());
 }
 
 /// A wave in a bar that is over in a blink, in a folder of its own.

@@ -31,6 +31,15 @@ pub fn integrators() -> Vec<Choice> {
     let meaning = |kind: IntegratorKind| match kind {
         IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
         IntegratorKind::KickDriftKick => "kick-drift-kick, CTVF (54) to (60)",
+        IntegratorKind::Newmark => {
+            "Newmark's method, implicit, with `beta` and `gamma`; `dual_support` only"
+        }
+        IntegratorKind::HhtAlpha => {
+            "the method of Hilber, Hughes and Taylor, implicit, which damps short periods by `alpha`; `dual_support` only"
+        }
+        IntegratorKind::GeneralisedAlpha => {
+            "generalised-alpha, implicit, which damps short periods by `spectral_radius` and long ones least; `dual_support` only"
+        }
         IntegratorKind::Static => {
             "no motion: equilibrium under loads that grow with the time, which is the load factor; `dual_support` only"
         }

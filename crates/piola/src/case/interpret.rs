@@ -20,6 +20,7 @@ mod observers;
 mod physics;
 mod solids;
 mod sweeps;
+mod time;
 
 /// Which of the settings of a case file is read.
 #[derive(Clone, Copy, Debug)]
@@ -204,91 +205,6 @@ impl Reader<'_, '_> {
             *axis = ends.as_ref().and_then(read);
         }
         Some(Domain { periodic })
-    }
-
-    fn time(&mut self, record: &Record) -> Option<Time> {
-        let scheme = self.names.scheme;
-        // Whether it can be split, and whether it must be.
-        let (splits, only_splits) = (scheme != "upwind", scheme == "transport_velocity");
-        let (cfl, step) = (record.number("cfl"), record.number("step"));
-        if let (Some(_), Some(place)) = (record.key_place("cfl"), record.key_place("step")) {
-            let message = "`cfl` and `step` cannot be given both";
-            self.report(
-                Problem::new(place, message, "the second way to choose the step")
-                    .help("`cfl` follows the stable step, `step` is fixed: remove one of them"),
-            );
-        }
-        let integrator_name = record.text("integrator");
-        let is_static =
-            integrator_name.as_ref().is_some_and(|name| **name == IntegratorKind::Static.name());
-        if is_static {
-            self.meaningless(record, "cfl", "in statics");
-        }
-        let step = match (cfl, step) {
-            (_, Some(step)) if is_static => step.map(StepControl::AtMost),
-            _ if is_static => {
-                let end = record.number("end")?;
-                Located::new(StepControl::AtMost(0.1 * *end), record.place)
-            }
-            (_, Some(step)) => step.map(StepControl::Fixed),
-            (Some(cfl), None) => cfl.map(StepControl::Cfl),
-            (None, None) => {
-                let cfl = match scheme {
-                    "transport_velocity" => 0.25,
-                    "dual_support" => 0.8,
-                    _ => 0.3,
-                };
-                Located::new(StepControl::Cfl(cfl), record.place)
-            }
-        };
-        let natural = if splits { IntegratorKind::KickDriftKick } else { IntegratorKind::TvdRk2 };
-        let integrator = match integrator_name {
-            Some(name) => name,
-            None => Located::new(natural.name().to_owned(), record.place),
-        };
-        if !splits && integrator.value == IntegratorKind::KickDriftKick.name() {
-            let message =
-                format!("the scheme `{}` cannot be split for this integrator", self.names.scheme);
-            self.report(
-                Problem::new(integrator.place, message, "of another scheme").help("use `tvd_rk2`"),
-            );
-        }
-        if is_static && scheme != "dual_support" {
-            let message = format!("the scheme `{scheme}` knows no statics");
-            let problem = Problem::new(integrator.place, message, "of another scheme");
-            let help = format!("use `{}`, or the scheme `dual_support`", natural.name());
-            self.report(problem.help(help));
-        } else if only_splits && integrator.value != IntegratorKind::KickDriftKick.name() {
-            let message =
-                format!("the scheme `{}` keeps its accelerations in its state", self.names.scheme);
-            self.report(
-                Problem::new(integrator.place, message, "of another scheme")
-                    .help("use `kick_drift_kick`"),
-            );
-        }
-        Some(Time {
-            end: record.number("end")?,
-            integrator,
-            step,
-            max_steps: record.whole("max_steps").map(|steps| steps.value),
-            min_step: record.number("min_step").map(|step| step.value),
-            max_speed: record.number("max_speed").map(|speed| speed.value),
-            retries: self.retries(record, is_static)?,
-        })
-    }
-
-    fn retries(&mut self, record: &Record, is_static: bool) -> Option<u64> {
-        let number = record.whole("retries").map(|number| number.value);
-        if record.text("on_failure")?.value != "retry" {
-            self.meaningless(record, "retries", "without `on_failure = \"retry\"`");
-            return Some(0);
-        }
-        if let Some(place) = record.key_place("step").filter(|_| !is_static) {
-            let problem =
-                Problem::new(place, "a fixed step cannot be retried with a smaller one", "fixed");
-            self.report(problem.help("set `cfl` instead, or `on_failure = \"stop\"`"));
-        }
-        Some(number.unwrap_or(5))
     }
 
     fn checkpoint(record: &Record) -> Option<Checkpoint> {

@@ -140,7 +140,7 @@ impl Simulation {
         if let Some(outputs) = &outputs {
             observers.extend(outputs.observers(&case, &built.bodies));
         }
-        let integrator = build::integrator(&case).build(length);
+        let integrator = build::integrator(&case, length);
         let control = build::step_control(&case);
         let mut executor = Executor::new(built.scheme, integrator, control, *case.time.end);
         executor.max_steps = case.time.max_steps.unwrap_or(u64::MAX);

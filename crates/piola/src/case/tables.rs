@@ -232,7 +232,9 @@ static TIME: TableSpec = TableSpec {
             "cfl",
             Kind::Number(Interval::POSITIVE),
             "1",
-            Derived("0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8) unless `step` is given"),
+            Derived(
+                "0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8) unless `step` is given; none with an implicit integrator",
+            ),
             "share of the time that a wave needs from particle to particle; with `dual_support`, of the largest stable step of central differences",
         ),
         key(
@@ -240,7 +242,35 @@ static TIME: TableSpec = TableSpec {
             Kind::Number(Interval::POSITIVE),
             "s",
             Derived("none; a tenth of `end` with the integrator `static`"),
-            "fixed time step instead of `cfl`, checked against the stable step; with the integrator `static` the largest step of the loads, shortened to meet output",
+            "fixed time step instead of `cfl`, checked against the stable step; with an implicit integrator or `static` the largest step, shortened to meet output",
+        ),
+        key(
+            "beta",
+            Kind::Number(Interval::between(0.25, 1.0)),
+            "1",
+            Derived("0.25, with the integrator `newmark`"),
+            "weight of the new acceleration in the displacement, at least half of `gamma`",
+        ),
+        key(
+            "gamma",
+            Kind::Number(Interval::between(0.5, 1.0)),
+            "1",
+            Derived("0.5, with the integrator `newmark`"),
+            "weight of the new acceleration in the velocity: above 0.5 all periods are damped, and steps are of first order",
+        ),
+        key(
+            "alpha",
+            Kind::Number(Interval::between(0.0, 1.0 / 3.0)),
+            "1",
+            Derived("0.05, with the integrator `hht_alpha`"),
+            "share of the forces at the start of a step: the larger, the more short periods are damped",
+        ),
+        key(
+            "spectral_radius",
+            Kind::Number(Interval::between(0.0, 1.0)),
+            "1",
+            Derived("0.8, with the integrator `generalised_alpha`"),
+            "what a step multiplies the shortest periods by; 1 is the implicit midpoint rule, without damping",
         ),
         key(
             "max_steps",

@@ -11,31 +11,31 @@ pub trait StaticScheme: Scheme {
     /// elsewhere. All that it depends on is in its arguments.
     ///
     /// # Errors
-    /// [`NoEquilibrium`]; `new` is of no use then.
+    /// [`NoSolution`]; `new` is of no use then.
     fn equilibrate(
         &mut self,
         from: f64,
         to: f64,
         old: &[f64],
         new: &mut [f64],
-    ) -> Result<(), NoEquilibrium>;
+    ) -> Result<(), NoSolution>;
 }
 
-/// Why there is no state in equilibrium, as far as was looked.
+/// Why there is no state that meets the equations, as far as was looked.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{message}")]
-pub struct NoEquilibrium {
+pub struct NoSolution {
     /// In which way it was missed.
     pub kind: Missed,
-    /// The load factor without equilibrium.
-    pub factor: f64,
-    /// The last one with it.
+    /// The time in s without one, or the load factor.
+    pub time: f64,
+    /// The last one with one.
     pub reached: f64,
     /// What happened, where, and what to do about it.
     pub message: String,
 }
 
-/// Ways to miss an equilibrium.
+/// Ways to miss it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missed {
     /// The iteration did not get there.

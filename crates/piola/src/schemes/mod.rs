@@ -6,15 +6,17 @@ mod equilibrium;
 mod initial;
 pub(crate) mod input;
 pub mod momentum;
+mod newmark;
 mod scheme;
 mod split;
 pub mod transport_velocity;
 pub mod upwind;
 
 pub use description::SchemeDescription;
-pub use equilibrium::{Missed, NoEquilibrium, StaticScheme};
+pub use equilibrium::{Missed, NoSolution, StaticScheme};
 pub use initial::Initial;
 pub use input::InputError;
 pub use momentum::{MomentumComponent, momentum_components};
+pub use newmark::{Newmark, NewmarkScheme, UnstableWeights};
 pub use scheme::{Escape, Health, Ledger, Particle, Scheme, StepLimit, snapshot};
 pub use split::SplitScheme;

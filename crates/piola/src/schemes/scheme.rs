@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{SchemeDescription, SplitScheme, StaticScheme};
+use super::{NewmarkScheme, SchemeDescription, SplitScheme, StaticScheme};
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
@@ -88,6 +88,11 @@ pub trait Scheme: Send {
 
     /// The formulation as one that finds equilibria, if it is one and was built for that.
     fn equilibrium(&mut self) -> Option<&mut dyn StaticScheme> {
+        None
+    }
+
+    /// The formulation as one that takes implicit steps, if it is one and was built for that.
+    fn newmark(&mut self) -> Option<&mut dyn NewmarkScheme> {
         None
     }
 

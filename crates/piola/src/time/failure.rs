@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::schemes::{Escape, Missed, NoEquilibrium, Particle};
+use crate::schemes::{Escape, Missed, NoSolution, Particle};
 
 /// What went wrong, where and when, with what to do about it.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -152,9 +152,9 @@ pub enum Failure {
         /// The likely cause and what to change.
         advice: String,
     },
-    /// A step of the loads does not end in equilibrium.
+    /// The equations of a step have no solution, as far as was looked.
     #[error(transparent)]
-    NoEquilibrium(NoEquilibrium),
+    NoSolution(NoSolution),
     /// The number of steps allowed is used up.
     #[error(
         "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
@@ -177,7 +177,7 @@ impl Failure {
             Self::TooFast { .. } => "too_fast",
             Self::FixedStepTooLarge { .. } => "fixed_step_too_large",
             Self::StepBelowFloor { .. } => "step_below_floor",
-            Self::NoEquilibrium(missed) => match missed.kind {
+            Self::NoSolution(missed) => match missed.kind {
                 Missed::NoConvergence => "no_convergence",
                 Missed::Inverted => "inverted",
                 Missed::Unstable => "unstable",
@@ -196,7 +196,7 @@ impl Failure {
             | Self::FixedStepTooLarge { index, .. }
             | Self::StepBelowFloor { index, .. } => Some(*index),
             // What led there is in its message; to take the steps once more would take long.
-            Self::NoEquilibrium(_) | Self::TooManySteps { .. } => None,
+            Self::NoSolution(_) | Self::TooManySteps { .. } => None,
         }
     }
 }

@@ -3,8 +3,9 @@
 use super::failure::Failure;
 use super::kick_drift_kick::KickDriftKick;
 use super::load_steps::LoadStepping;
+use super::newmark::NewmarkStepping;
 use super::tvd_rk2::TvdRk2;
-use crate::schemes::Scheme;
+use crate::schemes::{Newmark, Scheme};
 
 /// A method that takes a state one step further.
 pub trait Integrator: Send {
@@ -36,19 +37,42 @@ pub enum IntegratorKind {
     TvdRk2,
     /// Kick-drift-kick, CTVF (54) to (60), for schemes that can be split.
     KickDriftKick,
+    /// Newmark's method, theory (54), for schemes that solve for displacements.
+    Newmark,
+    /// The method of Hilber, Hughes and Taylor.
+    HhtAlpha,
+    /// The generalised-alpha method of Chung and Hulbert.
+    GeneralisedAlpha,
     /// Equilibrium under loads that grow, for schemes that know it.
     Static,
 }
 
 impl IntegratorKind {
     /// All integrators.
-    pub const ALL: [Self; 3] = [Self::TvdRk2, Self::KickDriftKick, Self::Static];
+    pub const ALL: [Self; 6] = [
+        Self::TvdRk2,
+        Self::KickDriftKick,
+        Self::Newmark,
+        Self::HhtAlpha,
+        Self::GeneralisedAlpha,
+        Self::Static,
+    ];
+
+    /// Share of the forces at the start of a step of [`Self::HhtAlpha`], unless another is asked for.
+    pub const ALPHA: f64 = 0.05;
+
+    /// What a step of [`Self::GeneralisedAlpha`] multiplies the shortest periods by, unless something
+    /// else is asked for.
+    pub const SPECTRAL_RADIUS: f64 = 0.8;
 
     /// Name in a case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::TvdRk2 => "tvd_rk2",
             Self::KickDriftKick => "kick_drift_kick",
+            Self::Newmark => "newmark",
+            Self::HhtAlpha => "hht_alpha",
+            Self::GeneralisedAlpha => "generalised_alpha",
             Self::Static => "static",
         }
     }
@@ -58,12 +82,22 @@ impl IntegratorKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// An integrator for states of `length` numbers.
+    /// An integrator for states of `length` numbers, with its usual weights.
     pub fn build(self, length: usize) -> Box<dyn Integrator> {
         match self {
             Self::TvdRk2 => Box::new(TvdRk2::new(length)),
             Self::KickDriftKick => Box::new(KickDriftKick),
+            Self::Newmark => self.weighted(Newmark::AVERAGE_ACCELERATION),
+            Self::HhtAlpha => self.weighted(Newmark::hilber_hughes_taylor(Self::ALPHA)),
+            Self::GeneralisedAlpha => {
+                self.weighted(Newmark::generalised_alpha(Self::SPECTRAL_RADIUS))
+            }
             Self::Static => Box::new(LoadStepping),
         }
+    }
+
+    /// An integrator of implicit steps with weights of one's own.
+    pub fn weighted(self, rule: Newmark) -> Box<dyn Integrator> {
+        Box::new(NewmarkStepping { name: self.name(), rule })
     }
 }

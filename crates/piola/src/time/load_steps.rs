@@ -30,6 +30,6 @@ impl Integrator for LoadStepping {
     ) -> Result<(), Failure> {
         new.copy_from_slice(old);
         let Some(scheme) = scheme.equilibrium() else { return Ok(()) };
-        scheme.equilibrate(time, time + step, old, new).map_err(Failure::NoEquilibrium)
+        scheme.equilibrate(time, time + step, old, new).map_err(Failure::NoSolution)
     }
 }

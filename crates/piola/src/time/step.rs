@@ -12,7 +12,7 @@ pub enum StepControl {
     Cfl(f64),
     /// A fixed step in s, checked against the stable step at a CFL number of one.
     Fixed(f64),
-    /// At most this, whatever the stable step is: steps of loads.
+    /// At most this, whatever the stable step is: steps of loads, and implicit ones.
     AtMost(f64),
 }
 
@@ -65,7 +65,7 @@ impl StepControl {
         let number = match self {
             Self::Cfl(number) => number,
             Self::Fixed(_) => 1.0,
-            Self::AtMost(step) => return Ok(ChosenStep { step, limiter: "load", particle: 0 }),
+            Self::AtMost(step) => return Ok(ChosenStep { step, limiter: "largest", particle: 0 }),
         };
         let unlimited = ChosenStep { step: f64::INFINITY, limiter: "none", particle: 0 };
         let bound = limits.iter().fold(unlimited, |best, limit| {

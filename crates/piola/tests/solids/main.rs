@@ -7,5 +7,6 @@ mod support;
 mod clouds;
 mod energy;
 mod gradients;
+mod implicit;
 mod runs;
 mod statics;

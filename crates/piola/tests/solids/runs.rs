@@ -5,7 +5,7 @@ use std::sync::Arc;
 use piola::Vector;
 use piola::boundaries::{PrescribedVelocity, Traction};
 use piola::schemes::dual_support::{
-    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Settings,
+    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
 };
 use piola::schemes::{InputError, Scheme, momentum_components};
 use piola::time::IntegratorKind;
@@ -35,7 +35,7 @@ fn input<const D: usize>(
         body_forces: Vec::new(),
         tractions: Vec::new(),
         prescribed: Vec::new(),
-        statics: None,
+        motion: Motion::Explicit,
     }
 }
 

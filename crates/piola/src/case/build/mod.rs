@@ -25,7 +25,7 @@ use crate::schemes::upwind::{
     Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
 };
 use crate::schemes::{InputError, Scheme};
-use crate::time::{CheckpointPolicy, IntegratorKind, StepControl};
+use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
 
 use bodies::BodyReport;
 
@@ -285,7 +285,13 @@ pub(super) fn checkpoint_policy(case: &Case) -> CheckpointPolicy {
     CheckpointPolicy { steps: every_steps, time: every, wall, at_end }
 }
 
-/// The integrator of a case. The reader has checked its name against the same registry.
-pub(super) fn integrator(case: &Case) -> IntegratorKind {
+/// The kind of integrator of a case. The reader has checked its name against the same registry.
+fn integrator_kind(case: &Case) -> IntegratorKind {
     IntegratorKind::from_name(&case.time.integrator).unwrap_or(IntegratorKind::TvdRk2)
+}
+
+/// The integrator of a case, for states of `length` numbers.
+pub(super) fn integrator(case: &Case, length: usize) -> Box<dyn Integrator> {
+    let kind = integrator_kind(case);
+    case.time.newmark.map_or_else(|| kind.build(length), |rule| kind.weighted(rule))
 }

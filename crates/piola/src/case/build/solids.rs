@@ -3,7 +3,7 @@
 use piola_formulas::hyperelastic::Reduced;
 
 use super::bodies::{self, BodyReport};
-use super::{Built, initial, integrator, kernel, probes, selections};
+use super::{Built, initial, integrator_kind, kernel, probes, selections};
 use crate::Vector;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, GradientKind, SupportSize};
@@ -12,9 +12,10 @@ use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::{DirectedSupport, lattice_areas, nearest_radii};
 use crate::schemes::InputError;
 use crate::schemes::dual_support::{
-    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Settings, StaticsError,
-    StaticsInput,
+    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
+    StaticsError, StaticsInput,
 };
+use crate::solve::{LinearMethod, Newton};
 use crate::time::IntegratorKind;
 
 /// Builds the scheme `dual_support`.
@@ -56,13 +57,16 @@ pub(super) fn build<const D: usize>(
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
-    let is_static = integrator(case) == IntegratorKind::Static;
-    let (prescribed, statics) = match is_static {
-        true => {
+    let prescribed = selections::prescribed(case, &particles, &mut problems);
+    let motion = match integrator_kind(case) {
+        IntegratorKind::Static => {
             let prescribed = selections::held(case, &particles, &mut problems);
-            (Vec::new(), Some(StaticsInput { prescribed, ..StaticsInput::default() }))
+            Motion::Static(StaticsInput { prescribed, ..StaticsInput::default() })
         }
-        false => (selections::prescribed(case, &particles, &mut problems), None),
+        _ if case.time.newmark.is_some() => {
+            Motion::Implicit(LinearMethod::default(), Newton::default())
+        }
+        _ => Motion::Explicit,
     };
     let known = || {
         areas.clone().ok_or_else(|| {
@@ -87,7 +91,7 @@ pub(super) fn build<const D: usize>(
         velocity,
         tractions,
         prescribed,
-        statics,
+        motion,
     });
     let scheme = scheme.map_err(|error| {
         let (place, label) = match &error {
@@ -97,7 +101,7 @@ pub(super) fn build<const D: usize>(
             DualSupportError::Statics(StaticsError::Free { .. }) => {
                 (case.time.integrator.place, "statics needs a body that is held")
             }
-            DualSupportError::Statics(_) => (case.time.integrator.place, "in statics"),
+            DualSupportError::Statics(_) => (case.time.integrator.place, "with this integrator"),
             _ => (place, "with these supports"),
         };
         vec![case.problem_at(place, error.to_string(), label, None)]

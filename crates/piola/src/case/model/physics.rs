@@ -6,7 +6,7 @@ use piola_formulas::volumetric::{self, StressState};
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::schemes::{dual_support, transport_velocity, upwind};
+use crate::schemes::{Newmark, dual_support, transport_velocity, upwind};
 
 /// What a body is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -264,6 +264,8 @@ pub struct Time {
     pub end: Located<f64>,
     /// Name of the integrator.
     pub integrator: Located<String>,
+    /// Its weights, if it takes implicit steps of second order.
+    pub newmark: Option<Newmark>,
     /// How long a step is.
     pub step: Located<StepControl>,
     /// The run fails after so many steps.
@@ -305,7 +307,7 @@ pub enum StepControl {
     Cfl(f64),
     /// This many seconds, checked against the stable step.
     Fixed(f64),
-    /// At most this much of the load factor.
+    /// At most this many seconds, whatever is stable, or this much of the load factor.
     AtMost(f64),
 }
 

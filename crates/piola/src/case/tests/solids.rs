@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::case::model::{Material, PlaneState, StepControl, SupportSize};
+use crate::schemes::Newmark;
 
 const GOOD: &str = "\
 version = 1
@@ -143,6 +144,43 @@ fn statics_has_its_own_steps_and_prescribes_displacements() {
             assert!(message.contains(part), "{to}: {message}");
         }
     }
+}
+
+#[test]
+fn implicit_steps_are_of_any_size_and_take_their_own_weights() {
+    let with = |time: &str| GOOD.replace("end = 0.01\n", &format!("end = 0.01\n{time}\n"));
+    let rule = |time: &str| {
+        let case = read_with(&with(time), &[]).unwrap_or_else(|problems| panic!("{problems}"));
+        (case.time.newmark.expect("a rule"), case.time.step.value)
+    };
+    let (newmark, step) = rule("integrator = \"newmark\"\nstep = 0.002");
+    assert_eq!(newmark, Newmark::AVERAGE_ACCELERATION);
+    assert_eq!(step, StepControl::AtMost(0.002));
+    let (damped, step) = rule("integrator = \"newmark\"\ngamma = 0.6\nbeta = 0.3\ncfl = 20.0");
+    assert_eq!(Ok(damped), Newmark::new(0.3, 0.6));
+    assert_eq!(step, StepControl::Cfl(20.0));
+    let hht = rule("integrator = \"hht_alpha\"\nalpha = 0.1\nstep = 0.002").0;
+    assert_eq!(hht, Newmark::hilber_hughes_taylor(0.1));
+    let general = "integrator = \"generalised_alpha\"\nstep = 0.002\non_failure = \"retry\"";
+    assert_eq!(rule(general).0, Newmark::generalised_alpha(0.8));
+
+    for (time, parts) in [
+        ("integrator = \"newmark\"", ["`step` is missing", "multiples of the stable"]),
+        ("integrator = \"newmark\"\nstep = 0.1\ngamma = 0.7", ["2 beta >= gamma", "`beta = 0.35`"]),
+        ("integrator = \"newmark\"\nstep = 0.1\nalpha = 0.1", ["`alpha` has no meaning", "remove"]),
+        ("integrator = \"hht_alpha\"\nstep = 0.1\nalpha = 0.5", ["`alpha`", "0.5"]),
+        ("spectral_radius = 0.5", ["`spectral_radius` has no meaning", "with this integrator"]),
+    ] {
+        let message = read_with(&with(time), &[]).expect_err(time).to_string();
+        for part in parts {
+            assert!(message.contains(part), "{time}: {message}");
+        }
+    }
+    let text = with("integrator = \"newmark\"\nstep = 0.1");
+    let message =
+        read_with(&text.replacen("dual_support\"", "upwind\"\nsmoothing_length = 1.0", 1), &[]);
+    let message = message.expect_err("upwind").to_string();
+    assert!(message.contains("knows no implicit steps"), "{message}");
 }
 
 #[test]

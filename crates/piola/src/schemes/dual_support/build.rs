@@ -7,11 +7,11 @@ use thiserror::Error;
 use super::inspect::largest_wave_modulus;
 use super::stable_step::stable_step;
 use super::{
-    Discrete, DualSupport, Gradients, Material, Row, Settings, Side, Statics, StaticsError,
+    Discrete, DualSupport, Gradients, Material, Motion, Row, Settings, Side, Statics, StaticsError,
     StaticsInput,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
+use crate::boundaries::{BodyForce, PrescribedDisplacement, PrescribedVelocity, Traction};
 use crate::geometry::Particles;
 use crate::operators::{DirectedSupport, DualGradient, OperatorError};
 use crate::schemes::InputError;
@@ -38,9 +38,8 @@ pub struct DualSupportInput<const D: usize> {
     pub tractions: Vec<Traction<D>>,
     /// Prescribed velocity components.
     pub prescribed: Vec<PrescribedVelocity>,
-    /// In statics, what holds the body and how equilibrium is found; body forces and tractions are
-    /// those above.
-    pub statics: Option<StaticsInput<D>>,
+    /// How states follow each other.
+    pub motion: Motion<D>,
 }
 
 /// Input that the formulation cannot work with.
@@ -117,26 +116,39 @@ impl<const D: usize> DualSupport<D> {
         let particles = &discrete.particles;
         let mut mass = Vec::with_capacity(count);
         for (a, velocity) in velocity.iter().enumerate() {
-            let own = discrete.material(a).density * particles.volume[a];
+            let own = discrete.mass(a);
             check_particle(particles, a, own, velocity)?;
             mass.push(own);
         }
         let positions = &particles.position;
         let at_rest =
             |material: &Material<D>| largest_wave_modulus(&material.law, &Tensor::zeros());
-        let (stable_step, stiffest) = match &input.statics {
-            Some(_) => (f64::INFINITY, 0),
-            None => stable_step(&discrete, &mass),
+        let is_static = matches!(input.motion, Motion::Static(_));
+        let (stable_step, stiffest) = match is_static {
+            true => (f64::INFINITY, 0),
+            false => stable_step(&discrete, &mass),
         };
-        let statics = input.statics.map(|statics| {
-            let (body_forces, tractions) = (input.body_forces.clone(), input.tractions.clone());
-            Statics::new(discrete.clone(), StaticsInput { body_forces, tractions, ..statics })
-        });
+        let (body_forces, tractions) = (input.body_forces.clone(), input.tractions.clone());
+        let statics = match input.motion {
+            Motion::Explicit => None,
+            Motion::Implicit(method, newton) => {
+                let prescribed = input.prescribed.iter().map(held).collect();
+                let known =
+                    StaticsInput { body_forces, tractions, prescribed, ..Default::default() };
+                let known = StaticsInput { method, newton, ..known };
+                Some(Statics::moving(discrete.clone(), known)?)
+            }
+            Motion::Static(statics) => {
+                let known = StaticsInput { body_forces, tractions, ..statics };
+                Some(Statics::new(discrete.clone(), known)?)
+            }
+        };
         Ok(Self {
             loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
             modulus_at_rest: discrete.materials.iter().map(at_rest).collect(),
-            statics: statics.transpose()?.map(Box::new),
+            statics: statics.map(Box::new),
+            is_static,
             stable_step,
             stiffest,
             body_forces: input.body_forces,
@@ -149,4 +161,10 @@ impl<const D: usize> DualSupport<D> {
             discrete,
         })
     }
+}
+
+/// The components that a prescribed velocity holds; their displacements are found step by step.
+fn held<const D: usize>(condition: &PrescribedVelocity) -> PrescribedDisplacement<D> {
+    let PrescribedVelocity { name, particles, component, .. } = condition.clone();
+    PrescribedDisplacement::component(name, particles, component, Arc::new(0.0))
 }

@@ -58,6 +58,12 @@ impl<const D: usize> Discrete<D> {
         &self.materials[self.particles.body[a] as usize]
     }
 
+    /// Mass of particle a in kg (per unit of the missing dimensions).
+    #[inline]
+    pub(super) fn mass(&self, a: usize) -> f64 {
+        self.material(a).density * self.particles.volume[a]
+    }
+
     /// Displacement gradient of particle a, theory (44), Dual-support (12) less the identity.
     #[inline]
     pub fn displacement_gradient<T: Scalar>(

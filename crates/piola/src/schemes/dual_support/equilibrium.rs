@@ -1,9 +1,9 @@
 //! The formulation where there is no motion: states in equilibrium, with the work that led there.
 
 use super::statics::Known;
-use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, Row, StaticsError, TRACTION};
+use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, MECHANISMS, Row, StaticsError, TRACTION};
 use crate::boundaries::traction::Loaded;
-use crate::schemes::{Missed, NoEquilibrium, Scheme, StaticScheme};
+use crate::schemes::{Missed, NoSolution, Scheme, StaticScheme};
 use crate::solve::{LoadError, NewtonError};
 use crate::{Vector, parallel};
 
@@ -17,7 +17,7 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
         to: f64,
         old: &[f64],
         new: &mut [f64],
-    ) -> Result<(), NoEquilibrium> {
+    ) -> Result<(), NoSolution> {
         let length = Row::<D>::LENGTH;
         new.copy_from_slice(old);
         let count = self.mass.len();
@@ -29,9 +29,9 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
         };
         let Some(statics) = &mut self.statics else { return Ok(()) };
         let held_before = statics.support_forces(from, &known.displacement);
-        let state = statics.advance(&known, to).map_err(|error| NoEquilibrium {
+        let state = statics.advance(&known, to).map_err(|error| NoSolution {
             kind: kind(&error),
-            factor: to,
+            time: to,
             reached: from,
             message: advised(&error),
         })?;
@@ -41,30 +41,41 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
             row[..D].copy_from_slice((moved[a] / (to - from)).as_slice());
             row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(state.displacement[a].as_slice());
         }
-        let body = parallel::sum(count, |a| {
-            let both = self.body_acceleration(a, from) + self.body_acceleration(a, to);
-            0.5 * self.mass[a] * both.dot(&moved[a])
-        });
-        let of =
-            |load: &Loaded<D>| 0.5 * (load.force(from) + load.force(to)).dot(&moved[load.particle]);
-        let traction: f64 = self.loaded.iter().map(of).sum();
-        let supports = parallel::sum(count, |a| {
-            0.5 * (held_before[a] + state.support_force[a]).dot(&moved[a])
-        });
+        let held = held_before.iter().zip(&state.support_force);
+        let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
+        let work = self.work([from, to], &moved, &held);
         let tail = &mut new[count * length..];
-        tail[BODY_FORCE] += body;
-        tail[TRACTION] += traction;
-        tail[BOUNDARY_MOTION] += supports;
+        tail.iter_mut().zip(work).for_each(|(sum, work)| *sum += work);
         tail[Self::tail_length() - 1] = state.solved.iterations.len() as f64;
         Ok(())
     }
 }
 
 impl<const D: usize> DualSupport<D> {
+    /// Work of each mechanism in a step in J, by the mean of the forces at both of its ends: that of
+    /// what holds the particles is given in N, and what they `moved` in m.
+    pub(super) fn work(
+        &self,
+        [from, to]: [f64; 2],
+        moved: &[Vector<D>],
+        held: &[Vector<D>],
+    ) -> [f64; MECHANISMS.len()] {
+        let mut work = [0.0; MECHANISMS.len()];
+        work[BODY_FORCE] = parallel::sum(moved.len(), |a| {
+            let both = self.body_acceleration(a, from) + self.body_acceleration(a, to);
+            0.5 * self.mass[a] * both.dot(&moved[a])
+        });
+        let of =
+            |load: &Loaded<D>| 0.5 * (load.force(from) + load.force(to)).dot(&moved[load.particle]);
+        work[TRACTION] = self.loaded.iter().map(of).sum();
+        work[BOUNDARY_MOTION] = parallel::sum(moved.len(), |a| held[a].dot(&moved[a]));
+        work
+    }
+
     /// What supports and prescribed motions hold each particle with, N.
     pub(super) fn reactions(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
         self.load(state);
-        if let Some(statics) = &mut self.statics {
+        if let (true, Some(statics)) = (self.is_static, &mut self.statics) {
             return statics.support_forces(time, &self.displacement);
         }
         let mut rate = std::mem::take(&mut self.rate);
@@ -86,9 +97,9 @@ impl<const D: usize> DualSupport<D> {
     }
 }
 
-fn kind(error: &StaticsError) -> Missed {
+pub(super) fn kind(error: &StaticsError) -> Missed {
     match error {
-        StaticsError::Inverted { .. } => Missed::Inverted,
+        StaticsError::Inverted { .. } | StaticsError::Collapsed { .. } => Missed::Inverted,
         StaticsError::Load(LoadError::Unstable { .. }) => Missed::Unstable,
         StaticsError::Load(LoadError::Newton { source: NewtonError::Broken { .. }, .. }) => {
             Missed::Inverted

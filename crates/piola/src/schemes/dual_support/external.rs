@@ -88,7 +88,7 @@ impl<const D: usize> DualSupport<D> {
 
     /// Momentum of all particles together.
     pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
-        if self.statics.is_some() {
+        if self.is_static {
             return [0.0; MOST_COMPONENTS];
         }
         parallel::sums(self.mass.len(), |a, sum| {

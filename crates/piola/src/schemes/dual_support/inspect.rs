@@ -37,7 +37,7 @@ impl<const D: usize> DualSupport<D> {
             }
         }
         limits.clear();
-        if self.statics.is_some() {
+        if self.is_static {
             // Nothing moves: rows hold another rate.
             return Health { largest_speed: 0.0, ..worst.health };
         }

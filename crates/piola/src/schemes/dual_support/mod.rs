@@ -13,13 +13,15 @@
 //! that energy and momentum are kept by construction; dual supports come out of the derivative by
 //! themselves. Displacements instead of positions keep the digits of small strains.
 //!
-//! In statics the potential is stationary, and v is the rate of u by the load factor.
+//! In statics the potential is stationary, and v is the rate of u by the load factor. Implicit steps
+//! are statics with inertia.
 
 mod build;
 mod discrete;
 mod equilibrium;
 mod external;
 mod inspect;
+mod newmark;
 mod sample;
 mod scheme;
 mod settings;
@@ -30,8 +32,10 @@ mod statics;
 pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
 pub use scheme::DESCRIPTION;
-pub use settings::{Gradients, Material, Settings};
-pub use statics::{Known, Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness};
+pub use settings::{Gradients, Material, Motion, Settings};
+pub use statics::{
+    InertialStep, Known, Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness,
+};
 
 use std::sync::Arc;
 
@@ -42,8 +46,10 @@ use crate::boundaries::{BodyForce, traction::Loaded};
 /// The dual-support formulation bound to its particles.
 pub struct DualSupport<const D: usize> {
     discrete: Arc<Discrete<D>>,
-    /// In statics, loads and supports.
+    /// Loads and supports, where states are solved for.
     statics: Option<Box<Statics<D>>>,
+    /// Whether nothing moves.
+    is_static: bool,
     /// Mass of each particle in kg (per unit of the missing dimensions).
     mass: Vec<f64>,
     initial_velocity: Vec<Vector<D>>,
@@ -75,7 +81,8 @@ const BODY_FORCE: usize = 0;
 const TRACTION: usize = 1;
 const BOUNDARY_MOTION: usize = 2;
 
-/// Where the unknowns stand in a row of the state: v, u, and the acceleration, which kicks need.
+/// Where the unknowns stand in a row of the state: v, u, and the acceleration, which the next step
+/// needs.
 struct Row<const D: usize>;
 
 impl<const D: usize> Row<D> {
@@ -93,5 +100,11 @@ impl<const D: usize> Row<D> {
     #[inline]
     fn displacement(row: &[f64]) -> Vector<D> {
         Vector::from_column_slice(&row[Self::DISPLACEMENT..Self::ACCELERATION])
+    }
+
+    /// Acceleration that a row keeps, zero where a velocity is prescribed.
+    #[inline]
+    fn acceleration(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[Self::ACCELERATION..])
     }
 }

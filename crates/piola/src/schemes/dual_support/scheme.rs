@@ -3,7 +3,8 @@
 use super::sample::FIELDS;
 use super::{DualSupport, ENERGIES, IMPULSES, MECHANISMS, Row};
 use crate::schemes::{
-    Health, Particle, Scheme, SchemeDescription, SplitScheme, StaticScheme, StepLimit,
+    Health, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme, StaticScheme,
+    StepLimit,
 };
 use crate::{Vector, parallel};
 
@@ -76,7 +77,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
         let displacement: Vec<_> =
             (0..self.mass.len()).map(|a| Row::<D>::displacement(row(a))).collect();
         let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
-            if self.statics.is_none() {
+            if !self.is_static {
                 sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
             }
             let [strain, hourglass] = self.discrete.energy_of(&displacement, a);
@@ -128,7 +129,11 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn equilibrium(&mut self) -> Option<&mut dyn StaticScheme> {
-        if self.statics.is_some() { Some(self) } else { None }
+        if self.is_static { Some(self) } else { None }
+    }
+
+    fn newmark(&mut self) -> Option<&mut dyn NewmarkScheme> {
+        if self.statics.is_some() && !self.is_static { Some(self) } else { None }
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

@@ -2,7 +2,9 @@
 
 use piola_formulas::hyperelastic::Reduced;
 
+use super::StaticsInput;
 use crate::Vector;
+use crate::solve::{LinearMethod, Newton};
 
 /// Which gradient coefficients are used.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +27,19 @@ pub struct Settings<const D: usize> {
     /// the `mu/m_L` of Dual-support (21) is 1. From 0.05 to 0.1 with patch-consistent gradients,
     /// about 1 with plain ones; 0 for none.
     pub hourglass: f64,
+}
+
+/// How states follow each other.
+#[derive(Clone, Default)]
+pub enum Motion<const D: usize> {
+    /// In explicit steps.
+    #[default]
+    Explicit,
+    /// In implicit steps, which take linear equations and Newton's method.
+    Implicit(LinearMethod, Newton),
+    /// Not at all: in equilibrium, each with the loads of its load factor. Body forces and tractions
+    /// are those of the body in motion.
+    Static(StaticsInput<D>),
 }
 
 /// The material of one body.

@@ -26,18 +26,14 @@ impl<const D: usize> Statics<D> {
         known: &Known<D>,
         factor: f64,
     ) -> Result<StaticState<D>, StaticsError> {
-        let unknowns = |rows: &[Vector<D>]| {
-            let mut x = vec![0.0; self.unknowns()];
-            self.solver.reduction().collect(rows, &mut x);
-            x
-        };
-        let x = unknowns(&known.displacement);
+        let x = self.collect(&known.displacement);
         let step = factor - known.factor;
         let before = known.rate.as_ref().map(|rate| {
-            let last = x.iter().zip(unknowns(rate)).map(|(x, rate)| x - step * rate);
+            let last = x.iter().zip(self.collect(rate)).map(|(x, rate)| x - step * rate);
             (known.factor - step, last.collect())
         });
         self.faces.reset();
+        self.solver.restart();
         let path = Path { before, factor: known.factor, x };
         let newton = self.newton;
         let increment =
@@ -47,11 +43,26 @@ impl<const D: usize> Statics<D> {
 
     /// Force of the supports on each particle in N at displacements and a load factor.
     pub fn support_forces(&mut self, factor: f64, displacement: &[Vector<D>]) -> Vec<Vector<D>> {
-        let mut x = vec![0.0; self.unknowns()];
-        self.solver.reduction().collect(displacement, &mut x);
+        let x = self.collect(displacement);
         self.balance(factor, &x);
         let reduction = self.solver.reduction();
         self.left.iter().enumerate().map(|(a, left)| -reduction.held_part(a, left)).collect()
+    }
+
+    /// The unknowns of displacements.
+    pub(super) fn collect(&self, rows: &[Vector<D>]) -> Vec<f64> {
+        let mut x = vec![0.0; self.unknowns()];
+        self.solver.reduction().collect(rows, &mut x);
+        x
+    }
+
+    /// The particle where most force is left, and the force in N.
+    pub(super) fn most_left(&self) -> (usize, f64) {
+        let reduction = self.solver.reduction();
+        let free = |a: usize| (self.left[a] - reduction.held_part(a, &self.left[a])).norm();
+        let worse = |worst: usize, a: usize| if free(a) > free(worst) { a } else { worst };
+        let particle = (1..self.left.len()).fold(0, worse);
+        (particle, free(particle))
     }
 
     /// An error with the particle where most force is left, if that is what went wrong.
@@ -59,15 +70,12 @@ impl<const D: usize> Statics<D> {
         let LoadError::Newton { source: NewtonError::NoConvergence { .. }, .. } = error else {
             return self.named(error);
         };
-        let reduction = self.solver.reduction();
-        let free = |a: usize| (self.left[a] - reduction.held_part(a, &self.left[a])).norm();
-        let worse = |worst: usize, a: usize| if free(a) > free(worst) { a } else { worst };
-        let particle = (1..self.left.len()).fold(0, worse);
+        let (particle, force) = self.most_left();
         let particles = &self.discrete.particles;
         StaticsError::Residual {
             id: particles.id[particle],
             position: particles.position[particle].iter().copied().collect(),
-            force: free(particle),
+            force,
             source: error,
         }
     }

@@ -10,17 +10,31 @@ use crate::{Tensor, Vector, parallel};
 impl<const D: usize> Statics<D> {
     /// Displacements of unknowns at a load factor.
     fn displace(&mut self, factor: f64, x: &[f64]) {
-        let held = self.supports.values(factor, false);
-        self.solver.reduction().expand(x, &held, &mut self.displacement);
+        match &self.inertia {
+            Some(inertia) => {
+                self.solver.reduction().expand(x, &inertia.held, &mut self.displacement);
+            }
+            None => {
+                let held = self.supports.values(factor, false);
+                self.solver.reduction().expand(x, &held, &mut self.displacement);
+            }
+        }
     }
 
-    /// What loads and internal forces leave, into `left`, and the norm of the loads squared.
+    /// What loads, internal forces and inertia leave, into `left`, and the norm of loads and motion
+    /// squared.
     pub(super) fn balance(&mut self, factor: f64, x: &[f64]) -> f64 {
         self.displace(factor, x);
         self.discrete.forces(&self.displacement, &mut self.sides, &mut self.left);
         let outside = self.outside(factor);
-        let size = parallel::sum(outside.len(), |a| outside[a].norm_squared());
+        let mut size = parallel::sum(outside.len(), |a| outside[a].norm_squared());
         self.left.iter_mut().zip(&outside).for_each(|(left, outside)| *left += outside);
+        if let Some(inertia) = &self.inertia {
+            size += inertia.size;
+            for (a, left) in self.left.iter_mut().enumerate() {
+                *left += inertia.force(self.discrete.mass(a), a, &self.displacement[a]);
+            }
+        }
         size
     }
 
@@ -74,7 +88,11 @@ impl<const D: usize> Equations for Statics<D> {
             };
             !energy.is_finite() || law.is_objective() && turned()
         };
-        let energy = |a: usize| discrete.energy_of(displacement, a).iter().sum::<f64>();
+        let energy = |a: usize| {
+            let own = discrete.energy_of(displacement, a).iter().sum::<f64>();
+            let moving = self.inertia.as_ref();
+            own + moving.map_or(0.0, |it| it.potential(discrete.mass(a), a, &displacement[a]))
+        };
         let [potential, broken] = parallel::sums::<2>(discrete.len(), |a, sums| {
             let own = energy(a);
             sums[0] += own - dead[a].dot(&displacement[a]);
@@ -124,8 +142,20 @@ impl<const D: usize> Equations for Statics<D> {
     fn linearise(&mut self, factor: f64, x: &[f64], definite: bool) -> Result<(), LinearError> {
         self.displace(factor, x);
         let pressing = self.loads.pressing(&self.discrete, factor, false);
-        self.stiffness.load(&self.displacement, &pressing);
-        self.solver.load(&self.stiffness, definite && pressing.is_empty())
+        if !(self.is_linear && pressing.is_empty()) {
+            self.stiffness.load(&self.displacement, &pressing);
+            return self.solver.load(&self.stiffness, definite && pressing.is_empty());
+        }
+        let wanted = (self.stiffness.inertia(), definite);
+        let is_known = self.loaded.is_some_and(|(inertia, was_definite)| {
+            inertia == wanted.0 && (was_definite == definite || !self.solver.is_shifted())
+        });
+        if !is_known {
+            self.loaded = None;
+            self.solver.load(&self.stiffness, definite)?;
+            self.loaded = Some(wanted);
+        }
+        Ok(())
     }
 
     fn solve(

@@ -86,6 +86,40 @@ pub enum StaticsError {
         /// How it failed.
         source: LoadError,
     },
+    /// An implicit step of a body in motion without an end.
+    #[error(
+        "no state was found at t = {time:.6} s, after {reached:.6} s: {source}; the largest force \
+         that is left, {force:.1e} N, is at particle {id} at {position:?}"
+    )]
+    Step {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+        /// End of the step in s.
+        time: f64,
+        /// Its start.
+        reached: f64,
+        /// The force in N.
+        force: f64,
+        /// How it failed.
+        source: NewtonError,
+    },
+    /// A particle is turned inside out in an implicit step of a body in motion.
+    #[error(
+        "particle {id} at {position:?} is turned inside out at t = {time:.6} s; a state was found up \
+         to {reached:.6} s: take smaller steps, or a law that resists compression"
+    )]
+    Collapsed {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+        /// End of the step in s.
+        time: f64,
+        /// Its start.
+        reached: f64,
+    },
     /// There is no further equilibrium.
     #[error(transparent)]
     Load(LoadError),

@@ -23,7 +23,7 @@ impl<const D: usize> Loads<D> {
             let acts = |body: u32| force.body.is_none_or(|own| own == body);
             for a in (0..particles.len()).filter(|&a| acts(particles.body[a])) {
                 let place = padded(&particles.position[a]);
-                let mass = discrete.material(a).density * particles.volume[a];
+                let mass = discrete.mass(a);
                 for (component, value) in force.acceleration.iter().enumerate() {
                     let value = match rate {
                         true => value.rate(place, factor),

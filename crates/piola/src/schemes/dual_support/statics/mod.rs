@@ -1,13 +1,15 @@
 //! Statics: states in equilibrium with loads that grow with a load factor.
 //!
 //! The potential `E(u) - f . u` of [`Discrete`] is stationary in the components that supports leave
-//! free; its Hessian is the [`Stiffness`]. How zeros are found, and in which steps, is the part of
-//! [`crate::solve`].
+//! free; its Hessian is the [`Stiffness`]. With the quadratic potential of inertia about the
+//! displacements of a motion without forces, the same equations are an implicit step. How zeros are
+//! found, and in which steps, is the part of [`crate::solve`].
 
 mod advance;
 mod equations;
 mod error;
 mod faces;
+mod inertia;
 mod loads;
 mod rigid;
 mod stiffness;
@@ -15,6 +17,7 @@ mod supports;
 
 pub use advance::Known;
 pub use error::StaticsError;
+pub use inertia::InertialStep;
 pub use stiffness::Stiffness;
 
 use std::sync::Arc;
@@ -27,9 +30,11 @@ use crate::boundaries::{
 use crate::operators::Trace;
 use crate::schemes::input::check_areas;
 use crate::solve::{
-    ArcLength, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow, follow_arc,
+    ArcLength, Costs, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow,
+    follow_arc,
 };
 use faces::Faces;
+use inertia::Inertia;
 use loads::Loads;
 use rigid::free_motion;
 use supports::Supports;
@@ -73,6 +78,13 @@ pub struct Statics<const D: usize> {
     left: Vec<Vector<D>>,
     /// Dead loads at one load factor, N.
     dead: Option<(f64, Vec<Vector<D>>)>,
+    /// In a step of a body in motion.
+    inertia: Option<Inertia<D>>,
+    /// Whether the tangent of the body is the same in all states. It is then made at rest, and
+    /// factorised anew for another inertia only.
+    is_linear: bool,
+    /// Inertia of the tangent that the solver has, and whether it was to be definite.
+    loaded: Option<(f64, bool)>,
 }
 
 /// A state in equilibrium.
@@ -108,6 +120,22 @@ impl<const D: usize> Statics<D> {
     /// [`StaticsError`] for conditions on what does not exist or that contradict each other, and
     /// for bodies that are free to move as a whole.
     pub fn new(discrete: Arc<Discrete<D>>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
+        let statics = Self::moving(discrete, input)?;
+        let Self { discrete, supports, faces, .. } = &statics;
+        match free_motion(&discrete.particles, supports, faces.springs()) {
+            Some((body, motion)) => Err(StaticsError::Free { body, motion }),
+            None => Ok(statics),
+        }
+    }
+
+    /// As [`Self::new`], for a body that may move as a whole, with inertia: for [`Self::march`].
+    ///
+    /// # Errors
+    /// [`StaticsError`] for conditions on what does not exist or that contradict each other.
+    pub fn moving(
+        discrete: Arc<Discrete<D>>,
+        input: StaticsInput<D>,
+    ) -> Result<Self, StaticsError> {
         let StaticsInput {
             body_forces,
             tractions,
@@ -127,14 +155,12 @@ impl<const D: usize> Statics<D> {
         let supports = Supports::new(&discrete.particles, prescribed, ties)?;
         let shear = |a: usize| discrete.material(a).law.law().small_strain().mu;
         let faces = Faces::new(input.trace.as_ref(), prescribed_faces, shear)?;
-        if let Some((body, motion)) = free_motion(&discrete.particles, &supports, faces.springs()) {
-            return Err(StaticsError::Free { body, motion });
-        }
         let mut stiffness = Stiffness::new(discrete.clone());
         stiffness.hold(faces.springs());
         let places = &discrete.particles.position;
         let solver =
             LinearSolver::new(input.method, places, &stiffness, |order| supports.reduction(order))?;
+        let is_linear = discrete.materials.iter().all(|it| !it.law.law().is_objective());
         Ok(Self {
             discrete,
             loads: Loads { body_forces, tractions, pressures },
@@ -147,12 +173,20 @@ impl<const D: usize> Statics<D> {
             sides: vec![Side::zero(); count],
             left: vec![Vector::zeros(); count],
             dead: None,
+            inertia: None,
+            is_linear,
+            loaded: None,
         })
     }
 
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.solver.reduction().unknowns()
+    }
+
+    /// What the linear equations took so far.
+    pub fn costs(&self) -> Costs {
+        self.solver.costs()
     }
 
     /// The states at all load steps, from rest.
@@ -176,6 +210,7 @@ impl<const D: usize> Statics<D> {
     ) -> Result<(), StaticsError> {
         let (newton, start) = (self.newton, vec![0.0; self.unknowns()]);
         self.faces.reset();
+        self.solver.restart();
         follow(self, &newton, steps, start, |statics, increment| show(statics.state(increment)))
             .map_err(|error| self.named(error))
     }

@@ -13,7 +13,7 @@ use crate::solve::Tangent;
 use crate::{Tensor, Vector, parallel};
 
 /// `K = d2E/du2` of one set of displacements, theory (51), Dual-support (29) and (40), and what
-/// follower pressures add to it.
+/// follower pressures and the inertia of an implicit step add to it.
 ///
 /// Its block between two particles is a sum over the supports that hold both. With the coefficient
 /// `g_p` of each particle of a support in the displacement gradient, `-sum_b G_cb` for its owner c,
@@ -38,6 +38,8 @@ pub struct Stiffness<const D: usize> {
     /// Held faces, and those of each particle.
     springs: Arc<Vec<Spring<D>>>,
     springs_of: Vec<Vec<u32>>,
+    /// Multiple of the mass on the diagonal in 1/s^2: 0 in statics.
+    inertia: f64,
     sides: Vec<Side<f64, D>>,
 }
 
@@ -79,6 +81,7 @@ impl<const D: usize> Stiffness<D> {
             pressed: Vec::new(),
             springs: Arc::default(),
             springs_of: vec![Vec::new(); count],
+            inertia: 0.0,
             sides: vec![Side::zero(); count],
         };
         stiffness.load(&vec![Vector::zeros(); count], &[]);
@@ -91,6 +94,22 @@ impl<const D: usize> Stiffness<D> {
         for (index, spring) in springs.iter().enumerate() {
             self.springs_of[spring.owner as usize].push(index as u32);
         }
+    }
+
+    /// Puts a multiple of the mass on the diagonal, in 1/s^2.
+    pub(super) fn accelerate(&mut self, inertia: f64) {
+        self.inertia = inertia;
+    }
+
+    /// The multiple of the mass on the diagonal in 1/s^2.
+    pub(super) fn inertia(&self) -> f64 {
+        self.inertia
+    }
+
+    /// What inertia adds to the block of particle a on the diagonal.
+    #[inline]
+    fn inertial(&self, a: usize) -> Tensor<D> {
+        Tensor::identity() * (self.inertia * self.discrete.mass(a))
     }
 
     /// Takes in displacements in m, and the force `p N_a` of follower pressures on each particle
@@ -235,6 +254,9 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
         if !self.pressed.is_empty() {
             self.add_pressure(a, add);
         }
+        if self.inertia > 0.0 {
+            add(a as u32, &self.inertial(a));
+        }
     }
 
     /// The same two passes as the forces', with the linear stress `dP/dF : A`: the hourglass force
@@ -256,11 +278,12 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
                 *side = discrete.side_of(direction, a, stress);
             }
         });
-        let (sides, pressed) = (&self.sides, &self.pressed);
+        let (sides, pressed, inertia) = (&self.sides, &self.pressed, self.inertia);
         parallel::for_each_chunk(product, |first, product| {
             for (offset, product) in product.iter_mut().enumerate() {
                 let a = first + offset;
                 *product = -discrete.force(direction, sides, a);
+                *product += direction[a] * (inertia * discrete.mass(a));
                 if let Some(slopes) = pressed.get(a) {
                     for (k, row) in slopes.iter().enumerate() {
                         for (l, slope) in row.iter().enumerate() {
@@ -278,7 +301,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
         parallel::for_each_chunk(&mut blocks, |first, blocks| {
             for (offset, block) in blocks.iter_mut().enumerate() {
                 let a = first + offset;
-                *block = self.own_block(a, &self.owner(a));
+                *block = self.own_block(a, &self.owner(a)) + self.inertial(a);
                 self.see_springs(a, 0, &mut |spring, row| *block += row * spring.row[0].1);
                 for (&c, &entry) in dual_row(&self.discrete.support, a) {
                     let c = c as usize;

@@ -1,0 +1,181 @@
+//! Clock and integrator.
+
+use super::*;
+use crate::schemes::Newmark;
+
+/// The kinds of integrator that the rest of the case depends on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum March {
+    Explicit,
+    Implicit,
+    Static,
+}
+
+impl March {
+    fn of(kind: Option<IntegratorKind>) -> Self {
+        match kind {
+            Some(
+                IntegratorKind::Newmark
+                | IntegratorKind::HhtAlpha
+                | IntegratorKind::GeneralisedAlpha,
+            ) => Self::Implicit,
+            Some(IntegratorKind::Static) => Self::Static,
+            Some(IntegratorKind::TvdRk2 | IntegratorKind::KickDriftKick) | None => Self::Explicit,
+        }
+    }
+}
+
+impl Reader<'_, '_> {
+    pub(super) fn time(&mut self, record: &Record) -> Option<Time> {
+        // Whether the scheme can be split.
+        let natural = match self.names.scheme {
+            "upwind" => IntegratorKind::TvdRk2,
+            _ => IntegratorKind::KickDriftKick,
+        };
+        let integrator = match record.text("integrator") {
+            Some(name) => name,
+            None => Located::new(natural.name().to_owned(), record.place),
+        };
+        let kind = IntegratorKind::from_name(&integrator);
+        let march = March::of(kind);
+        self.suits_scheme(&integrator, march, natural);
+        let step = self.step(record, march);
+        let newmark = self.newmark(record, kind);
+        Some(Time {
+            end: record.number("end")?,
+            integrator,
+            newmark: newmark?,
+            step: step?,
+            max_steps: record.whole("max_steps").map(|steps| steps.value),
+            min_step: record.number("min_step").map(|step| step.value),
+            max_speed: record.number("max_speed").map(|speed| speed.value),
+            retries: self.retries(record, march == March::Explicit)?,
+        })
+    }
+
+    /// Reports an integrator that the scheme does not work with.
+    fn suits_scheme(
+        &mut self,
+        integrator: &Located<String>,
+        march: March,
+        natural: IntegratorKind,
+    ) {
+        let scheme = self.names.scheme;
+        let (name, place) = (&integrator.value, integrator.place);
+        let (message, help) = match march {
+            March::Static | March::Implicit if scheme != "dual_support" => {
+                let what = if march == March::Static { "statics" } else { "implicit steps" };
+                (
+                    format!("the scheme `{scheme}` knows no {what}"),
+                    format!("use `{}`, or the scheme `dual_support`", natural.name()),
+                )
+            }
+            March::Explicit if scheme == "upwind" && *name != natural.name() => (
+                format!("the scheme `{scheme}` cannot be split for this integrator"),
+                "use `tvd_rk2`".into(),
+            ),
+            March::Explicit if scheme == "transport_velocity" && *name != natural.name() => (
+                format!("the scheme `{scheme}` keeps its accelerations in its state"),
+                "use `kick_drift_kick`".into(),
+            ),
+            _ => return,
+        };
+        self.report(Problem::new(place, message, "of another scheme").help(help));
+    }
+
+    /// How the step is chosen.
+    fn step(&mut self, record: &Record, march: March) -> Option<Located<StepControl>> {
+        let (cfl, step) = (record.number("cfl"), record.number("step"));
+        if let (Some(_), Some(place)) = (record.key_place("cfl"), record.key_place("step")) {
+            let message = "`cfl` and `step` cannot be given both";
+            self.report(
+                Problem::new(place, message, "the second way to choose the step")
+                    .help("`cfl` follows the stable step, `step` is fixed: remove one of them"),
+            );
+        }
+        match (march, cfl, step) {
+            (March::Explicit, _, Some(step)) => Some(step.map(StepControl::Fixed)),
+            (_, _, Some(step)) => Some(step.map(StepControl::AtMost)),
+            (March::Static, _, None) => {
+                self.meaningless(record, "cfl", "in statics");
+                let end = record.number("end")?;
+                Some(Located::new(StepControl::AtMost(0.1 * *end), record.place))
+            }
+            (_, Some(cfl), None) => Some(cfl.map(StepControl::Cfl)),
+            (March::Explicit, None, None) => {
+                let cfl = match self.names.scheme {
+                    "transport_velocity" => 0.25,
+                    "dual_support" => 0.8,
+                    _ => 0.3,
+                };
+                Some(Located::new(StepControl::Cfl(cfl), record.place))
+            }
+            (March::Implicit, None, None) => {
+                let message = "an implicit integrator needs the key `step`";
+                let problem = Problem::new(record.place, message, "`step` is missing").help(
+                    "any size is stable, so that accuracy decides: about a twentieth of the shortest \
+                     period of interest, or give `cfl` in multiples of the stable explicit step",
+                );
+                self.refuse(problem)
+            }
+        }
+    }
+
+    /// The weights of an implicit step: `Some(None)` if steps are not of that kind.
+    fn newmark(
+        &mut self,
+        record: &Record,
+        kind: Option<IntegratorKind>,
+    ) -> Option<Option<Newmark>> {
+        let own: &[&str] = match kind {
+            Some(IntegratorKind::Newmark) => &["beta", "gamma"],
+            Some(IntegratorKind::HhtAlpha) => &["alpha"],
+            Some(IntegratorKind::GeneralisedAlpha) => &["spectral_radius"],
+            _ => &[],
+        };
+        for key in ["beta", "gamma", "alpha", "spectral_radius"] {
+            if !own.contains(&key) {
+                self.meaningless(record, key, "with this integrator");
+            }
+        }
+        let number = |key: &str, usual: f64| record.number(key).map_or(usual, |it| it.value);
+        let rule = match kind {
+            Some(IntegratorKind::Newmark) => {
+                let gamma = number("gamma", 0.5);
+                let rule = Newmark::new(number("beta", 0.25), gamma);
+                let place = first_place(record, own);
+                match rule {
+                    Ok(rule) => rule,
+                    Err(error) => {
+                        let problem = Problem::new(place, error.to_string(), "not stable");
+                        let help = format!("set `beta = {}` or larger", 0.5 * gamma);
+                        return self.refuse(problem.help(help));
+                    }
+                }
+            }
+            Some(IntegratorKind::HhtAlpha) => {
+                Newmark::hilber_hughes_taylor(number("alpha", IntegratorKind::ALPHA))
+            }
+            Some(IntegratorKind::GeneralisedAlpha) => {
+                let radius = number("spectral_radius", IntegratorKind::SPECTRAL_RADIUS);
+                Newmark::generalised_alpha(radius)
+            }
+            _ => return Some(None),
+        };
+        Some(Some(rule))
+    }
+
+    fn retries(&mut self, record: &Record, is_explicit: bool) -> Option<u64> {
+        let number = record.whole("retries").map(|number| number.value);
+        if record.text("on_failure")?.value != "retry" {
+            self.meaningless(record, "retries", "without `on_failure = \"retry\"`");
+            return Some(0);
+        }
+        if let Some(place) = record.key_place("step").filter(|_| is_explicit) {
+            let problem =
+                Problem::new(place, "a fixed step cannot be retried with a smaller one", "fixed");
+            self.report(problem.help("set `cfl` instead, or `on_failure = \"stop\"`"));
+        }
+        Some(number.unwrap_or(5))
+    }
+}

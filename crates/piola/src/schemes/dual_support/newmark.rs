@@ -1,0 +1,101 @@
+//! The formulation in implicit steps.
+
+use super::equilibrium::kind;
+use super::statics::InertialStep;
+use super::{DualSupport, MECHANISMS, Row};
+use crate::schemes::{Newmark, NewmarkScheme, NoSolution, Scheme};
+use crate::{Vector, parallel};
+
+impl<const D: usize> NewmarkScheme for DualSupport<D> {
+    /// Prescribed components move as in central differences: by their velocity half way.
+    ///
+    /// Work is the mean of the forces at both ends times the displacement, and impulses are the mean
+    /// times the step.
+    fn advance(
+        &mut self,
+        rule: &Newmark,
+        time: f64,
+        step: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), NoSolution> {
+        let (count, length, end) = (self.mass.len(), Row::<D>::LENGTH, time + step);
+        new.copy_from_slice(old);
+        let mut free = vec![Vector::zeros(); count];
+        let (mut start, mut last) = (free.clone(), free.clone());
+        for (a, row) in old.chunks_exact(length).take(count).enumerate() {
+            let (v, acceleration) = (Row::<D>::velocity(row), Row::<D>::acceleration(row));
+            last[a] = Row::<D>::displacement(row);
+            free[a] = Vector::from_fn(|i, _| last[a][i] + rule.free(step, v[i], acceleration[i]));
+            let predicted = v * step + acceleration * (0.5 * step * step);
+            start[a] = last[a] + predicted * rule.reach();
+        }
+        for entry in self.prescribed.iter() {
+            let (a, i) = (entry.particle, entry.component);
+            let middle = entry.value.value(entry.place, time + 0.5 * step);
+            start[a][i] = last[a][i] + rule.reach() * step * middle;
+        }
+        let held_before = self.held(time, old);
+        let Some(statics) = &mut self.statics else { return Ok(()) };
+        let (displacement, iterations) = statics
+            .march(&InertialStep {
+                time: time + rule.reach() * step,
+                ends: [time, end],
+                stiffening: rule.stiffening(step),
+                free: &free,
+                start: &start,
+                last: &last,
+            })
+            .map_err(|error| NoSolution {
+                kind: kind(&error),
+                time: end,
+                reached: time,
+                message: format!(
+                    "{error} (a step is `time.step`; `time.on_failure = \"retry\"` halves it)"
+                ),
+            })?;
+        let moved: Vec<Vector<D>> =
+            (0..count).map(|a| (displacement[a] - last[a]) / rule.reach()).collect();
+        parallel::for_each_row(&mut new[..count * length], length, |a, row| {
+            for i in 0..D {
+                let (v, at_start) = (row[i], row[Row::<D>::ACCELERATION + i]);
+                let at_end = rule.acceleration(step, moved[a][i], v, at_start);
+                row[i] = rule.velocity(step, v, at_start, at_end);
+                row[Row::<D>::DISPLACEMENT + i] += moved[a][i];
+                row[Row::<D>::ACCELERATION + i] = at_end;
+            }
+        });
+        for entry in self.prescribed.iter() {
+            let row = &mut new[entry.particle * length..][..length];
+            row[entry.component] = entry.value.value(entry.place, end);
+            row[Row::<D>::ACCELERATION + entry.component] = 0.0;
+        }
+        let held = held_before.into_iter().zip(self.held(end, new));
+        let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
+        let work = self.work([time, end], &moved, &held);
+        let mut rate = std::mem::take(&mut self.rate);
+        self.rates(end, new, &mut rate);
+        let (ledger, tail) = (Self::ledger_length(), &mut new[count * length..]);
+        let rates = &rate[count * length..][..ledger];
+        for (sum, work) in tail.iter_mut().zip(work) {
+            *sum += work;
+        }
+        for index in MECHANISMS.len()..ledger {
+            tail[index] += 0.5 * step * (tail[ledger + index] + rates[index]);
+        }
+        tail[ledger..2 * ledger].copy_from_slice(rates);
+        self.rate = rate;
+        tail[Self::tail_length() - 1] = iterations as f64;
+        Ok(())
+    }
+}
+
+impl<const D: usize> DualSupport<D> {
+    /// What prescribed motions hold each particle with, N; nothing without any.
+    fn held(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
+        if self.prescribed.iter().next().is_none() {
+            return vec![Vector::zeros(); self.mass.len()];
+        }
+        self.reactions(time, state)
+    }
+}
