@@ -6,7 +6,7 @@ use crate::case::model::{self, Body, Case};
 use crate::case::source::Located;
 use crate::geometry::{
     FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
-    from_points,
+    from_mesh, from_points,
 };
 use crate::neighbors::{Domain, refuse_coincident};
 
@@ -44,7 +44,10 @@ pub(super) fn particles<const D: usize>(
     let mut problems = Vec::new();
     for (number, body) in (0u32..).zip(&case.bodies) {
         let made = match &body.shape.value {
-            model::Shape::Points { file } => cloud(case, domain, file),
+            model::Shape::Points { file } => cloud(case, domain, file, from_points::<D>(file)),
+            model::Shape::Mesh { file, spec } => {
+                cloud(case, domain, file, from_mesh::<D>(file, spec))
+            }
             _ => lattice(case, body, domain, body.lattice.jitter),
         };
         let added = made.and_then(|report| {
@@ -72,14 +75,15 @@ fn refuse(case: &Case, body: &Body, error: &GeometryError) -> Problem {
     case.problem_at(body.shape.place, error.to_string(), label, None)
 }
 
-/// A body of points from a file.
+/// A body of what has been read from a file.
 fn cloud<const D: usize>(
     case: &Case,
     domain: &Domain<D>,
     file: &Located<std::path::PathBuf>,
+    read: Result<Particles<D>, GeometryError>,
 ) -> Result<FillReport<D>, Problem> {
-    let particles = from_points::<D>(file)
-        .map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
+    let particles =
+        read.map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
     let (count, total_volume) = (particles.len(), particles.volume.iter().sum::<f64>());
     if count == 0 {
         return Err(case.problem_at(file.place, "the file holds no point", "this file", None));
@@ -151,7 +155,7 @@ pub(super) fn shape<const D: usize>(
         model::Shape::Difference { from, remove } => {
             Shape::difference(shape(case, body, from)?, all(remove)?)
         }
-        model::Shape::Points { .. } => {
+        model::Shape::Points { .. } | model::Shape::Mesh { .. } => {
             let help = "make it a body of its own".to_owned();
             return Err(case.problem_at(
                 located.place,

@@ -25,7 +25,7 @@ use crate::boundaries::{
     BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
 };
 use crate::operators::Trace;
-use crate::schemes::input::check_areas;
+use crate::schemes::input::{check_areas, check_places};
 use crate::solve::{
     ArcLength, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow, follow_arc,
 };
@@ -120,6 +120,7 @@ impl<const D: usize> Statics<D> {
         let count = discrete.len();
         for traction in &tractions {
             check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
+            check_places(traction)?;
         }
         for pressure in &pressures {
             check_areas(&pressure.name, &pressure.particles, pressure.areas.len(), count)?;
