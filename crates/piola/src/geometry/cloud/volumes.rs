@@ -101,9 +101,12 @@ fn nearest<const D: usize>(
     let part = piece.measure / points.len() as f64;
     for weights in points {
         let point: Vector<D> = places.iter().zip(weights).map(|(x, weight)| x * weight).sum();
-        let distance = |a: &&usize| (position[**a] - point).norm_squared();
-        let closest = near.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        closest.into_iter().for_each(|&a| volume[a] += part);
+        let distance = |a: usize| (position[a] - point).norm_squared();
+        let least = near.iter().map(|&a| distance(a)).fold(f64::INFINITY, f64::min);
+        // Points half-way between nodes are shared.
+        let is_closest = |a: &usize| distance(*a) <= least * (1.0 + 1e-9);
+        let closest: Vec<usize> = near.iter().copied().filter(is_closest).collect();
+        closest.iter().for_each(|&a| volume[a] += part / closest.len() as f64);
     }
 }
 
