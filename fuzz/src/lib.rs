@@ -66,7 +66,7 @@ pub fn mesh(data: &[u8]) -> bool {
     let mut is_good = false;
     for points in [CloudPoints::Nodes, CloudPoints::Cells] {
         for volumes in [CloudVolumes::Nearest, CloudVolumes::Array("volume".into())] {
-            let spec = CloudSpec { points, volumes, part: None };
+            let spec = CloudSpec { points, volumes, spacings: None, part: None };
             is_good |= geometry::from_mesh::<1>(&path, &spec).is_ok();
             is_good |= geometry::from_mesh::<2>(&path, &spec).is_ok();
             is_good |= geometry::from_mesh::<3>(&path, &spec).is_ok();

@@ -11,12 +11,20 @@ use std::path::{Path, PathBuf};
 use piola::geometry::{CloudPoints, CloudSpec, CloudVolumes, GeometryError, Particles, from_mesh};
 
 /// Nodes of the whole mesh with their shares of the cells.
-const NODES: CloudSpec =
-    CloudSpec { points: CloudPoints::Nodes, volumes: CloudVolumes::Cells, part: None };
+const NODES: CloudSpec = CloudSpec {
+    points: CloudPoints::Nodes,
+    volumes: CloudVolumes::Cells,
+    spacings: None,
+    part: None,
+};
 
 /// Centroids of all cells.
-const CELLS: CloudSpec =
-    CloudSpec { points: CloudPoints::Cells, volumes: CloudVolumes::Cells, part: None };
+const CELLS: CloudSpec = CloudSpec {
+    points: CloudPoints::Cells,
+    volumes: CloudVolumes::Cells,
+    spacings: None,
+    part: None,
+};
 
 /// A mesh of these tests, made by Gmsh and by meshio.
 fn data(name: &str) -> PathBuf {

@@ -51,12 +51,20 @@ fn physical_groups_become_sets() {
     assert!(named.surface.sets.contains_key("lower side"));
 }
 
+/// Supports in spacings are those of the file then.
+#[test]
+fn spacings_are_read() {
+    let spec = CloudSpec { spacings: Some("volume".into()), ..NODES };
+    let particles = from_mesh::<2>(&seed("plane.vtu"), &spec).unwrap();
+    assert_eq!(particles.spacing, [1.0 / 3.0, 0.5, 0.25, 1.0 / 6.0, 0.5, 0.25]);
+}
+
 #[test]
 fn integer_arrays_become_sets_and_numbers_volumes() {
     for name in ["plane.vtu", "packed.vtu", "raw.vtu", "plane42.vtk", "plane51.vtk"] {
         let volumes = CloudVolumes::Array("volume".into());
         for (points, count) in [(CloudPoints::Nodes, 6), (CloudPoints::Cells, 3)] {
-            let spec = CloudSpec { points, volumes: volumes.clone(), part: None };
+            let spec = CloudSpec { points, volumes: volumes.clone(), ..NODES };
             let particles = from_mesh::<2>(&seed(name), &spec).unwrap();
             assert_eq!(particles.len(), count, "{name}");
             let expected = if count == 6 { 1.0 / 3.0 } else { 0.5 };

@@ -65,9 +65,10 @@ impl Reader<'_, '_> {
                 if kind == "nearest" { CloudVolumes::Nearest } else { CloudVolumes::Cells }
             }
         };
+        let spacings = record.text("spacings").map(|name| name.value);
         let part = record.text("part").map(|name| name.value);
         let file = self.file(record, "file")?;
-        Some(Shape::Mesh { file, spec: CloudSpec { points, volumes, part } })
+        Some(Shape::Mesh { file, spec: CloudSpec { points, volumes, spacings, part } })
     }
 
     fn shape(&mut self, record: &Record) -> Option<Located<Shape>> {

@@ -182,6 +182,13 @@ const MESH: &[KeySpec] = &[
         "with `volumes = \"array\"`, the name of the array of nodes or of cells that has them, in m^D",
     ),
     key(
+        "spacings",
+        Kind::Text,
+        "",
+        Derived("the edges of cubes of the kernel weights"),
+        "the name of the array of nodes or of cells that has the spacings of particles in m, in which supports are measured",
+    ),
+    key(
         "part",
         Kind::Text,
         "",

@@ -47,6 +47,9 @@ pub struct CloudSpec {
     pub points: CloudPoints,
     /// What volumes they have.
     pub volumes: CloudVolumes,
+    /// The array of the file that has their spacings in m, of nodes or of cells as the particles are;
+    /// the edges of cubes of their kernel weights if `None`.
+    pub spacings: Option<String>,
     /// The set of cells that is the body, the whole mesh if `None`.
     pub part: Option<String>,
 }

@@ -54,12 +54,16 @@ pub(super) fn particles<const D: usize>(
     }
     if let CloudVolumes::Array(name) = &spec.volumes {
         let exact = solids.iter().map(|solid| solid.measure).sum();
-        volume = from_array(mesh, solids, numbers, name, exact)?;
+        volume = volumes(mesh, solids, numbers, name, exact)?;
     }
     let share = |angle: f64| if angle > 1.0 - 1e-9 { 1.0 } else { angle };
     let weight: Vec<f64> = volume.iter().zip(&angle).map(|(v, angle)| v / share(*angle)).collect();
+    let spacing = match &spec.spacings {
+        Some(name) => from_array(mesh, solids, numbers, name)?,
+        None => weight.iter().map(|weight| weight.powf(1.0 / D as f64)).collect(),
+    };
     Ok(Particles {
-        spacing: weight.iter().map(|weight| weight.powf(1.0 / D as f64)).collect(),
+        spacing,
         body: vec![0; numbers.count],
         id: (0..numbers.count as u32).collect(),
         position,
@@ -157,47 +161,55 @@ fn angle_at<const D: usize>(piece: &Piece<D>, corner: &Vector<D>) -> f64 {
     }
 }
 
-fn from_array<const D: usize>(
+/// Volumes of an array, which sum to `exact` m^D.
+fn volumes<const D: usize>(
     mesh: &Mesh,
     solids: &[Solid<D>],
     numbers: &Numbers,
     name: &str,
     exact: f64,
 ) -> Result<Vec<f64>, Fault> {
-    let is_of_nodes = numbers.points == CloudPoints::Nodes;
-    let (data, what) = match is_of_nodes {
-        true => (&mesh.node_data, "node"),
-        false => (&mesh.cell_data, "cell"),
-    };
-    let Some(values) = data.get(name) else {
-        let (name, known) = (name.to_owned(), super::sets::listed(data.keys()));
-        return Err((
-            None,
-            MeshFault::NoArray { name, what: if is_of_nodes { "nodes" } else { "cells" }, known },
-        ));
-    };
-    let mut volume = vec![0.0; numbers.count];
-    if is_of_nodes {
-        for (own, value) in numbers.of_node.iter().zip(values) {
-            own.iter().for_each(|&a| volume[a as usize] = *value);
-        }
-    } else {
-        solids.iter().zip(&mut volume).for_each(|(solid, own)| *own = values[solid.cell]);
-    }
-    if let Some((a, &got)) = volume.iter().enumerate().find(|(_, v)| !(**v > 0.0 && v.is_finite()))
-    {
-        let number = match is_of_nodes {
-            true => {
-                numbers.of_node.iter().position(|own| *own == Some(a as u32)).unwrap_or(a) as u64
-            }
-            false => mesh.cells[solids[a].cell].number,
-        };
-        return Err((None, MeshFault::Volume { name: name.to_owned(), what, number, got }));
-    }
+    let mut volume = from_array(mesh, solids, numbers, name)?;
     let sum: f64 = volume.iter().sum();
     if !((sum / exact - 1.0).abs() <= SAME) {
         return Err((None, MeshFault::Sum { name: name.to_owned(), sum, volume: exact }));
     }
     volume.iter_mut().for_each(|v| *v *= exact / sum);
     Ok(volume)
+}
+
+/// The numbers of an array for all particles, which must be positive.
+fn from_array<const D: usize>(
+    mesh: &Mesh,
+    solids: &[Solid<D>],
+    numbers: &Numbers,
+    name: &str,
+) -> Result<Vec<f64>, Fault> {
+    let is_of_nodes = numbers.points == CloudPoints::Nodes;
+    let (data, what, of) = match is_of_nodes {
+        true => (&mesh.node_data, "node", "nodes"),
+        false => (&mesh.cell_data, "cell", "cells"),
+    };
+    let Some(values) = data.get(name) else {
+        let (name, known) = (name.to_owned(), super::sets::listed(data.keys()));
+        return Err((None, MeshFault::NoArray { name, what: of, known }));
+    };
+    let mut found = vec![0.0; numbers.count];
+    if is_of_nodes {
+        for (own, value) in numbers.of_node.iter().zip(values) {
+            own.iter().for_each(|&a| found[a as usize] = *value);
+        }
+    } else {
+        solids.iter().zip(&mut found).for_each(|(solid, own)| *own = values[solid.cell]);
+    }
+    let bad = found.iter().enumerate().find(|(_, value)| !(**value > 0.0 && value.is_finite()));
+    if let Some((a, &got)) = bad {
+        let node = || numbers.of_node.iter().position(|own| *own == Some(a as u32));
+        let number = match is_of_nodes {
+            true => node().unwrap_or(a) as u64,
+            false => mesh.cells[solids[a].cell].number,
+        };
+        return Err((None, MeshFault::NotPositive { name: name.to_owned(), what, number, got }));
+    }
+    Ok(found)
 }

@@ -216,18 +216,16 @@ pub enum MeshFault {
         /// The names there are.
         known: String,
     },
-    /// A volume that no particle can have.
-    #[error(
-        "the array `{name}` has the volume {got} for {what} {number}, expected a number above 0"
-    )]
-    Volume {
+    /// A volume or a spacing that no particle can have.
+    #[error("the array `{name}` has {got} for {what} {number}, expected a number above 0")]
+    NotPositive {
         /// Name of the array.
         name: String,
         /// Node, or cell.
         what: &'static str,
-        /// Its number in the file.
+        /// Its number: that of a cell in the file, that of a node from 0.
         number: u64,
-        /// The volume in m^D.
+        /// The number in the array.
         got: f64,
     },
     /// Volumes that do not make up the body.
