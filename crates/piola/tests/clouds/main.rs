@@ -4,6 +4,7 @@
 mod faults;
 mod patches;
 mod reading;
+mod relaxation;
 mod shares;
 
 use std::path::{Path, PathBuf};

@@ -93,6 +93,28 @@ fn a_constant_stress_is_exact_with_other_volumes() {
     assert!((last("low.stress.xx") / 0.01 - 1.0).abs() < 1e-8);
 }
 
+/// Faces that are held have reactions, and faces that are moved do work.
+#[test]
+fn faces_of_cells_react_and_work() {
+    let probe = "[[probe]]\nname = \"wall\"\nkind = \"sum\"\nfield = \"reaction\"\n";
+    let text = block(2, "triangles-41.msh", "cells", probe);
+    let last = run(&text);
+    assert!((last("wall.reaction.x") + 0.01).abs() < 1e-10, "{}", last("wall.reaction.x"));
+
+    let load = text.find("[[load]]").unwrap();
+    let bounds = load..text.find("[[boundary]]").unwrap();
+    let moved = "[[boundary]]\nname = \"right\"\nwhere = { kind = \"set\", name = \"right\" }\n\
+                 displacement = { x = \"0.02 * t\" }\n";
+    let mut text = text;
+    text.replace_range(bounds, moved);
+    let case = case::parse(&text, "case.toml", &LoadOptions::default()).unwrap();
+    let simulation = case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let finished = simulation.run(None, &AtomicBool::new(false), &mut |_| {}).unwrap();
+    let last = |name: &str| *finished.tables.energy.values(name).unwrap().last().unwrap();
+    assert!((last("boundary_motion") / 1e-4 - 1.0).abs() < 1e-8, "{}", last("boundary_motion"));
+    assert!(last("balance").abs() < 1e-12, "{}", last("balance"));
+}
+
 #[test]
 fn sets_that_are_not_there_are_named() {
     let text = block(2, "triangles-41.msh", "nodes", "");

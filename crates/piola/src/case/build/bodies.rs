@@ -9,6 +9,7 @@ use crate::geometry::{
     from_mesh, from_points,
 };
 use crate::neighbors::{Domain, refuse_coincident};
+use crate::operators::relax;
 
 /// Points of a cloud that are closer than this fraction of the mean spacing are one point.
 const COINCIDENT: f64 = 1e-6;
@@ -48,7 +49,8 @@ pub(super) fn particles<const D: usize>(
             model::Shape::Mesh { file, spec } => {
                 cloud(case, domain, file, from_mesh::<D>(file, spec))
             }
-            _ => lattice(case, body, domain, body.lattice.jitter),
+            _ => lattice(case, body, domain, body.lattice.jitter)
+                .and_then(|made| relaxed(case, body, domain, made)),
         };
         let added = made.and_then(|report| {
             let (particles, volume) = (report.particles.len(), report.total_volume);
@@ -131,6 +133,29 @@ pub(super) fn lattice<const D: usize>(
         let label = format!("spacing of body `{}`", body.name.value);
         case.problem_at(body.spacing.place, error.to_string(), label, None)
     })
+}
+
+/// The particles of a lattice, moved apart as often as the case says.
+fn relaxed<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+    mut made: FillReport<D>,
+) -> Result<FillReport<D>, Problem> {
+    if body.lattice.relax == 0 {
+        return Ok(made);
+    }
+    let shape = shape::<D>(case, body, &body.shape)?;
+    let sites = lattice(case, body, domain, 0.0)?.particles;
+    // Sites on faces, or half a spacing inside of them, hold those further inside back.
+    let is_inside = |(x, spacing): (&Vector<D>, &f64)| shape.depth(x) > 0.75 * spacing;
+    let free: Vec<bool> = sites.position.iter().zip(&sites.spacing).map(is_inside).collect();
+    let steps = body.lattice.relax;
+    relax(&mut made.particles, &sites.position, &free, domain, steps).map_err(|error| {
+        let label = format!("lattice of body `{}`", body.name.value);
+        case.problem_at(body.spacing.place, error.to_string(), label, None)
+    })?;
+    Ok(made)
 }
 
 pub(super) fn shape<const D: usize>(

@@ -303,6 +303,7 @@ fn lattice(record: &Record) -> Option<Lattice> {
         },
         jitter: number(record, "jitter")?,
         seed: record.whole("seed")?.value,
+        relax: record.whole("relax")?.value,
     })
 }
 

@@ -127,6 +127,8 @@ pub struct Lattice {
     pub jitter: f64,
     /// Seed of the random displacements.
     pub seed: u64,
+    /// Steps by which particles are moved apart after that.
+    pub relax: u64,
 }
 
 /// Arrangement of particles.

@@ -66,6 +66,13 @@ static LATTICE: TableSpec = TableSpec {
             Default("1"),
             "seed of the random displacements",
         ),
+        key(
+            "relax",
+            Kind::Integer(Interval::between(0.0, 1000.0)),
+            "1",
+            Default("0"),
+            "steps by which particles are moved apart after that, so that the cloud is even again but no lattice; those next to the faces of the shape stay",
+        ),
     ],
 };
 

@@ -45,13 +45,12 @@ impl<const D: usize> Statics<D> {
         Ok(self.state(increment))
     }
 
-    /// Force of the supports on each particle in N at displacements and a load factor.
+    /// Force of the supports on each particle in N in equilibrium at displacements and a load factor,
+    /// that of held faces by their coefficients.
     pub fn support_forces(&mut self, factor: f64, displacement: &[Vector<D>]) -> Vec<Vector<D>> {
         let mut x = vec![0.0; self.unknowns()];
         self.solver.reduction().collect(displacement, &mut x);
-        self.balance(factor, &x);
-        let reduction = self.solver.reduction();
-        self.left.iter().enumerate().map(|(a, left)| -reduction.held_part(a, left)).collect()
+        self.holding(factor, &x)
     }
 
     /// An error with the particle where most force is left, if that is what went wrong.

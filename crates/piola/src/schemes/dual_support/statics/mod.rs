@@ -82,7 +82,7 @@ pub struct StaticState<const D: usize> {
     pub factor: f64,
     /// Displacements in m.
     pub displacement: Vec<Vector<D>>,
-    /// Force of the supports on each particle in N.
+    /// Force of the supports on each particle in N, that of held faces by their coefficients.
     pub support_force: Vec<Vector<D>>,
     /// Force of each condition on the body, in their order, those of faces last.
     pub reactions: Vec<Reaction<D>>,
@@ -200,12 +200,12 @@ impl<const D: usize> Statics<D> {
         let Increment { factor, x, solved } = increment;
         self.balance(factor, &x);
         let reduction = self.solver.reduction();
-        let support_force: Vec<Vector<D>> =
+        let held: Vec<Vector<D>> =
             self.left.iter().enumerate().map(|(a, left)| -reduction.held_part(a, left)).collect();
         let mut forces = vec![Vector::zeros(); self.supports.names().count()];
         for entry in self.supports.entries() {
             let axis = self.supports.frame(entry.particle).column(entry.component);
-            let along = axis.dot(&support_force[entry.particle]);
+            let along = axis.dot(&held[entry.particle]);
             forces[entry.condition] += axis * along;
         }
         let named = self.supports.names().map(str::to_owned).zip(forces);
@@ -215,7 +215,11 @@ impl<const D: usize> Statics<D> {
             factor,
             displacement: self.displacement.clone(),
             reactions: reactions.collect(),
-            support_force,
+            support_force: if self.faces.springs().is_empty() {
+                held
+            } else {
+                self.holding(factor, &x)
+            },
             energies: self.discrete.total_energy(&self.displacement),
             solved,
         }
