@@ -71,6 +71,14 @@ fn meshes_of_other_dimensions_are_refused() {
     assert!(error.contains("is not a file"), "{error}");
 }
 
+/// An array of no components has no words to run out of.
+#[test]
+fn an_endless_array_ends() {
+    let text =
+        format!("{MIXED}POINT_DATA 11\nFIELD data 1\nnothing 0 18446744073709551615 double\n");
+    assert!(from_bytes::<3>(text.as_bytes(), &NODES).is_ok());
+}
+
 #[test]
 fn a_folded_cell_is_refused() {
     // The fourth corner lies behind the diagonal of the others.

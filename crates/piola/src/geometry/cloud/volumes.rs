@@ -32,6 +32,7 @@ pub(super) fn particles<const D: usize>(
         }
         CloudPoints::Nodes => {
             angle.fill(0.0);
+            let points = spread::<D>();
             for (node, own) in (0u32..).zip(&numbers.of_node) {
                 own.iter().for_each(|&a| position[a as usize] = place(mesh, node));
             }
@@ -40,7 +41,9 @@ pub(super) fn particles<const D: usize>(
                 let nodes = mesh.cells[solid.cell].nodes();
                 for piece in &solid.pieces {
                     match spec.volumes {
-                        CloudVolumes::Nearest => nearest(piece, nodes, &position, own, &mut volume),
+                        CloudVolumes::Nearest => {
+                            nearest(&points, piece, nodes, &position, own, &mut volume)
+                        }
                         _ => lump(piece, own, &mut volume),
                     }
                     for corner in piece.corners.iter().filter(|corner| corner.nodes.len() == 1) {
@@ -93,6 +96,7 @@ fn lump<const D: usize>(piece: &Piece<D>, own: impl Fn(u32) -> Option<usize>, vo
 
 /// Points spread evenly over a piece go to the nearest node of the cell.
 fn nearest<const D: usize>(
+    points: &[[f64; 4]],
     piece: &Piece<D>,
     nodes: &[u32],
     position: &[Vector<D>],
@@ -101,10 +105,9 @@ fn nearest<const D: usize>(
 ) {
     let near: Vec<usize> = nodes.iter().filter_map(|&node| own(node)).collect();
     let places: Vec<Vector<D>> = piece.corners.iter().map(|corner| corner.place).collect();
-    let points = spread::<D>();
     let part = piece.measure / points.len() as f64;
     for weights in points {
-        let point: Vector<D> = places.iter().zip(weights).map(|(x, weight)| x * weight).sum();
+        let point: Vector<D> = places.iter().zip(weights).map(|(x, weight)| x * *weight).sum();
         let distance = |a: usize| (position[a] - point).norm_squared();
         let least = near.iter().map(|&a| distance(a)).fold(f64::INFINITY, f64::min);
         // Points half-way between nodes are shared.

@@ -172,7 +172,8 @@ impl Grid {
         words: &mut Words<'_>,
     ) -> Result<(), Fault> {
         let mut values = Vec::new();
-        for _ in 0..count {
+        // Without components nothing would be read, however many values there are.
+        for _ in 0..if components == 0 { 0 } else { count } {
             for component in 0..components {
                 let value = words.number::<f64>("a value")?;
                 if component == 0 {
