@@ -1,4 +1,4 @@
-//! What fuzzers feed with bytes: the three things that piola reads from files and does not trust.
+//! What fuzzers feed with bytes: the four things that piola reads from files and does not trust.
 //!
 //! Each of these functions takes whatever it is given, and says whether it was good; a panic, an
 //! overflow, or memory and time that the input does not justify is a fault. `fuzz/run` looks for
@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use piola::case::model::{Case, Shape};
 use piola::case::{self, LoadOptions, RunError};
-use piola::geometry;
+use piola::geometry::{self, CloudPoints, CloudSpec, CloudVolumes};
 use piola::output::checkpoint;
 use piola::time::Progress;
 use tempfile::TempDir;
@@ -57,6 +57,22 @@ pub fn point_cloud(data: &[u8]) -> bool {
     let line = geometry::from_points::<1>(&path).is_ok();
     let plane = geometry::from_points::<2>(&path).is_ok();
     geometry::from_points::<3>(&path).is_ok() || plane || line
+}
+
+/// A mesh, in each dimension, as nodes and as cells.
+pub fn mesh(data: &[u8]) -> bool {
+    let path = place().join("mesh");
+    fs::write(&path, data).expect("the scratch folder can be written");
+    let mut is_good = false;
+    for points in [CloudPoints::Nodes, CloudPoints::Cells] {
+        for volumes in [CloudVolumes::Nearest, CloudVolumes::Array("volume".into())] {
+            let spec = CloudSpec { points, volumes, spacings: None, part: None };
+            is_good |= geometry::from_mesh::<1>(&path, &spec).is_ok();
+            is_good |= geometry::from_mesh::<2>(&path, &spec).is_ok();
+            is_good |= geometry::from_mesh::<3>(&path, &spec).is_ok();
+        }
+    }
+    is_good
 }
 
 /// A checkpoint: the file as it is, and the same bytes as what a sound file holds, from which a run

@@ -98,6 +98,12 @@ fn point_clouds() {
 }
 
 #[test]
+fn meshes() {
+    let good = feed("mesh", &corpus("mesh"), 4000, targets::mesh);
+    assert!(good > 100, "{good}");
+}
+
+#[test]
 fn checkpoints() {
     let seeds = [targets::checkpoint_seed()];
     let good = feed("checkpoint", &seeds, 1500, targets::checkpoint);

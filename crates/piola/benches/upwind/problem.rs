@@ -82,6 +82,7 @@ fn cloud<const D: usize>(size: usize) -> Particles<D> {
         spacing: vec![spacing; count],
         body: vec![0; count],
         id: (0..count as u32).collect(),
+        ..Particles::default()
     }
 }
 

@@ -20,17 +20,34 @@ pub struct Traction<const D: usize> {
     pub particles: Vec<u32>,
     /// Reference area of each of them in m^(D-1).
     pub areas: Vec<f64>,
+    /// Where in the reference state its value is taken for each of them, in m; where they are if
+    /// this is empty. Sums over a face have several points with shares of several particles.
+    pub places: Vec<Vector<D>>,
     /// The traction vector in Pa.
     pub value: [Arc<dyn SpaceTime>; D],
 }
 
 impl<const D: usize> Traction<D> {
+    /// Particle, area in m^(D-1) and place of the value of each part, of particles at `positions` in
+    /// m.
+    pub(crate) fn parts(
+        &self,
+        positions: &[Vector<D>],
+    ) -> impl Iterator<Item = (usize, f64, [f64; 3])> {
+        let parts = self.particles.iter().zip(&self.areas).enumerate();
+        parts.map(|(number, (&particle, &area))| {
+            let own = || positions[particle as usize];
+            let place = self.places.get(number).copied().unwrap_or_else(own);
+            (particle as usize, area, padded(&place))
+        })
+    }
+
     /// The load on each of its particles, of which all are at `positions` in m.
     pub(crate) fn loaded(&self, positions: &[Vector<D>]) -> impl Iterator<Item = Loaded<D>> {
-        self.particles.iter().zip(&self.areas).map(|(&particle, &area)| Loaded {
-            particle: particle as usize,
+        self.parts(positions).map(|(particle, area, place)| Loaded {
+            particle,
             area,
-            place: padded(&positions[particle as usize]),
+            place,
             value: self.value.clone(),
         })
     }

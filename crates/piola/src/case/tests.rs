@@ -69,7 +69,13 @@ fn reads_bodies() {
     assert_eq!(column.spacing.value, [0.25, 0.25]);
     assert_eq!(
         column.lattice,
-        Lattice { kind: LatticeKind::Square, on: LatticeOrigin::Boundary, jitter: 0.1, seed: 7 }
+        Lattice {
+            kind: LatticeKind::Square,
+            on: LatticeOrigin::Boundary,
+            jitter: 0.1,
+            seed: 7,
+            relax: 0
+        }
     );
     let material = column.material.value;
     assert_eq!(material.density(), 1000.0);

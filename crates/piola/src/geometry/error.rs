@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-use super::PointsError;
 use super::fill::MOST_SITES;
+use super::{MeshError, PointsError};
 
 /// A reason why no particles can be made or selected.
 #[derive(Debug, Error)]
@@ -116,6 +116,9 @@ pub enum GeometryError {
     /// A file of points cannot be used.
     #[error(transparent)]
     Points(#[from] PointsError),
+    /// A mesh cannot be used.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
 }
 
 /// Name of a coordinate axis.

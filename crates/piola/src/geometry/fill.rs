@@ -3,7 +3,7 @@
 use super::cut::cut;
 use super::jitter::jitter;
 use super::lattice::Lattice;
-use super::{GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape};
+use super::{GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, Surface};
 use crate::Vector;
 use crate::parallel::sum;
 
@@ -64,6 +64,7 @@ pub fn fill<const D: usize>(
         id: (0..count as u32).collect(),
         position,
         volume,
+        surface: Surface::default(),
     };
     if spec.jitter > 0.0 {
         jitter(&mut particles.position, shape, &lattice, spec);

@@ -1,23 +1,32 @@
 //! Shapes, lattices and files turned into particles, and regions that select some of them.
 
+mod cloud;
 mod cut;
 mod error;
+mod file;
 mod fill;
 mod jitter;
 mod lattice;
+mod mesh;
 mod particles;
 mod points;
 mod region;
 mod shape;
+mod surface;
 mod way_out;
 
+pub use cloud::{
+    BoundaryFace, CloudPoints, CloudSpec, CloudVolumes, FaceSample, NamedSet, from_mesh,
+};
 pub use error::GeometryError;
 pub use fill::{FillReport, fill};
 pub use lattice::{LatticeKind, LatticeSpec, Placement};
+pub use mesh::{Cell, CellKind, Mesh, MeshError, MeshFault, MeshSet};
 pub use particles::Particles;
 pub use points::{PointsError, PointsFault, from_points};
 pub use region::Region;
 pub use shape::Shape;
+pub use surface::Surface;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! The particles that geometry makes and schemes are bound to.
 
-use super::GeometryError;
+use super::{GeometryError, Surface};
 use crate::Vector;
 
 /// Reference state of the particles of a run, as a struct of arrays.
@@ -20,6 +20,8 @@ pub struct Particles<const D: usize> {
     pub body: Vec<u32>,
     /// Number of each particle in the order of creation, kept when particles are reordered.
     pub id: Vec<u32>,
+    /// The boundary of bodies whose particles come from meshes, by index of the particles.
+    pub surface: Surface<D>,
 }
 
 impl<const D: usize> Particles<D> {
@@ -46,6 +48,9 @@ impl<const D: usize> Particles<D> {
         apply(&mut self.spacing, order);
         apply(&mut self.body, order);
         apply(&mut self.id, order);
+        let mut place = vec![0; order.len()];
+        (0u32..).zip(order).for_each(|(new, &old)| place[old as usize] = new);
+        self.surface.renumber(|old| place[old as usize]);
     }
 
     /// Appends the particles of another body as body `body`. Their ids continue where those here
@@ -69,6 +74,7 @@ impl<const D: usize> Particles<D> {
         self.volume.extend(other.volume);
         self.weight.extend(other.weight);
         self.spacing.extend(other.spacing);
+        self.surface.append(other.surface, body, first);
         Ok(())
     }
 }

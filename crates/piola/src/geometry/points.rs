@@ -3,18 +3,15 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fmt;
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ReaderBuilder, Trim};
 use thiserror::Error;
 
+use super::file::{FileFault, MOST_BYTES, read};
 use super::{GeometryError, Particles};
 use crate::Vector;
-
-/// Largest file in bytes: some thirty million points.
-const MOST_BYTES: u64 = 1 << 31;
 
 /// Why a file of points cannot be used, and where.
 #[derive(Debug, Error)]
@@ -102,6 +99,16 @@ pub enum PointsFault {
     },
 }
 
+impl From<FileFault> for PointsFault {
+    fn from(fault: FileFault) -> Self {
+        match fault {
+            FileFault::Unreadable(error) => Self::Unreadable(error),
+            FileFault::NotAFile => Self::NotAFile,
+            FileFault::TooLarge => Self::TooLarge,
+        }
+    }
+}
+
 /// Reads particles from a CSV file with a header and the columns `x`, `y`, `z` (as many as there
 /// are dimensions) in m and `volume` in m^D.
 ///
@@ -112,7 +119,7 @@ pub enum PointsFault {
 /// [`GeometryError::Points`] with the first fault of the file.
 pub fn from_points<const D: usize>(path: &Path) -> Result<Particles<D>, GeometryError> {
     let refuse = |fault| PointsError { file: path.into(), line: None, column: None, fault };
-    let bytes = read(path).map_err(refuse)?;
+    let bytes = read(path).map_err(|fault| refuse(fault.into()))?;
     let particles = parse(&bytes).map_err(|(line, column, fault)| PointsError {
         file: path.into(),
         line: Some(line),
@@ -123,23 +130,6 @@ pub fn from_points<const D: usize>(path: &Path) -> Result<Particles<D>, Geometry
         return Err(refuse(PointsFault::Empty).into());
     }
     Ok(particles)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, PointsFault> {
-    // Asked before opening, as opening a pipe waits for its writer.
-    let known = path.metadata()?;
-    if !known.is_file() {
-        return Err(PointsFault::NotAFile);
-    }
-    if known.len() > MOST_BYTES {
-        return Err(PointsFault::TooLarge);
-    }
-    let mut bytes = Vec::new();
-    File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(PointsFault::TooLarge);
-    }
-    Ok(bytes)
 }
 
 type Fault = (u64, Option<&'static str>, PointsFault);

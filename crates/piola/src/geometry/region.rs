@@ -5,6 +5,13 @@ use super::fill::ON_BOUNDARY;
 use super::{GeometryError, Particles};
 use crate::Vector;
 
+/// A face lies in a plane if its centre is as near to it as this share of its size: coordinates in
+/// single precision are so.
+const IN_PLANE: f64 = 1e-3;
+
+/// Cosine of the largest angle between the outward normal of a face and that of its plane.
+const ALONG: f64 = 0.99;
+
 /// A part of space that selects the particles whose reference positions lie in it. All parts are
 /// closed, with a tolerance of 1e-9 spacings for rounding.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,22 +101,41 @@ impl<const D: usize> Region<D> {
     pub fn select(&self, particles: &Particles<D>) -> Vec<u32> {
         let inside = |a: &u32| {
             let a = *a as usize;
-            let (x, spacing) = (&particles.position[a], particles.spacing[a]);
-            let slack = ON_BOUNDARY * spacing;
-            match self {
-                Self::All => true,
-                Self::Plane { point, normal } => {
-                    let edge = particles.weight[a] / spacing.powi(D as i32 - 1);
-                    (x - point).dot(normal).abs() <= 0.5 * edge.min(spacing) + slack
-                }
-                Self::Box { min, max } => {
-                    (0..D).all(|k| x[k] >= min[k] - slack && x[k] <= max[k] + slack)
-                }
-                Self::Ball { center, radius } => (x - center).norm() <= radius + slack,
-                Self::HalfSpace { point, normal } => (x - point).dot(normal) >= -slack,
-            }
+            let spacing = particles.spacing[a];
+            let edge = particles.weight[a] / spacing.powi(D as i32 - 1);
+            self.contains(&particles.position[a], spacing, 0.5 * edge.min(spacing))
         };
         (0..particles.len() as u32).filter(inside).collect()
+    }
+
+    /// The boundary faces of particles that come from meshes, in ascending order: those whose centre
+    /// lies in the region. Those of a plane lie in it, and their outward normal points along its.
+    pub fn faces(&self, particles: &Particles<D>) -> Vec<u32> {
+        let inside = |face: &u32| {
+            let face = &particles.surface.faces[*face as usize];
+            let size = face.area.norm().powf(1.0 / (D as f64 - 1.0).max(1.0));
+            let turns = match self {
+                Self::Plane { normal, .. } => face.area.dot(normal) < ALONG * face.area.norm(),
+                _ => false,
+            };
+            !turns && self.contains(&face.place, size, IN_PLANE * size)
+        };
+        (0..particles.surface.faces.len() as u32).filter(inside).collect()
+    }
+
+    /// Whether a place lies in the region, with a tolerance for rounding at particles `spacing` m
+    /// apart; the layer around a plane reaches `reach` m to either side.
+    fn contains(&self, x: &Vector<D>, spacing: f64, reach: f64) -> bool {
+        let slack = ON_BOUNDARY * spacing;
+        match self {
+            Self::All => true,
+            Self::Plane { point, normal } => (x - point).dot(normal).abs() <= reach + slack,
+            Self::Box { min, max } => {
+                (0..D).all(|k| x[k] >= min[k] - slack && x[k] <= max[k] + slack)
+            }
+            Self::Ball { center, radius } => (x - center).norm() <= radius + slack,
+            Self::HalfSpace { point, normal } => (x - point).dot(normal) >= -slack,
+        }
     }
 }
 

@@ -138,7 +138,7 @@ impl<const D: usize> Shape<D> {
 
     /// A depth below the boundary in m: 0 on it, negative outside, and nowhere further from 0 than
     /// the boundary is from `point`.
-    pub(super) fn depth(&self, point: &Vector<D>) -> f64 {
+    pub fn depth(&self, point: &Vector<D>) -> f64 {
         match &self.0 {
             Kind::Box { min, max } => {
                 let depth = |axis: usize| (point[axis] - min[axis]).min(max[axis] - point[axis]);

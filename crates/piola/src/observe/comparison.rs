@@ -7,7 +7,8 @@ use crate::fields::FieldSelector;
 use crate::schemes::Scheme;
 
 /// The relative difference `sum |f - e| / sum |e|` of a field f from a function e of the place of
-/// each particle and time, CTVF (66) with absolute values.
+/// each particle and time, CTVF (66) with absolute values; or the root of that of squares, as
+/// Dual-support (56).
 #[derive(Clone)]
 pub struct Deviation {
     /// One number of each particle.
@@ -16,6 +17,8 @@ pub struct Deviation {
     pub exact: Arc<dyn SpaceTime>,
     /// Whether the means of both are taken away first, as of a pressure without a zero.
     pub without_mean: bool,
+    /// Whether squares are summed, and the root taken.
+    pub of_squares: bool,
     /// Indices in memory of the particles, at least one.
     pub particles: Vec<u32>,
 }
@@ -45,7 +48,9 @@ impl Deviation {
         let found = scratch.chunks_exact(components).map(|value| self.field.value(value));
         let mean = |sum: f64| if self.without_mean { sum / exact.len() as f64 } else { 0.0 };
         let offset = mean(found.clone().sum()) - mean(exact.iter().sum());
-        let difference: f64 = found.zip(&exact).map(|(f, e)| (f - offset - e).abs()).sum();
-        difference / exact.iter().map(|e| e.abs()).sum::<f64>()
+        let size = |value: f64| if self.of_squares { value * value } else { value.abs() };
+        let difference: f64 = found.zip(&exact).map(|(f, e)| size(f - offset - e)).sum();
+        let ratio = difference / exact.iter().map(|e| size(*e)).sum::<f64>();
+        if self.of_squares { ratio.sqrt() } else { ratio }
     }
 }

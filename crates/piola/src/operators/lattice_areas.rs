@@ -4,7 +4,7 @@ use piola_formulas::kernels::Kernel;
 
 use super::{Correction, GradientOperator, OperatorError, Support};
 use crate::Vector;
-use crate::geometry::Particles;
+use crate::geometry::{Particles, Surface};
 use crate::neighbors::Domain;
 
 /// Smoothing length in spacings with which a particle of a lattice sees those beside it and no
@@ -36,6 +36,7 @@ pub fn lattice_areas<const D: usize>(
         spacing: vec![1.0; count],
         body: particles.body.clone(),
         id: particles.id.clone(),
+        surface: Surface::default(),
     };
     let periodic = std::array::from_fn(|axis| {
         domain.periodic()[axis].map(|ends| ends.map(|end| end / edges[axis]))

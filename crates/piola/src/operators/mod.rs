@@ -17,6 +17,7 @@ mod lattice_areas;
 mod least_squares;
 mod moving;
 mod patch;
+mod relax;
 mod support;
 mod trace;
 
@@ -33,5 +34,6 @@ pub use interpolation::Interpolation;
 pub use lattice_areas::lattice_areas;
 pub use least_squares::LeastSquares;
 pub use moving::{MovingSupport, Needs, Remaining};
+pub use relax::relax;
 pub use support::Support;
 pub use trace::{Face, Trace};

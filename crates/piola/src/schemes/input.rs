@@ -121,6 +121,16 @@ pub(crate) fn check_areas(
     check_selected(name, particles, count)
 }
 
+/// Refuses places that are not one for each of the areas of a traction, if there are any.
+pub(crate) fn check_places<const D: usize>(traction: &Traction<D>) -> Result<(), InputError> {
+    let (got, expected) = (traction.places.len(), traction.areas.len());
+    if got == 0 || got == expected {
+        return Ok(());
+    }
+    let what = format!("the list of places of `{}`", traction.name);
+    Err(InputError::Length { what, expected, got })
+}
+
 /// Refuses loads and prescribed components of what does not exist among `count` particles.
 pub(crate) fn check_conditions<const D: usize>(
     count: usize,
@@ -129,6 +139,7 @@ pub(crate) fn check_conditions<const D: usize>(
 ) -> Result<(), InputError> {
     for traction in tractions {
         check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
+        check_places(traction)?;
     }
     for condition in prescribed {
         check_selected(&condition.name, &condition.particles, count)?;

@@ -25,6 +25,7 @@ fn at_rest<const D: usize>(positions: Vec<Vector<D>>) -> TransportVelocity<D> {
         spacing: vec![SPACING; count],
         body: vec![0; count],
         id: (0..count as u32).collect(),
+        ..Particles::default()
     };
     TransportVelocity::new(TransportVelocityInput {
         particles,

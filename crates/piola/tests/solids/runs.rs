@@ -156,6 +156,7 @@ fn the_ledger_accounts_for_all_energy() {
             name: "pull".into(),
             particles: on(8),
             areas,
+            places: vec![],
             value: [varying(|_, t| 4e5 * t), Arc::new(0.0)],
         });
         for component in 0..2 {
@@ -217,6 +218,7 @@ fn kicks_account_for_all_energy() {
             name: "pull".into(),
             areas: right.iter().map(|&a| cloud.areas[a as usize].norm()).collect(),
             particles: right,
+            places: vec![],
             value: [varying(|_, t| 4e5 * t), Arc::new(0.0)],
         });
         input.prescribed.push(PrescribedVelocity {

@@ -108,7 +108,13 @@ impl<const D: usize> Choice<D> {
     ) -> Self {
         let particles = self.select(on);
         let areas = particles.iter().map(|&a| area(&self.particles.position[a as usize])).collect();
-        self.tractions.push(Traction { name: "load".into(), particles, areas, value });
+        self.tractions.push(Traction {
+            name: "load".into(),
+            particles,
+            areas,
+            places: vec![],
+            value,
+        });
         self
     }
 

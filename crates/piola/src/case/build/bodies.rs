@@ -6,9 +6,10 @@ use crate::case::model::{self, Body, Case};
 use crate::case::source::Located;
 use crate::geometry::{
     FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
-    from_points,
+    from_mesh, from_points,
 };
 use crate::neighbors::{Domain, refuse_coincident};
+use crate::operators::relax;
 
 /// Points of a cloud that are closer than this fraction of the mean spacing are one point.
 const COINCIDENT: f64 = 1e-6;
@@ -44,8 +45,12 @@ pub(super) fn particles<const D: usize>(
     let mut problems = Vec::new();
     for (number, body) in (0u32..).zip(&case.bodies) {
         let made = match &body.shape.value {
-            model::Shape::Points { file } => cloud(case, domain, file),
-            _ => lattice(case, body, domain, body.lattice.jitter),
+            model::Shape::Points { file } => cloud(case, domain, file, from_points::<D>(file)),
+            model::Shape::Mesh { file, spec } => {
+                cloud(case, domain, file, from_mesh::<D>(file, spec))
+            }
+            _ => lattice(case, body, domain, body.lattice.jitter)
+                .and_then(|made| relaxed(case, body, domain, made)),
         };
         let added = made.and_then(|report| {
             let (particles, volume) = (report.particles.len(), report.total_volume);
@@ -72,14 +77,15 @@ fn refuse(case: &Case, body: &Body, error: &GeometryError) -> Problem {
     case.problem_at(body.shape.place, error.to_string(), label, None)
 }
 
-/// A body of points from a file.
+/// A body of what has been read from a file.
 fn cloud<const D: usize>(
     case: &Case,
     domain: &Domain<D>,
     file: &Located<std::path::PathBuf>,
+    read: Result<Particles<D>, GeometryError>,
 ) -> Result<FillReport<D>, Problem> {
-    let particles = from_points::<D>(file)
-        .map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
+    let particles =
+        read.map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
     let (count, total_volume) = (particles.len(), particles.volume.iter().sum::<f64>());
     if count == 0 {
         return Err(case.problem_at(file.place, "the file holds no point", "this file", None));
@@ -129,6 +135,29 @@ pub(super) fn lattice<const D: usize>(
     })
 }
 
+/// The particles of a lattice, moved apart as often as the case says.
+fn relaxed<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+    mut made: FillReport<D>,
+) -> Result<FillReport<D>, Problem> {
+    if body.lattice.relax == 0 {
+        return Ok(made);
+    }
+    let shape = shape::<D>(case, body, &body.shape)?;
+    let sites = lattice(case, body, domain, 0.0)?.particles;
+    // Sites on faces, or half a spacing inside of them, hold those further inside back.
+    let is_inside = |(x, spacing): (&Vector<D>, &f64)| shape.depth(x) > 0.75 * spacing;
+    let free: Vec<bool> = sites.position.iter().zip(&sites.spacing).map(is_inside).collect();
+    let steps = body.lattice.relax;
+    relax(&mut made.particles, &sites.position, &free, domain, steps).map_err(|error| {
+        let label = format!("lattice of body `{}`", body.name.value);
+        case.problem_at(body.spacing.place, error.to_string(), label, None)
+    })?;
+    Ok(made)
+}
+
 pub(super) fn shape<const D: usize>(
     case: &Case,
     body: &Body,
@@ -151,7 +180,7 @@ pub(super) fn shape<const D: usize>(
         model::Shape::Difference { from, remove } => {
             Shape::difference(shape(case, body, from)?, all(remove)?)
         }
-        model::Shape::Points { .. } => {
+        model::Shape::Points { .. } | model::Shape::Mesh { .. } => {
             let help = "make it a body of its own".to_owned();
             return Err(case.problem_at(
                 located.place,

@@ -137,8 +137,8 @@ fn normals<const D: usize>(
     let (mut shapes, mut bounds) = (Vec::new(), None::<(Vector<D>, Vector<D>)>);
     for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
         let (low, high) = match (&body.shape.value, is_wall) {
-            (model::Shape::Points { .. }, false) => box_around(particles, number),
-            (model::Shape::Points { .. }, true) => {
+            (shape, false) if shape.is_from_file() => box_around(particles, number),
+            (shape, true) if shape.is_from_file() => {
                 let message = "points from a file have no faces, which a wall needs";
                 let help = Some("describe the wall by shapes".to_owned());
                 return Err(vec![case.problem_at(body.shape.place, message, "of a wall", help)]);

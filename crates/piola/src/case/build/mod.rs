@@ -154,7 +154,7 @@ fn upwind<const D: usize>(
             .map(|operator| operator.boundary_areas(&support, &particles.volume))
             .map_err(|error| error.to_string())
     };
-    let tractions = selections::tractions(case, &particles, areas, problems);
+    let tractions = selections::tractions(case, &particles, None, areas, problems);
     if !problems.is_empty() {
         return None;
     }

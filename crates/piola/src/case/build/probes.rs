@@ -45,11 +45,12 @@ pub(super) fn probes<const D: usize>(
             }
             // Those have tables of their own.
             model::ProbeKind::Line { .. } => continue,
-            model::ProbeKind::Error { field, exact, without_mean, region } => {
+            model::ProbeKind::Error { field, exact, without_mean, of_squares, region } => {
                 ProbeKind::Error(Deviation {
                     field: field.value,
                     exact: function(exact),
                     without_mean: *without_mean,
+                    of_squares: *of_squares,
                     particles: select(case, particles, region, body, problems),
                 })
             }

@@ -3,13 +3,14 @@
 use piola_formulas::hyperelastic::Reduced;
 
 use super::bodies::{self, BodyReport};
+use super::selections::Held;
 use super::{Built, initial, integrator_kind, kernel, probes, selections};
 use crate::Vector;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, GradientKind, SupportSize};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
-use crate::operators::{DirectedSupport, lattice_areas, nearest_radii};
+use crate::operators::{DirectedSupport, DualGradient, Face, Trace, lattice_areas, nearest_radii};
 use crate::schemes::InputError;
 use crate::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
@@ -54,19 +55,31 @@ pub(super) fn build<const D: usize>(
         rows.filter(|&a| support.list.row(a).len() < D).map(|a| a as u32).collect();
     let neighbors = support.list.statistics();
 
+    let trace = trace(case, &particles, &support)?;
+    if let (Some(areas), Some(trace)) = (&mut areas, &trace) {
+        let traced = trace.areas(particles.len());
+        areas.iter_mut().zip(traced).for_each(|(area, more)| *area += more);
+    }
+
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
-    let prescribed = selections::prescribed(case, &particles, &mut problems);
-    let motion = match integrator_kind(case) {
+    let (prescribed, motion) = match integrator_kind(case) {
         IntegratorKind::Static => {
-            let prescribed = selections::held(case, &particles, &mut problems);
-            Motion::Static(StaticsInput { prescribed, ..StaticsInput::default() })
+            let Held { particles: prescribed, faces: prescribed_faces } =
+                selections::held(case, &particles, &mut problems);
+            let trace = trace.clone();
+            let input =
+                StaticsInput { prescribed, prescribed_faces, trace, ..StaticsInput::default() };
+            (Vec::new(), Motion::Static(input))
         }
-        _ if case.time.newmark.is_some() => {
-            Motion::Implicit(LinearMethod::default(), Newton::default())
+        _ => {
+            let motion = match case.time.newmark {
+                Some(_) => Motion::Implicit(LinearMethod::default(), Newton::default()),
+                None => Motion::Explicit,
+            };
+            (selections::prescribed(case, &particles, &mut problems), motion)
         }
-        _ => Motion::Explicit,
     };
     let known = || {
         areas.clone().ok_or_else(|| {
@@ -74,7 +87,7 @@ pub(super) fn build<const D: usize>(
                 .to_owned()
         })
     };
-    let tractions = selections::tractions(case, &particles, known, &mut problems);
+    let tractions = selections::tractions(case, &particles, trace.as_ref(), known, &mut problems);
     let materials = materials(case, &mut problems);
     let (gradients, warnings) = gradients(case, settings, areas.clone(), &mut problems);
     if !problems.is_empty() {
@@ -117,17 +130,44 @@ pub(super) fn build<const D: usize>(
     })
 }
 
+/// The boundary as centres of cells see it, where a body has such particles.
+fn trace<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    support: &DirectedSupport<D>,
+) -> Result<Option<Trace<D>>, Vec<Problem>> {
+    let of_cells = particles.surface.faces.iter().filter(|face| !face.is_of_nodes());
+    let faces: Vec<Face<D>> = of_cells
+        .map(|face| Face { owner: face.particles[0], place: face.place, area: face.area })
+        .collect();
+    if faces.is_empty() {
+        return Ok(None);
+    }
+    let plain = DualGradient::plain(particles, support).map_err(|error| {
+        vec![case.problem_at(case.scheme.place, error.to_string(), "with these supports", None)]
+    })?;
+    Ok(Some(Trace::new(faces, particles, support, &plain)))
+}
+
 /// The boundary area vectors of all particles in m^(D-1), of the lattices before they are displaced;
-/// particles that have one go back to their site. `None` if there is a body of points.
+/// particles that have one go back to their site. Of meshes those of nodes, and zero of cells, which
+/// get theirs from the trace. `None` if there is a body of points.
 fn areas<const D: usize>(
     case: &Case,
     particles: &mut Particles<D>,
     domain: &Domain<D>,
 ) -> Result<Option<Vec<Vector<D>>>, Vec<Problem>> {
     let mut all = Vec::with_capacity(particles.len());
-    for body in &case.bodies {
-        if let model::Shape::Points { .. } = body.shape.value {
-            return Ok(None);
+    let of_meshes = particles.surface.areas(particles.len());
+    for (number, body) in (0u32..).zip(&case.bodies) {
+        match body.shape.value {
+            model::Shape::Points { .. } => return Ok(None),
+            model::Shape::Mesh { .. } => {
+                let own = particles.body.iter().filter(|&&other| other == number).count();
+                all.extend(&of_meshes[all.len()..][..own]);
+                continue;
+            }
+            _ => (),
         }
         let still = bodies::lattice(case, body, domain, 0.0).map_err(|problem| vec![problem])?;
         let found = lattice_areas(&still.particles, &still.actual_spacing, domain);

@@ -8,6 +8,7 @@ use crate::case::model::{
     Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Region, Shape,
     Stiffness,
 };
+use crate::geometry::{CloudPoints, CloudSpec, CloudVolumes};
 
 /// The keys that give the stiffness of a material, of which one is needed.
 const STIFFNESSES: [&str; 3] = ["bulk_modulus", "wave_speed", "young_modulus"];
@@ -18,15 +19,56 @@ impl Reader<'_, '_> {
         let material = record.record("material").and_then(|material| self.material(material));
         let lattice = record.record("lattice").and_then(lattice);
         let initial = record.record("initial").and_then(|initial| self.initial(initial));
+        let spacing = self.spacing(record, shape.as_ref());
         Some(Body {
             name: record.text("name")?,
             shape: shape?,
-            spacing: record.numbers("spacing")?,
+            spacing: spacing?,
             lattice: lattice?,
             material: material?,
             initial: initial?,
             wall: record.record("wall").and_then(fluids::wall),
         })
+    }
+
+    /// The spacing, which a body that is read from a file does without.
+    fn spacing(
+        &mut self,
+        record: &Record,
+        shape: Option<&Located<Shape>>,
+    ) -> Option<Located<Vec<f64>>> {
+        if record.has("spacing") {
+            return record.numbers("spacing");
+        }
+        if shape?.value.is_from_file() {
+            return Some(Located::new(Vec::new(), record.place));
+        }
+        let message = "[[body]] needs the key `spacing`: distance between particles";
+        self.refuse(Problem::new(record.place, message, "`spacing` is missing"))
+    }
+
+    fn mesh(&mut self, record: &Record) -> Option<Shape> {
+        let points = match record.text("points")?.as_str() {
+            "cells" => CloudPoints::Cells,
+            _ => CloudPoints::Nodes,
+        };
+        let array = record.text("array");
+        let volumes = match (record.text("volumes")?.as_str(), array) {
+            ("array", Some(name)) => CloudVolumes::Array(name.value),
+            ("array", None) => {
+                let message = "`volumes = \"array\"` needs the key `array`";
+                let place = record.key_place("volumes").unwrap_or(record.place);
+                return self.refuse(Problem::new(place, message, "of which array?"));
+            }
+            (kind, _) => {
+                self.meaningless(record, "array", "without `volumes = \"array\"`");
+                if kind == "nearest" { CloudVolumes::Nearest } else { CloudVolumes::Cells }
+            }
+        };
+        let spacings = record.text("spacings").map(|name| name.value);
+        let part = record.text("part").map(|name| name.value);
+        let file = self.file(record, "file")?;
+        Some(Shape::Mesh { file, spec: CloudSpec { points, volumes, spacings, part } })
     }
 
     fn shape(&mut self, record: &Record) -> Option<Located<Shape>> {
@@ -66,6 +108,7 @@ impl Reader<'_, '_> {
                 Shape::Difference { from: Box::new(from?), remove: remove? }
             }
             "points" => Shape::Points { file: self.file(record, "file")? },
+            "mesh" => self.mesh(record)?,
             _ => return None,
         };
         Some(Located::new(shape, record.place))
@@ -110,6 +153,7 @@ impl Reader<'_, '_> {
                 center: vector(record, "center")?,
                 radius: number(record, "radius")?,
             },
+            "set" => Region::Set { name: record.text("name")?.value },
             _ => return None,
         };
         Some(Located::new(region, record.place))
@@ -259,6 +303,7 @@ fn lattice(record: &Record) -> Option<Lattice> {
         },
         jitter: number(record, "jitter")?,
         seed: record.whole("seed")?.value,
+        relax: record.whole("relax")?.value,
     })
 }
 

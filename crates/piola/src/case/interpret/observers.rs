@@ -38,6 +38,7 @@ impl Reader<'_, '_> {
                     field: field?,
                     exact: record.expression("exact")?,
                     without_mean: record.boolean("without_mean")?,
+                    of_squares: record.text("norm")?.as_str() == "square",
                     region: region?,
                 }
             }

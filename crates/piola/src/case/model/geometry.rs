@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::{Material, Wall};
 use crate::case::expression::Expression;
 use crate::case::source::Located;
+use crate::geometry::CloudSpec;
 
 /// The space that the particles live in.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +21,9 @@ pub struct Body {
     pub name: Located<String>,
     /// The space that it fills in the reference state.
     pub shape: Located<Shape>,
-    /// Distance between particles in m, one number per axis.
+    /// Distance between particles in m, one number per axis; empty where a file has the particles.
     pub spacing: Located<Vec<f64>>,
-    /// How the particles are laid out. Not used by [`Shape::Points`].
+    /// How the particles are laid out. Not used where a file has them.
     pub lattice: Lattice,
     /// What it is made of.
     pub material: Located<Material>,
@@ -83,13 +84,25 @@ pub enum Shape {
         /// The file, relative paths resolved against the folder of the case file.
         file: Located<PathBuf>,
     },
+    /// The nodes or the cells of a mesh.
+    Mesh {
+        /// The file, relative paths resolved against the folder of the case file.
+        file: Located<PathBuf>,
+        /// What of it is made into particles, and how.
+        spec: CloudSpec,
+    },
 }
 
 impl Shape {
+    /// Whether a file has the particles, so that no lattice is laid out.
+    pub fn is_from_file(&self) -> bool {
+        matches!(self, Self::Points { .. } | Self::Mesh { .. })
+    }
+
     /// The files that the shape reads.
     pub fn files(&self) -> Vec<&Located<PathBuf>> {
         match self {
-            Self::Points { file } => vec![file],
+            Self::Points { file } | Self::Mesh { file, .. } => vec![file],
             Self::Union(shapes) | Self::Intersection(shapes) => {
                 shapes.iter().flat_map(|shape| shape.files()).collect()
             }
@@ -114,6 +127,8 @@ pub struct Lattice {
     pub jitter: f64,
     /// Seed of the random displacements.
     pub seed: u64,
+    /// Steps by which particles are moved apart after that.
+    pub relax: u64,
 }
 
 /// Arrangement of particles.
@@ -175,5 +190,10 @@ pub enum Region {
         point: Vec<f64>,
         /// Unit normal.
         normal: Vec<f64>,
+    },
+    /// A named set of a mesh.
+    Set {
+        /// Its name.
+        name: String,
     },
 }

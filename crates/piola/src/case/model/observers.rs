@@ -70,6 +70,8 @@ pub enum ProbeKind {
         exact: Expression,
         /// Whether the means of both are taken away first.
         without_mean: bool,
+        /// Whether squares are summed, and the root taken.
+        of_squares: bool,
         /// The particles.
         region: Located<Region>,
     },

@@ -30,7 +30,7 @@ pub(super) static BODY: TableSpec = TableSpec {
             "spacing",
             Kind::NumberOrPerAxis(Interval::POSITIVE),
             "m",
-            Required,
+            Derived("needed unless a file has the particles (`points`, `mesh`)"),
             "distance between particles, one number or one per axis",
         ),
         key("lattice", Kind::Table(&LATTICE), "", Default("{}"), "how the particles are laid out"),
@@ -65,6 +65,13 @@ static LATTICE: TableSpec = TableSpec {
             "1",
             Default("1"),
             "seed of the random displacements",
+        ),
+        key(
+            "relax",
+            Kind::Integer(Interval::between(0.0, 1000.0)),
+            "1",
+            Default("0"),
+            "steps by which particles are moved apart after that, so that the cloud is even again but no lattice; those next to the faces of the shape stay",
         ),
     ],
 };
@@ -155,8 +162,54 @@ static SHAPE: TaggedSpec = TaggedSpec {
                 "the file, relative to the folder of the case file",
             )],
         },
+        KindSpec {
+            name: "mesh",
+            meaning: "the nodes or the cells of a mesh of finite elements, with its boundary: Gmsh (`.msh` 4.1 or 2.2, ASCII) or an unstructured grid of VTK (`.vtk` ASCII, `.vtu`) of straight-edged cells",
+            dimensions: &[1, 2, 3],
+            keys: MESH,
+        },
     ],
 };
+
+const MESH: &[KeySpec] = &[
+    key("file", Kind::File, "", Required, "the file, relative to the folder of the case file"),
+    key("points", Kind::Name(CLOUD_POINTS), "", Default("\"nodes\""), "where particles are"),
+    key(
+        "volumes",
+        Kind::Name(CLOUD_VOLUMES),
+        "",
+        Default("\"cells\""),
+        "what volumes they have, which always sum to that of the cells",
+    ),
+    key(
+        "array",
+        Kind::Text,
+        "",
+        Optional,
+        "with `volumes = \"array\"`, the name of the array of nodes or of cells that has them, in m^D",
+    ),
+    key(
+        "spacings",
+        Kind::Text,
+        "",
+        Derived("the edges of cubes of the kernel weights"),
+        "the name of the array of nodes or of cells that has the spacings of particles in m, in which supports are measured",
+    ),
+    key(
+        "part",
+        Kind::Text,
+        "",
+        Derived("all cells of the case's dimension"),
+        "the named set of cells that is the body",
+    ),
+];
+const CLOUD_POINTS: Choices =
+    choices(&[choice("nodes", "at the nodes"), choice("cells", "at the centroids of the cells")]);
+const CLOUD_VOLUMES: Choices = choices(&[
+    choice("cells", "the cell; a node has an equal share of each of its cells"),
+    choice("nearest", "a node has what of its cells is nearest to it, as in a Voronoi diagram"),
+    choice("array", "the numbers of an array of the file"),
+]);
 
 const POINT: Kind = Kind::Numbers(Length::Dimension, Interval::ANY);
 const CORNERS: &[KeySpec] = &[
@@ -180,7 +233,7 @@ pub(super) static REGION: TaggedSpec = TaggedSpec {
         KindSpec { name: "all", meaning: "every particle", dimensions: &[1, 2, 3], keys: &[] },
         KindSpec {
             name: "plane",
-            meaning: "within half a local spacing of a plane, whose normal points out of the body",
+            meaning: "within half a local spacing of a plane, whose normal points out of the body; of a mesh, what belongs to the boundary faces in the plane",
             dimensions: &[1, 2, 3],
             keys: FLAT,
         },
@@ -201,6 +254,18 @@ pub(super) static REGION: TaggedSpec = TaggedSpec {
             meaning: "on the side of a plane that its normal points to",
             dimensions: &[1, 2, 3],
             keys: FLAT,
+        },
+        KindSpec {
+            name: "set",
+            meaning: "a named set of a mesh: its nodes; of particles in cells, its cells and those behind its faces",
+            dimensions: &[1, 2, 3],
+            keys: &[key(
+                "name",
+                Kind::Text,
+                "",
+                Required,
+                "name of a physical group of Gmsh, its number if it has none; `array:value` for an integer array of VTK",
+            )],
         },
     ],
 };

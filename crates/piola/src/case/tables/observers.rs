@@ -151,6 +151,13 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Default("false"),
                     "whether the means of both are taken away first, as of a pressure without a zero",
                 ),
+                key(
+                    "norm",
+                    Kind::Name(NORMS),
+                    "",
+                    Default("\"absolute\""),
+                    "what is summed over the particles",
+                ),
                 WHERE,
             ],
         },
@@ -165,6 +172,10 @@ const WHERE: KeySpec = key(
     "the particles, selected in the reference state",
 );
 
+const NORMS: Choices = choices(&[
+    choice("absolute", "absolute values"),
+    choice("square", "squares, of which the root is taken"),
+]);
 const EXTREMA: Choices =
     choices(&[choice("largest", "the largest value"), choice("smallest", "the smallest value")]);
 

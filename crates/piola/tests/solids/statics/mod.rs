@@ -58,7 +58,13 @@ pub fn forces<const D: usize>(forces: &[Vector<D>]) -> Vec<Traction<D>> {
             let component = force[i];
             growing(move |_| component)
         });
-        Traction { name: "force".into(), particles: vec![a as u32], areas: vec![1.0], value }
+        Traction {
+            name: "force".into(),
+            particles: vec![a as u32],
+            areas: vec![1.0],
+            places: vec![],
+            value,
+        }
     })
     .collect()
 }

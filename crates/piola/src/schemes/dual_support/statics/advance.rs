@@ -41,12 +41,11 @@ impl<const D: usize> Statics<D> {
         Ok(self.state(increment))
     }
 
-    /// Force of the supports on each particle in N at displacements and a load factor.
+    /// Force of the supports on each particle in N in equilibrium at displacements and a load factor,
+    /// that of held faces by their coefficients.
     pub fn support_forces(&mut self, factor: f64, displacement: &[Vector<D>]) -> Vec<Vector<D>> {
         let x = self.collect(displacement);
-        self.balance(factor, &x);
-        let reduction = self.solver.reduction();
-        self.left.iter().enumerate().map(|(a, left)| -reduction.held_part(a, left)).collect()
+        self.holding(factor, &x)
     }
 
     /// The unknowns of displacements.

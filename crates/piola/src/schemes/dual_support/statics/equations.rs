@@ -40,11 +40,33 @@ impl<const D: usize> Statics<D> {
 
     /// All loads at a load factor in N, on the displaced body, and what holds its faces.
     fn outside(&mut self, factor: f64) -> Vec<Vector<D>> {
-        let mut outside = self.dead_loads(factor).to_vec();
-        let pressing = self.loads.pressing(&self.discrete, factor, false);
-        press(&self.discrete, &self.displacement, &pressing, &mut outside);
+        let mut outside = self.all_loads(factor);
         self.faces.add_forces(&self.displacement, factor, &mut outside);
         outside
+    }
+
+    fn all_loads(&mut self, factor: f64) -> Vec<Vector<D>> {
+        let mut loads = self.dead_loads(factor).to_vec();
+        let pressing = self.loads.pressing(&self.discrete, factor, false);
+        press(&self.discrete, &self.displacement, &pressing, &mut loads);
+        loads
+    }
+
+    /// What holds each particle in N in equilibrium at a load factor: against all that is left in held
+    /// components, and where held faces act. Multipliers of faces are not asked, so that it is the same
+    /// however the state was come by.
+    pub(super) fn holding(&mut self, factor: f64, x: &[f64]) -> Vec<Vector<D>> {
+        self.displace(factor, x);
+        let loads = self.all_loads(factor);
+        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.left);
+        self.left.iter_mut().zip(&loads).for_each(|(left, load)| *left += load);
+        let reduction = self.solver.reduction();
+        let at_faces = self.faces.particles(self.left.len());
+        let holds = |(a, left): (usize, &Vector<D>)| match at_faces[a] {
+            true => -left,
+            false => -reduction.held_part(a, left),
+        };
+        self.left.iter().enumerate().map(holds).collect()
     }
 
     fn dead_loads(&mut self, factor: f64) -> &[Vector<D>] {

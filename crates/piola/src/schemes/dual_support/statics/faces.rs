@@ -85,6 +85,15 @@ impl<const D: usize> Faces<D> {
         &self.springs
     }
 
+    /// Which of `count` particles the held faces act on.
+    pub fn particles(&self, count: usize) -> Vec<bool> {
+        let mut found = vec![false; count];
+        for (a, _) in self.springs.iter().flat_map(|spring| &spring.row) {
+            found[*a as usize] = true;
+        }
+        found
+    }
+
     /// Forgets all multipliers.
     pub fn reset(&mut self) {
         self.held.iter_mut().for_each(|face| face.multiplier = 0.0);

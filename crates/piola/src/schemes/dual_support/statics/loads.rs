@@ -34,14 +34,13 @@ impl<const D: usize> Loads<D> {
             }
         }
         for traction in &self.tractions {
-            for (&a, &area) in traction.particles.iter().zip(&traction.areas) {
-                let place = padded(&particles.position[a as usize]);
+            for (a, area, place) in traction.parts(&particles.position) {
                 for (component, value) in traction.value.iter().enumerate() {
                     let value = match rate {
                         true => value.rate(place, factor),
                         false => value.value(place, factor),
                     };
-                    forces[a as usize][component] += area * value;
+                    forces[a][component] += area * value;
                 }
             }
         }

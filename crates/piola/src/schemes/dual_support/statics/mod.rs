@@ -28,7 +28,7 @@ use crate::boundaries::{
     BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
 };
 use crate::operators::Trace;
-use crate::schemes::input::check_areas;
+use crate::schemes::input::{check_areas, check_places};
 use crate::solve::{
     ArcLength, Costs, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow,
     follow_arc,
@@ -94,7 +94,7 @@ pub struct StaticState<const D: usize> {
     pub factor: f64,
     /// Displacements in m.
     pub displacement: Vec<Vector<D>>,
-    /// Force of the supports on each particle in N.
+    /// Force of the supports on each particle in N, that of held faces by their coefficients.
     pub support_force: Vec<Vector<D>>,
     /// Force of each condition on the body, in their order, those of faces last.
     pub reactions: Vec<Reaction<D>>,
@@ -148,6 +148,7 @@ impl<const D: usize> Statics<D> {
         let count = discrete.len();
         for traction in &tractions {
             check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
+            check_places(traction)?;
         }
         for pressure in &pressures {
             check_areas(&pressure.name, &pressure.particles, pressure.areas.len(), count)?;
@@ -234,12 +235,12 @@ impl<const D: usize> Statics<D> {
         let Increment { factor, x, solved } = increment;
         self.balance(factor, &x);
         let reduction = self.solver.reduction();
-        let support_force: Vec<Vector<D>> =
+        let held: Vec<Vector<D>> =
             self.left.iter().enumerate().map(|(a, left)| -reduction.held_part(a, left)).collect();
         let mut forces = vec![Vector::zeros(); self.supports.names().count()];
         for entry in self.supports.entries() {
             let axis = self.supports.frame(entry.particle).column(entry.component);
-            let along = axis.dot(&support_force[entry.particle]);
+            let along = axis.dot(&held[entry.particle]);
             forces[entry.condition] += axis * along;
         }
         let named = self.supports.names().map(str::to_owned).zip(forces);
@@ -249,7 +250,11 @@ impl<const D: usize> Statics<D> {
             factor,
             displacement: self.displacement.clone(),
             reactions: reactions.collect(),
-            support_force,
+            support_force: if self.faces.springs().is_empty() {
+                held
+            } else {
+                self.holding(factor, &x)
+            },
             energies: self.discrete.total_energy(&self.displacement),
             solved,
         }
