@@ -2,6 +2,7 @@
 
 mod cut;
 mod error;
+mod faces;
 mod fill;
 mod jitter;
 mod lattice;
@@ -12,6 +13,7 @@ mod shape;
 mod way_out;
 
 pub use error::GeometryError;
+pub use faces::Faces;
 pub use fill::{FillReport, fill};
 pub use lattice::{LatticeKind, LatticeSpec, Placement};
 pub use particles::Particles;
