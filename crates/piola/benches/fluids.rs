@@ -13,7 +13,7 @@ mod clock;
 use std::f64::consts::PI;
 
 use piola::Vector;
-use piola::geometry::Particles;
+use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
     Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, TransportVelocity,
@@ -62,7 +62,7 @@ fn vortices<const D: usize>(
     });
     TransportVelocity::new(TransportVelocityInput {
         smoothing_length: h * particles.spacing[0],
-        normals: vec![Vector::zeros(); particles.len()],
+        faces: vec![Faces::default(); particles.len()],
         domain: Domain::new([Some([0.0, 1.0]); D]).expect("the bounds are in order"),
         kernel,
         settings: Settings {

@@ -3,6 +3,7 @@
 mod cloud;
 mod cut;
 mod error;
+mod faces;
 mod file;
 mod fill;
 mod jitter;
@@ -19,6 +20,7 @@ pub use cloud::{
     BoundaryFace, CloudPoints, CloudSpec, CloudVolumes, FaceSample, NamedSet, from_mesh,
 };
 pub use error::GeometryError;
+pub use faces::Faces;
 pub use fill::{FillReport, fill};
 pub use lattice::{LatticeKind, LatticeSpec, Placement};
 pub use mesh::{Cell, CellKind, Mesh, MeshError, MeshFault, MeshSet};

@@ -1,6 +1,6 @@
-//! The shortest way out of a shape.
+//! The shortest ways out of a shape.
 
-use super::Shape;
+use super::{Faces, Shape};
 use crate::Vector;
 
 /// Halvings of the turn by which directions are improved.
@@ -11,13 +11,13 @@ const MOST_STEPS: usize = 200;
 const TIE: f64 = 0.05;
 
 impl<const D: usize> Shape<D> {
-    /// The direction of the shortest way from `point` inside the shape to space outside of it that
+    /// The directions of the shortest ways from `point` inside the shape to space outside of it that
     /// lies between the corners `bounds` in m: the outward normal of the nearest face that is not
-    /// on these bounds. Behind an edge, where several faces are equally near, it is the direction
-    /// between theirs. `None` where every way leads beyond the bounds.
+    /// on these bounds, and behind an edge of all that are equally near. None where every way leads
+    /// beyond the bounds.
     ///
     /// Directions are searched from those to the faces, edges and corners of a cube.
-    pub fn way_out(&self, point: &Vector<D>, bounds: &(Vector<D>, Vector<D>)) -> Option<Vector<D>> {
+    pub fn ways_out(&self, point: &Vector<D>, bounds: &(Vector<D>, Vector<D>)) -> Faces<D> {
         let extent = (bounds.1 - bounds.0).norm();
         let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
         let starts = (0..3usize.pow(D as u32)).filter_map(|number| {
@@ -31,7 +31,8 @@ impl<const D: usize> Shape<D> {
             // A later direction must be shorter by more than round-off, so that symmetric
             // places choose alike.
             if start.0 < best.0 * (1.0 - 1e-9) { start } else { best }
-        })?;
+        });
+        let Some(first) = first else { return Faces::default() };
         let mut faces = vec![refine(first, &length)];
         for start in starts {
             // A way that ends on the plane of a face already found leads to the same face.
@@ -46,9 +47,7 @@ impl<const D: usize> Shape<D> {
                 faces.push(found);
             }
         }
-        let between: Vector<D> = faces.iter().map(|face| face.1).sum();
-        // Opposite faces, as of a plate, have nothing between them.
-        Some(between.try_normalize(0.1).unwrap_or(faces[0].1))
+        Faces::new(faces.into_iter().map(|face| face.1).collect())
     }
 
     /// Length of the way out along a direction, infinite if it leaves the bounds.
@@ -116,7 +115,7 @@ mod tests {
     #[test]
     fn the_walls_of_a_tank_face_its_inside() {
         let (tank, bounds) = tank();
-        let way = |x, y| tank.way_out(&Vector::<2>::new(x, y), &bounds).expect("there is a way");
+        let way = |x, y| tank.ways_out(&Vector::<2>::new(x, y), &bounds).between();
         let close = |way: Vector<2>, x, y| (way - Vector::<2>::new(x, y)).norm() < 1e-4;
         assert!(close(way(0.5, -0.05), 0.0, 1.0));
         assert!(close(way(0.05, -0.25), 0.0, 1.0), "deep in the floor, close to a corner");
@@ -131,7 +130,7 @@ mod tests {
         let low = Vector::<3>::new(1.0, 0.0, -1.0);
         let pillar = Shape::cuboid(low, low + Vector::<3>::new(0.5, 0.5, 3.0)).unwrap();
         let bounds = (Vector::<3>::repeat(-3.0), Vector::<3>::repeat(5.0));
-        let way = |x, y| pillar.way_out(&Vector::<3>::new(x, y, 0.5), &bounds).expect("a way");
+        let way = |x, y| pillar.ways_out(&Vector::<3>::new(x, y, 0.5), &bounds).between();
         let diagonal = 0.5_f64.sqrt();
         for (x, y, sign_x, sign_y) in
             [(1.1, 0.1, -1.0, -1.0), (1.4, 0.1, 1.0, -1.0), (1.4, 0.4, 1.0, 1.0)]
@@ -150,11 +149,11 @@ mod tests {
         let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
         for angle in [0.1_f64, 0.9, 2.0, 4.0] {
             let radial = Vector::<2>::new(angle.cos(), angle.sin());
-            let way = ball.way_out(&(center + radial * 0.4), &bounds).expect("there is a way");
+            let way = ball.ways_out(&(center + radial * 0.4), &bounds).between();
             // Lengths are found to 1e-8 m of 0.1 m, and grow with the square of the turn.
             assert!((way - radial).norm() < 2e-3, "{way} for {radial}");
         }
         // On the bounds there is no way out.
-        assert_eq!(ball.way_out(&center, &(center, center)), None);
+        assert_eq!(ball.ways_out(&center, &(center, center)), Faces::default());
     }
 }

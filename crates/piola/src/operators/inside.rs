@@ -136,41 +136,63 @@ fn keep<const D: usize, const WRAPS: bool>(
     kept: &mut [u32],
 ) -> usize {
     let mut length = 0;
-    for candidates in candidates.chunks(LANES) {
-        let count = candidates.len();
-        let places = <[u32; LANES]>::try_from(candidates)
-            .unwrap_or_else(|_| std::array::from_fn(|lane| candidates[lane.min(count - 1)]));
-        let others = all_of(positions, &places);
-        let mut squares = [0.0; LANES];
-        for axis in 0..D {
-            for lane in 0..LANES {
-                let distance = here[axis] - others[lane][axis];
-                let distance = match WRAPS {
-                    true => shorter_way(distance, reach.periods[axis]),
-                    false => distance,
-                };
-                squares[lane] += distance * distance;
-            }
+    let (groups, rest) = candidates.as_chunks::<LANES>();
+    for places in groups {
+        length += keep_group::<D, WRAPS>(here, places, positions, reach, &mut kept[length..]);
+    }
+    if let Some(last) = rest.last() {
+        // The last one fills the group up, and is taken back as often as it was kept for that.
+        let mut places = [*last; LANES];
+        places[..rest.len()].copy_from_slice(rest);
+        let front = length;
+        length += keep_group::<D, WRAPS>(here, &places, positions, reach, &mut kept[length..]);
+        let filled = LANES - rest.len();
+        if length > front && kept[length - 1] == *last {
+            length -= filled;
         }
-        #[expect(clippy::needless_range_loop, reason = "a lane is the same in all arrays")]
-        for lane in 0..LANES {
-            squares[lane] = if lane < count { squares[lane] } else { f64::INFINITY };
-        }
-        // Every candidate is written and kept by the step of the counter, as a branch would be
-        // guessed wrong every third time.
-        let window = window(&mut kept[length..]);
-        let mut more = 0;
-        for lane in 0..LANES {
-            window[more % LANES] = places[lane];
-            more += usize::from(squares[lane] < reach.limit);
-        }
-        length += more;
     }
     if let Some(last) = length.checked_sub(1) {
         let last = kept[last];
         *window(&mut kept[length..]) = [last; LANES];
     }
     length
+}
+
+/// Writes those of a group that are inside the support to the front of `kept`, and returns how many
+/// they are.
+#[inline(always)]
+fn keep_group<const D: usize, const WRAPS: bool>(
+    here: &Vector<D>,
+    places: &[u32; LANES],
+    positions: &[Vector<D>],
+    reach: &Reach<D>,
+    kept: &mut [u32],
+) -> usize {
+    let others = all_of(positions, places);
+    let mut squares = [0.0; LANES];
+    for axis in 0..D {
+        let mut distances = [0.0; LANES];
+        for lane in 0..LANES {
+            distances[lane] = here[axis] - others[lane][axis];
+        }
+        for lane in 0..LANES {
+            let distance = match WRAPS {
+                true => shorter_way(distances[lane], reach.periods[axis]),
+                false => distances[lane],
+            };
+            squares[lane] += distance * distance;
+        }
+    }
+    let is_inside = squares.map(|square| u8::from(square < reach.limit));
+    // Every candidate is written and kept by the step of the counter, as a branch would be
+    // guessed wrong every third time.
+    let window = window(kept);
+    let mut more = 0;
+    for lane in 0..LANES {
+        window[more % LANES] = places[lane];
+        more += usize::from(is_inside[lane]);
+    }
+    more
 }
 
 /// The first entries of what there is room for.

@@ -1,7 +1,7 @@
 //! Fluids that several tests build.
 
 use piola::Vector;
-use piola::geometry::Particles;
+use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
@@ -60,7 +60,7 @@ pub fn fluid_in_box<const D: usize>(
     let (velocity, pressure) = values.unzip();
     TransportVelocity::new(TransportVelocityInput {
         smoothing_length: h * particles.spacing[0],
-        normals: vec![Vector::zeros(); particles.len()],
+        faces: vec![Faces::default(); particles.len()],
         particles,
         domain: periodic(),
         kernel: Kernel::QuinticSpline,

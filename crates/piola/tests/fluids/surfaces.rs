@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use piola::Vector;
-use piola::geometry::Particles;
+use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
     Fluid, Settings, TransportVelocity, TransportVelocityInput,
@@ -36,7 +36,7 @@ fn at_rest<const D: usize>(positions: Vec<Vector<D>>) -> TransportVelocity<D> {
         fluid: Fluid { density: 1000.0, wave_speed: 10.0, viscosity: 0.0 },
         initial: Initial { velocity: vec![Vector::zeros(); count], pressure: vec![0.0; count] },
         walls: Vec::new(),
-        normals: vec![Vector::zeros(); count],
+        faces: vec![Faces::default(); count],
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces: Vec::new(),

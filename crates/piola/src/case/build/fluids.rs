@@ -6,7 +6,7 @@ use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
-use crate::geometry::{Particles, Shape};
+use crate::geometry::{Faces, Particles, Shape};
 use crate::neighbors::{Domain, NeighborStatistics, spatial_order};
 use crate::schemes::Scheme;
 use crate::schemes::transport_velocity::{
@@ -30,7 +30,7 @@ pub(super) fn build<const D: usize>(
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
     let fluid = fluid(case)?;
-    let (normals, shape) = normals(case, &particles)?;
+    let (faces, shape) = faces(case, &particles)?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
@@ -40,9 +40,12 @@ pub(super) fn build<const D: usize>(
     }
     let walls = walls(case);
     let mut warnings = Vec::new();
-    if normals.iter().zip(&particles.body).any(|(normal, &body)| {
-        walls.iter().any(|wall| wall.body == body) && normal.norm_squared() == 0.0
-    }) {
+    let no_face = Faces::default();
+    if faces
+        .iter()
+        .zip(&particles.body)
+        .any(|(faces, &body)| walls.iter().any(|wall| wall.body == body) && *faces == no_face)
+    {
         warnings.push(
             "some particles of walls have no way to the fluid inside the box around all bodies, \
              so that they have no normal: they do not hold back what flows through them"
@@ -51,7 +54,7 @@ pub(super) fn build<const D: usize>(
     }
     let support = kernel.support_radius(smoothing_length);
     if let Some(shape) = &shape {
-        warnings.extend(tanks::warnings(case, shape, &particles, &normals, support));
+        warnings.extend(tanks::warnings(case, shape, &particles, &faces, support));
     }
     let initial = initial(case, &particles);
     let sliding = sliding(case, &particles);
@@ -63,7 +66,7 @@ pub(super) fn build<const D: usize>(
         fluid,
         initial,
         walls,
-        normals,
+        faces,
         motion,
         sliding,
         body_forces: selections::body_forces(case),
@@ -122,17 +125,17 @@ fn walls(case: &Case) -> Vec<Wall> {
     bodies.filter_map(wall).collect()
 }
 
-/// The shape of all walls together, and the normals of their particles: the shortest way out of all walls together, inside the box around
-/// all bodies, so that the outer faces of a tank do not count. In a periodic box the box itself is
-/// no wall either.
-fn normals<const D: usize>(
+/// The shape of all walls together, and the faces that their particles are behind: the shortest ways
+/// out of all walls together, inside the box around all bodies, so that the outer faces of a tank do
+/// not count. In a periodic box the box itself is no wall either.
+fn faces<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
-) -> Result<(Vec<Vector<D>>, Option<Shape<D>>), Vec<Problem>> {
-    let mut normals = vec![Vector::zeros(); particles.len()];
+) -> Result<(Vec<Faces<D>>, Option<Shape<D>>), Vec<Problem>> {
+    let mut faces = vec![Faces::default(); particles.len()];
     let is_wall: Vec<bool> = case.bodies.iter().map(|body| body.wall.is_some()).collect();
     if !is_wall.contains(&true) {
-        return Ok((normals, None));
+        return Ok((faces, None));
     }
     let (mut shapes, mut bounds) = (Vec::new(), None::<(Vector<D>, Vector<D>)>);
     for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
@@ -157,18 +160,17 @@ fn normals<const D: usize>(
         bounds = Some((least.inf(&low), most.sup(&high)));
     }
     let (Some(bounds), Ok(walls)) = (bounds, Shape::union(shapes)) else {
-        return Ok((normals, None));
+        return Ok((faces, None));
     };
-    crate::parallel::for_each_chunk(&mut normals, |first, rows| {
-        for (offset, normal) in rows.iter_mut().enumerate() {
+    crate::parallel::for_each_chunk(&mut faces, |first, rows| {
+        for (offset, row) in rows.iter_mut().enumerate() {
             let number = first + offset;
             if is_wall[particles.body[number] as usize] {
-                let way = walls.way_out(&particles.position[number], &bounds);
-                *normal = way.unwrap_or_else(Vector::zeros);
+                *row = walls.ways_out(&particles.position[number], &bounds);
             }
         }
     });
-    Ok((normals, Some(walls)))
+    Ok((faces, Some(walls)))
 }
 
 /// The corners of the box around the particles of a body.

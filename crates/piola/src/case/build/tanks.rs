@@ -2,25 +2,25 @@
 
 use crate::Vector;
 use crate::case::model::Case;
-use crate::geometry::{Particles, Shape};
+use crate::geometry::{Faces, Particles, Shape};
 
 /// Steps a spacing in which a wall is probed.
 const STEPS: f64 = 4.0;
 
-/// What the user should know of the walls that `walls` is the union of, with the normals of
-/// particles and the support radius in m.
+/// What the user should know of the walls that `walls` is the union of, with the faces that
+/// particles are behind and the support radius in m.
 pub(super) fn warnings<const D: usize>(
     case: &Case,
     walls: &Shape<D>,
     particles: &Particles<D>,
-    normals: &[Vector<D>],
+    faces: &[Faces<D>],
     support: f64,
 ) -> Vec<String> {
     let is_wall = |a: &usize| case.bodies[particles.body[*a] as usize].wall.is_some();
     let all: Vec<usize> = (0..particles.len()).filter(is_wall).collect();
     let thin = first(&all, particles, |a| {
         let spacing = particles.spacing[a];
-        let (position, normal) = (&particles.position[a], &normals[a]);
+        let (position, normal) = (&particles.position[a], &faces[a].between());
         // Only where the next layer would be in the fluid is there a face to measure from.
         if normal.norm_squared() == 0.0 || walls.contains(&(position + normal * spacing)) {
             return None;

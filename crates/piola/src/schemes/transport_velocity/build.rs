@@ -13,7 +13,7 @@ use super::{
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
-use crate::geometry::Particles;
+use crate::geometry::{Faces, Particles};
 use crate::neighbors::{Domain, NeighborError};
 use crate::operators::MovingSupport;
 use crate::schemes::input::{check_index, check_lengths, check_particles};
@@ -47,8 +47,8 @@ pub struct TransportVelocityInput<const D: usize> {
     pub initial: Initial<D>,
     /// The bodies that are walls.
     pub walls: Vec<Wall>,
-    /// Unit normal of each particle towards the fluid; not used but of walls.
-    pub normals: Vec<Vector<D>>,
+    /// The faces towards the fluid that each particle is behind; not used but of walls.
+    pub faces: Vec<Faces<D>>,
     /// Velocity components with which particles of walls move; those of others are at rest.
     pub motion: Vec<PrescribedVelocity>,
     /// Velocity components with which the surface of walls slides where it is.
@@ -130,8 +130,8 @@ impl<const D: usize> TransportVelocity<D> {
         let mut walls = Vec::new();
         let mut index = |number: usize| {
             let slip = wall_of(number)?.slip;
-            let normal = input.normals[number];
-            walls.push(WallParticle { number: number as u32, normal, slip });
+            let faces = input.faces[number].clone();
+            walls.push(WallParticle { number: number as u32, faces, slip });
             Some(walls.len() as u32 - 1)
         };
         let wall_index: Vec<Option<u32>> = (0..count).map(&mut index).collect();
@@ -233,7 +233,7 @@ fn check<const D: usize>(input: &TransportVelocityInput<D>) -> Result<(), Transp
     check_lengths(
         particles.len(),
         &[
-            ("the list of normals", input.normals.len()),
+            ("the list of faces", input.faces.len()),
             ("the initial velocity", initial.velocity.len()),
             ("the initial pressure", initial.pressure.len()),
         ],

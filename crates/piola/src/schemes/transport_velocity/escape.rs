@@ -32,8 +32,8 @@ impl<const D: usize> TransportVelocity<D> {
     /// Lets the scheme look for particles that escape. Without walls there is nothing to escape
     /// from.
     ///
-    /// A particle has gone through a wall if it is behind the plane of the nearest wall particle,
-    /// and has left the box around everything if it is further from that of the walls, along an
+    /// A particle has gone through a wall if it is behind the plane of the nearest wall particle, at
+    /// an edge behind both of them, and has left the box around everything if it is further from that of the walls, along an
     /// axis that is not periodic, than everything is wide at the start.
     pub fn guard(&mut self, guard: Guard) {
         let position = &self.particles.position;
@@ -143,7 +143,7 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let (_, separation, wall) = nearest?;
         let number = list.numbers()[wall];
-        let height = separation.dot(&self.normal(number as usize));
+        let height = self.faces(number as usize)?.height(&separation);
         (height < -TOLERANCE * self.particles.spacing[0]).then_some(Some(number))
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Forces, Rates, Row, TransportVelocity};
 use crate::Vector;
+use crate::geometry::Faces;
 use crate::operators::{Needs, NeighborBlock};
 
 impl<const D: usize> TransportVelocity<D> {
@@ -78,7 +79,10 @@ impl<const D: usize> TransportVelocity<D> {
                 let is_wall = self.is_wall[number] && !Self::is_removed(row);
                 values.push(f64::from(is_wall));
             }
-            "normal" => values.extend_from_slice(self.normal(number).as_slice()),
+            "normal" => {
+                let normal = self.faces(number).map_or(Vector::zeros(), Faces::between);
+                values.extend_from_slice(normal.as_slice());
+            }
             "neighbors" => values.push(self.neighbor_count(place) as f64),
             "mass" => values.push(self.mass[number]),
             _ => {}
@@ -118,9 +122,10 @@ impl<const D: usize> TransportVelocity<D> {
         sum
     }
 
-    pub(super) fn normal(&self, number: usize) -> Vector<D> {
+    /// The faces that a wall particle is behind.
+    pub(super) fn faces(&self, number: usize) -> Option<&Faces<D>> {
         let wall = self.walls.binary_search_by_key(&(number as u32), |wall| wall.number);
-        wall.map_or(Vector::zeros(), |wall| self.walls[wall].normal)
+        Some(&self.walls[wall.ok()?].faces)
     }
 
     /// The sum of those `d u_i / d x_axis` for which `which(axis, i)` holds, CTVF (31).

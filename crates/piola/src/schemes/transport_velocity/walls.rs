@@ -3,15 +3,16 @@
 use piola_formulas::fluid;
 
 use super::{Slip, TransportVelocity};
+use crate::geometry::Faces;
 use crate::operators::{Needs, NeighborBlock};
 use crate::{Vector, parallel};
 
 /// A particle of a wall.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct WallParticle<const D: usize> {
     pub number: u32,
-    /// Unit normal towards the fluid, or zero.
-    pub normal: Vector<D>,
+    /// The faces towards the fluid that it is behind.
+    pub faces: Faces<D>,
     pub slip: Slip,
 }
 
@@ -119,7 +120,8 @@ impl<const D: usize> TransportVelocity<D> {
         let (velocity, deviation) = (velocity / weight, deviation / weight);
         let gravity = self.body_force_at(wall.number as usize, place, time);
         values.pressure = (pressure + (gravity - values.acceleration).dot(&arm)) / weight;
-        let normal = &wall.normal;
+        // An edge faces the fluid that is there: what hits one of its sides must not be turned along it.
+        let normal = &wall.faces.towards(&-arm);
         // A surface that slides goes nowhere: at corners, where the normal is between two faces,
         // it must not push.
         values.velocity = velocity + normal * (2.0 * (values.motion - velocity).dot(normal));
