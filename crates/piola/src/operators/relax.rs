@@ -19,7 +19,7 @@ const MOST: f64 = 0.1;
 /// `X_a += - beta dx^2 sum_b w_b (grad_a W_ab - grad_a W_ab at the sites)`, by a tenth of the spacing
 /// dx at most, `steps` times. At the `sites` of the lattice that the particles come from nothing
 /// moves, near a boundary neither, where the sum would push outwards. The kernel is one of Wendland's,
-/// under which particles do not pair. Volumes and weights stay. The same particles give the same
+/// under which particles do not pair. A step to where a particle does not stay is left out. Volumes and weights stay. The same particles give the same
 /// places, whatever the threads.
 ///
 /// # Errors
@@ -28,6 +28,7 @@ pub fn relax<const D: usize>(
     particles: &mut Particles<D>,
     sites: &[Vector<D>],
     free: &[bool],
+    stays: impl Fn(&Vector<D>) -> bool,
     domain: &Domain<D>,
     steps: u64,
 ) -> Result<(), NeighborError> {
@@ -37,7 +38,10 @@ pub fn relax<const D: usize>(
         for a in (0..free.len().min(pushes.len())).filter(|&a| free[a]) {
             let step = pushes[a] - at_rest[a];
             let (length, most) = (step.norm(), MOST * particles.spacing[a]);
-            particles.position[a] += if length > most { step * (most / length) } else { step };
+            let step = if length > most { step * (most / length) } else { step };
+            if stays(&(particles.position[a] + step)) {
+                particles.position[a] += step;
+            }
         }
     }
     Ok(())

@@ -151,7 +151,8 @@ fn relaxed<const D: usize>(
     let is_inside = |(x, spacing): (&Vector<D>, &f64)| shape.depth(x) > 0.75 * spacing;
     let free: Vec<bool> = sites.position.iter().zip(&sites.spacing).map(is_inside).collect();
     let steps = body.lattice.relax;
-    relax(&mut made.particles, &sites.position, &free, domain, steps).map_err(|error| {
+    let stays = |x: &Vector<D>| shape.contains(&domain.wrap(x));
+    relax(&mut made.particles, &sites.position, &free, stays, domain, steps).map_err(|error| {
         let label = format!("lattice of body `{}`", body.name.value);
         case.problem_at(body.spacing.place, error.to_string(), label, None)
     })?;

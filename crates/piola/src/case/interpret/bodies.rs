@@ -43,6 +43,11 @@ impl Reader<'_, '_> {
         if shape?.value.is_from_file() {
             return Some(Located::new(Vec::new(), record.place));
         }
+        // A misspelt key has been reported as such.
+        let meant = "did you mean `spacing`?";
+        if self.context.problems.iter().any(|problem| problem.help.as_deref() == Some(meant)) {
+            return None;
+        }
         let message = "[[body]] needs the key `spacing`: distance between particles";
         self.refuse(Problem::new(record.place, message, "`spacing` is missing"))
     }
