@@ -5,7 +5,6 @@
 //! Arguments that are numbers replace the particles along an edge; `direct` and `krylov` leave the
 //! other method out.
 
-#[allow(dead_code, reason = "shared with the tests, which use more of it")]
 #[path = "../tests/support/mod.rs"]
 mod support;
 
@@ -50,6 +49,7 @@ fn cube(side: usize, method: LinearMethod) -> Statics<3> {
             .map(|&a| areas[a as usize][2] * share(&particles.position[a as usize]))
             .collect(),
         particles: loaded,
+        places: Vec::new(),
         value: [Arc::new(0.0), Arc::new(0.0), support::varying(|_, t| -2.0 * t)],
     };
     let bottom: Vec<u32> =

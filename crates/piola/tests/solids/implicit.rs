@@ -100,6 +100,7 @@ fn loaded_beam() -> DualSupportInput<2> {
         name: "pull".into(),
         areas: right.iter().map(|&a| cloud.areas[a as usize].norm()).collect(),
         particles: right,
+        places: Vec::new(),
         value: [varying(|_, t| 1e5 * t), Arc::new(0.0)],
     });
     prescribe(&mut input, 0, Arc::new(0.0));

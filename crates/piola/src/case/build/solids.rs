@@ -71,7 +71,7 @@ pub(super) fn build<const D: usize>(
             let trace = trace.clone();
             let input =
                 StaticsInput { prescribed, prescribed_faces, trace, ..StaticsInput::default() };
-            (Vec::new(), Motion::Static(input))
+            (Vec::new(), Motion::Static(Box::new(input)))
         }
         _ => {
             let motion = match case.time.newmark {

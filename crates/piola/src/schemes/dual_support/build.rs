@@ -139,7 +139,7 @@ impl<const D: usize> DualSupport<D> {
                 Some(Statics::moving(discrete.clone(), known)?)
             }
             Motion::Static(statics) => {
-                let known = StaticsInput { body_forces, tractions, ..statics };
+                let known = StaticsInput { body_forces, tractions, ..*statics };
                 Some(Statics::new(discrete.clone(), known)?)
             }
         };

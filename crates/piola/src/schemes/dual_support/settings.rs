@@ -39,7 +39,7 @@ pub enum Motion<const D: usize> {
     Implicit(LinearMethod, Newton),
     /// Not at all: in equilibrium, each with the loads of its load factor. Body forces and tractions
     /// are those of the body in motion.
-    Static(StaticsInput<D>),
+    Static(Box<StaticsInput<D>>),
 }
 
 /// The material of one body.
