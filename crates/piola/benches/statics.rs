@@ -56,13 +56,13 @@ fn cube(side: usize, method: LinearMethod) -> Statics<3> {
         (0..count as u32).filter(|&a| particles.position[a as usize][2] == 0.0).collect();
     particles.weight.clone_from(&particles.volume);
     let radius = vec![2.05 * cell; count];
-    let support =
-        DirectedSupport::new(&particles, Kernel::QuinticSpline, radius, Domain::open()).unwrap();
-    let law = HyperelasticLaw::neo_hookean(LameConstants::from_young(10.0, 0.3).unwrap());
-    let law = Reduced::new(law, StressState::ThreeDimensional).unwrap();
+    let support = DirectedSupport::new(&particles, Kernel::QuinticSpline, radius, Domain::open())
+        .expect("spacings are positive");
+    let law = HyperelasticLaw::neo_hookean(LameConstants::from_young(10.0, 0.3).expect("in range"));
+    let law = Reduced::new(law, StressState::ThreeDimensional).expect("the state fits");
     let settings = Settings { gradients: Gradients::PatchConsistent { areas }, hourglass: 0.1 };
     let materials = vec![Material { density: 1.0, law }];
-    let body = Discrete::new(particles, support, &settings, materials).unwrap();
+    let body = Discrete::new(particles, support, &settings, materials).expect("gradients exist");
     let input = StaticsInput {
         tractions: vec![traction],
         prescribed: PrescribedDisplacement::clamp("bottom", &bottom).to_vec(),
@@ -70,7 +70,7 @@ fn cube(side: usize, method: LinearMethod) -> Statics<3> {
         newton: Newton { tolerance: 1e-6, ..Newton::default() },
         ..StaticsInput::default()
     };
-    Statics::new(body.into(), input).unwrap()
+    Statics::new(body.into(), input).expect("the bottom holds it")
 }
 
 fn main() {
@@ -103,7 +103,7 @@ fn main() {
             let set_up = start.elapsed().as_secs_f64();
             let start = Instant::now();
             let levels = LoadSteps::Given(vec![0.25, 0.5, 0.75, 1.0]);
-            let states = statics.solve(&levels).unwrap();
+            let states = statics.solve(&levels).expect("equilibria");
             let total = start.elapsed().as_secs_f64();
             let iterations: Vec<String> =
                 states.iter().map(|state| state.solved.iterations.len().to_string()).collect();

@@ -11,7 +11,7 @@ use crate::schemes::Scheme;
 const LARGEST_AMPLIFICATION: f64 = 3.0;
 
 /// Fields interpolated at some places: the value there of the linear function that fits the particles
-/// around best, weighted by the kernel, theory (53). It is exact for linear fields, at the edge of
+/// around best, weighted by the kernel, theory (54). It is exact for linear fields, at the edge of
 /// a body too. Where particles do not determine it, the mean, which is exact for constants; not a
 /// number where no particle is near.
 #[derive(Clone)]
@@ -106,7 +106,7 @@ impl Interpolated {
     }
 }
 
-/// The coefficients of the values of particles at `offsets` in the value at the origin, theory (53).
+/// The coefficients of the values of particles at `offsets` in the value at the origin, theory (54).
 fn fit(offsets: &[DVector<f64>], mut weights: Vec<f64>) -> Vec<f64> {
     let total: f64 = weights.iter().sum();
     weights.iter_mut().for_each(|weight| *weight /= total);

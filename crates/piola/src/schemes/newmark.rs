@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::{NoSolution, Scheme};
 
-/// The weights of one implicit step of `M a = f(u, t)`, theory (54): those of Newmark (1959) and the
+/// The weights of one implicit step of `M a = f(u, t)`, theory (53): those of Newmark (1959) and the
 /// instants at which inertia and forces balance, of Chung and Hulbert (1993).
 ///
 /// ```text
@@ -56,7 +56,7 @@ impl Newmark {
         Self { beta, gamma: 0.5 + alpha, alpha_m: 0.0, alpha_f: alpha }
     }
 
-    /// The generalised-alpha method, Chung and Hulbert (25): of second order, with the least
+    /// The generalised-alpha method of Chung and Hulbert (1993): of second order, with the least
     /// damping of long periods for a given `radius`, by which a step multiplies the shortest ones.
     /// A radius of 1 is the implicit midpoint rule, without damping, which keeps linear and
     /// angular momentum of any body.

@@ -37,7 +37,7 @@ pub enum IntegratorKind {
     TvdRk2,
     /// Kick-drift-kick, CTVF (54) to (60), for schemes that can be split.
     KickDriftKick,
-    /// Newmark's method, theory (54), for schemes that solve for displacements.
+    /// Newmark's method, theory (53), for schemes that solve for displacements.
     Newmark,
     /// The method of Hilber, Hughes and Taylor.
     HhtAlpha,

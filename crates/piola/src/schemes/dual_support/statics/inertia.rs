@@ -4,7 +4,7 @@ use super::{Statics, StaticsError};
 use crate::solve::{Equations, NewtonError};
 use crate::{Vector, parallel};
 
-/// A step whose forces are to balance inertia, theory (54).
+/// A step whose forces are to balance inertia, theory (53).
 #[derive(Clone, Copy, Debug)]
 pub struct InertialStep<'a, const D: usize> {
     /// Instant at which they do in s.
