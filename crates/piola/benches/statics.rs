@@ -79,19 +79,8 @@ fn main() {
     let sizes: Vec<usize> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
     let sizes = if sizes.is_empty() { vec![9, 13, 17, 21] } else { sizes };
     println!(
-        "{:>6} {:>8} {:>9} {:>9} {:>9} {:>10} {:>8} {:>8} {:>8} {:>8} {:>8}  {}",
-        "side",
-        "unknowns",
-        "non-zeros",
-        "factor",
-        "set up s",
-        "iterations",
-        "Krylov",
-        "assembly",
-        "factor s",
-        "solve s",
-        "total s",
-        "lowest m"
+        "  side unknowns non-zeros    factor  set up s iterations   Krylov assembly factor s  solve s  \
+         total s  lowest m"
     );
     for (name, method) in [("direct", LinearMethod::Direct), ("krylov", LinearMethod::Krylov)] {
         if asked("direct") != asked("krylov") && !asked(name) {
