@@ -39,6 +39,21 @@ fn column(finished: &Finished, name: &str) -> Vec<f64> {
     trace.numbers.chunks_exact(trace.columns.len()).map(|row| row[index]).collect()
 }
 
+/// What an integrator takes by design is not put down to its steps being too large.
+#[test]
+fn energy_that_is_damped_is_said_to_be() {
+    let warnings = |rule: &[&str]| {
+        let steps =
+            ["parameters.dx=0.5", "time.end=0.04", "time.step=0.002", "output.table_every=0.002"];
+        let set = [&steps, rule].concat();
+        run(&load_of("dual-support", "free-vibration", &set), None).warnings
+    };
+    let damped = warnings(&["time.integrator='generalised_alpha'", "time.spectral_radius=0"]);
+    assert!(damped.iter().any(|text| text.contains("the integrator damps")), "{damped:?}");
+    let undamped = warnings(&["time.integrator='newmark'"]);
+    assert!(!undamped.iter().any(|text| text.contains("accounted for")), "{undamped:?}");
+}
+
 /// Five times the stable step without upwinding: the column breaks up.
 #[test]
 fn a_step_that_is_too_large() {

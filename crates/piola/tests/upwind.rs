@@ -401,7 +401,7 @@ fn input_that_cannot_be_computed_with_is_refused() {
     refuse(&|i| i.initial.pressure.push(0.0), "the initial pressure has 78 entries");
     refuse(&|i| i.particles.weight.clear(), "the list of weights has 0 entries");
     refuse(&|i| i.particles.body[70] = 1, "the material of body 1 does not exist");
-    refuse(&|i| i.tractions[0].areas.truncate(3), "the areas of a traction");
+    refuse(&|i| i.tractions[0].areas.truncate(3), "the list of areas of `load` has 3 entries");
     refuse(&|i| i.tractions[0].particles[2] = 77, "`load`: particle 77 does not exist");
     refuse(&|i| i.prescribed[0].particles[1] = 99, "particle 99 does not exist");
     refuse(&|i| i.prescribed[0].component = 2, "component 2 does not exist");

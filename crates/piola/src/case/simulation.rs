@@ -170,7 +170,8 @@ impl Simulation {
         let summary = executor.run(stop, progress)?;
         warnings.extend(summary.warnings.iter().cloned());
         let tables = tables.lock().clone();
-        warnings.extend(unbalanced(&tables));
+        let damps = case.time.newmark.is_some_and(|rule| rule.damps());
+        warnings.extend(unbalanced(&tables, damps));
         let gone = removed(&tables);
         if gone > 0.0 {
             warnings.push(format!(
@@ -196,21 +197,27 @@ impl Simulation {
 const UNBALANCED: f64 = 0.01;
 
 /// What the user should know if energy is not accounted for: by theory (18) what the balance is off
-/// by is the error of the integrator.
-fn unbalanced(tables: &Tables) -> Option<String> {
+/// by is the error of the integrator, which is damping where it is made to damp.
+fn unbalanced(tables: &Tables, damps: bool) -> Option<String> {
     let off = tables.energy.values("balance")?.last()?.abs();
     let largest = |name: &str| -> f64 {
         let values = tables.energy.values(name).unwrap_or_default();
         values.iter().fold(0.0, |most, value| most.max(value.abs()))
     };
     let share = off / largest("total");
-    (share > UNBALANCED).then(|| {
-        format!(
-            "{:.1} % of the largest energy is not accounted for: the steps are too large for what \
-             happens; lower `time.cfl`, or `time.step` where it is given, and compare",
-            100.0 * share
-        )
-    })
+    let advice = match damps {
+        true => {
+            "the integrator damps what is short against its steps; if that is more than was meant, \
+             lower `time.step`, or let it damp less"
+        }
+        false => {
+            "the steps are too large for what happens; lower `time.cfl`, or `time.step` where it is \
+             given, and compare"
+        }
+    };
+    let message =
+        || format!("{:.1} % of the largest energy is not accounted for: {advice}", 100.0 * share);
+    (share > UNBALANCED).then(message)
 }
 
 /// Number of particles that were removed, by schemes that do so.

@@ -68,6 +68,11 @@ impl Newmark {
         Self { beta: 0.25 * (0.5 + gamma).powi(2), gamma, alpha_m, alpha_f }
     }
 
+    /// Whether it takes energy from periods that are short against its steps.
+    pub fn damps(&self) -> bool {
+        self.gamma > 0.5
+    }
+
     /// How far into a step forces are evaluated, `1 - alpha_f`.
     pub fn reach(&self) -> f64 {
         1.0 - self.alpha_f
@@ -176,12 +181,15 @@ mod tests {
     fn damping_is_as_asked_for() {
         for radius in [0.2, 0.5, 0.8, 1.0] {
             let rule = Newmark::generalised_alpha(radius);
+            assert_eq!(rule.damps(), radius < 1.0);
             // Roots that coincide grow like a power of the number of steps besides.
             assert!((growth(&rule, 1e6) - radius).abs() < 0.02, "{}", growth(&rule, 1e6));
             assert!((growth(&rule, 1e-2) - 1.0).abs() < 1e-5, "{}", growth(&rule, 1e-2));
         }
         assert!((growth(&Newmark::AVERAGE_ACCELERATION, 3.0) - 1.0).abs() < 1e-6);
+        assert!(!Newmark::AVERAGE_ACCELERATION.damps());
         let damped = Newmark::hilber_hughes_taylor(1.0 / 3.0);
+        assert!(damped.damps());
         assert!(growth(&damped, 1e6) < 0.55 && growth(&damped, 3.0) < 0.95);
         // First order, with gamma above one half.
         let dissipative = Newmark::new(0.5, 0.9).expect("stable weights");

@@ -176,7 +176,8 @@ impl Newton {
         Ok(Solved { iterations, residual, stability })
     }
 
-    /// Finds a zero from `x`, after the iterations `before` that a predictor took.
+    /// Finds a zero from `x`, after the iterations `before` that a predictor took: a residual within
+    /// the tolerance, or a step that is lost in the rounding of the unknowns.
     ///
     /// Along each direction a step is halved until the potential falls as its slope promises;
     /// where the change is lost in rounding, or where there is no potential, until the residual
@@ -209,8 +210,9 @@ impl Newton {
                 .linearise(factor, x, true)
                 .and_then(|()| equations.solve(&left, self.forcing(residual), &mut direction))
                 .map_err(|source| NewtonError::Linear { source, history: history.clone() })?;
-            // Nothing that the unknowns could still hold: the residual is their rounding.
-            if largest(&direction) <= ROUNDING * largest(x) {
+            // Nothing that the unknowns could still hold: the residual is their rounding. A shift
+            // would make any step short.
+            if report.shift == 0.0 && largest(&direction) <= ROUNDING * largest(x) {
                 return Ok(Found { iterations: history, residual });
             }
             let start = Start { x: &*x, left: &left, direction: &direction, residual };

@@ -4,19 +4,17 @@ use std::sync::Arc;
 
 use piola::Vector;
 use piola::boundaries::{BodyForce, PrescribedVelocity, Traction};
-use piola::schemes::dual_support::{
-    DualSupport, DualSupportInput, Gradients, Material, Motion, Settings,
-};
+use piola::schemes::dual_support::{DualSupport, DualSupportInput, Motion};
 use piola::schemes::{Missed, Newmark, Scheme, momentum_components};
 use piola::solve::{LinearMethod, Newton};
 use piola::time::{Failure, IntegratorKind};
-use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
+use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants};
 use piola_formulas::volumetric::StressState;
 
 use crate::clouds::Cloud;
+use crate::runs::{self, DENSITY, stable_step, total};
 use crate::support::{Function, varying, work};
 
-const DENSITY: f64 = 1000.0;
 const MIDPOINT: f64 = 1.0;
 
 fn input<const D: usize>(
@@ -25,22 +23,11 @@ fn input<const D: usize>(
     method: LinearMethod,
     velocity: impl Fn(&Vector<D>) -> Vector<D>,
 ) -> DualSupportInput<D> {
-    let constants = LameConstants::from_young(1e6, 0.3).unwrap();
-    let state =
+    let states =
         [StressState::UniaxialStrain, StressState::PlaneStrain, StressState::ThreeDimensional];
-    let law = Reduced::new(law(constants), state[D - 1]).unwrap();
-    let gradients = Gradients::PatchConsistent { areas: cloud.areas.clone() };
-    DualSupportInput {
-        particles: cloud.particles.clone(),
-        support: cloud.support(),
-        settings: Settings { gradients, hourglass: 0.1 },
-        materials: vec![Material { density: DENSITY, law }],
-        velocity: cloud.particles.position.iter().map(velocity).collect(),
-        body_forces: Vec::new(),
-        tractions: Vec::new(),
-        prescribed: Vec::new(),
-        motion: Motion::Implicit(method, Newton { tolerance: 1e-11, ..Newton::default() }),
-    }
+    let newton = Newton { tolerance: 1e-11, ..Newton::default() };
+    let motion = Motion::Implicit(method, newton);
+    DualSupportInput { motion, ..runs::input(cloud, law, states[D - 1], velocity) }
 }
 
 /// Holds or moves the particles at x = 0.
@@ -74,17 +61,6 @@ fn energies<const D: usize>(scheme: &DualSupport<D>, state: &[f64]) -> [f64; 3] 
     let mut energies = [0.0; 3];
     scheme.energies(state, &mut energies);
     energies
-}
-
-fn total<const D: usize>(scheme: &DualSupport<D>, state: &[f64]) -> f64 {
-    energies(scheme, state).iter().sum()
-}
-
-fn stable_step<const D: usize>(scheme: &mut DualSupport<D>) -> f64 {
-    let mut limits = Vec::new();
-    let state = scheme.initial_state();
-    scheme.inspect(&state, &mut limits);
-    limits[0].step
 }
 
 /// A beam that bends far, loaded by weight, pull and the motion of its clamp.

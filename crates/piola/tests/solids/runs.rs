@@ -15,9 +15,9 @@ use piola_formulas::volumetric::StressState;
 use crate::clouds::Cloud;
 use crate::support::{march, noise, varying, work};
 
-const DENSITY: f64 = 1000.0;
+pub const DENSITY: f64 = 1000.0;
 
-fn input<const D: usize>(
+pub fn input<const D: usize>(
     cloud: &Cloud<D>,
     law: fn(LameConstants) -> HyperelasticLaw,
     state: StressState,
@@ -43,13 +43,13 @@ fn build<const D: usize>(input: DualSupportInput<D>) -> DualSupport<D> {
     DualSupport::new(input).expect("the scheme exists")
 }
 
-fn total(scheme: &dyn Scheme, state: &[f64]) -> f64 {
+pub fn total(scheme: &dyn Scheme, state: &[f64]) -> f64 {
     let mut energies = [0.0; 3];
     scheme.energies(state, &mut energies);
     energies.iter().sum()
 }
 
-fn stable_step(scheme: &mut dyn Scheme) -> f64 {
+pub fn stable_step(scheme: &mut dyn Scheme) -> f64 {
     let mut limits = Vec::new();
     let state = scheme.initial_state();
     scheme.inspect(&state, &mut limits);

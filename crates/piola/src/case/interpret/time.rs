@@ -27,7 +27,6 @@ impl March {
 
 impl Reader<'_, '_> {
     pub(super) fn time(&mut self, record: &Record) -> Option<Time> {
-        // Whether the scheme can be split.
         let natural = match self.names.scheme {
             "upwind" => IntegratorKind::TvdRk2,
             _ => IntegratorKind::KickDriftKick,

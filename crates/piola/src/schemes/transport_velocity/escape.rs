@@ -33,8 +33,8 @@ impl<const D: usize> TransportVelocity<D> {
     /// from.
     ///
     /// A particle has gone through a wall if it is behind the plane of the nearest wall particle, at
-    /// an edge behind both of them, and has left the box around everything if it is further from that of the walls, along an
-    /// axis that is not periodic, than everything is wide at the start.
+    /// an edge behind all of them, and has left the box around everything if it is further from that
+    /// of the walls, along an axis that is not periodic, than everything is wide at the start.
     pub fn guard(&mut self, guard: Guard) {
         let position = &self.particles.position;
         let Some(&first) = position.first().filter(|_| !self.walls.is_empty()) else { return };
