@@ -273,6 +273,13 @@ static TIME: TableSpec = TableSpec {
             "what a step multiplies the shortest periods by; 1 is the implicit midpoint rule, without damping",
         ),
         key(
+            "theta",
+            Kind::Number(Interval::between(0.5, 1.0)),
+            "1",
+            Derived("0.55, with the integrator `theta`"),
+            "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
+        ),
+        key(
             "max_steps",
             Kind::Integer(Interval::at_least(1.0)),
             "1",

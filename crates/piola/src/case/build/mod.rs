@@ -22,7 +22,7 @@ use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::observe::{Line, Probe};
 use crate::operators::{Correction, GradientOperator, Support};
 use crate::schemes::upwind::{
-    Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
+    ImplicitSettings, Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
 };
 use crate::schemes::{InputError, Scheme};
 use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
@@ -176,6 +176,7 @@ fn upwind<const D: usize>(
         body_forces,
         tractions,
         prescribed,
+        implicit: case.time.theta.map(|_| ImplicitSettings::default()),
     });
     built
         .map_err(|error| {
@@ -293,5 +294,9 @@ fn integrator_kind(case: &Case) -> IntegratorKind {
 /// The integrator of a case, for states of `length` numbers.
 pub(super) fn integrator(case: &Case, length: usize) -> Box<dyn Integrator> {
     let kind = integrator_kind(case);
-    case.time.newmark.map_or_else(|| kind.build(length), |rule| kind.weighted(rule))
+    match (case.time.newmark, case.time.theta) {
+        (Some(rule), _) => kind.weighted(rule),
+        (None, Some(rule)) => kind.shared(rule),
+        (None, None) => kind.build(length),
+    }
 }

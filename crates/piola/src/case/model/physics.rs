@@ -6,7 +6,7 @@ use piola_formulas::volumetric::{self, StressState};
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::schemes::{Newmark, dual_support, transport_velocity, upwind};
+use crate::schemes::{Newmark, Theta, dual_support, transport_velocity, upwind};
 
 /// What a body is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -266,6 +266,8 @@ pub struct Time {
     pub integrator: Located<String>,
     /// Its weights, if it takes implicit steps of second order.
     pub newmark: Option<Newmark>,
+    /// Which of them it takes, if it takes implicit steps of first-order systems.
+    pub theta: Option<Theta>,
     /// How long a step is.
     pub step: Located<StepControl>,
     /// The run fails after so many steps.
