@@ -4,10 +4,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use piola::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit};
+use piola::schemes::{Health, Missed, NoSolution, Particle, Scheme, SchemeDescription, StepLimit};
 use piola::time::{
-    Executor, Failure, IntegratorKind, Moment, ObserveError, Observer, Outcome, Schedule,
-    StepControl, Summary,
+    Executor, Failure, Integrator, IntegratorKind, Moment, ObserveError, Observer, Outcome,
+    Schedule, StepControl, Summary,
 };
 
 /// `x' = v`, `v' = -sin x`, and `t' = 1` in one row.
@@ -386,4 +386,55 @@ fn the_number_of_steps_is_bounded() {
     assert_eq!(times(&end), [time]);
     executor.max_steps = 200;
     assert_eq!(run(&mut executor).outcome, Outcome::Completed, "just as many as it takes");
+}
+
+/// Finds no state from 0.2 s to 0.3 s in steps above 0.06 s, and is quick elsewhere.
+struct Picky;
+
+impl Integrator for Picky {
+    fn name(&self) -> &'static str {
+        "picky"
+    }
+
+    fn evaluations(&self) -> u64 {
+        1
+    }
+
+    fn step(
+        &mut self,
+        _scheme: &mut dyn Scheme,
+        time: f64,
+        step: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), Failure> {
+        if (0.2..0.3).contains(&(time + 1e-9)) && step > 0.06 {
+            let message = "too far".to_owned();
+            let kind = Missed::NoConvergence;
+            return Err(Failure::NoSolution(NoSolution { kind, time, reached: time, message }));
+        }
+        new.copy_from_slice(old);
+        new[2] += step;
+        Ok(())
+    }
+
+    fn was_quick(&self, _scheme: &dyn Scheme, _state: &[f64]) -> bool {
+        true
+    }
+}
+
+/// Steps that were cut where they had to be grow again where they may.
+#[test]
+fn cut_steps_grow_again() {
+    let mut executor = executor(PENDULUM, StepControl::AtMost(0.1), 1.0);
+    executor.integrator = Box::new(Picky);
+    executor.retries = 2;
+    let summary = run(&mut executor);
+    assert_eq!(summary.outcome, Outcome::Completed);
+    let factors: Vec<f64> = summary.retries.iter().map(|retry| retry.factor).collect();
+    assert_eq!(factors, [0.5, 0.375]);
+    let [smallest, largest] = summary.step_range;
+    assert!((smallest - 0.0375).abs() < 1e-12 && (largest - 0.1).abs() < 1e-12);
+    // In steps of 0.0375 s from there on it would have been 24.
+    assert_eq!(summary.steps, 12);
 }

@@ -4,7 +4,7 @@ mod body_force;
 mod function;
 mod held;
 pub(crate) mod prescribed;
-mod pressure;
+pub(crate) mod pressure;
 pub(crate) mod traction;
 
 pub use body_force::BodyForce;

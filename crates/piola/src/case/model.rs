@@ -22,7 +22,7 @@ pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, R
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
     Boundary, Checkpoint, Correction, DualSupport, GradientKind, Load, LoadKind, Material,
-    PlaneState, ReferenceWaveSpeed, Scheme, StepControl, Stiffness, SupportSize, Time,
+    PlaneState, ReferenceWaveSpeed, Roller, Scheme, StepControl, Stiffness, SupportSize, Time,
     TransportVelocity, Upwind, Wall, Weights,
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
@@ -189,8 +189,10 @@ impl Case {
         });
         let loads = self.loads.iter().flat_map(|load| load.kind.components());
         let boundaries = self.boundaries.iter();
-        let boundaries =
-            boundaries.flat_map(|wall| wall.velocity.iter().chain(&wall.displacement).flatten());
+        let boundaries = boundaries.flat_map(|wall| {
+            let components = wall.velocity.iter().chain(&wall.displacement).flatten();
+            components.chain(wall.roller.iter().map(|roller| &roller.displacement))
+        });
         let walls = self.bodies.iter().filter_map(|body| body.wall.as_ref());
         let sliding = walls.flat_map(|wall| wall.sliding.iter().flatten());
         initial.chain(loads).chain(boundaries).chain(sliding)

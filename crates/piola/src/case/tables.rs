@@ -69,14 +69,14 @@ pub static CASE: TableSpec = TableSpec {
             Kind::List(&Kind::Tagged(&LOAD)),
             "",
             Optional,
-            "body forces and tractions, each a table `[[load]]`",
+            "body forces, tractions and pressures, each a table `[[load]]`",
         ),
         key(
             "boundary",
             Kind::List(&Kind::Table(&BOUNDARY)),
             "",
             Optional,
-            "prescribed velocities, each a table `[[boundary]]`",
+            "prescribed velocities or displacements, each a table `[[boundary]]`",
         ),
         key(
             "probe",
@@ -280,6 +280,20 @@ static TIME: TableSpec = TableSpec {
             "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
         ),
         key(
+            "tolerance",
+            Kind::Number(Interval::between(1e-13, 1e-2)),
+            "1",
+            Derived("1e-8 with `static` or an implicit integrator, 1e-10 with `upwind`"),
+            "what Newton's method may leave of the forces, over loads and reactions",
+        ),
+        key(
+            "linear_solver",
+            Kind::Name(LINEAR_SOLVERS),
+            "",
+            Derived("`automatic` with `static` or an implicit integrator"),
+            "how the linear equations of Newton's method are solved",
+        ),
+        key(
             "max_steps",
             Kind::Integer(Interval::at_least(1.0)),
             "1",
@@ -312,10 +326,19 @@ static TIME: TableSpec = TableSpec {
             Kind::Integer(Interval::between(1.0, 60.0)),
             "1",
             Derived("5 with `on_failure = \"retry\"`"),
-            "how often the run may go back; the steps are halved each time",
+            "how often the run may go back; the steps are halved each time, and grow again where Newton's method is quick",
         ),
     ],
 };
+
+const LINEAR_SOLVERS: Choices = choices(&[
+    choice(
+        "automatic",
+        "`direct` for bodies that are quick to factorise, `krylov` for larger ones",
+    ),
+    choice("direct", "by a sparse factorisation"),
+    choice("krylov", "by conjugate gradients, GMRES with pressures that follow the surface"),
+]);
 
 const REACTIONS: Choices = choices(&[
     choice("stop", "the run ends with the last good state"),
@@ -376,7 +399,7 @@ static LOAD: TaggedSpec = TaggedSpec {
             "body",
             Kind::Text,
             "",
-            Derived("all bodies; a traction needs it if there are several"),
+            Derived("all bodies; a traction or pressure needs it if there are several"),
             "name of the body that it acts on",
         ),
     ],
@@ -414,6 +437,27 @@ static LOAD: TaggedSpec = TaggedSpec {
                 ),
             ],
         },
+        KindSpec {
+            name: "pressure",
+            meaning: "a pressure that follows the surface, along its normal and on its area of the moment; for the scheme `dual_support`",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "where",
+                    Kind::Tagged(&geometry::REGION),
+                    "",
+                    Required,
+                    "the surface that it acts on: in a plane the side that its normal points to, in other regions all sides",
+                ),
+                key(
+                    "pressure",
+                    Kind::Expression(Variables::PositionAndTime),
+                    "Pa",
+                    Required,
+                    "positive in compression, of the reference position and time",
+                ),
+            ],
+        },
     ],
 };
 
@@ -443,6 +487,47 @@ static BOUNDARY: TableSpec = TableSpec {
             "m",
             Optional,
             "with the integrator `static`: the components that are prescribed, as expressions of the reference position and the load factor `t`",
+        ),
+        key(
+            "roller",
+            Kind::Table(&ROLLER),
+            "",
+            Optional,
+            "with the integrator `static`: a plane that the particles can only move along",
+        ),
+        key(
+            "tied",
+            Kind::List(&Kind::Name(AXES)),
+            "",
+            Optional,
+            "with the integrator `static`: components of the displacement that all particles have in common, like those of the face of a rigid platen",
+        ),
+    ],
+};
+
+const AXES: Choices = choices(&[
+    choice("x", "the first component"),
+    choice("y", "the second component"),
+    choice("z", "the third component"),
+]);
+
+static ROLLER: TableSpec = TableSpec {
+    title: "roller",
+    meaning: "A plane of any inclination. Particles are held along its normal and free along it.",
+    keys: &[
+        key(
+            "normal",
+            Kind::Numbers(Length::Dimension, Interval::ANY),
+            "1",
+            Required,
+            "normal of the plane, of any length",
+        ),
+        key(
+            "displacement",
+            Kind::Expression(Variables::PositionAndTime),
+            "m",
+            Default("\"0\""),
+            "displacement along the normal, as an expression of the reference position and the load factor `t`",
         ),
     ],
 };

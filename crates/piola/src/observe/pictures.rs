@@ -3,7 +3,7 @@
 use super::files::WrittenFiles;
 use super::memory::{decode, encode, inside};
 use crate::fields::FieldSelector;
-use crate::output::{OutputError, Picture, ResultsFolder};
+use crate::output::{OutputError, Picture, ResultsFolder, When};
 use crate::schemes::snapshot;
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
@@ -50,10 +50,14 @@ impl PictureWriter {
         let values: Vec<f64> =
             found.values.chunks_exact(components).map(|value| field.value(value)).collect();
         let label = field.name(shot.dimension);
+        let when = match moment.scheme.equilibrium() {
+            Some(_) => When::LoadFactor(moment.time),
+            None => When::Time(moment.time),
+        };
         let path = self.folder.picture(&label, self.drawn.len() as u64)?;
         Picture {
             title,
-            time: Some(moment.time),
+            when: Some(when),
             label: &label,
             unit: field.field.unit,
             dimension: shot.dimension,

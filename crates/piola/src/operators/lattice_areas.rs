@@ -1,5 +1,7 @@
 //! The boundary of a lattice.
 
+use std::collections::HashSet;
+
 use piola_formulas::kernels::Kernel;
 
 use super::{Correction, GradientOperator, OperatorError, Support};
@@ -51,6 +53,47 @@ pub fn lattice_areas<const D: usize>(
         false => area.component_div(&edges) * cell,
     };
     Ok(areas.into_iter().map(clean).collect())
+}
+
+/// Outward areas in m^(D-1) of the faces of cells that no other cell shares, for cells with these
+/// edges in m around the `positions` of a lattice: what a load on the surface acts on. The areas of
+/// [`lattice_areas`] are there to be summed over all particles; where particles are centres of cells,
+/// those of the outermost layer alone are half as large again as its faces.
+pub fn exposed_areas<const D: usize>(
+    positions: &[Vector<D>],
+    edges: &[f64; D],
+    domain: &Domain<D>,
+) -> Vec<Vector<D>> {
+    let Some(&origin) = positions.first() else { return Vec::new() };
+    let edges = Vector::<D>::from(*edges);
+    let around: [Option<i64>; D] = std::array::from_fn(|axis| {
+        domain.periodic()[axis].map(|[low, high]| ((high - low) / edges[axis]).round() as i64)
+    });
+    let wrapped = |mut site: [i64; D]| {
+        for (index, count) in site.iter_mut().zip(around) {
+            *index = count.map_or(*index, |count| index.rem_euclid(count.max(1)));
+        }
+        site
+    };
+    let site = |x: &Vector<D>| -> [i64; D] {
+        std::array::from_fn(|axis| ((x[axis] - origin[axis]) / edges[axis]).round() as i64)
+    };
+    let taken: HashSet<[i64; D]> = positions.iter().map(|x| wrapped(site(x))).collect();
+    let cell = edges.product();
+    let exposed = |x: &Vector<D>| {
+        let mut area = Vector::zeros();
+        for axis in 0..D {
+            for side in [-1, 1] {
+                let mut beside = site(x);
+                beside[axis] += side;
+                if !taken.contains(&wrapped(beside)) {
+                    area[axis] += side as f64 * cell / edges[axis];
+                }
+            }
+        }
+        area
+    };
+    positions.iter().map(exposed).collect()
 }
 
 /// An error of the scaled lattice, with the place in m.
@@ -105,5 +148,32 @@ mod tests {
         let error = lattice_areas(&particles, &[0.1, 0.1], &domain).expect_err("one row");
         let OperatorError::PoorSupport { position, .. } = error else { panic!("{error:?}") };
         assert!((3.0..=4.0).contains(&position[0]), "in metres: {position:?}");
+    }
+
+    /// A block of cells with a notch, in a box that it fills along y.
+    #[test]
+    fn what_no_other_cell_shares_is_exposed() {
+        let edges = [0.5, 0.25];
+        let mut places = Vec::new();
+        for i in 0..4 {
+            for j in 0..5 {
+                if (i, j) != (3, 2) {
+                    places.push(Vector::from([0.5 * f64::from(i) + 0.25, 0.25 * f64::from(j)]));
+                }
+            }
+        }
+        let open = exposed_areas(&places, &edges, &Domain::default());
+        let sum: Vector<2> = open.iter().sum();
+        assert!(sum.amax() < 1e-15, "a closed surface, {sum}");
+        let facing = |areas: &[Vector<2>], axis: usize| -> f64 {
+            areas.iter().map(|area| area[axis].max(0.0)).sum()
+        };
+        // The top and the lower side of the notch; four cells to the right and the notch's end.
+        assert_eq!((facing(&open, 0), facing(&open, 1)), (1.25, 2.5));
+        let inside = places.iter().position(|x| *x == Vector::from([0.75, 0.25]));
+        assert_eq!(inside.map(|a| open[a]), Some(Vector::zeros()));
+        let around = Domain::new([None, Some([0.0, 1.25])]).expect("a box");
+        let closed = exposed_areas(&places, &edges, &around);
+        assert_eq!((facing(&closed, 0), facing(&closed, 1)), (1.25, 0.5));
     }
 }

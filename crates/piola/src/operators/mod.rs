@@ -31,7 +31,7 @@ pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
 pub use gradient::{Correction, GradientOperator};
 pub use interpolation::Interpolation;
-pub use lattice_areas::lattice_areas;
+pub use lattice_areas::{exposed_areas, lattice_areas};
 pub use least_squares::LeastSquares;
 pub use moving::{MovingSupport, Needs, Remaining};
 pub use relax::relax;

@@ -37,7 +37,7 @@ pub use checkpoint::CheckpointError;
 pub use csv_reader::{Curve, TableError};
 pub use error::OutputError;
 pub use folder::ResultsFolder;
-pub use picture::{Bounds, Picture};
+pub use picture::{Bounds, Picture, When};
 pub use plot::{Plot, Series, Style};
 pub use record::{
     BodyRecord, FigureRecord, RecordError, ReferenceRecord, RetryRecord, RunRecord, StageRecord,

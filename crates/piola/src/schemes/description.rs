@@ -3,6 +3,9 @@
 use super::{dual_support, transport_velocity, upwind};
 use crate::fields::FieldDescription;
 
+/// The figure of formulations that solve for a state: how many iterations the last step took.
+pub const NEWTON_ITERATIONS: &str = "newton_iterations";
+
 /// The names of a formulation and of all that it shows, in the order in which it shows them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SchemeDescription {

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::Vector;
-use crate::boundaries::{PrescribedVelocity, Traction};
+use crate::boundaries::{FollowerPressure, PrescribedVelocity, Traction};
 use crate::geometry::Particles;
 
 /// Parts that do not fit together, or values that no particle can have.
@@ -106,29 +106,40 @@ pub(crate) fn check_selected(
     particles.iter().try_for_each(|&particle| check_index(what, particle as usize, count))
 }
 
-/// Refuses a load called `name` on particles that do not exist, or without one area for each.
-pub(crate) fn check_areas(
+/// Refuses a traction on what does not exist among `count` particles.
+pub(crate) fn check_traction<const D: usize>(
+    load: &Traction<D>,
+    count: usize,
+) -> Result<(), InputError> {
+    check_load(&load.name, &load.particles, load.areas.len(), load.places.len(), count)
+}
+
+/// Refuses a pressure on what does not exist among `count` particles.
+pub(crate) fn check_pressure<const D: usize>(
+    load: &FollowerPressure<D>,
+    count: usize,
+) -> Result<(), InputError> {
+    check_load(&load.name, &load.particles, load.areas.len(), load.places.len(), count)
+}
+
+/// Refuses a load called `name` on particles that do not exist, without one area for each, or with
+/// places that are not one for each.
+fn check_load(
     name: &str,
     particles: &[u32],
     areas: usize,
+    places: usize,
     count: usize,
 ) -> Result<(), InputError> {
+    let list = |what: &str| format!("the list of {what} of `{name}`");
     let expected = particles.len();
     if areas != expected {
-        let what = format!("the list of areas of `{name}`");
-        return Err(InputError::Length { what, expected, got: areas });
+        return Err(InputError::Length { what: list("areas"), expected, got: areas });
+    }
+    if !(places == 0 || places == expected) {
+        return Err(InputError::Length { what: list("places"), expected, got: places });
     }
     check_selected(name, particles, count)
-}
-
-/// Refuses places that are not one for each of the areas of a traction, if there are any.
-pub(crate) fn check_places<const D: usize>(traction: &Traction<D>) -> Result<(), InputError> {
-    let (got, expected) = (traction.places.len(), traction.areas.len());
-    if got == 0 || got == expected {
-        return Ok(());
-    }
-    let what = format!("the list of places of `{}`", traction.name);
-    Err(InputError::Length { what, expected, got })
 }
 
 /// Refuses loads and prescribed components of what does not exist among `count` particles.
@@ -137,10 +148,7 @@ pub(crate) fn check_conditions<const D: usize>(
     tractions: &[Traction<D>],
     prescribed: &[PrescribedVelocity],
 ) -> Result<(), InputError> {
-    for traction in tractions {
-        check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
-        check_places(traction)?;
-    }
+    tractions.iter().try_for_each(|load| check_traction(load, count))?;
     for condition in prescribed {
         check_selected(&condition.name, &condition.particles, count)?;
         let what = || format!("`{}`: velocity component", condition.name);

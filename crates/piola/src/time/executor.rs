@@ -70,6 +70,9 @@ impl Executor {
     /// What a retry multiplies the steps by.
     pub const RETRY_FACTOR: f64 = 0.5;
 
+    /// What multiplies steps that retries have made shorter, after one that was quick.
+    pub const GROWTH_FACTOR: f64 = 1.5;
+
     /// A run without observers and checkpoints, with as many steps as it takes and no retries.
     pub fn new(
         scheme: Box<dyn Scheme>,
@@ -167,6 +170,9 @@ impl Executor {
             std::mem::swap(&mut previous.1, &mut run.state);
             std::mem::swap(&mut run.state, &mut next);
             run.advance(self.control, met, soonest);
+            if self.integrator.was_quick(self.scheme.as_ref(), &run.state) {
+                run.tally.factor = (run.tally.factor * Self::GROWTH_FACTOR).min(1.0);
+            }
             progress(&Progress {
                 time: run.clock.time,
                 end: self.end,

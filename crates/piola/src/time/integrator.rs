@@ -6,7 +6,7 @@ use super::load_steps::LoadStepping;
 use super::newmark::NewmarkStepping;
 use super::theta::ThetaStepping;
 use super::tvd_rk2::TvdRk2;
-use crate::schemes::{Newmark, Scheme, Theta};
+use crate::schemes::{NEWTON_ITERATIONS, Newmark, Scheme, Theta};
 
 /// A method that takes a state one step further.
 pub trait Integrator: Send {
@@ -29,6 +29,24 @@ pub trait Integrator: Send {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), Failure>;
+
+    /// Whether the step that led to `state` was found so quickly that the next may be longer, where
+    /// failures have made steps shorter. Explicit methods do not know.
+    fn was_quick(&self, _scheme: &dyn Scheme, _state: &[f64]) -> bool {
+        false
+    }
+}
+
+/// Most iterations of Newton's method in a step that counts as quick.
+const QUICK: f64 = 5.0;
+
+/// Whether a step that was solved for took few iterations, which a scheme has among its figures.
+pub(super) fn took_few_iterations(scheme: &dyn Scheme, state: &[f64]) -> bool {
+    let mut names = scheme.description().figures.iter();
+    let Some(index) = names.position(|(name, _)| *name == NEWTON_ITERATIONS) else { return false };
+    let mut figures = Vec::new();
+    scheme.figures(state, &mut figures);
+    figures.get(index).is_some_and(|&iterations| iterations <= QUICK)
 }
 
 /// The integrators by name.

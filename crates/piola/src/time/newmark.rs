@@ -1,7 +1,7 @@
 //! Implicit steps of second order as an integrator.
 
 use super::failure::Failure;
-use super::integrator::Integrator;
+use super::integrator::{Integrator, took_few_iterations};
 use crate::schemes::{Newmark, Scheme};
 
 /// Goes from state to state by solving for the next one: Newmark's method and those that damp short
@@ -37,5 +37,9 @@ impl Integrator for NewmarkStepping {
         new.copy_from_slice(old);
         let Some(scheme) = scheme.newmark() else { return Ok(()) };
         scheme.advance(&self.rule, time, step, old, new).map_err(Failure::NoSolution)
+    }
+
+    fn was_quick(&self, scheme: &dyn Scheme, state: &[f64]) -> bool {
+        took_few_iterations(scheme, state)
     }
 }

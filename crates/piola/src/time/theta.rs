@@ -1,7 +1,7 @@
 //! Implicit steps of first-order systems as an integrator.
 
 use super::failure::Failure;
-use super::integrator::Integrator;
+use super::integrator::{Integrator, took_few_iterations};
 use crate::schemes::{Scheme, Theta};
 
 /// Goes from state to state by solving for the next one: backward Euler, Crank-Nicolson, what is
@@ -38,5 +38,9 @@ impl Integrator for ThetaStepping {
         new.copy_from_slice(old);
         let Some(scheme) = scheme.theta() else { return Ok(()) };
         scheme.advance(&self.rule, time, step, old, new).map_err(Failure::NoSolution)
+    }
+
+    fn was_quick(&self, scheme: &dyn Scheme, state: &[f64]) -> bool {
+        took_few_iterations(scheme, state)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use piola::output::{Bounds, OutputError, Picture};
+use piola::output::{Bounds, OutputError, Picture, When};
 use proptest::prelude::*;
 
 use crate::image::{Colour, Image};
@@ -15,7 +15,7 @@ const MAGENTA: Colour = [255, 0, 255];
 
 const PLAIN: Picture = Picture {
     title: "Three particles",
-    time: Some(0.5),
+    when: Some(When::Time(0.5)),
     label: "pressure",
     unit: "Pa",
     dimension: 2,
@@ -210,7 +210,7 @@ proptest! {
         let bounds = corners.map(|[low, high]| Bounds { min: [low; 3], max: [high; 3] });
         draw(&Picture {
             title: &title,
-            time: Some(spacing),
+            when: Some(When::Time(spacing)),
             label: &title,
             unit: "kg/m^3",
             dimension,

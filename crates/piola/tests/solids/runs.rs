@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use piola::Vector;
-use piola::boundaries::{PrescribedVelocity, Traction};
+use piola::boundaries::{FollowerPressure, PrescribedVelocity, Traction};
 use piola::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
 };
@@ -34,8 +34,20 @@ pub fn input<const D: usize>(
         velocity: cloud.particles.position.iter().map(velocity).collect(),
         body_forces: Vec::new(),
         tractions: Vec::new(),
+        pressures: Vec::new(),
         prescribed: Vec::new(),
         motion: Motion::Explicit,
+    }
+}
+
+/// A pressure in Pa all around a body that grows with time, and follows its surface.
+pub fn submersion<const D: usize>(cloud: &Cloud<D>, rate: f64) -> FollowerPressure<D> {
+    FollowerPressure {
+        name: "water".into(),
+        particles: (0..cloud.particles.len() as u32).collect(),
+        areas: cloud.areas.clone(),
+        places: vec![],
+        value: varying(move |x, t| rate * t * (1.0 + x[1])),
     }
 }
 
@@ -159,6 +171,7 @@ fn the_ledger_accounts_for_all_energy() {
             places: vec![],
             value: [varying(|_, t| 4e5 * t), Arc::new(0.0)],
         });
+        input.pressures.push(submersion(&cloud, 2e6));
         for component in 0..2 {
             input.prescribed.push(PrescribedVelocity {
                 name: "shaken".into(),
@@ -172,8 +185,8 @@ fn the_ledger_accounts_for_all_energy() {
         }
         let mut scheme = build(input);
         let state = march(&mut scheme, 0.05 / steps as f64, steps);
-        let works =
-            ["body_force", "traction", "boundary_motion"].map(|name| work(&scheme, &state, name));
+        let works = ["body_force", "traction", "pressure", "boundary_motion"]
+            .map(|name| work(&scheme, &state, name));
         assert!(works.iter().all(|work| work.abs() > 1e-3), "{works:?}");
         (total(&scheme, &state) - works.iter().sum::<f64>()) / total(&scheme, &state)
     };
@@ -221,6 +234,7 @@ fn kicks_account_for_all_energy() {
             places: vec![],
             value: [varying(|_, t| 4e5 * t), Arc::new(0.0)],
         });
+        input.pressures.push(submersion(&cloud, 2e6));
         input.prescribed.push(PrescribedVelocity {
             name: "shaken".into(),
             particles: (0..cloud.particles.len() as u32).filter(|a| a % 9 == 0).collect(),
@@ -232,7 +246,7 @@ fn kicks_account_for_all_energy() {
         });
         let mut scheme = build(input);
         let state = swing(&mut scheme, 0.05 / steps as f64, steps);
-        let names = ["body_force", "traction", "boundary_motion"];
+        let names = ["body_force", "traction", "pressure", "boundary_motion"];
         let works = names.map(|name| work(&scheme, &state, name));
         assert!(works.iter().all(|work| work.abs() > 1e-3), "{works:?}");
         // What is held follows its value to the second order: here to the chord of its curve.

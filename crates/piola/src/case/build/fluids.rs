@@ -1,7 +1,7 @@
 //! Particles turned into a weakly compressible fluid between walls.
 
 use super::bodies::{self, BodyReport};
-use super::{Built, initial, kernel, probes, selections, tanks};
+use super::{Built, initial, kernel, loads, probes, selections, tanks};
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
@@ -69,7 +69,7 @@ pub(super) fn build<const D: usize>(
         faces,
         motion,
         sliding,
-        body_forces: selections::body_forces(case),
+        body_forces: loads::body_forces(case),
         particles,
     });
     let mut scheme = built.map_err(|error| {

@@ -3,6 +3,7 @@
 pub(super) mod bodies;
 mod fluids;
 mod functions;
+mod loads;
 mod probes;
 mod selections;
 mod solids;
@@ -13,6 +14,7 @@ use std::time::{Duration, Instant};
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::VolumetricLaw;
 
+use self::loads::Surface;
 use super::diagnostics::{Problem, Problems};
 use super::model::{self, Case};
 use super::simulation::Simulation;
@@ -145,7 +147,7 @@ fn upwind<const D: usize>(
     let materials = materials(case, problems);
     let initial = initial(case, &particles);
     let prescribed = selections::prescribed(case, &particles, problems);
-    let body_forces = selections::body_forces(case);
+    let body_forces = loads::body_forces(case);
     let correction = correction(settings);
     // The areas of theory (14).
     let areas = || {
@@ -154,7 +156,8 @@ fn upwind<const D: usize>(
             .map(|operator| operator.boundary_areas(&support, &particles.volume))
             .map_err(|error| error.to_string())
     };
-    let tractions = selections::tractions(case, &particles, None, areas, problems);
+    let tractions =
+        Surface::new(case, &particles, &support.domain, None, areas).tractions(problems);
     if !problems.is_empty() {
         return None;
     }
@@ -176,7 +179,7 @@ fn upwind<const D: usize>(
         body_forces,
         tractions,
         prescribed,
-        implicit: case.time.theta.map(|_| ImplicitSettings::default()),
+        implicit: case.time.theta.map(|_| implicit_settings(case)),
     });
     built
         .map_err(|error| {
@@ -189,6 +192,16 @@ fn upwind<const D: usize>(
             problems.push(case.problem_at(place, error.to_string(), label, None));
         })
         .ok()
+}
+
+/// How the equations of implicit steps are solved, where the case says it.
+fn implicit_settings(case: &Case) -> ImplicitSettings {
+    let mut settings =
+        ImplicitSettings { method: case.time.linear_solver, ..ImplicitSettings::default() };
+    if let Some(tolerance) = case.time.tolerance {
+        settings.newton.tolerance = tolerance;
+    }
+    settings
 }
 
 fn correction(settings: &model::Upwind) -> Correction {

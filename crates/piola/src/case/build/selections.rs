@@ -1,26 +1,25 @@
-//! Regions turned into particles: boundaries, loads and tractions.
+//! Regions turned into particles, and what boundaries do to them.
 
 use std::sync::Arc;
 
 use super::bodies::vector;
 use crate::Vector;
 use crate::boundaries::{
-    BodyForce, PrescribedDisplacement, PrescribedFaces, PrescribedVelocity, SpaceTime, Traction,
+    PrescribedDisplacement, PrescribedFaces, PrescribedVelocity, SpaceTime, Tie,
 };
 use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
-use crate::case::model::{self, Case, LoadKind};
+use crate::case::model::{self, Case};
 use crate::case::source::Located;
 use crate::case::suggest::suggestion;
 use crate::geometry::{CloudPoints, Particles, Region};
-use crate::operators::Trace;
 
 /// What a region selects.
-struct Selection {
+pub(super) struct Selection {
     /// Particles by index in memory.
-    particles: Vec<u32>,
+    pub particles: Vec<u32>,
     /// Faces of the surface of bodies from meshes.
-    faces: Vec<u32>,
+    pub faces: Vec<u32>,
 }
 
 /// The particles of `body` (all bodies if `None`) in a region, by index in memory; a problem if
@@ -40,7 +39,7 @@ pub(super) fn select<const D: usize>(
 }
 
 /// Reports a region that selects nothing.
-fn not_empty<const D: usize>(
+pub(super) fn not_empty<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
     region: &Located<model::Region>,
@@ -62,7 +61,8 @@ fn not_empty<const D: usize>(
     }
 }
 
-fn selection<const D: usize>(
+/// What a region selects of `body`, all bodies if `None`; a problem if there is no such region.
+pub(super) fn selection<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
     region: &Located<model::Region>,
@@ -186,56 +186,85 @@ pub(super) fn prescribed<const D: usize>(
 pub(super) struct Held<const D: usize> {
     pub particles: Vec<PrescribedDisplacement<D>>,
     pub faces: Vec<PrescribedFaces<D>>,
+    pub ties: Vec<Tie>,
 }
 
 /// The prescribed displacements of all boundaries: of the faces that a region selects where particles
-/// are centres of cells, as no particle lies there, of particles elsewhere.
+/// are centres of cells, as no particle lies there, of particles elsewhere. And what they tie.
 pub(super) fn held<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
     problems: &mut Vec<Problem>,
 ) -> Held<D> {
-    let surface = &particles.surface;
-    let numbers = trace_numbers(particles);
-    let mut held = Held { particles: Vec::new(), faces: Vec::new() };
+    let mut held = Held::default();
     for boundary in &case.boundaries {
-        let (region, body) = (&boundary.region, boundary.body.as_ref());
-        let Some(found) = selection(case, particles, region, body, problems) else { continue };
-        let mut selected = found.particles;
-        let mut faces = Vec::new();
-        if region.value != model::Region::All {
-            faces.extend(found.faces.iter().filter_map(|&face| numbers[face as usize]));
-            let owner =
-                |&face: &u32| particles.body[surface.faces[face as usize].particles[0] as usize];
-            let bodies: Vec<u32> = found.faces.iter().map(owner).collect();
-            selected.retain(|&a| {
-                let body = particles.body[a as usize];
-                let is_of_cells = surface.bodies.get(&body) == Some(&CloudPoints::Cells);
-                !(is_of_cells && bodies.contains(&body))
-            });
-        }
+        let Some(Selection { particles: selected, faces }) =
+            held_parts(case, particles, boundary, problems)
+        else {
+            continue;
+        };
         if faces.is_empty() {
-            not_empty(case, particles, region, &selected, problems);
+            not_empty(case, particles, &boundary.region, &selected, problems);
         }
-        for (component, value) in boundary.displacement.iter().enumerate() {
-            let Some(value) = value else { continue };
-            let (name, value) = (boundary.name.value.clone(), function(value));
-            if !selected.is_empty() {
-                let (name, value, selected) = (name.clone(), value.clone(), selected.clone());
-                let condition = PrescribedDisplacement::component(name, selected, component, value);
-                held.particles.push(condition);
-            }
+        let name = &boundary.name.value;
+        let along_axes = boundary.displacement.iter().enumerate().filter_map(|(axis, value)| {
+            let direction = Vector::<D>::from_fn(|i, _| f64::from(u8::from(i == axis)));
+            value.as_ref().map(|value| (direction, value))
+        });
+        let rollers = boundary.roller.iter();
+        let along_normal = rollers.map(|roller| (vector(&roller.normal), &roller.displacement));
+        for (direction, value) in along_axes.chain(along_normal) {
+            let (name, value) = (name.clone(), function(value));
             if !faces.is_empty() {
-                let direction = Vector::from_fn(|i, _| f64::from(u8::from(i == component)));
-                let faces = faces.clone();
+                let (name, value, faces) = (name.clone(), value.clone(), faces.clone());
                 held.faces.push(PrescribedFaces { name, faces, direction, value });
             }
+            if !selected.is_empty() {
+                let particles = selected.clone();
+                held.particles.push(PrescribedDisplacement { name, particles, direction, value });
+            }
+        }
+        for tied in &boundary.tied {
+            if !faces.is_empty() {
+                let message = "centres of cells do not lie on the boundary, and cannot be tied";
+                let help = "use `points = \"nodes\"` for this body".to_owned();
+                let label = "no particle lies on these faces";
+                problems.push(case.problem_at(tied.place, message, label, Some(help)));
+            }
+            let (particles, component) = (selected.clone(), tied.value);
+            held.ties.push(Tie { name: name.clone(), particles, component });
         }
     }
     held
 }
 
-/// The numbers that faces of the surface have in a [`Trace`], which those of centres of cells have.
+/// What of a boundary is held: particles, and by their numbers in a trace the faces of cells.
+fn held_parts<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    boundary: &model::Boundary,
+    problems: &mut Vec<Problem>,
+) -> Option<Selection> {
+    let (region, body) = (&boundary.region, boundary.body.as_ref());
+    let mut found = selection(case, particles, region, body, problems)?;
+    if region.value == model::Region::All {
+        found.faces.clear();
+        return Some(found);
+    }
+    let surface = &particles.surface;
+    let owner = |&face: &u32| particles.body[surface.faces[face as usize].particles[0] as usize];
+    let bodies: Vec<u32> = found.faces.iter().map(owner).collect();
+    found.particles.retain(|&a| {
+        let body = particles.body[a as usize];
+        let is_of_cells = surface.bodies.get(&body) == Some(&CloudPoints::Cells);
+        !(is_of_cells && bodies.contains(&body))
+    });
+    let numbers = trace_numbers(particles);
+    found.faces = found.faces.iter().filter_map(|&face| numbers[face as usize]).collect();
+    Some(found)
+}
+
+/// The numbers that faces of the surface have in a trace, which those of centres of cells have.
 pub(super) fn trace_numbers<const D: usize>(particles: &Particles<D>) -> Vec<Option<u32>> {
     let mut next = 0;
     let number = |is_of_nodes: bool| {
@@ -243,116 +272,4 @@ pub(super) fn trace_numbers<const D: usize>(particles: &Particles<D>) -> Vec<Opt
         (!is_of_nodes).then(|| next - 1)
     };
     particles.surface.faces.iter().map(|face| face.is_of_nodes()).map(number).collect()
-}
-
-/// The body forces.
-pub(super) fn body_forces<const D: usize>(case: &Case) -> Vec<BodyForce<D>> {
-    let mut forces = Vec::new();
-    for load in &case.loads {
-        if let LoadKind::BodyForce { acceleration } = &load.kind {
-            forces.push(BodyForce {
-                body: load.body.as_ref().map(|body| body.value as u32),
-                acceleration: std::array::from_fn(|k| function(&acceleration[k])),
-            });
-        }
-    }
-    forces
-}
-
-/// The tractions. On particles of a lattice or of points the part of each outward area that points
-/// along the normal of the region, as values at the particles; the areas are asked for where there is
-/// such a traction, and a word why there are none is a problem of its region. On bodies from meshes
-/// sums over the selected faces, which nodes share, and centres of cells by their trace.
-pub(super) fn tractions<const D: usize>(
-    case: &Case,
-    particles: &Particles<D>,
-    trace: Option<&Trace<D>>,
-    find_areas: impl Fn() -> Result<Vec<Vector<D>>, String>,
-    problems: &mut Vec<Problem>,
-) -> Vec<Traction<D>> {
-    let mut areas = None;
-    let mut tractions = Vec::new();
-    let is_of_mesh = |a: u32| particles.surface.bodies.contains_key(&particles.body[a as usize]);
-    for load in &case.loads {
-        let LoadKind::Traction { region, traction } = &load.kind else { continue };
-        let Some(found) = selection(case, particles, region, load.body.as_ref(), problems) else {
-            continue;
-        };
-        let name = load.name.as_ref().map_or("traction".into(), |name| name.value.clone());
-        let value: [Arc<dyn SpaceTime>; D] = std::array::from_fn(|k| function(&traction[k]));
-        let others: Vec<u32> =
-            found.particles.iter().copied().filter(|&a| !is_of_mesh(a)).collect();
-        if !found.faces.is_empty() {
-            tractions.push(on_faces(particles, trace, &found.faces, name.clone(), value.clone()));
-        } else if others.is_empty() {
-            let of_mesh = !found.particles.is_empty();
-            match of_mesh {
-                true => problems.push(case.problem_at(
-                    region.place,
-                    "this region selects particles, but no face of the boundary",
-                    "nothing to load",
-                    Some("select faces: a plane, a set of faces, or a box around them".into()),
-                )),
-                false => not_empty(case, particles, region, &found.particles, problems),
-            }
-            continue;
-        }
-        if others.is_empty() {
-            continue;
-        }
-        let model::Region::Plane { normal, .. } = &region.value else {
-            problems.push(case.problem_at(
-                region.place,
-                "a traction needs a plane, whose normal tells the loaded side",
-                "not a plane",
-                Some("use where = { kind = \"plane\", point = .., normal = .. }".into()),
-            ));
-            continue;
-        };
-        if areas.is_none() {
-            match find_areas() {
-                Ok(found) => areas = Some(found),
-                Err(message) => {
-                    problems.push(case.problem_at(region.place, message, "loaded here", None));
-                    return tractions;
-                }
-            }
-        }
-        let normal = vector::<D>(normal).normalize();
-        let along = |&a: &u32| areas.as_ref().map_or(0.0, |areas| areas[a as usize].dot(&normal));
-        tractions.push(Traction {
-            name,
-            areas: others.iter().map(along).map(|area| area.max(0.0)).collect(),
-            particles: others,
-            places: Vec::new(),
-            value,
-        });
-    }
-    tractions
-}
-
-/// A traction summed over faces.
-fn on_faces<const D: usize>(
-    particles: &Particles<D>,
-    trace: Option<&Trace<D>>,
-    faces: &[u32],
-    name: String,
-    value: [Arc<dyn SpaceTime>; D],
-) -> Traction<D> {
-    let numbers = trace_numbers(particles);
-    let mut traction =
-        Traction { name, particles: Vec::new(), areas: Vec::new(), places: Vec::new(), value };
-    for &face in faces {
-        // Where there is a trace, a load on a face acts by it on the support of its cell.
-        let traced = trace.zip(numbers[face as usize]).map(|(trace, f)| trace.row(f as usize));
-        for sample in particles.surface.faces[face as usize].samples() {
-            let area = sample.area.norm();
-            for &(a, share) in traced.as_ref().unwrap_or(&sample.shares) {
-                traction.particles.push(a);
-                traction.areas.push(area * share);
-                traction.places.push(sample.place);
-            }
-        }
-    }
-    traction
 }

@@ -3,6 +3,7 @@
 use piola_formulas::hyperelastic::Reduced;
 
 use super::bodies::{self, BodyReport};
+use super::loads::{self, Surface};
 use super::selections::Held;
 use super::{Built, initial, integrator_kind, kernel, probes, selections};
 use crate::Vector;
@@ -16,7 +17,7 @@ use crate::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
     StaticsError, StaticsInput,
 };
-use crate::solve::{LinearMethod, Newton};
+use crate::solve::Newton;
 use crate::time::IntegratorKind;
 
 /// Builds the scheme `dual_support`.
@@ -64,18 +65,26 @@ pub(super) fn build<const D: usize>(
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
+    let usual = Newton::default();
+    let newton = Newton { tolerance: case.time.tolerance.unwrap_or(usual.tolerance), ..usual };
     let (prescribed, motion) = match integrator_kind(case) {
         IntegratorKind::Static => {
-            let Held { particles: prescribed, faces: prescribed_faces } =
+            let Held { particles: prescribed, faces: prescribed_faces, ties } =
                 selections::held(case, &particles, &mut problems);
-            let trace = trace.clone();
-            let input =
-                StaticsInput { prescribed, prescribed_faces, trace, ..StaticsInput::default() };
+            let input = StaticsInput {
+                prescribed,
+                prescribed_faces,
+                ties,
+                trace: trace.clone(),
+                method: case.time.linear_solver,
+                newton,
+                ..StaticsInput::default()
+            };
             (Vec::new(), Motion::Static(Box::new(input)))
         }
         _ => {
             let motion = match case.time.newmark {
-                Some(_) => Motion::Implicit(LinearMethod::default(), Newton::default()),
+                Some(_) => Motion::Implicit(case.time.linear_solver, newton),
                 None => Motion::Explicit,
             };
             (selections::prescribed(case, &particles, &mut problems), motion)
@@ -83,11 +92,13 @@ pub(super) fn build<const D: usize>(
     };
     let known = || {
         areas.clone().ok_or_else(|| {
-            "a traction needs the areas of the particles, which are not known of points from a file"
+            "a load on a surface needs the areas of the particles, which are not known of points from a file"
                 .to_owned()
         })
     };
-    let tractions = selections::tractions(case, &particles, trace.as_ref(), known, &mut problems);
+    let surface = Surface::new(case, &particles, &support.domain, trace.as_ref(), known);
+    let tractions = surface.tractions(&mut problems);
+    let pressures = surface.pressures(&mut problems);
     let materials = materials(case, &mut problems);
     let (gradients, warnings) = gradients(case, settings, areas.clone(), &mut problems);
     if !problems.is_empty() {
@@ -97,12 +108,13 @@ pub(super) fn build<const D: usize>(
     let velocity = initial(case, &particles).velocity;
     let scheme = DualSupport::new(DualSupportInput {
         settings: Settings { gradients, hourglass: settings.hourglass.unwrap_or(usual) },
-        body_forces: selections::body_forces(case),
+        body_forces: loads::body_forces(case),
         particles,
         support,
         materials,
         velocity,
         tractions,
+        pressures,
         prescribed,
         motion,
     });

@@ -165,7 +165,7 @@ impl Reader<'_, '_> {
     }
 
     /// A direction, scaled to length 1.
-    fn unit(&mut self, record: &Record, key: &str) -> Option<Vec<f64>> {
+    pub(super) fn unit(&mut self, record: &Record, key: &str) -> Option<Vec<f64>> {
         let direction = record.numbers(key)?;
         let largest = direction.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         if largest == 0.0 {

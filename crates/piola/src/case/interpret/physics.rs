@@ -3,7 +3,7 @@
 use super::*;
 use crate::case::expression::Expression;
 use crate::case::model::{
-    Boundary, Correction, Load, LoadKind, ReferenceWaveSpeed, Upwind, Weights,
+    Boundary, Correction, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Upwind, Weights,
 };
 
 /// Settings of the scheme `upwind`.
@@ -52,36 +52,73 @@ impl Reader<'_, '_> {
             "body_force" => {
                 LoadKind::BodyForce { acceleration: record.expressions("acceleration")? }
             }
-            "traction" => {
-                if !record.has("body") && self.names.bodies.len() > 1 {
-                    let message = "a traction needs the key `body` where there are several bodies";
-                    let names = self.names.bodies.iter().map(String::as_str);
-                    let help = format!("expected {}", crate::case::suggest::one_of(names));
-                    let problem = Problem::new(record.place, message, "`body` is missing");
-                    self.report(problem.help(help));
-                }
-                let region = record.record("where").and_then(|region| self.region(region));
-                LoadKind::Traction { region: region?, traction: record.expressions("traction")? }
-            }
+            "traction" => LoadKind::Traction {
+                region: self.loaded_region(record)?,
+                traction: record.expressions("traction")?,
+            },
+            "pressure" => LoadKind::Pressure {
+                region: self.loaded_region(record)?,
+                pressure: record.expression("pressure")?,
+            },
             _ => return None,
         };
         Some(Load { name: record.text("name"), body, kind })
     }
 
+    /// The part of the surface that a load acts on.
+    fn loaded_region(&mut self, record: &Record) -> Option<Located<Region>> {
+        let kind = record.kind;
+        let scheme = self.names.scheme;
+        let knows = match kind {
+            "pressure" => scheme == "dual_support",
+            _ => scheme != "transport_velocity",
+        };
+        if !knows {
+            let message = format!("the scheme `{scheme}` knows no load of the kind `{kind}`");
+            let help = match scheme {
+                "transport_velocity" => "fluids are moved by body forces and by walls",
+                _ => "use `traction`, or the scheme `dual_support`",
+            };
+            let problem = Problem::new(record.place, message, "of another scheme");
+            self.report(problem.help(help));
+        }
+        if !record.has("body") && self.names.bodies.len() > 1 {
+            let message = format!("a {kind} needs the key `body` where there are several bodies");
+            let names = self.names.bodies.iter().map(String::as_str);
+            let help = format!("expected {}", crate::case::suggest::one_of(names));
+            let problem = Problem::new(record.place, message, "`body` is missing");
+            self.report(problem.help(help));
+        }
+        record.record("where").and_then(|region| self.region(region))
+    }
+
     pub(super) fn boundary(&mut self, record: &Record) -> Option<Boundary> {
         let body = self.body_of(record);
         let region = record.record("where").and_then(|region| self.region(region));
-        let (known, other, why) = match self.names.is_static {
-            true => {
-                ("displacement", "velocity", "with the integrator `static`, where nothing moves")
+        if self.names.is_static {
+            let why = "with the integrator `static`, where nothing moves";
+            self.meaningless(record, "velocity", why);
+        } else {
+            for key in ["displacement", "roller", "tied"] {
+                self.meaningless(record, key, "without the integrator `static`");
             }
-            false => ("velocity", "displacement", "without the integrator `static`"),
-        };
-        self.meaningless(record, other, why);
-        if !record.has(known) && !record.has(other) {
-            let message = format!("the boundary needs the key `{known}`");
+        }
+        if !["velocity", "displacement", "roller", "tied"].iter().any(|key| record.has(key)) {
+            let (known, others) = match self.names.is_static {
+                true => ("displacement", ", or `roller`, or `tied`"),
+                false => ("velocity", ""),
+            };
+            let message = format!("the boundary needs the key `{known}`{others}");
             let problem = Problem::new(record.place, message, "prescribes nothing");
             self.report(problem.help(format!("add `{known} = {{ x = \"0\" }}`")));
+        }
+        let roller = record.record("roller").map(|roller| self.roller(roller));
+        if let (Some(region), Some(place)) = (&region, record.key_place("tied")) {
+            if region.value == Region::All && self.names.bodies.len() > 1 && body.is_none() {
+                let message = "this ties bodies to each other";
+                let problem = Problem::new(place, message, "all particles of all bodies");
+                self.report(problem.help("name one with the key `body`, or select a part"));
+            }
         }
         Some(Boundary {
             name: record.text("name")?,
@@ -89,6 +126,37 @@ impl Reader<'_, '_> {
             region: region?,
             velocity: expressions_per_axis(record, "velocity"),
             displacement: expressions_per_axis(record, "displacement"),
+            roller: match roller {
+                Some(roller) => Some(roller?),
+                None => None,
+            },
+            tied: self.tied(record)?,
         })
+    }
+
+    fn roller(&mut self, record: &Record) -> Option<Roller> {
+        let (normal, displacement) =
+            (self.unit(record, "normal"), record.expression("displacement"));
+        Some(Roller { normal: normal?, displacement: displacement? })
+    }
+
+    /// The components that are tied, each once.
+    fn tied(&mut self, record: &Record) -> Option<Vec<Located<usize>>> {
+        let mut tied: Vec<Located<usize>> = Vec::new();
+        for name in record.texts("tied") {
+            let component = ["x", "y", "z"].iter().position(|axis| *axis == name.value)?;
+            let problem = if component >= self.dimension {
+                let message = format!("there is no component `{}` in {}D", *name, self.dimension);
+                Problem::new(name.place, message, "unknown component")
+            } else if tied.iter().any(|known| known.value == component) {
+                let message = format!("`{}` is tied twice", *name);
+                Problem::new(name.place, message, "the second time").help("remove it")
+            } else {
+                tied.push(Located::new(component, name.place));
+                continue;
+            };
+            return self.refuse(problem);
+        }
+        Some(tied)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::schemes::{Newmark, Theta};
+use crate::solve::LinearMethod;
 
 /// The kinds of integrator that the rest of the case depends on.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -50,11 +51,22 @@ impl Reader<'_, '_> {
         let step = self.step(record, march);
         let newmark = self.newmark(record, kind);
         let theta = self.theta(record, kind);
+        if march == March::Explicit {
+            for key in ["tolerance", "linear_solver"] {
+                self.meaningless(record, key, "with this integrator, which solves no equations");
+            }
+        }
         Some(Time {
             end: record.number("end")?,
             integrator,
             newmark: newmark?,
             theta: theta?,
+            tolerance: record.number("tolerance").map(|it| it.value),
+            linear_solver: match record.text("linear_solver").as_deref().map(String::as_str) {
+                Some("direct") => LinearMethod::Direct,
+                Some("krylov") => LinearMethod::Krylov,
+                _ => LinearMethod::Automatic,
+            },
             step: step?,
             max_steps: record.whole("max_steps").map(|steps| steps.value),
             min_step: record.number("min_step").map(|step| step.value),

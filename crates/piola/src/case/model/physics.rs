@@ -7,6 +7,7 @@ use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::schemes::{Newmark, Theta, dual_support, transport_velocity, upwind};
+use crate::solve::LinearMethod;
 
 /// What a body is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -268,6 +269,10 @@ pub struct Time {
     pub newmark: Option<Newmark>,
     /// Which of them it takes, if it takes implicit steps of first-order systems.
     pub theta: Option<Theta>,
+    /// Relative residual at which Newton's method has arrived, if the file says it.
+    pub tolerance: Option<f64>,
+    /// How linear equations are solved.
+    pub linear_solver: LinearMethod,
     /// How long a step is.
     pub step: Located<StepControl>,
     /// The run fails after so many steps.
@@ -339,14 +344,22 @@ pub enum LoadKind {
         /// One expression of the reference position and time a component.
         traction: Vec<Expression>,
     },
+    /// Pressure that follows a part of a body's surface.
+    Pressure {
+        /// The particles or faces that it acts on.
+        region: Located<Region>,
+        /// Pa, of the reference position and time.
+        pressure: Expression,
+    },
 }
 
 impl LoadKind {
-    /// The expressions of the load, one a component.
+    /// The expressions of the load: one a component, or the only one.
     pub fn components(&self) -> &[Expression] {
         match self {
             Self::BodyForce { acceleration } => acceleration,
             Self::Traction { traction, .. } => traction,
+            Self::Pressure { pressure, .. } => std::slice::from_ref(pressure),
         }
     }
 }
@@ -366,4 +379,17 @@ pub struct Boundary {
     /// In statics, per component, the displacement in m as an expression of the reference position
     /// and the load factor, or `None` where the particle is free.
     pub displacement: Vec<Option<Expression>>,
+    /// In statics, a plane that the particles can only move along.
+    pub roller: Option<Roller>,
+    /// In statics, the components, from 0, that all particles have in common.
+    pub tied: Vec<Located<usize>>,
+}
+
+/// A roller on a plane of any inclination.
+#[derive(Clone, Debug)]
+pub struct Roller {
+    /// The unit normal of the plane.
+    pub normal: Vec<f64>,
+    /// Displacement along it in m, as an expression of the reference position and the load factor.
+    pub displacement: Expression,
 }

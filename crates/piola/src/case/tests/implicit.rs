@@ -4,6 +4,7 @@ use super::read_with;
 use crate::case::model::{Case, StepControl};
 use crate::case::template;
 use crate::schemes::Theta;
+use crate::solve::LinearMethod;
 
 /// The template with other keys in place of its CFL number.
 fn read(time: &str) -> Result<Case, String> {
@@ -26,6 +27,9 @@ fn each_rule_has_its_name_and_steps_of_any_size() {
         assert_eq!((time.theta, time.step.value), (Some(rule), StepControl::AtMost(0.5)), "{name}");
         assert_eq!(time.newmark, None);
     }
+    let solver = "integrator = \"theta\"\nstep = 0.5\ntolerance = 1e-9\nlinear_solver = \"krylov\"";
+    let time = read(solver).unwrap_or_else(|problems| panic!("{problems}")).time;
+    assert_eq!((time.tolerance, time.linear_solver), (Some(1e-9), LinearMethod::Krylov));
     let case = read("integrator = \"theta\"\ntheta = 0.75\nstep = 0.5\non_failure = \"retry\"");
     let rule = case.unwrap_or_else(|problems| panic!("{problems}")).time.theta;
     assert_eq!(rule, Theta::new(0.75).ok());

@@ -130,7 +130,20 @@ fn statics_has_its_own_steps_and_prescribes_displacements() {
     for (from, to, parts) in [
         ("integrator", "cfl = 0.5\nintegrator", ["`cfl` has no meaning in statics", "remove it"]),
         ("displacement", "velocity", ["`velocity` has no meaning", "nothing moves"]),
-        ("displacement = { x = \"0\", y = \"0\" }\n", "", ["needs the key", "`displacement`"]),
+        ("displacement = { x = \"0\", y = \"0\" }\n", "", ["`displacement`, or `roller`", "add"]),
+        (
+            "displacement",
+            "roller = { normal = [0.0, 0.0] }\ndisplacement",
+            ["`normal` must have a direction", "no direction"],
+        ),
+        ("displacement", "tied = [\"z\"]\ndisplacement", ["no component `z` in 2D", "unknown"]),
+        (
+            "displacement",
+            "tied = [\"w\"]\ndisplacement",
+            ["`tied` cannot be `w`", "did you mean `x`"],
+        ),
+        ("displacement", "tied = [\"x\", \"x\"]\ndisplacement", ["`x` is tied twice", "remove it"]),
+        ("static\"", "kick_drift_kick\"\ntolerance = 1e-9", ["`tolerance` has no", "no equations"]),
         ("\"static\"", "\"kick_drift_kick\"", ["`displacement` has no meaning", "without the"]),
         (
             "dual_support\"",
@@ -191,5 +204,72 @@ fn a_body_that_is_free_to_move_is_refused_where_statics_is_asked_for() {
     let message = problems.to_string();
     for part in ["shift along y", "statics needs a body that is held", "\"static\""] {
         assert!(message.contains(part), "{message}");
+    }
+}
+
+/// Where the particles of the block are that a condition of the case is about.
+fn built(text: &str) -> Result<Box<crate::case::Simulation>, String> {
+    let case = read_with(text, &[]).map_err(|problems| problems.to_string())?;
+    crate::case::build(&case).map(Box::new).map_err(|problems| problems.to_string())
+}
+
+#[test]
+fn rollers_ties_and_pressures_hold_and_load_the_block() {
+    let more = |text: &str| in_statics() + text;
+    let top = "where = { kind = \"plane\", point = [0.0, 1.0], normal = [0.0, 1.0] }";
+    let tied = more(&format!("\n[[boundary]]\nname = \"platen\"\n{top}\ntied = [\"y\"]\n"));
+    // The corner at the wall is held in y: it cannot be tied too.
+    let message = built(&tied).err().expect("a corner in both");
+    for part in ["`platen` ties component y of particle", "[0.0, 1.0]", "leave the particle out"] {
+        assert!(message.contains(part), "{message}");
+    }
+    let free = tied.replace("x = \"0\", y = \"0\"", "x = \"0\"");
+    let message = built(&free).err().expect("free along y");
+    assert!(message.contains("shift along y"), "{message}");
+    let roller = "\n[[boundary]]\nname = \"slope\"\nwhere = { kind = \"ball\", \
+                  center = [1.0, 0.0], radius = 0.01 }\nroller = { normal = [1.0, 2.0] }\n";
+    built(&(free + roller)).unwrap_or_else(|message| panic!("{message}"));
+
+    let pressure =
+        |at: &str| format!("\n[[load]]\nkind = \"pressure\"\n{at}\npressure = \"1e4 * t\"\n");
+    built(&more(&pressure(top))).unwrap_or_else(|message| panic!("{message}"));
+    built(&more(&pressure("where = { kind = \"all\" }"))).unwrap_or_else(|m| panic!("{m}"));
+    let inside = pressure("where = { kind = \"ball\", center = [0.5, 0.5], radius = 0.2 }");
+    let message = built(&more(&inside)).err().expect("no surface there");
+    assert!(message.contains("none of the particles of this region lies on"), "{message}");
+    let upwind = more(&pressure(top))
+        .replace("dual_support\"", "upwind\"\nsmoothing_length = 1.0")
+        .replace("integrator = \"static\"", "");
+    let message = built(&upwind).err().expect("upwind");
+    assert!(message.contains("knows no load of the kind `pressure`"), "{message}");
+}
+
+/// A load on a plane is the product of traction and area, wherever the particles lie in their cells,
+/// and what holds the body carries it.
+#[test]
+fn loads_are_those_of_the_surface_on_any_lattice() {
+    let top = "where = { kind = \"plane\", point = [0.0, 1.0], normal = [0.0, 1.0] }";
+    let probe = "\n[[probe]]\nname = \"hold\"\nkind = \"sum\"\nfield = \"reaction\"\n";
+    let linear = in_statics().replace("neo_hookean", "linear_elastic") + probe;
+    for lattice in ["boundary", "cells"] {
+        for load in [
+            "kind = \"traction\"\ntraction = [\"0\", \"-100\"]",
+            "kind = \"pressure\"\npressure = 100",
+        ] {
+            let text = linear
+                .replace("spacing = 0.1", &format!("spacing = 0.1\nlattice.on = \"{lattice}\""));
+            let text = text + &format!("\n[[load]]\n{top}\n{load}\n");
+            let simulation = built(&text).unwrap_or_else(|message| panic!("{message}"));
+            let stop = std::sync::atomic::AtomicBool::new(false);
+            let finished = simulation.run(None, &stop, &mut |_| {}).expect("nothing is written");
+            let Some(crate::observe::Series::Curve { values, .. }) =
+                finished.quantity("hold.reaction.y")
+            else {
+                panic!("{lattice} {load}")
+            };
+            let carried = *values.last().expect("a value at the end");
+            // Strains of 1e-4 turn the surface a little.
+            assert!((carried / 100.0 - 1.0).abs() < 1e-3, "{lattice} {load}: {carried} N");
+        }
     }
 }

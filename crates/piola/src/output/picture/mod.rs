@@ -24,8 +24,8 @@ const LONG: f32 = 1200.0;
 pub struct Picture<'a> {
     /// Stands above; long ones are wrapped and at last cut.
     pub title: &'a str,
-    /// Simulated time in s, written below the title.
-    pub time: Option<f64>,
+    /// What is written below the title.
+    pub when: Option<When>,
     /// What the numbers are, for example `pressure` or `velocity.x`.
     pub label: &'a str,
     /// Their SI unit, `1` for a pure number.
@@ -44,6 +44,15 @@ pub struct Picture<'a> {
     /// Region to be shown, by default that of the particles. Pictures of one region and range
     /// make a film.
     pub bounds: Option<Bounds>,
+}
+
+/// Where a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// Simulated time in s.
+    Time(f64),
+    /// In statics, the factor of the loads.
+    LoadFactor(f64),
 }
 
 /// A box that holds particles.
@@ -155,8 +164,12 @@ impl Picture<'_> {
     /// `outside` counts those beyond the frame.
     fn head(&self, outside: usize) -> Head {
         let mut notes = Vec::new();
-        if let Some(time) = self.time {
-            notes.push(format!("t = {} s", ticks::number(time)));
+        match self.when {
+            Some(When::Time(time)) => notes.push(format!("t = {} s", ticks::number(time))),
+            Some(When::LoadFactor(factor)) => {
+                notes.push(format!("load factor {}", ticks::number(factor)));
+            }
+            None => {}
         }
         let magenta = self.particles().filter(|(_, value)| !value.is_finite()).count();
         let placeless = self.values.len() - self.particles().count();

@@ -11,12 +11,15 @@ use super::{
     StaticsInput,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{BodyForce, PrescribedDisplacement, PrescribedVelocity, Traction};
+use crate::boundaries::{
+    BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedVelocity, Traction,
+};
 use crate::geometry::Particles;
 use crate::operators::{DirectedSupport, DualGradient, OperatorError};
 use crate::schemes::InputError;
 use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
+    check_pressure,
 };
 use crate::{Tensor, Vector};
 
@@ -36,6 +39,8 @@ pub struct DualSupportInput<const D: usize> {
     pub body_forces: Vec<BodyForce<D>>,
     /// Dead tractions, which add up.
     pub tractions: Vec<Traction<D>>,
+    /// Pressures that follow the surface, which add up.
+    pub pressures: Vec<FollowerPressure<D>>,
     /// Prescribed velocity components.
     pub prescribed: Vec<PrescribedVelocity>,
     /// How states follow each other.
@@ -112,6 +117,7 @@ impl<const D: usize> DualSupport<D> {
         let count = particles.len();
         check_lengths(count, &[("the initial velocity", velocity.len())])?;
         check_conditions(count, &input.tractions, &input.prescribed)?;
+        input.pressures.iter().try_for_each(|load| check_pressure(load, count))?;
         let discrete = Arc::new(Discrete::new(particles, support, &settings, materials)?);
         let particles = &discrete.particles;
         let mut mass = Vec::with_capacity(count);
@@ -128,23 +134,28 @@ impl<const D: usize> DualSupport<D> {
             true => (f64::INFINITY, 0),
             false => stable_step(&discrete, &mass),
         };
-        let (body_forces, tractions) = (input.body_forces.clone(), input.tractions.clone());
+        let loads = StaticsInput {
+            body_forces: input.body_forces.clone(),
+            tractions: input.tractions.clone(),
+            pressures: input.pressures.clone(),
+            ..Default::default()
+        };
         let statics = match input.motion {
             Motion::Explicit => None,
             Motion::Implicit(method, newton) => {
                 let prescribed = input.prescribed.iter().map(held).collect();
-                let known =
-                    StaticsInput { body_forces, tractions, prescribed, ..Default::default() };
-                let known = StaticsInput { method, newton, ..known };
+                let known = StaticsInput { prescribed, method, newton, ..loads };
                 Some(Statics::moving(discrete.clone(), known)?)
             }
             Motion::Static(statics) => {
-                let known = StaticsInput { body_forces, tractions, ..*statics };
+                let StaticsInput { body_forces, tractions, pressures, .. } = loads;
+                let known = StaticsInput { body_forces, tractions, pressures, ..*statics };
                 Some(Statics::new(discrete.clone(), known)?)
             }
         };
         Ok(Self {
             loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
+            pressed: input.pressures.iter().flat_map(|load| load.pressed(positions)).collect(),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
             modulus_at_rest: discrete.materials.iter().map(at_rest).collect(),
             statics: statics.map(Box::new),

@@ -1,8 +1,10 @@
 //! The formulation where there is no motion: states in equilibrium, with the work that led there.
 
 use super::statics::Known;
-use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, MECHANISMS, Row, StaticsError, TRACTION};
-use crate::boundaries::traction::Loaded;
+use super::{
+    BODY_FORCE, BOUNDARY_MOTION, DualSupport, MECHANISMS, PRESSURE, Row, StaticsError, TRACTION,
+};
+use crate::boundaries::{pressure::Pressed, traction::Loaded};
 use crate::schemes::{Missed, NoSolution, Scheme, StaticScheme};
 use crate::solve::{LoadError, NewtonError};
 use crate::{Vector, parallel};
@@ -43,7 +45,7 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
         }
         let held = held_before.iter().zip(&state.support_force);
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
-        let work = self.work([from, to], &moved, &held);
+        let work = self.work([from, to], [&known.displacement, &state.displacement], &held);
         let tail = &mut new[count * length..];
         tail.iter_mut().zip(work).for_each(|(sum, work)| *sum += work);
         tail[Self::tail_length() - 1] = state.solved.iterations.len() as f64;
@@ -53,22 +55,31 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
 
 impl<const D: usize> DualSupport<D> {
     /// Work of each mechanism in a step in J, by the mean of the forces at both of its ends: that of
-    /// what holds the particles is given in N, and what they `moved` in m.
+    /// what holds the particles is given in N, and their displacements there in m.
     pub(super) fn work(
         &self,
         [from, to]: [f64; 2],
-        moved: &[Vector<D>],
+        [before, after]: [&[Vector<D>]; 2],
         held: &[Vector<D>],
     ) -> [f64; MECHANISMS.len()] {
+        let moved = |a: usize| after[a] - before[a];
         let mut work = [0.0; MECHANISMS.len()];
-        work[BODY_FORCE] = parallel::sum(moved.len(), |a| {
+        work[BODY_FORCE] = parallel::sum(held.len(), |a| {
             let both = self.body_acceleration(a, from) + self.body_acceleration(a, to);
-            0.5 * self.mass[a] * both.dot(&moved[a])
+            0.5 * self.mass[a] * both.dot(&moved(a))
         });
         let of =
-            |load: &Loaded<D>| 0.5 * (load.force(from) + load.force(to)).dot(&moved[load.particle]);
+            |load: &Loaded<D>| 0.5 * (load.force(from) + load.force(to)).dot(&moved(load.particle));
         work[TRACTION] = self.loaded.iter().map(of).sum();
-        work[BOUNDARY_MOTION] = parallel::sum(moved.len(), |a| held[a].dot(&moved[a]));
+        let pressing = |part: &Pressed<D>| {
+            let a = part.particle;
+            let force = |time: f64, displacement: &[Vector<D>]| {
+                part.force(time, &self.discrete.displacement_gradient(displacement, a))
+            };
+            0.5 * (force(from, before) + force(to, after)).dot(&moved(a))
+        };
+        work[PRESSURE] = self.pressed.iter().map(pressing).sum();
+        work[BOUNDARY_MOTION] = parallel::sum(held.len(), |a| held[a].dot(&moved(a)));
         work
     }
 
@@ -83,6 +94,9 @@ impl<const D: usize> DualSupport<D> {
         let mut loads = vec![Vector::zeros(); self.mass.len()];
         for load in &self.loaded {
             loads[load.particle] += load.force(time);
+        }
+        for part in &self.pressed {
+            loads[part.particle] += part.force(time, &self.sides[part.particle].gradient);
         }
         let mut reactions = vec![Vector::zeros(); self.mass.len()];
         for entry in self.prescribed.iter() {

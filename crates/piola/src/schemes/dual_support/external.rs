@@ -1,6 +1,8 @@
 //! What acts on the body from outside, with the work and the momentum that enter with it.
 
-use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, IMPULSES, MECHANISMS, Row, TRACTION};
+use super::{
+    BODY_FORCE, BOUNDARY_MOTION, DualSupport, IMPULSES, MECHANISMS, PRESSURE, Row, Side, TRACTION,
+};
 use crate::boundaries::BodyForce;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use crate::{Vector, parallel};
@@ -34,12 +36,12 @@ impl<const D: usize> DualSupport<D> {
         BodyForce::sum(&self.body_forces, particles.body[a], &particles.position[a], time)
     }
 
-    /// Writes the rates of `state`, of which the internal forces in N are known.
+    /// Writes the rates of `state`, of which the internal forces in N and the sides are known.
     pub(super) fn external_pass(
         &self,
         time: f64,
         state: &[f64],
-        internal: &[Vector<D>],
+        (internal, sides): (&[Vector<D>], &[Side<f64, D>]),
         rate: &mut [f64],
     ) {
         let length = Row::<D>::LENGTH;
@@ -63,16 +65,23 @@ impl<const D: usize> DualSupport<D> {
             add_moments(&self.position(a, of(a)), &force, &mut sums[1..]);
         });
         powers[BODY_FORCE] = body[0];
-        impulses[..components].copy_from_slice(&body[1..][..components]);
-        let (traction, boundary) = impulses[components..].split_at_mut(components);
-        for load in &self.loaded {
-            let (a, force) = (load.particle, load.force(time));
+        impulses[BODY_FORCE * components..][..components].copy_from_slice(&body[1..][..components]);
+        let mut acts = |mechanism: usize, a: usize, force: Vector<D>| {
             for (component, force) in force.iter().enumerate() {
                 rows[a * length + component] += force / self.mass[a];
             }
-            powers[TRACTION] += force.dot(&Row::<D>::velocity(of(a)));
-            add_moments(&self.position(a, of(a)), &force, traction);
+            powers[mechanism] += force.dot(&Row::<D>::velocity(of(a)));
+            let impulse = &mut impulses[mechanism * components..][..components];
+            add_moments(&self.position(a, of(a)), &force, impulse);
+        };
+        for load in &self.loaded {
+            acts(TRACTION, load.particle, load.force(time));
         }
+        for part in &self.pressed {
+            let a = part.particle;
+            acts(PRESSURE, a, part.force(time, &sides[a].gradient));
+        }
+        let boundary = &mut impulses[BOUNDARY_MOTION * components..];
         for entry in self.prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);
             let acceleration = &mut rows[a * length + component];

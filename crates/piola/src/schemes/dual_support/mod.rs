@@ -41,7 +41,7 @@ use std::sync::Arc;
 
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{BodyForce, traction::Loaded};
+use crate::boundaries::{BodyForce, pressure::Pressed, traction::Loaded};
 
 /// The dual-support formulation bound to its particles.
 pub struct DualSupport<const D: usize> {
@@ -60,6 +60,7 @@ pub struct DualSupport<const D: usize> {
     modulus_at_rest: Vec<f64>,
     body_forces: Vec<BodyForce<D>>,
     loaded: Vec<Loaded<D>>,
+    pressed: Vec<Pressed<D>>,
     prescribed: PrescribedComponents,
     displacement: Vec<Vector<D>>,
     sides: Vec<Side<f64, D>>,
@@ -72,14 +73,15 @@ pub struct DualSupport<const D: usize> {
 const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
 
 /// The mechanisms of its ledger, in the order of the state's tail.
-const MECHANISMS: [&str; 3] = ["body_force", "traction", "boundary_motion"];
+const MECHANISMS: [&str; 4] = ["body_force", "traction", "pressure", "boundary_motion"];
 
 /// The ways in which momentum enters: all mechanisms, since forces between particles cancel.
-const IMPULSES: [&str; 3] = MECHANISMS;
+const IMPULSES: [&str; 4] = MECHANISMS;
 
 const BODY_FORCE: usize = 0;
 const TRACTION: usize = 1;
-const BOUNDARY_MOTION: usize = 2;
+const PRESSURE: usize = 2;
+const BOUNDARY_MOTION: usize = 3;
 
 /// Where the unknowns stand in a row of the state: v, u, and the acceleration, which the next step
 /// needs.

@@ -72,7 +72,8 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
         }
         let held = held_before.into_iter().zip(self.held(end, new));
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
-        let work = self.work([time, end], &moved, &held);
+        let ends: Vec<Vector<D>> = last.iter().zip(&moved).map(|(u, moved)| u + moved).collect();
+        let work = self.work([time, end], [&last, &ends], &held);
         let mut rate = std::mem::take(&mut self.rate);
         self.rates(end, new, &mut rate);
         let (ledger, tail) = (Self::ledger_length(), &mut new[count * length..]);

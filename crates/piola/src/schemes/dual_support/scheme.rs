@@ -1,14 +1,14 @@
 //! The dual-support formulation as integrators, clock and output see it.
 
 use super::sample::FIELDS;
-use super::{DualSupport, ENERGIES, IMPULSES, MECHANISMS, Row};
+use super::{DualSupport, ENERGIES, IMPULSES, MECHANISMS, Row, Side};
 use crate::schemes::{
-    Health, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme, StaticScheme,
-    StepLimit,
+    Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme,
+    StaticScheme, StepLimit,
 };
 use crate::{Vector, parallel};
 
-const FIGURES: [(&str, &str); 1] = [("newton_iterations", "1")];
+const FIGURES: [(&str, &str); 1] = [(NEWTON_ITERATIONS, "1")];
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
@@ -46,15 +46,17 @@ impl<const D: usize> Scheme for DualSupport<D> {
         self.constrain(0.0, &mut state);
         // Nothing is strained yet, so that no force comes from inside.
         let mut rate = vec![0.0; state.len()];
-        self.external_pass(0.0, &state, &vec![Vector::zeros(); self.mass.len()], &mut rate);
-        self.store(0.0, &rate, &mut state);
+        let count = self.mass.len();
+        let sides = vec![Side::zero(); count];
+        self.external_pass(0.0, &state, (&vec![Vector::zeros(); count], &sides), &mut rate);
+        self.store(0.0, &rate, &sides, &mut state);
         state
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         self.load(state);
         self.discrete.forces(&self.displacement, &mut self.sides, &mut self.force);
-        self.external_pass(time, state, &self.force, rate);
+        self.external_pass(time, state, (&self.force, &self.sides), rate);
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {

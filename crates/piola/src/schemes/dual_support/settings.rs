@@ -37,8 +37,8 @@ pub enum Motion<const D: usize> {
     Explicit,
     /// In implicit steps, which take linear equations and Newton's method.
     Implicit(LinearMethod, Newton),
-    /// Not at all: in equilibrium, each with the loads of its load factor. Body forces and tractions
-    /// are those of the body in motion.
+    /// Not at all: in equilibrium, each with the loads of its load factor. Body forces, tractions
+    /// and pressures are those of the body in motion.
     Static(Box<StaticsInput<D>>),
 }
 

@@ -1,6 +1,6 @@
 //! The formulation as kick-drift-kick integrators see it: central differences.
 
-use super::{BODY_FORCE, DualSupport, MECHANISMS, Row, TRACTION};
+use super::{BODY_FORCE, DualSupport, MECHANISMS, PRESSURE, Row, Side, TRACTION};
 use crate::schemes::SplitScheme;
 use crate::{Vector, parallel};
 
@@ -49,8 +49,8 @@ impl<const D: usize> SplitScheme for DualSupport<D> {
         self.load(state);
         self.discrete.forces(&self.displacement, &mut self.sides, &mut self.force);
         let mut rate = std::mem::take(&mut self.rate);
-        self.external_pass(time, state, &self.force, &mut rate);
-        self.store(time, &rate, state);
+        self.external_pass(time, state, (&self.force, &self.sides), &mut rate);
+        self.store(time, &rate, &self.sides, state);
         self.rate = rate;
     }
 }
@@ -58,7 +58,7 @@ impl<const D: usize> SplitScheme for DualSupport<D> {
 impl<const D: usize> DualSupport<D> {
     /// Keeps what kicks need of the rates of `state` in it: accelerations, those of prescribed
     /// components zero; rates of the ledger; and how fast the powers grow, force times acceleration.
-    pub(super) fn store(&self, time: f64, rate: &[f64], state: &mut [f64]) {
+    pub(super) fn store(&self, time: f64, rate: &[f64], sides: &[Side<f64, D>], state: &mut [f64]) {
         let length = Row::<D>::LENGTH;
         let rows = self.mass.len() * length;
         parallel::for_each_row(&mut state[..rows], length, |a, row| {
@@ -76,10 +76,16 @@ impl<const D: usize> DualSupport<D> {
         });
         let loads = self.loaded.iter();
         let traction = loads.map(|load| load.force(time).dot(&acceleration(load.particle))).sum();
+        let pressures = self.pressed.iter().map(|part| {
+            let force = part.force(time, &sides[part.particle].gradient);
+            force.dot(&acceleration(part.particle))
+        });
+        let pressure = pressures.sum();
         let ledger = Self::ledger_length();
         tail[ledger..2 * ledger].copy_from_slice(&rate[rows.len()..][..ledger]);
         let growths = &mut tail[2 * ledger..][..MECHANISMS.len()];
         growths.fill(0.0);
         (growths[BODY_FORCE], growths[TRACTION]) = (body, traction);
+        growths[PRESSURE] = pressure;
     }
 }

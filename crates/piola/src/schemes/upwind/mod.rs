@@ -36,6 +36,7 @@ use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::traction::Loaded;
 use crate::geometry::Particles;
 use crate::operators::{LeastSquares, PairAreas, Support};
+use crate::schemes::NEWTON_ITERATIONS;
 use crate::schemes::momentum::MOST_COMPONENTS;
 
 pub use build::{UpwindError, UpwindInput};
@@ -107,7 +108,7 @@ const MECHANISMS: [&str; 5] =
 const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
 
 /// What the table of steps has of implicit steps, behind the ledger in the state's tail.
-const FIGURES: [(&str, &str); 2] = [("newton_iterations", "1"), ("linear_steps", "1")];
+const FIGURES: [(&str, &str); 2] = [(NEWTON_ITERATIONS, "1"), ("linear_steps", "1")];
 
 /// What the pair pass adds up of some particles.
 #[derive(Clone, Copy, Debug, Default)]

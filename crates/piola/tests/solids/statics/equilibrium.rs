@@ -348,7 +348,7 @@ fn what_is_wrong_with_supports_is_named() {
     assert!(matches!(error, StaticsError::Overconstrained { id: 0, .. }), "{error}");
     let tie = Tie { name: "platen".into(), particles: vec![5, 6], component: 1 };
     let error = refused(held(&[(0, 0), (0, 1), (6, 1)]), vec![tie]);
-    assert!(matches!(error, StaticsError::Tie { particle: 6, component: 1, .. }), "{error}");
+    assert!(matches!(error, StaticsError::Tie { id: 6, component: 1, .. }), "{error}");
     // A tie holds against turning, but not against shifting.
     let tie = Tie { name: "platen".into(), particles: vec![0, 6], component: 1 };
     assert_eq!(refused(held(&[(0, 0)]), vec![tie]), free("shift along y"));

@@ -28,6 +28,7 @@ fn a_body_under_pressure_all_around_shrinks_evenly() {
                 name: "water".into(),
                 particles: surface.clone(),
                 areas: cloud.areas.clone(),
+                places: vec![],
                 value: growing(move |_| pressure),
             }],
             // Values that the solution has at full load.
@@ -63,6 +64,7 @@ fn the_tangent_of_an_open_pressure_is_exact() {
             name: "wind".into(),
             particles: top,
             areas,
+            places: vec![],
             value: growing(|_| 3e3),
         }],
         prescribed: piola::boundaries::PrescribedDisplacement::clamp("wall", &clamp).to_vec(),

@@ -125,7 +125,7 @@ impl<const D: usize> Equations for Statics<D> {
         let first = || (0..discrete.len()).find(|&a| is_broken(a, energy(a)));
         let potential = potential + self.faces.potential(displacement, factor);
         Trial {
-            potential: self.loads.pressures.is_empty().then_some(potential),
+            potential: self.loads.pressed.is_empty().then_some(potential),
             broken: if broken > 0.0 { first() } else { None },
         }
     }

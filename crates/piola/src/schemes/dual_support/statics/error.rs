@@ -34,15 +34,18 @@ pub enum StaticsError {
     },
     /// A tie of a component that is not free.
     #[error(
-        "`{name}` ties component {component} of particle {particle}, which is tied already, \
-         prescribed, or on an inclined roller"
+        "`{name}` ties component {} of particle {id} at {position:?}, which is tied already, \
+         prescribed, or on an inclined roller: leave the particle out of one of them",
+        ["x", "y", "z"][*component]
     )]
     Tie {
         /// Name of the tie.
         name: String,
-        /// Index of the particle in memory.
-        particle: u32,
-        /// The component.
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+        /// The component, below 3.
         component: usize,
     },
     /// A body that can move as a whole.

@@ -3,7 +3,8 @@
 use piola_formulas::tensor;
 
 use super::super::Discrete;
-use crate::boundaries::{BodyForce, FollowerPressure, Traction, padded};
+use crate::boundaries::pressure::Pressed;
+use crate::boundaries::{BodyForce, Traction, padded};
 use crate::{Tensor, Vector};
 
 /// Dead loads and follower pressures.
@@ -11,7 +12,7 @@ use crate::{Tensor, Vector};
 pub(super) struct Loads<const D: usize> {
     pub body_forces: Vec<BodyForce<D>>,
     pub tractions: Vec<Traction<D>>,
-    pub pressures: Vec<FollowerPressure<D>>,
+    pub pressed: Vec<Pressed<D>>,
 }
 
 impl<const D: usize> Loads<D> {
@@ -49,20 +50,15 @@ impl<const D: usize> Loads<D> {
 
     /// `p N_a` of all pressures on each particle in N, or its rate; empty without pressure.
     pub fn pressing(&self, discrete: &Discrete<D>, factor: f64, rate: bool) -> Vec<Vector<D>> {
-        if self.pressures.is_empty() {
+        if self.pressed.is_empty() {
             return Vec::new();
         }
-        let particles = &discrete.particles;
-        let mut pressing = vec![Vector::zeros(); particles.len()];
-        for pressure in &self.pressures {
-            for (&a, area) in pressure.particles.iter().zip(&pressure.areas) {
-                let place = padded(&particles.position[a as usize]);
-                let value = match rate {
-                    true => pressure.value.rate(place, factor),
-                    false => pressure.value.value(place, factor),
-                };
-                pressing[a as usize] += area * value;
-            }
+        let mut pressing = vec![Vector::zeros(); discrete.len()];
+        for part in &self.pressed {
+            pressing[part.particle] += match rate {
+                true => part.pressing_rate(factor),
+                false => part.pressing(factor),
+            };
         }
         pressing
     }

@@ -28,7 +28,7 @@ use crate::boundaries::{
     BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
 };
 use crate::operators::Trace;
-use crate::schemes::input::{check_areas, check_places};
+use crate::schemes::input::{check_pressure, check_traction};
 use crate::solve::{
     ArcLength, Costs, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow,
     follow_arc,
@@ -146,13 +146,10 @@ impl<const D: usize> Statics<D> {
             ..
         } = input;
         let count = discrete.len();
-        for traction in &tractions {
-            check_areas(&traction.name, &traction.particles, traction.areas.len(), count)?;
-            check_places(traction)?;
-        }
-        for pressure in &pressures {
-            check_areas(&pressure.name, &pressure.particles, pressure.areas.len(), count)?;
-        }
+        tractions.iter().try_for_each(|load| check_traction(load, count))?;
+        pressures.iter().try_for_each(|load| check_pressure(load, count))?;
+        let positions = &discrete.particles.position;
+        let pressed = pressures.iter().flat_map(|load| load.pressed(positions)).collect();
         let supports = Supports::new(&discrete.particles, prescribed, ties)?;
         let shear = |a: usize| discrete.material(a).law.law().small_strain().mu;
         let faces = Faces::new(input.trace.as_ref(), prescribed_faces, shear)?;
@@ -164,7 +161,7 @@ impl<const D: usize> Statics<D> {
         let is_linear = discrete.materials.iter().all(|it| !it.law.law().is_objective());
         Ok(Self {
             discrete,
-            loads: Loads { body_forces, tractions, pressures },
+            loads: Loads { body_forces, tractions, pressed },
             supports,
             faces,
             solver,

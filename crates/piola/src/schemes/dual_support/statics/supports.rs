@@ -63,7 +63,7 @@ impl<const D: usize> Supports<D> {
         for (a, indices) in all.iter().enumerate().filter(|(_, indices)| !indices.is_empty()) {
             supports.hold(particles, a, indices)?;
         }
-        supports.tie(count, ties)?;
+        supports.tie(particles, ties)?;
         Ok(supports)
     }
 
@@ -117,7 +117,8 @@ impl<const D: usize> Supports<D> {
         Ok(())
     }
 
-    fn tie(&mut self, count: usize, ties: Vec<Tie>) -> Result<(), StaticsError> {
+    fn tie(&mut self, particles: &Particles<D>, ties: Vec<Tie>) -> Result<(), StaticsError> {
+        let count = particles.len();
         let mut tied = vec![[false; D]; count];
         for tie in ties {
             if tie.component >= D {
@@ -128,8 +129,9 @@ impl<const D: usize> Supports<D> {
                 let row = a as usize;
                 let is_turned = self.frames[row] != Tensor::<D>::identity();
                 if is_turned || self.held[row][tie.component] || tied[row][tie.component] {
-                    let component = tie.component;
-                    return Err(StaticsError::Tie { name: tie.name, particle: a, component });
+                    let position = particles.position[row].iter().copied().collect();
+                    let (id, component) = (particles.id[row], tie.component);
+                    return Err(StaticsError::Tie { name: tie.name, id, position, component });
                 }
                 tied[row][tie.component] = true;
             }

@@ -173,9 +173,7 @@ fn apply<const D: usize>(
     let mut moved = vec![Vector::zeros(); count];
     reduction.expand_free(&direction[..split], &mut moved);
     for a in 0..count {
-        for i in 0..D {
-            dual.velocity[a][i] = Dual64::new(fields.velocity[a][i], moved[a][i]);
-        }
+        dual.velocity[a] = fields.velocity[a].zip_map(&moved[a], Dual64::new);
         if stage.keeps_ratio {
             let speed = stage.scheme.reference[a].wave_speed;
             dual.ratio[a] = Dual64::new(fields.ratio[a], direction[split + a] / speed);

@@ -98,9 +98,10 @@ impl<const D: usize> Stage<'_, D> {
                 add(b as u32, &-block);
                 let sides = [(&mut own, a), (&mut theirs, b)];
                 for ((by_gradient, p), force) in sides.into_iter().zip(dissipation.wave_speeds) {
-                    for j in 0..D {
-                        for l in 0..D {
-                            by_gradient[j][l] += force * responses[p].wave_speed[(j, l)];
+                    let wave_speed = &responses[p].wave_speed;
+                    for (j, row) in by_gradient.iter_mut().enumerate() {
+                        for (l, entry) in row.iter_mut().enumerate() {
+                            *entry += force * wave_speed[(j, l)];
                         }
                     }
                 }
