@@ -113,12 +113,12 @@ impl Reader<'_, '_> {
             self.report(problem.help(format!("add `{known} = {{ x = \"0\" }}`")));
         }
         let roller = record.record("roller").map(|roller| self.roller(roller));
-        if let (Some(region), Some(place)) = (&region, record.key_place("tied")) {
-            if region.value == Region::All && self.names.bodies.len() > 1 && body.is_none() {
-                let message = "this ties bodies to each other";
-                let problem = Problem::new(place, message, "all particles of all bodies");
-                self.report(problem.help("name one with the key `body`, or select a part"));
-            }
+        let has_all = region.as_ref().is_some_and(|region| region.value == Region::All);
+        let is_between = has_all && body.is_none() && self.names.bodies.len() > 1;
+        if let Some(place) = record.key_place("tied").filter(|_| is_between) {
+            let message = "this ties bodies to each other";
+            let problem = Problem::new(place, message, "all particles of all bodies");
+            self.report(problem.help("name one with the key `body`, or select a part"));
         }
         Some(Boundary {
             name: record.text("name")?,
