@@ -117,6 +117,7 @@ pub fn build<const D: usize>(size: usize, switches: Switches) -> (Upwind<D>, f64
         body_forces: vec![BodyForce { body: None, acceleration: gravity }],
         tractions: Vec::new(),
         prescribed: Vec::new(),
+        implicit: None,
     });
     (scheme.expect("the scheme can be built"), neighbors)
 }

@@ -43,6 +43,16 @@ pub fn integrators() -> Vec<Choice> {
         IntegratorKind::Static => {
             "no motion: equilibrium under loads that grow with the time, which is the load factor; `dual_support` only"
         }
+        IntegratorKind::BackwardEuler => {
+            "backward Euler, implicit, of first order, which damps short periods away, Upwind (4.4); `upwind` only"
+        }
+        IntegratorKind::CrankNicolson => {
+            "Crank-Nicolson, implicit, of second order and without damping, Upwind (4.5); `upwind` only"
+        }
+        IntegratorKind::Theta => "between these two, implicit, with `theta`; `upwind` only",
+        IntegratorKind::ImplicitMidpoint => {
+            "the implicit midpoint rule, of second order and without damping; `upwind` only"
+        }
     };
     IntegratorKind::ALL.map(|kind| Choice { name: kind.name(), meaning: meaning(kind) }).to_vec()
 }

@@ -273,10 +273,17 @@ static TIME: TableSpec = TableSpec {
             "what a step multiplies the shortest periods by; 1 is the implicit midpoint rule, without damping",
         ),
         key(
+            "theta",
+            Kind::Number(Interval::between(0.5, 1.0)),
+            "1",
+            Derived("0.55, with the integrator `theta`"),
+            "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
+        ),
+        key(
             "tolerance",
             Kind::Number(Interval::between(1e-13, 1e-2)),
             "1",
-            Derived("1e-8 with `static` or an implicit integrator"),
+            Derived("1e-8 with `static` or an implicit integrator, 1e-10 with `upwind`"),
             "what Newton's method may leave of the forces, over loads and reactions",
         ),
         key(

@@ -8,6 +8,7 @@ use super::*;
 
 mod faults;
 mod hostile;
+mod implicit;
 mod overrides;
 mod solids;
 mod sweeps;

@@ -4,7 +4,7 @@ use super::error::OperatorError;
 use super::gradient::invert;
 use super::support::Support;
 use crate::geometry::Particles;
-use crate::{Tensor, parallel};
+use crate::{Tensor, Vector, parallel};
 
 /// Inverse moment matrices `[sum_b N_ab (x) N_ab]^-1` of the least-squares gradient
 ///
@@ -38,6 +38,13 @@ impl<const D: usize> LeastSquares<D> {
     #[inline]
     pub fn inverse(&self, a: usize) -> &Tensor<D> {
         &self.inverse[a]
+    }
+
+    /// The coefficient of `u_b - u_a` in `grad u_a`, of `separation` `X_b - X_a`, 1/m: for tangents,
+    /// which need them one by one.
+    #[inline]
+    pub fn coefficient(&self, a: usize, separation: &Vector<D>) -> Vector<D> {
+        self.inverse[a] * (separation / separation.norm_squared())
     }
 }
 

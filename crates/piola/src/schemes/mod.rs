@@ -9,6 +9,7 @@ pub mod momentum;
 mod newmark;
 mod scheme;
 mod split;
+mod theta;
 pub mod transport_velocity;
 pub mod upwind;
 
@@ -20,3 +21,4 @@ pub use momentum::{MomentumComponent, momentum_components};
 pub use newmark::{Newmark, NewmarkScheme, UnstableWeights};
 pub use scheme::{Escape, Health, Ledger, Particle, Scheme, StepLimit, snapshot};
 pub use split::SplitScheme;
+pub use theta::{Theta, ThetaScheme, UnstableTheta};

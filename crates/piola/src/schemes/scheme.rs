@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{NewmarkScheme, SchemeDescription, SplitScheme, StaticScheme};
+use super::{NewmarkScheme, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme};
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
 /// A formulation bound to its particles, materials and kernel.
@@ -91,8 +91,15 @@ pub trait Scheme: Send {
         None
     }
 
-    /// The formulation as one that takes implicit steps, if it is one and was built for that.
+    /// The formulation as one that takes implicit steps of second order in time, if it is one and was
+    /// built for that.
     fn newmark(&mut self) -> Option<&mut dyn NewmarkScheme> {
+        None
+    }
+
+    /// The formulation as one that takes implicit steps of first order in time, if it is one and was
+    /// built for that.
+    fn theta(&mut self) -> Option<&mut dyn ThetaScheme> {
         None
     }
 

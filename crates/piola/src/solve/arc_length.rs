@@ -3,7 +3,7 @@
 use super::Stability;
 use super::krylov::{advance, dot, norm};
 use super::load_steps::{Increment, LoadError};
-use super::newton::{Equations, Iteration, Newton, NewtonError, Solved};
+use super::newton::{Iteration, LoadedEquations, Newton, NewtonError, Solved};
 
 /// How a path is followed by cylindrical arc length: steps of the unknowns have a given length,
 /// and the load factor is what balances them.
@@ -33,7 +33,7 @@ const MOST_CUTS: usize = 8;
 ///
 /// # Errors
 /// [`LoadError::Newton`] where a step does not converge however short it is.
-pub fn follow_arc<E: Equations + ?Sized>(
+pub fn follow_arc<E: LoadedEquations + ?Sized>(
     equations: &mut E,
     newton: &Newton,
     arc: &ArcLength,
@@ -81,7 +81,7 @@ struct Walk {
 }
 
 impl Walk {
-    fn step<E: Equations + ?Sized>(
+    fn step<E: LoadedEquations + ?Sized>(
         &self,
         equations: &mut E,
         newton: &Newton,

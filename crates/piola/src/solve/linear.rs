@@ -330,8 +330,9 @@ impl<const D: usize> LinearSolver<D> {
         outcome
     }
 
-    /// Solves roughly where it iterates, exactly where it factorises.
-    fn precondition(&mut self, residual: &[f64], scaled: &mut [f64]) {
+    /// Solves roughly with the tangent that was loaded last where it iterates, and exactly with its
+    /// symmetric half where it factorises: what a Krylov method of one's own is preconditioned with.
+    pub fn precondition(&mut self, residual: &[f64], scaled: &mut [f64]) {
         scaled.copy_from_slice(residual);
         if let Some((_, factor)) = &mut self.direct {
             return factor.solve(scaled);

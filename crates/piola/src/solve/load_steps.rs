@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::krylov::{advance, norm};
-use super::newton::{Equations, Iteration, Newton, NewtonError, Solved};
+use super::newton::{Iteration, LoadedEquations, Newton, NewtonError, Solved};
 use super::{LinearReport, Stability};
 
 /// The load factors to be visited, from 0.
@@ -97,7 +97,7 @@ const HASTE: f64 = 3.0;
 ///
 /// # Errors
 /// [`LoadError`] for the first factor at which there is none.
-pub fn follow<E: Equations + ?Sized>(
+pub fn follow<E: LoadedEquations + ?Sized>(
     equations: &mut E,
     newton: &Newton,
     steps: &LoadSteps,
@@ -160,7 +160,7 @@ impl Path {
     ///
     /// # Errors
     /// [`LoadError`] where none is found, or none that stays.
-    pub fn attempt<E: Equations + ?Sized>(
+    pub fn attempt<E: LoadedEquations + ?Sized>(
         &self,
         equations: &mut E,
         newton: &Newton,
@@ -208,7 +208,7 @@ impl Path {
     }
 
     /// Where Newton's method starts from, and the iterations that this took.
-    fn start<E: Equations + ?Sized>(
+    fn start<E: LoadedEquations + ?Sized>(
         &self,
         equations: &mut E,
         newton: &Newton,

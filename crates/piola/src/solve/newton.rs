@@ -8,7 +8,8 @@ use super::krylov::{advance, dot};
 use super::{LinearError, LinearReport, Stability};
 use crate::parallel::larger;
 
-/// Equations `r(x, factor) = 0` in unknowns x, where the load factor takes the part of time.
+/// Equations `r(x, factor) = 0` in unknowns x, where the load factor takes the part of time, or is
+/// the time.
 pub trait Equations {
     /// Number of unknowns.
     fn unknowns(&self) -> usize;
@@ -19,14 +20,6 @@ pub trait Equations {
     /// Writes the residual: what loads and inner forces leave, minus the slope of the potential
     /// where there is one. Returns its norm over that of all that acts from outside.
     fn residual(&mut self, factor: f64, x: &[f64], residual: &mut [f64]) -> f64;
-
-    /// Writes `dr/dfactor` with what moves with the factor on its own, at the state of the last
-    /// [`Self::linearise`].
-    fn load_rate(&mut self, factor: f64, rate: &mut [f64]);
-
-    /// Writes the residual that a step of the load factor leaves at the state of the last
-    /// [`Self::linearise`] if all but the loads is taken as linear.
-    fn step_residual(&mut self, from: f64, to: f64, residual: &mut [f64]);
 
     /// Moves multipliers, where there are any, to a state with a residual of zero; whether the
     /// residual has changed with them.
@@ -51,8 +44,19 @@ pub trait Equations {
         tolerance: f64,
         solution: &mut [f64],
     ) -> Result<LinearReport, LinearError>;
+}
 
-    /// Whether that tangent, unchanged, is positive definite.
+/// Equations with loads that grow with the factor.
+pub trait LoadedEquations: Equations {
+    /// Writes `dr/dfactor` with what moves with the factor on its own, at the state of the last
+    /// [`Equations::linearise`].
+    fn load_rate(&mut self, factor: f64, rate: &mut [f64]);
+
+    /// Writes the residual that a step of the load factor leaves at the state of the last
+    /// [`Equations::linearise`] if all but the loads is taken as linear.
+    fn step_residual(&mut self, from: f64, to: f64, residual: &mut [f64]);
+
+    /// Whether the tangent of the last [`Equations::linearise`], unchanged, is positive definite.
     fn stability(&mut self) -> Stability;
 }
 
@@ -160,7 +164,7 @@ impl Newton {
     ///
     /// # Errors
     /// As [`Self::find`].
-    pub fn solve<E: Equations + ?Sized>(
+    pub fn solve<E: LoadedEquations + ?Sized>(
         &self,
         equations: &mut E,
         factor: f64,

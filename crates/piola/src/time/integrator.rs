@@ -4,8 +4,9 @@ use super::failure::Failure;
 use super::kick_drift_kick::KickDriftKick;
 use super::load_steps::LoadStepping;
 use super::newmark::NewmarkStepping;
+use super::theta::ThetaStepping;
 use super::tvd_rk2::TvdRk2;
-use crate::schemes::{NEWTON_ITERATIONS, Newmark, Scheme};
+use crate::schemes::{NEWTON_ITERATIONS, Newmark, Scheme, Theta};
 
 /// A method that takes a state one step further.
 pub trait Integrator: Send {
@@ -63,17 +64,29 @@ pub enum IntegratorKind {
     GeneralisedAlpha,
     /// Equilibrium under loads that grow, for schemes that know it.
     Static,
+    /// Backward Euler, Upwind (4.4), for schemes that solve for their rates.
+    BackwardEuler,
+    /// Crank-Nicolson, Upwind (4.5), for the same.
+    CrankNicolson,
+    /// What is between them, theory (55).
+    Theta,
+    /// The implicit midpoint rule, for the same.
+    ImplicitMidpoint,
 }
 
 impl IntegratorKind {
     /// All integrators.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 10] = [
         Self::TvdRk2,
         Self::KickDriftKick,
         Self::Newmark,
         Self::HhtAlpha,
         Self::GeneralisedAlpha,
         Self::Static,
+        Self::BackwardEuler,
+        Self::CrankNicolson,
+        Self::Theta,
+        Self::ImplicitMidpoint,
     ];
 
     /// Share of the forces at the start of a step of [`Self::HhtAlpha`], unless another is asked for.
@@ -92,6 +105,10 @@ impl IntegratorKind {
             Self::HhtAlpha => "hht_alpha",
             Self::GeneralisedAlpha => "generalised_alpha",
             Self::Static => "static",
+            Self::BackwardEuler => "backward_euler",
+            Self::CrankNicolson => "crank_nicolson",
+            Self::Theta => "theta",
+            Self::ImplicitMidpoint => "implicit_midpoint",
         }
     }
 
@@ -111,7 +128,16 @@ impl IntegratorKind {
                 self.weighted(Newmark::generalised_alpha(Self::SPECTRAL_RADIUS))
             }
             Self::Static => Box::new(LoadStepping),
+            Self::BackwardEuler => self.shared(Theta::BACKWARD_EULER),
+            Self::CrankNicolson => self.shared(Theta::CRANK_NICOLSON),
+            Self::Theta => self.shared(Theta::DAMPED),
+            Self::ImplicitMidpoint => self.shared(Theta::MIDPOINT),
         }
+    }
+
+    /// An integrator of implicit steps with a share of the end of one's own.
+    pub fn shared(self, rule: Theta) -> Box<dyn Integrator> {
+        Box::new(ThetaStepping { name: self.name(), rule })
     }
 
     /// An integrator of implicit steps with weights of one's own.

@@ -14,7 +14,8 @@ mod observer;
 mod schedule;
 mod step;
 mod summary;
-pub mod tvd_rk2;
+pub mod theta;
+mod tvd_rk2;
 
 pub use checkpoint::{Checkpoint, CheckpointPolicy, CheckpointStore, Checkpoints, Misfit};
 pub use executor::Executor;
@@ -29,4 +30,5 @@ pub use observer::{Moment, ObserveError, Observer};
 pub use schedule::Schedule;
 pub use step::{ChosenStep, StepControl, StepTooLarge};
 pub use summary::{Outcome, Progress, Retry, Summary, Timing};
+pub use theta::ThetaStepping;
 pub use tvd_rk2::TvdRk2;

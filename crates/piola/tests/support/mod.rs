@@ -9,7 +9,7 @@ use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{Correction, Support};
 use piola::schemes::upwind::{
-    BodyForce, Initial, Material, Settings, Upwind, UpwindInput, WaveSpeed,
+    BodyForce, ImplicitSettings, Initial, Material, Settings, Upwind, UpwindInput, WaveSpeed,
 };
 use piola::schemes::{Ledger, Scheme};
 use piola::time::IntegratorKind;
@@ -63,6 +63,7 @@ pub struct Choice<const D: usize> {
     pub tractions: Vec<Traction<D>>,
     pub prescribed: Vec<PrescribedVelocity>,
     pub domain: Domain<D>,
+    pub implicit: Option<ImplicitSettings>,
 }
 
 impl<const D: usize> Choice<D> {
@@ -78,6 +79,7 @@ impl<const D: usize> Choice<D> {
             tractions: Vec::new(),
             prescribed: Vec::new(),
             domain: Domain::open(),
+            implicit: None,
         }
     }
 
@@ -157,6 +159,7 @@ impl<const D: usize> Choice<D> {
             body_forces,
             tractions: self.tractions,
             prescribed: self.prescribed,
+            implicit: self.implicit,
         }
     }
 }

@@ -24,7 +24,7 @@ use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::observe::{Line, Probe};
 use crate::operators::{Correction, GradientOperator, Support};
 use crate::schemes::upwind::{
-    Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
+    ImplicitSettings, Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
 };
 use crate::schemes::{InputError, Scheme};
 use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
@@ -179,6 +179,7 @@ fn upwind<const D: usize>(
         body_forces,
         tractions,
         prescribed,
+        implicit: case.time.theta.map(|_| implicit_settings(case)),
     });
     built
         .map_err(|error| {
@@ -191,6 +192,16 @@ fn upwind<const D: usize>(
             problems.push(case.problem_at(place, error.to_string(), label, None));
         })
         .ok()
+}
+
+/// How the equations of implicit steps are solved, where the case says it.
+fn implicit_settings(case: &Case) -> ImplicitSettings {
+    let mut settings =
+        ImplicitSettings { method: case.time.linear_solver, ..ImplicitSettings::default() };
+    if let Some(tolerance) = case.time.tolerance {
+        settings.newton.tolerance = tolerance;
+    }
+    settings
 }
 
 fn correction(settings: &model::Upwind) -> Correction {
@@ -296,5 +307,9 @@ fn integrator_kind(case: &Case) -> IntegratorKind {
 /// The integrator of a case, for states of `length` numbers.
 pub(super) fn integrator(case: &Case, length: usize) -> Box<dyn Integrator> {
     let kind = integrator_kind(case);
-    case.time.newmark.map_or_else(|| kind.build(length), |rule| kind.weighted(rule))
+    match (case.time.newmark, case.time.theta) {
+        (Some(rule), _) => kind.weighted(rule),
+        (None, Some(rule)) => kind.shared(rule),
+        (None, None) => kind.build(length),
+    }
 }

@@ -1,14 +1,17 @@
 //! Clock and integrator.
 
 use super::*;
-use crate::schemes::Newmark;
+use crate::schemes::{Newmark, Theta};
 use crate::solve::LinearMethod;
 
 /// The kinds of integrator that the rest of the case depends on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum March {
     Explicit,
+    /// Newmark's method and its like.
     Implicit,
+    /// The theta method and its like.
+    Theta,
     Static,
 }
 
@@ -20,6 +23,12 @@ impl March {
                 | IntegratorKind::HhtAlpha
                 | IntegratorKind::GeneralisedAlpha,
             ) => Self::Implicit,
+            Some(
+                IntegratorKind::BackwardEuler
+                | IntegratorKind::CrankNicolson
+                | IntegratorKind::Theta
+                | IntegratorKind::ImplicitMidpoint,
+            ) => Self::Theta,
             Some(IntegratorKind::Static) => Self::Static,
             Some(IntegratorKind::TvdRk2 | IntegratorKind::KickDriftKick) | None => Self::Explicit,
         }
@@ -41,6 +50,7 @@ impl Reader<'_, '_> {
         self.suits_scheme(&integrator, march, natural);
         let step = self.step(record, march);
         let newmark = self.newmark(record, kind);
+        let theta = self.theta(record, kind);
         if march == March::Explicit {
             for key in ["tolerance", "linear_solver"] {
                 self.meaningless(record, key, "with this integrator, which solves no equations");
@@ -50,6 +60,7 @@ impl Reader<'_, '_> {
             end: record.number("end")?,
             integrator,
             newmark: newmark?,
+            theta: theta?,
             tolerance: record.number("tolerance").map(|it| it.value),
             linear_solver: match record.text("linear_solver").as_deref().map(String::as_str) {
                 Some("direct") => LinearMethod::Direct,
@@ -75,12 +86,24 @@ impl Reader<'_, '_> {
         let (name, place) = (&integrator.value, integrator.place);
         let (message, help) = match march {
             March::Static | March::Implicit if scheme != "dual_support" => {
-                let what = if march == March::Static { "statics" } else { "implicit steps" };
+                let what = match march {
+                    March::Static => "statics",
+                    _ if scheme == "upwind" => "implicit steps of this kind",
+                    _ => "implicit steps",
+                };
+                let others = if scheme == "upwind" { " or `crank_nicolson`" } else { "" };
                 (
                     format!("the scheme `{scheme}` knows no {what}"),
-                    format!("use `{}`, or the scheme `dual_support`", natural.name()),
+                    format!("use `{}`{others}, or the scheme `dual_support`", natural.name()),
                 )
             }
+            March::Theta if scheme != "upwind" => (
+                format!("the scheme `{scheme}` knows no implicit steps of this kind"),
+                match scheme {
+                    "dual_support" => "use `newmark` or `generalised_alpha`".into(),
+                    _ => format!("use `{}`", natural.name()),
+                },
+            ),
             March::Explicit if scheme == "upwind" && *name != natural.name() => (
                 format!("the scheme `{scheme}` cannot be split for this integrator"),
                 "use `tvd_rk2`".into(),
@@ -121,7 +144,7 @@ impl Reader<'_, '_> {
                 };
                 Some(Located::new(StepControl::Cfl(cfl), record.place))
             }
-            (March::Implicit, None, None) => {
+            (March::Implicit | March::Theta, None, None) => {
                 let message = "an implicit integrator needs the key `step`";
                 let problem = Problem::new(record.place, message, "`step` is missing").help(
                     "any size is stable, so that accuracy decides: about a twentieth of the shortest \
@@ -174,6 +197,24 @@ impl Reader<'_, '_> {
             _ => return Some(None),
         };
         Some(Some(rule))
+    }
+
+    /// Which step of a first-order system: `Some(None)` if steps are not of that kind.
+    fn theta(&mut self, record: &Record, kind: Option<IntegratorKind>) -> Option<Option<Theta>> {
+        if kind != Some(IntegratorKind::Theta) {
+            self.meaningless(record, "theta", "with this integrator");
+        }
+        Some(match kind {
+            Some(IntegratorKind::BackwardEuler) => Some(Theta::BACKWARD_EULER),
+            Some(IntegratorKind::CrankNicolson) => Some(Theta::CRANK_NICOLSON),
+            Some(IntegratorKind::ImplicitMidpoint) => Some(Theta::MIDPOINT),
+            Some(IntegratorKind::Theta) => match record.number("theta") {
+                // The table of keys has refused others.
+                Some(theta) => Theta::new(*theta).ok(),
+                None => Some(Theta::DAMPED),
+            },
+            _ => None,
+        })
     }
 
     fn retries(&mut self, record: &Record, is_explicit: bool) -> Option<u64> {

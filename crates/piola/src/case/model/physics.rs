@@ -6,7 +6,7 @@ use piola_formulas::volumetric::{self, StressState};
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::schemes::{Newmark, dual_support, transport_velocity, upwind};
+use crate::schemes::{Newmark, Theta, dual_support, transport_velocity, upwind};
 use crate::solve::LinearMethod;
 
 /// What a body is made of.
@@ -267,6 +267,8 @@ pub struct Time {
     pub integrator: Located<String>,
     /// Its weights, if it takes implicit steps of second order.
     pub newmark: Option<Newmark>,
+    /// Which of them it takes, if it takes implicit steps of first-order systems.
+    pub theta: Option<Theta>,
     /// Relative residual at which Newton's method has arrived, if the file says it.
     pub tolerance: Option<f64>,
     /// How linear equations are solved.

@@ -3,6 +3,7 @@
 use piola_formulas::volumetric::{Prestressed, VolumetricResponse};
 use thiserror::Error;
 
+use super::implicit::{Implicit, ImplicitSettings};
 use super::inspect::ChunkFigures;
 use super::local::Side;
 use super::reconstruction::Slope;
@@ -15,6 +16,7 @@ use crate::schemes::InputError;
 use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
 };
+use crate::solve::LinearError;
 use crate::{Vector, parallel};
 
 /// All that the formulation is bound to.
@@ -35,6 +37,8 @@ pub struct UpwindInput<const D: usize> {
     pub tractions: Vec<Traction<D>>,
     /// Prescribed velocity components.
     pub prescribed: Vec<PrescribedVelocity>,
+    /// How the equations of implicit steps are solved, if such steps are to be taken.
+    pub implicit: Option<ImplicitSettings>,
 }
 
 /// Input that the formulation cannot work with.
@@ -57,6 +61,9 @@ pub enum UpwindError {
         /// The pressure in Pa.
         pressure: f64,
     },
+    /// The equations of implicit steps do not fit into memory.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
     /// Parts that do not fit together.
     #[error(transparent)]
     Input(#[from] InputError),
@@ -112,8 +119,12 @@ impl<const D: usize> Upwind<D> {
             settings,
             materials,
             reference,
+            implicit: None,
         };
         scheme.update_body_acceleration(0.0);
+        if let Some(settings) = input.implicit {
+            scheme.implicit = Some(Box::new(Implicit::new(&scheme, settings)?));
+        }
         Ok(scheme)
     }
 

@@ -1,5 +1,7 @@
 //! The sums of a particle over its neighbours, a block of them at a time.
 
+use piola_formulas::Scalar;
+
 use super::Upwind;
 use super::local::Side;
 use super::pair::Pair;
@@ -7,7 +9,7 @@ use super::reconstruction::Slope;
 use crate::Vector;
 use crate::operators::{Block, LANES, Lanes, total};
 
-/// The sums of a particle over its neighbours: `T` is `f64`, or [`Lanes`] while they grow.
+/// The sums of a particle over its neighbours: `T` is a number, or an array of them while they grow.
 pub(super) struct Sums<T, const D: usize> {
     /// Internal force in N, without the particle's own share.
     pub internal_force: [T; D],
@@ -46,7 +48,7 @@ impl<const D: usize> Upwind<D> {
     ) {
         let me = &self.sides[a];
         let others = block.neighbors.map(|b| &self.sides[b as usize]);
-        let mut slopes = [[&Slope::ZERO; 2]; LANES];
+        let mut slopes = [[&Slope::<f64, D>::ZERO; 2]; LANES];
         if RECONSTRUCTION {
             slopes = block.neighbors.map(|b| [&self.slopes[a], &self.slopes[b as usize]]);
         }
@@ -66,7 +68,7 @@ impl<const D: usize> Upwind<D> {
                 reference: at(&reference, lane),
                 slopes: slopes[lane],
             };
-            pair.add_terms::<VELOCITY, PRESSURE, RECONSTRUCTION>(lane, sums);
+            pair.add_terms::<VELOCITY, PRESSURE, RECONSTRUCTION, LANES>(lane, sums);
         }
     }
 
@@ -75,9 +77,9 @@ impl<const D: usize> Upwind<D> {
     #[inline(always)]
     pub(super) fn separate(
         &self,
-        me: &Side<D>,
-        others: &[&Side<D>; LANES],
-        point: impl Fn(&Side<D>) -> &Vector<D>,
+        me: &Side<f64, D>,
+        others: &[&Side<f64, D>; LANES],
+        point: impl Fn(&Side<f64, D>) -> &Vector<D>,
         separations: &mut [Lanes; D],
     ) {
         #[expect(
@@ -100,10 +102,10 @@ pub(super) fn at<const D: usize>(lanes: &[Lanes; D], lane: usize) -> Vector<D> {
     Vector::from_fn(|i, _| lanes[i][lane])
 }
 
-impl<const D: usize> Sums<Lanes, D> {
+impl<T: Scalar, const N: usize, const D: usize> Sums<[T; N], D> {
     #[inline(always)]
-    fn zero() -> Self {
-        let zero = [0.0; LANES];
+    pub fn zero() -> Self {
+        let zero = [T::zero(); N];
         Self {
             internal_force: [zero; D],
             volume_deformation_rate: [[zero; D]; D],
@@ -111,7 +113,9 @@ impl<const D: usize> Sums<Lanes, D> {
             upwind_volume_rate: zero,
         }
     }
+}
 
+impl<const D: usize> Sums<Lanes, D> {
     /// The sums over all lanes. Not inlined: what follows is work on single numbers, and mixed
     /// with it the compiler takes the lanes apart in the loop, too.
     #[inline(never)]

@@ -1,7 +1,8 @@
 //! The pass over particles alone: what each of them shows its neighbours.
 
+use nalgebra::{SMatrix, SVector};
 use piola_formulas::volumetric::VolumetricResponse;
-use piola_formulas::{riemann, tensor};
+use piola_formulas::{Scalar, riemann, tensor};
 
 use super::{Row, Upwind, WaveSpeed};
 use crate::{Tensor, Vector, parallel};
@@ -10,33 +11,59 @@ use crate::{Tensor, Vector, parallel};
 /// stretch of memory, which begins with a cache line so that it takes as few of them as can be.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Side<const D: usize> {
+pub(super) struct Side<T, const D: usize> {
     /// Current position x in m.
-    pub position: Vector<D>,
+    pub position: SVector<T, D>,
     /// Reference position X in m.
     pub reference: Vector<D>,
     /// Velocity v in m/s.
-    pub velocity: Vector<D>,
+    pub velocity: SVector<T, D>,
     /// Cofactor H = det(F) F^-T of the deformation gradient.
-    pub cofactor: Tensor<D>,
+    pub cofactor: SMatrix<T, D, D>,
     /// Pressure p(J) of the evolved J in Pa.
-    pub pressure: f64,
+    pub pressure: T,
     /// Reference density in kg/m^3.
     pub density: f64,
     /// Speed of the shock in the dissipation in m/s.
-    pub wave_speed: f64,
+    pub wave_speed: T,
 }
 
-impl<const D: usize> Default for Side<D> {
+impl<T: Scalar, const D: usize> Default for Side<T, D> {
     fn default() -> Self {
         Self {
-            position: Vector::zeros(),
+            position: SVector::zeros(),
             reference: Vector::zeros(),
-            velocity: Vector::zeros(),
-            cofactor: Tensor::zeros(),
-            pressure: 0.0,
+            velocity: SVector::zeros(),
+            cofactor: SMatrix::zeros(),
+            pressure: T::zero(),
             density: 0.0,
-            wave_speed: 0.0,
+            wave_speed: T::zero(),
+        }
+    }
+}
+
+/// The unknowns of a particle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unknowns<T, const D: usize> {
+    /// Velocity v in m/s.
+    pub velocity: SVector<T, D>,
+    /// Evolved volume ratio J.
+    pub ratio: T,
+    /// Current position x in m.
+    pub position: SVector<T, D>,
+    /// Deformation gradient F.
+    pub deformation: SMatrix<T, D, D>,
+}
+
+impl<const D: usize> Unknowns<f64, D> {
+    /// Those of a row of the state.
+    #[inline]
+    pub fn of_row(row: &[f64]) -> Self {
+        Self {
+            velocity: Vector::from_column_slice(&row[..D]),
+            ratio: row[Row::<D>::VOLUME_RATIO],
+            position: Vector::from_column_slice(&row[Row::<D>::POSITION..Row::<D>::DEFORMATION]),
+            deformation: deformation(row),
         }
     }
 }
@@ -55,30 +82,30 @@ impl<const D: usize> Upwind<D> {
         parallel::for_each_chunk(&mut sides, |first, sides| {
             let rows = state[first * Row::<D>::LENGTH..].chunks_exact(Row::<D>::LENGTH);
             for (offset, (side, row)) in sides.iter_mut().zip(rows).enumerate() {
-                *side = self.side(first + offset, row);
+                *side = self.side(first + offset, &Unknowns::of_row(row));
             }
         });
         self.sides = sides;
     }
 
+    /// What particle a with these unknowns shows its neighbours.
     #[inline]
-    fn side(&self, a: usize, row: &[f64]) -> Side<D> {
-        let gradient = deformation::<D>(row);
+    pub(super) fn side<T: Scalar>(&self, a: usize, unknowns: &Unknowns<T, D>) -> Side<T, D> {
         let reference = &self.reference[a];
         let wave_speed = match self.settings.wave_speed {
-            WaveSpeed::Constant => reference.wave_speed,
+            WaveSpeed::Constant => T::from(reference.wave_speed),
             WaveSpeed::Stretch => {
-                let strain = tensor::right_cauchy_green(&gradient);
+                let strain = tensor::right_cauchy_green(&unknowns.deformation);
                 let smallest = tensor::smallest_eigenvalue(&strain);
                 riemann::stretched_wave_speed(reference.wave_speed, smallest)
             }
         };
         Side {
-            position: Vector::from_column_slice(&row[Row::<D>::POSITION..Row::<D>::DEFORMATION]),
+            position: unknowns.position,
             reference: self.particles.position[a],
-            velocity: Vector::from_column_slice(&row[..D]),
-            cofactor: tensor::cofactor(&gradient),
-            pressure: self.law(a).pressure(row[Row::<D>::VOLUME_RATIO]),
+            velocity: unknowns.velocity,
+            cofactor: tensor::cofactor(&unknowns.deformation),
+            pressure: self.law(a).pressure(unknowns.ratio),
             density: reference.density,
             wave_speed,
         }

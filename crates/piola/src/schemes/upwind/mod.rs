@@ -19,6 +19,7 @@
 mod build;
 mod external;
 mod gather;
+mod implicit;
 mod inspect;
 mod local;
 mod pair;
@@ -35,9 +36,11 @@ use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::traction::Loaded;
 use crate::geometry::Particles;
 use crate::operators::{LeastSquares, PairAreas, Support};
+use crate::schemes::NEWTON_ITERATIONS;
 use crate::schemes::momentum::MOST_COMPONENTS;
 
 pub use build::{UpwindError, UpwindInput};
+pub use implicit::{ImplicitSettings, StepEquations};
 pub use passes::PASSES;
 pub use scheme::DESCRIPTION;
 pub use settings::{Material, Settings, WaveSpeed};
@@ -45,6 +48,7 @@ pub use settings::{Material, Settings, WaveSpeed};
 pub use crate::boundaries::BodyForce;
 pub use crate::schemes::Initial;
 
+use implicit::Implicit;
 use inspect::ChunkFigures;
 use local::Side;
 use reconstruction::Slope;
@@ -73,10 +77,12 @@ pub struct Upwind<const D: usize> {
     steady_body_force: bool,
     /// External force of the tractions on each particle in N, with the particles that have one.
     loaded: Vec<Loaded<D>>,
-    sides: Vec<Side<D>>,
-    slopes: Vec<Slope<D>>,
+    sides: Vec<Side<f64, D>>,
+    slopes: Vec<Slope<f64, D>>,
     chunk_powers: Vec<Powers>,
     chunk_figures: Vec<ChunkFigures>,
+    /// What implicit steps need, if it was built for them.
+    implicit: Option<Box<Implicit<D>>>,
 }
 
 /// Reference values of a particle that its material and its start give.
@@ -100,6 +106,9 @@ const MECHANISMS: [&str; 5] =
 /// The ways in which momentum enters. Pairs exchange what one of them loses, so that internal
 /// forces and dissipation are not among them.
 const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
+
+/// What the table of steps has of implicit steps, behind the ledger in the state's tail.
+const FIGURES: [(&str, &str); 2] = [(NEWTON_ITERATIONS, "1"), ("linear_steps", "1")];
 
 /// What the pair pass adds up of some particles.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,32 +1,34 @@
 //! What a particle gets from one neighbour.
 
+use nalgebra::{SMatrix, SVector};
+use piola_formulas::Scalar;
 use piola_formulas::riemann::Interface;
 
 use super::gather::Sums;
 use super::local::Side;
 use super::reconstruction::Slope;
 use crate::Vector;
-use crate::operators::Lanes;
 
-/// A particle a, its neighbour b, and where they stand to each other.
-pub(super) struct Pair<'a, const D: usize> {
+/// A particle a, its neighbour b, and where they stand to each other, in numbers `T`: `f64`, or dual
+/// numbers for the tangent of implicit steps.
+pub(super) struct Pair<'a, T, const D: usize> {
     /// Particle a.
-    pub me: &'a Side<D>,
+    pub me: &'a Side<T, D>,
     /// Particle b.
-    pub other: &'a Side<D>,
+    pub other: &'a Side<T, D>,
     /// Area `V_a G_ab` in m^(D-1).
     pub area: Vector<D>,
     /// Area `V_b G_ba` in m^(D-1).
     pub transposed: Vector<D>,
     /// Current separation `x_b - x_a` in m.
-    pub current: Vector<D>,
+    pub current: SVector<T, D>,
     /// Reference separation `X_b - X_a` in m.
     pub reference: Vector<D>,
     /// Slopes at a and b.
-    pub slopes: [&'a Slope<D>; 2],
+    pub slopes: [&'a Slope<T, D>; 2],
 }
 
-impl<const D: usize> Pair<'_, D> {
+impl<T: Scalar, const D: usize> Pair<'_, T, D> {
     /// Adds the terms of b in the sums of a to those of one lane: the exchanges of theory (12) and
     /// (13) where dissipation of velocity or pressure is on, with reconstructed jumps if asked.
     ///
@@ -34,17 +36,22 @@ impl<const D: usize> Pair<'_, D> {
     /// turns into operations on vectors. Terms that are off are not formed at all, and the slopes
     /// not read without reconstruction.
     #[inline(always)]
-    pub fn add_terms<const VELOCITY: bool, const PRESSURE: bool, const RECONSTRUCTION: bool>(
+    pub fn add_terms<
+        const VELOCITY: bool,
+        const PRESSURE: bool,
+        const RECONSTRUCTION: bool,
+        const N: usize,
+    >(
         &self,
         lane: usize,
-        sums: &mut Sums<Lanes, D>,
+        sums: &mut Sums<[T; N], D>,
     ) {
         let (me, other) = (self.me, self.other);
         let mut velocity_jump = other.velocity - me.velocity;
         let mut pressure_jump = other.pressure - me.pressure;
-        let internal_force = other.cofactor * self.transposed * other.pressure;
+        let internal_force = applied(&other.cofactor, &self.transposed);
         for i in 0..D {
-            sums.internal_force[i][lane] += internal_force[i];
+            sums.internal_force[i][lane] += internal_force[i] * other.pressure;
             for j in 0..D {
                 sums.volume_deformation_rate[i][j][lane] += velocity_jump[i] * self.area[j];
             }
@@ -55,8 +62,8 @@ impl<const D: usize> Pair<'_, D> {
         if RECONSTRUCTION {
             let [mine, theirs] = self.slopes;
             let half = self.reference * 0.5;
-            velocity_jump -= (mine.velocity + theirs.velocity) * half;
-            pressure_jump -= (mine.pressure + theirs.pressure).dot(&half);
+            velocity_jump -= applied(&(mine.velocity + theirs.velocity), &half);
+            pressure_jump -= along(&(mine.pressure + theirs.pressure), &half);
         }
         let interface = Interface::new(self.current, self.reference, self.impedance());
         if VELOCITY {
@@ -75,9 +82,34 @@ impl<const D: usize> Pair<'_, D> {
     /// Mean density times the larger wave speed. A plain comparison is one operation on vectors,
     /// which `f64::max` with its care for NaN is not.
     #[inline(always)]
-    fn impedance(&self) -> f64 {
+    fn impedance(&self) -> T {
         let [mine, theirs] = [self.me.wave_speed, self.other.wave_speed];
-        let fastest = if mine > theirs { mine } else { theirs };
-        0.5 * (self.me.density + self.other.density) * fastest
+        let fastest = if mine.re() > theirs.re() { mine } else { theirs };
+        fastest * (0.5 * (self.me.density + self.other.density))
     }
+}
+
+/// `matrix vector`.
+#[inline(always)]
+pub(super) fn applied<T: Scalar, const D: usize>(
+    matrix: &SMatrix<T, D, D>,
+    vector: &Vector<D>,
+) -> SVector<T, D> {
+    SVector::from_fn(|i, _| {
+        let mut sum = matrix[(i, 0)] * vector[0];
+        for j in 1..D {
+            sum += matrix[(i, j)] * vector[j];
+        }
+        sum
+    })
+}
+
+/// `a . b`.
+#[inline(always)]
+fn along<T: Scalar, const D: usize>(a: &SVector<T, D>, b: &Vector<D>) -> T {
+    let mut sum = a[0] * b[0];
+    for i in 1..D {
+        sum += a[i] * b[i];
+    }
+    sum
 }

@@ -38,7 +38,7 @@ impl<const D: usize> Upwind<D> {
         let row = Row::<D>::LENGTH * size_of::<f64>();
         let vector = size_of::<Vector<D>>();
         let reference = size_of::<super::Reference>();
-        let (side, slope) = (size_of::<Side<D>>(), size_of::<Slope<D>>());
+        let (side, slope) = (size_of::<Side<f64, D>>(), size_of::<Slope<f64, D>>());
         let entry = size_of::<u32>();
         let local = count * (row + vector + reference + entry + side);
         let list = count * size_of::<usize>() + pairs * entry;

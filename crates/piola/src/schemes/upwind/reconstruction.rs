@@ -1,6 +1,7 @@
 //! The pass that finds slopes for the reconstruction at mid-edges, Upwind (3.50) to (3.53).
 
 use multiversion::multiversion;
+use nalgebra::{SMatrix, SVector};
 
 use super::Upwind;
 use super::gather::at;
@@ -14,14 +15,14 @@ use crate::{Tensor, Vector, parallel};
 /// line, as a [`super::local::Side`] does.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Slope<const D: usize> {
+pub(super) struct Slope<T, const D: usize> {
     /// Gradient of the velocity in 1/s.
-    pub velocity: Tensor<D>,
+    pub velocity: SMatrix<T, D, D>,
     /// Gradient of the pressure in Pa/m.
-    pub pressure: Vector<D>,
+    pub pressure: SVector<T, D>,
 }
 
-impl<const D: usize> Slope<D> {
+impl<const D: usize> Slope<f64, D> {
     /// That of constant fields.
     pub const ZERO: Self = {
         let velocity = nalgebra::ArrayStorage([[0.0; D]; D]);
@@ -84,7 +85,7 @@ struct Moments<const D: usize> {
 impl<const D: usize> Moments<D> {
     /// The slopes, apart from the loop over lanes as [`super::gather::Sums::total`] is.
     #[inline(never)]
-    fn solve(&self, inverse: &Tensor<D>) -> Slope<D> {
+    fn solve(&self, inverse: &Tensor<D>) -> Slope<f64, D> {
         let velocity = Tensor::<D>::from_fn(|i, j| total(self.velocity[i][j]));
         let pressure = Vector::<D>::from_fn(|i, _| total(self.pressure[i]));
         // The inverse is symmetric.
@@ -97,7 +98,7 @@ fn fill_slopes<const D: usize>(
     scheme: &Upwind<D>,
     least_squares: &LeastSquares<D>,
     first: usize,
-    slopes: &mut [Slope<D>],
+    slopes: &mut [Slope<f64, D>],
 ) {
     for (offset, slope) in slopes.iter_mut().enumerate() {
         let a = first + offset;

@@ -4,10 +4,10 @@ use piola_formulas::tensor;
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::local::deformation;
-use super::{ENERGIES, IMPULSES, MECHANISMS, Row, Upwind};
+use super::{ENERGIES, FIGURES, IMPULSES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::parallel;
-use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit};
+use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit, ThetaScheme};
 
 const FIELDS: [FieldDescription; 13] = [
     FieldDescription::new("position", "m", FieldKind::Vector, "current position x"),
@@ -57,7 +57,7 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,
     impulses: &IMPULSES,
-    figures: &[],
+    figures: &FIGURES,
 };
 
 impl<const D: usize> Scheme for Upwind<D> {
@@ -104,6 +104,10 @@ impl<const D: usize> Scheme for Upwind<D> {
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.look(state, limits)
+    }
+
+    fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
+        figures.extend_from_slice(&state[state.len() - FIGURES.len()..]);
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
@@ -196,6 +200,11 @@ impl<const D: usize> Scheme for Upwind<D> {
             + size_of_val(self.slopes.as_slice())
             + inverse * particles.len()
             + self.areas.memory()
+            + self.implicit.as_ref().map_or(0, |implicit| implicit.memory())
+    }
+
+    fn theta(&mut self) -> Option<&mut dyn ThetaScheme> {
+        self.implicit.is_some().then_some(self as &mut dyn ThetaScheme)
     }
 }
 

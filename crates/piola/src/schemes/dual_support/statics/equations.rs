@@ -4,7 +4,9 @@ use piola_formulas::tensor;
 
 use super::Statics;
 use super::loads::press;
-use crate::solve::{Equations, LinearError, LinearReport, Stability, Tangent, Trial};
+use crate::solve::{
+    Equations, LinearError, LinearReport, LoadedEquations, Stability, Tangent, Trial,
+};
 use crate::{Tensor, Vector, parallel};
 
 impl<const D: usize> Statics<D> {
@@ -138,24 +140,6 @@ impl<const D: usize> Equations for Statics<D> {
         if open == 0.0 { 0.0 } else { (open / (loads + held)).sqrt() }
     }
 
-    fn load_rate(&mut self, factor: f64, rate: &mut [f64]) {
-        let mut forces = self.loads.dead(&self.discrete, factor, true);
-        let pressing = self.loads.pressing(&self.discrete, factor, true);
-        press(&self.discrete, &self.displacement, &pressing, &mut forces);
-        self.faces.add_rates(factor, &mut forces);
-        let held = self.supports.values(factor, true);
-        self.restricted(&held, forces, rate);
-    }
-
-    fn step_residual(&mut self, from: f64, to: f64, residual: &mut [f64]) {
-        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.left);
-        let mut forces = self.outside(to);
-        forces.iter_mut().zip(&self.left).for_each(|(force, left)| *force += left);
-        let (before, after) = (self.supports.values(from, false), self.supports.values(to, false));
-        let moved: Vec<Vector<D>> = after.iter().zip(&before).map(|(a, b)| a - b).collect();
-        self.restricted(&moved, forces, residual);
-    }
-
     fn settle(&mut self, factor: f64, x: &[f64]) -> bool {
         self.displace(factor, x);
         self.faces.settle(&self.displacement, factor)
@@ -187,6 +171,26 @@ impl<const D: usize> Equations for Statics<D> {
         solution: &mut [f64],
     ) -> Result<LinearReport, LinearError> {
         self.solver.solve(&mut self.stiffness, right, tolerance, solution)
+    }
+}
+
+impl<const D: usize> LoadedEquations for Statics<D> {
+    fn load_rate(&mut self, factor: f64, rate: &mut [f64]) {
+        let mut forces = self.loads.dead(&self.discrete, factor, true);
+        let pressing = self.loads.pressing(&self.discrete, factor, true);
+        press(&self.discrete, &self.displacement, &pressing, &mut forces);
+        self.faces.add_rates(factor, &mut forces);
+        let held = self.supports.values(factor, true);
+        self.restricted(&held, forces, rate);
+    }
+
+    fn step_residual(&mut self, from: f64, to: f64, residual: &mut [f64]) {
+        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.left);
+        let mut forces = self.outside(to);
+        forces.iter_mut().zip(&self.left).for_each(|(force, left)| *force += left);
+        let (before, after) = (self.supports.values(from, false), self.supports.values(to, false));
+        let moved: Vec<Vector<D>> = after.iter().zip(&before).map(|(a, b)| a - b).collect();
+        self.restricted(&moved, forces, residual);
     }
 
     fn stability(&mut self) -> Stability {

@@ -1,0 +1,9 @@
+//! Implicit steps of the upwind formulation: equations, tangents, and what steps keep.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod equations;
+mod failures;
+mod problems;
+mod steps;
