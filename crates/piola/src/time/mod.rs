@@ -14,8 +14,8 @@ mod observer;
 mod schedule;
 mod step;
 mod summary;
-pub mod theta;
-mod tvd_rk2;
+mod theta;
+pub mod tvd_rk2;
 
 pub use checkpoint::{Checkpoint, CheckpointPolicy, CheckpointStore, Checkpoints, Misfit};
 pub use executor::Executor;

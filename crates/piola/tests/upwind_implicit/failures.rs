@@ -39,3 +39,21 @@ fn implicit_steps_have_to_be_asked_for() {
     let mut scheme = Choice::new(lattice([1.0], [10]), gamma()).build(|_| Vector::<1>::zeros());
     assert!(scheme.theta().is_none());
 }
+
+/// Where all components are prescribed nothing is left to solve for, and the step is taken.
+#[test]
+fn a_body_that_is_held_everywhere_moves_as_it_is_told() {
+    let choice = Choice::new(lattice([1.0], [10]), gamma()).prescribe(0, Arc::new(0.5), |_| true);
+    let mut scheme = implicit(choice, PLAIN).build(|_| Vector::<1>::zeros());
+    let mut old = scheme.initial_state();
+    scheme.constrain(0.0, &mut old);
+    let mut new = old.clone();
+    for rule in [Theta::CRANK_NICOLSON, Theta::MIDPOINT] {
+        scheme.advance(&rule, 0.0, 0.2, &old, &mut new).expect("a state exists");
+        // v, J, x and F of the last particle.
+        let row = &new[10 * 4..][..4];
+        for (value, expected) in row.iter().zip([0.5, 1.0, 1.1, 1.0]) {
+            assert!((value - expected).abs() < 1e-14, "{rule:?}: {row:?}");
+        }
+    }
+}

@@ -187,6 +187,7 @@ fn upwind<const D: usize>(
                 UpwindError::Prestress { .. } | UpwindError::Input(InputError::Velocity { .. }) => {
                     (case.bodies[0].name.place, "initial values of a body")
                 }
+                UpwindError::Linear(_) => (case.time.integrator.place, "this integrator"),
                 _ => (settings.smoothing_length.place, "with this smoothing length"),
             };
             problems.push(case.problem_at(place, error.to_string(), label, None));

@@ -52,7 +52,7 @@ impl<const D: usize> StepEquations<'_, D> {
         let scheme = self.scheme;
         let Implicit { solver, held, fields, base, weight, settings, evaluated, .. } =
             &mut *self.parts;
-        if evaluated == x {
+        if evaluated.as_ref().is_some_and(|known| known == x) {
             return;
         }
         let reduction = solver.reduction();
@@ -63,8 +63,9 @@ impl<const D: usize> StepEquations<'_, D> {
         }
         let keeps_ratio = settings.keeps_ratio;
         Stage { scheme, weight: *weight, base, keeps_ratio }.fill(fields);
-        evaluated.clear();
-        evaluated.extend_from_slice(x);
+        let known = evaluated.get_or_insert_default();
+        known.clear();
+        known.extend_from_slice(x);
     }
 
     /// The unknowns of velocities, with the volume ratios that follow from these.

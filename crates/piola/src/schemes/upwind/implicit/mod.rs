@@ -69,8 +69,8 @@ pub(super) struct Implicit<const D: usize> {
     /// Sum of the sizes of the areas of each particle in m^(D-1).
     area: Vec<f64>,
     left: Vec<Vector<D>>,
-    /// The unknowns that `fields` is filled for.
-    evaluated: Vec<f64>,
+    /// The unknowns that `fields` is filled for, in this step.
+    evaluated: Option<Vec<f64>>,
     start: Vec<f64>,
     /// What residuals are measured against in kg m/s.
     size: f64,
@@ -119,7 +119,7 @@ impl<const D: usize> Implicit<D> {
             held: vec![Vector::zeros(); count],
             area: Vec::new(),
             left: vec![Vector::zeros(); count],
-            evaluated: Vec::new(),
+            evaluated: None,
             start: Vec::new(),
             size: 0.0,
             steps_with_factors: None,
@@ -159,7 +159,7 @@ impl<const D: usize> Implicit<D> {
         for entry in scheme.prescribed.iter() {
             self.held[entry.particle][entry.component] = entry.value.value(entry.place, instant);
         }
-        self.evaluated.clear();
+        self.evaluated = None;
         (self.steps_with_factors, self.linear_steps) = (None, 0);
         self.solver.restart();
     }
