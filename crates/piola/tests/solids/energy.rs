@@ -2,6 +2,7 @@
 
 use nalgebra::SVector;
 use num_dual::{Dual64, HyperDual64};
+use piola::operators::{DualGradient, ScalarHourglass};
 use piola::schemes::dual_support::{Discrete, Gradients, Material, Settings, Side};
 use piola::{Tensor, Vector};
 use piola_formulas::Scalar;
@@ -192,4 +193,69 @@ fn forces_have_no_sum_and_no_moment() {
             assert_eq!(moment.norm() < 1e-13 * total, law.is_objective(), "{law:?}: {moment}");
         }
     }
+}
+
+fn check_scalar<const D: usize>(cloud: &Cloud<D>) {
+    let (particles, support) = (&cloud.particles, cloud.support());
+    let plain = DualGradient::plain(particles, &support).expect("a gradient");
+    let patch = plain.clone().patch_consistent(particles, &support, &cloud.areas);
+    let count = particles.len();
+    let coefficients: Vec<f64> = particles.volume.iter().map(|volume| 3.0 * volume).collect();
+    for gradient in [plain, patch.expect("a correction")] {
+        let operator = ScalarHourglass {
+            particles,
+            support: &support,
+            gradient: &gradient,
+            coefficients: &coefficients,
+        };
+        let field = |seed: usize| -> Vec<f64> { (0..count).map(|a| noise(seed + a)).collect() };
+        let (one, way) = (field(7), field(9000));
+        let force = operator.force(&one);
+        let along: f64 = force.iter().zip(&way).map(|(force, way)| force * way).sum();
+        let moved = |sign: f64| -> Vec<f64> {
+            one.iter().zip(&way).map(|(one, way)| one + sign * way).collect()
+        };
+        // The energy is quadratic, so that this difference is its slope however far apart.
+        let slope = 0.5 * (operator.energy(&moved(1.0)) - operator.energy(&moved(-1.0)));
+        assert!((along + slope).abs() < 1e-12 * operator.energy(&one), "{along} {slope}");
+        let sum: f64 = force.iter().sum();
+        let size = force.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
+        assert!(sum.abs() < 1e-12 * size, "{sum}");
+        let linear: Vec<f64> =
+            particles.position.iter().map(|x| 2.0 + x.iter().sum::<f64>()).collect();
+        assert!(
+            operator.energy(&linear) < 1e-24
+                && operator.force(&linear).iter().all(|f| f.abs() < 1e-12)
+        );
+    }
+}
+
+#[test]
+fn the_hourglass_force_of_a_scalar_is_the_slope_of_its_energy() {
+    check_scalar(&Cloud::simplices([1.0, 0.5], [8, 4], 0.2));
+    check_scalar(&Cloud::simplices([1.0; 3], [4; 3], 0.15));
+}
+
+/// Component by component it is the hourglass energy of a displacement.
+#[test]
+fn the_hourglass_energy_of_a_vector_is_that_of_its_components() {
+    let cloud = Cloud::simplices([1.0; 3], [4; 3], 0.15);
+    let law = laws()[0];
+    let body = discrete(&cloud, law, StressState::ThreeDimensional, (false, 0.3));
+    let displacement = disorder(&cloud.particles, 0.05);
+    let support = cloud.support();
+    let gradient = DualGradient::plain(&cloud.particles, &support).expect("a gradient");
+    let mu = law.small_strain().mu;
+    let coefficients: Vec<f64> =
+        cloud.particles.volume.iter().map(|volume| 0.3 * mu * volume).collect();
+    let operator = ScalarHourglass {
+        particles: &cloud.particles,
+        support: &support,
+        gradient: &gradient,
+        coefficients: &coefficients,
+    };
+    let component = |i: usize| -> Vec<f64> { displacement.iter().map(|u| u[i]).collect() };
+    let parts: f64 = (0..3).map(|i| operator.energy(&component(i))).sum();
+    let [_, whole] = body.total_energy(&displacement);
+    assert!((parts / whole - 1.0).abs() < 1e-12, "{parts} {whole}");
 }
