@@ -216,3 +216,18 @@ error: the case has no variant `no-upwind`
 "
     );
 }
+
+/// `cfl` and `step` exclude each other: an override of one takes the place of the other.
+#[test]
+fn one_way_to_choose_the_step_replaces_the_other() {
+    let step = |overrides: &[&str]| {
+        let case = read_with(FULL, overrides).unwrap_or_else(|problems| panic!("{problems}"));
+        case.time.step.value
+    };
+    assert_eq!(step(&["time.step=0.001"]), StepControl::Fixed(0.001));
+    assert_eq!(step(&["time.step=0.001", "time.cfl=0.2"]), StepControl::Cfl(0.2));
+    assert_eq!(step(&["time.cfl=", "time.step=0.001"]), StepControl::Fixed(0.001));
+    assert_eq!(step(&["time.step=0.001", "time.cfl="]), StepControl::Fixed(0.001));
+    let message = read_with(FULL, &["time.cfl=", "time.cfl="]).expect_err("not there").to_string();
+    assert!(message.contains("there is no `cfl` to remove"), "{message}");
+}
