@@ -1,8 +1,8 @@
 //! Systems of equations: Newton's method, load steps, and the linear solvers below them.
 //!
 //! Nothing here knows a formulation. A scheme says what its residual and its tangent are
-//! ([`Equations`], [`LoadedEquations`] where loads grow, [`Tangent`]); which components of its rows are unknowns is a [`Reduction`]. From
-//! these
+//! ([`Equations`], [`LoadedEquations`] where loads grow, [`Tangent`]); which components of its
+//! rows are unknowns is a [`Reduction`]. From these
 //!
 //! - [`SparseMatrix`] assembles the reduced tangent on a pattern that is found once, by gathering,
 //!   so that it is the same to the bit for any number of threads;
