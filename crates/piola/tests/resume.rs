@@ -108,6 +108,7 @@ fn implicit_steps_resume_to_the_bit() {
         ("free-vibration/case.toml", "implicit"),
         ("free-vibration/case.toml", "damped"),
         ("piston/case.toml", "implicit"),
+        ("piston-gamma/case.toml", "accurate"),
     ];
     for (name, variant) in runs {
         let path = all.iter().find(|path| path.ends_with(name)).unwrap();

@@ -61,6 +61,14 @@ impl<const D: usize> Pressed<D> {
 
     /// The force in N at a time in s on a particle with the displacement gradient A = F - I.
     pub fn force(&self, time: f64, gradient: &Tensor<D>) -> Vector<D> {
-        -(tensor::cofactor(&(gradient + Tensor::identity())) * self.pressing(time))
+        pressed_force(gradient, &self.pressing(time))
     }
+}
+
+/// `-cof(F) (p N)` in N, with the displacement gradient A = F - I and `p N` in N.
+pub(crate) fn pressed_force<const D: usize>(
+    gradient: &Tensor<D>,
+    pressing: &Vector<D>,
+) -> Vector<D> {
+    -(tensor::cofactor(&(gradient + Tensor::identity())) * pressing)
 }

@@ -10,7 +10,7 @@ use super::suggest::{nearest, one_of, suggestion};
 
 mod values;
 
-pub(super) use values::evaluate_parameters;
+pub(super) use values::{AXES, evaluate_parameters};
 
 /// Problems after which checking stops looking for suggestions, which take time.
 const PATIENCE: usize = 1000;

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::decode::Context;
+use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
 use super::model::{Case, Checkpoint, Domain, Parameter, Scheme, StepControl, Time, Variant};
 use super::record::{Datum, Record};
@@ -63,6 +63,9 @@ pub(super) fn case(
     }
     let probes: Vec<_> = record.records("probe").map(|probe| reader.probe(probe)).collect();
     let probes: Option<Vec<_>> = probes.into_iter().collect();
+    if let (Some(probes), Some(time)) = (&probes, &time) {
+        reader.tangents_exist(probes, time);
+    }
     let output = reader.output(record, end);
     let pictures: Vec<_> =
         record.records("picture").map(|picture| reader.picture(picture, end)).collect();

@@ -10,8 +10,8 @@ use super::suggest::{nearest, one_of};
 /// How deep a path may go. The deepest key of the case file is far above.
 const MAX_SEGMENTS: usize = 32;
 
-/// Keys of a table that exclude each other: an override of one takes the place of the other, so that
-/// one value from outside serves all variants, whichever of the keys they have.
+/// Keys of a table that exclude each other: an override that sets one removes the other, so that one
+/// value from outside serves all variants, whichever of the keys they have.
 const ALTERNATIVES: (&str, [&str; 2]) = ("time", ["cfl", "step"]);
 
 /// The text of an override and where it stands.
@@ -75,13 +75,8 @@ impl<'a> Override<'a> {
                 Some(node) => Some(node.clone()),
                 None => self.value(value, problems),
             };
-            if let Some(other) = alternative(parents, last) {
-                let is_removal = new.is_none();
-                let removed =
-                    remove(root, ALTERNATIVES.0, if is_removal { &last.name } else { other });
-                if is_removal && (removed || has(root, ALTERNATIVES.0, other)) {
-                    return Ok(());
-                }
+            if let Some(other) = alternative(parents, last).filter(|_| new.is_some()) {
+                remove(root, ALTERNATIVES.0, other);
             }
             self.set(root, parents, last, new)
         });
@@ -284,20 +279,11 @@ fn alternative(parents: &[Segment], last: &Segment) -> Option<&'static str> {
     }
 }
 
-/// Removes a key of a table of the root; whether it was there.
-fn remove(root: &mut Table, table: &str, key: &str) -> bool {
+/// Removes a key of a table of the root, if it is there.
+fn remove(root: &mut Table, table: &str, key: &str) {
     let found = root.entries.iter_mut().find(|entry| entry.key == table);
-    let Some(Value::Table(table)) = found.map(|entry| &mut entry.node.value) else { return false };
-    let before = table.entries.len();
-    table.entries.retain(|entry| entry.key != key);
-    table.entries.len() < before
-}
-
-/// Whether a table of the root has a key.
-fn has(root: &Table, table: &str, key: &str) -> bool {
-    match root.get(table).map(|node| &node.value) {
-        Some(Value::Table(table)) => table.get(key).is_some(),
-        _ => false,
+    if let Some(Value::Table(table)) = found.map(|entry| &mut entry.node.value) {
+        table.entries.retain(|entry| entry.key != key);
     }
 }
 

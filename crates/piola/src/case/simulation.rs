@@ -170,8 +170,7 @@ impl Simulation {
         let summary = executor.run(stop, progress)?;
         warnings.extend(summary.warnings.iter().cloned());
         let tables = tables.lock().clone();
-        let damps = case.time.newmark.is_some_and(|rule| rule.damps())
-            || case.time.theta.is_some_and(|rule| rule.damps());
+        let damps = case.time.rule.is_some_and(|rule| rule.damps());
         warnings.extend(unbalanced(&tables, damps));
         let gone = removed(&tables);
         if gone > 0.0 {

@@ -280,11 +280,21 @@ static TIME: TableSpec = TableSpec {
             "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
         ),
         key(
+            "error",
+            Kind::Number(Interval::between(1e-10, 0.5)),
+            "1",
+            Optional,
+            "with an implicit integrator: error of a step that is allowed, of the velocities over those \
+             that all energy would give. Each step is taken as a whole and in two halves, and is as long \
+             as the difference of both allows, `step` at most",
+        ),
+        key(
             "tolerance",
             Kind::Number(Interval::between(1e-13, 1e-2)),
             "1",
             Derived("1e-8 with `static` or an implicit integrator, 1e-10 with `upwind`"),
-            "what Newton's method may leave of the forces, over loads and reactions",
+            "what Newton's method may leave of the forces, over loads and reactions; with `upwind` of \
+             the momentum of a step, over what there is and what forces change of it",
         ),
         key(
             "linear_solver",
@@ -336,8 +346,16 @@ const LINEAR_SOLVERS: Choices = choices(&[
         "automatic",
         "`direct` for bodies that are quick to factorise, `krylov` for larger ones",
     ),
-    choice("direct", "by a sparse factorisation"),
-    choice("krylov", "by conjugate gradients, GMRES with pressures that follow the surface"),
+    choice(
+        "direct",
+        "by a sparse factorisation, of the symmetric half where the tangent is not symmetric, with \
+         GMRES for the rest",
+    ),
+    choice(
+        "krylov",
+        "by conjugate gradients, or GMRES where the tangent is not symmetric: with `upwind`, and with \
+         pressures that follow the surface",
+    ),
 ]);
 
 const REACTIONS: Choices = choices(&[

@@ -12,6 +12,7 @@ mod grid;
 mod list;
 mod near;
 mod order;
+mod parts;
 mod retain;
 mod search;
 mod skin;

@@ -18,7 +18,7 @@ pub use files::WrittenFiles;
 pub use frames::FrameWriter;
 pub use interpolation::Interpolated;
 pub use pictures::{PictureRequest, PictureWriter};
-pub use probe::{Probe, ProbeKind};
+pub use probe::{Probe, ProbeKind, TANGENT_COLUMNS};
 pub use profile::{Line, ProfileRecorder};
 pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns, momentum_columns};
 pub use tables::{Series, Tables};

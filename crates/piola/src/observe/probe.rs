@@ -4,7 +4,7 @@ use super::comparison::Deviation;
 use super::interpolation::Interpolated;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
-use crate::schemes::Scheme;
+use crate::schemes::{Scheme, Theta};
 
 /// A probe bound to the particles of a run.
 #[derive(Clone)]
@@ -45,7 +45,29 @@ pub enum ProbeKind {
     Point(Interpolated),
     /// How far a field is from a function of place and time.
     Error(Deviation),
+    /// The Taylor test of the tangent of an implicit step from the state of the moment.
+    Tangent {
+        /// The rule of the step.
+        rule: Theta,
+        /// Its length in s.
+        step: f64,
+    },
 }
+
+/// Distances of the Taylor test, a decade apart.
+const SIZES: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
+
+/// Columns of the Taylor test: the least and the largest of the slopes over a decade, which are 2
+/// where the tangent is exact, and what was left at each distance.
+pub const TANGENT_COLUMNS: [(&str, &str); 7] = [
+    ("least_slope", "1"),
+    ("largest_slope", "1"),
+    ("remainder_1", "kg m/s"),
+    ("remainder_2", "kg m/s"),
+    ("remainder_3", "kg m/s"),
+    ("remainder_4", "kg m/s"),
+    ("remainder_5", "kg m/s"),
+];
 
 impl Probe {
     /// The columns that it fills, in `dimension` dimensions.
@@ -57,6 +79,10 @@ impl Probe {
             ProbeKind::Sum { field, .. } => {
                 component_columns(&self.name, std::slice::from_ref(field), dimension)
             }
+            ProbeKind::Tangent { .. } => TANGENT_COLUMNS
+                .iter()
+                .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), *unit))
+                .collect(),
             ProbeKind::Error(_) => vec![Column::new(format!("{}.error", self.name), "1")],
             ProbeKind::Extremum { field, .. } => {
                 let name = format!("{}.{}", self.name, field.name(dimension));
@@ -101,6 +127,17 @@ impl Probe {
             }
             ProbeKind::Point(point) => point.record(scheme, time, state, scratch, row),
             ProbeKind::Error(error) => row.push(error.record(scheme, time, state, scratch)),
+            ProbeKind::Tangent { rule, step } => {
+                let tested =
+                    scheme.theta().map(|it| it.remainders(rule, time, *step, state, &SIZES));
+                let left = tested.unwrap_or_default();
+                let slopes = left.windows(2).map(|pair| (pair[0] / pair[1]).log10());
+                let [least, largest] = slopes.fold([f64::NAN; 2], |[least, largest], slope| {
+                    [least.min(slope), largest.max(slope)]
+                });
+                row.extend([least, largest]);
+                row.extend((0..SIZES.len()).map(|k| left.get(k).copied().unwrap_or(f64::NAN)));
+            }
         }
     }
 }

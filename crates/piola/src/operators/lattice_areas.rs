@@ -134,6 +134,52 @@ mod tests {
         }
     }
 
+    /// Centres of cells: beside the outermost layer, whose areas are too large, the next one has areas
+    /// that point the other way, so that all of them times the places are the volume.
+    #[test]
+    fn centres_of_cells_have_areas_in_two_layers() {
+        let place = |k: i32, edge: f64| edge * (f64::from(k) + 0.5);
+        let (edges, counts) = ([0.5, 0.25], [6, 8]);
+        let sites = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
+        let sites: Vec<(i32, i32)> = sites.collect();
+        let position: Vec<Vector<2>> = sites
+            .iter()
+            .map(|&(i, j)| Vector::from([place(i, edges[0]), place(j, edges[1])]))
+            .collect();
+        let count = position.len();
+        let particles = Particles {
+            position,
+            volume: vec![edges[0] * edges[1]; count],
+            weight: vec![1.0; count],
+            spacing: vec![0.5; count],
+            body: vec![0; count],
+            id: (0..count as u32).collect(),
+            surface: Surface::default(),
+        };
+        let areas = lattice_areas(&particles, &edges, &Domain::default()).expect("areas");
+        let layers = |k: i32, count: i32| match (k.min(count - 1 - k), 2 * k < count) {
+            (0, low) => {
+                if low {
+                    -1.5
+                } else {
+                    1.5
+                }
+            }
+            (1, low) => {
+                if low {
+                    0.5
+                } else {
+                    -0.5
+                }
+            }
+            _ => 0.0,
+        };
+        for (&(i, j), area) in sites.iter().zip(&areas) {
+            let share = [layers(i, counts[0]) * edges[1], layers(j, counts[1]) * edges[0]];
+            assert!((area - Vector::from(share)).amax() < 1e-12, "{area} at {i}, {j}");
+        }
+    }
+
     #[test]
     fn a_single_row_has_no_areas_across_and_says_where() {
         let shape = Shape::cuboid(Vector::<2>::new(3.0, 0.0), Vector::<2>::new(4.0, 0.1));

@@ -25,8 +25,17 @@ pub enum Style {
     /// Joined by a line, which breaks at points that are not finite.
     #[default]
     Line,
+    /// The same with dashes, for what is compared with a line and may lie on it.
+    Dashes,
     /// As rings, for references.
     Marks,
+}
+
+impl Style {
+    /// Whether points are joined.
+    pub fn is_line(self) -> bool {
+        self != Self::Marks
+    }
 }
 
 /// One curve.
@@ -121,10 +130,10 @@ impl Plot {
         let mut panels: Vec<Vec<Styled>> =
             panels.map(|panel| panel.into_iter().map(styled).collect()).collect();
         for panel in &mut panels {
-            for style in [Style::Line, Style::Marks] {
-                let alike = panel.iter_mut().filter(|styled| styled.series.style == style);
+            for lines in [true, false] {
+                let alike = panel.iter_mut().filter(|it| it.series.style.is_line() == lines);
                 for (number, styled) in alike.enumerate() {
-                    styled.pen = pen(style, number);
+                    styled.pen = pen(styled.series.style, number);
                 }
             }
         }
@@ -148,16 +157,16 @@ pub(super) fn by_unit(series: &[Series]) -> Vec<Vec<&Series>> {
     panels
 }
 
-/// The looks of the curve `number` of its style: lines take the colours from the first on and then
+/// The looks of the curve `number` of lines or of marks: lines take the colours from the first on and then
 /// dashes, marks take them from the last, black, backwards.
 fn pen(style: Style, number: usize) -> Pen {
     let colours = CURVES.len();
     match style {
         Style::Marks => Pen::new(LINE, CURVES[colours - 1 - number % colours]),
-        Style::Line => {
-            let dashes = match number / colours {
-                0 => Vec::new(),
-                1 => vec![14.0, 6.0],
+        Style::Line | Style::Dashes => {
+            let dashes = match (style, number / colours) {
+                (Style::Line, 0) => Vec::new(),
+                (_, 0 | 1) => vec![14.0, 6.0],
                 _ => vec![4.0, 5.0],
             };
             Pen { width: 2.6, colour: CURVES[number % colours], dashes }
@@ -186,9 +195,8 @@ pub(super) fn ordinates(panel: &[&Series]) -> [f64; 2] {
 /// `tip.displacement.y`, `energy` of `energy.kinetic` and `energy.strain`. References over curves
 /// may be called anything.
 pub(super) fn common_name(panel: &[&Series]) -> String {
-    let is_line = |series: &Series| series.style == Style::Line;
-    let only_marks = !panel.iter().any(|series| is_line(series));
-    let counted = || panel.iter().filter(|series| only_marks || is_line(series));
+    let only_marks = !panel.iter().any(|series| series.style.is_line());
+    let counted = || panel.iter().filter(|series| only_marks || series.style.is_line());
     let names = || counted().map(|series| series.column.name.split('.'));
     let mut end = common_start(names().map(Iterator::rev));
     end.reverse();
@@ -211,7 +219,7 @@ fn draw_curves(canvas: &mut Canvas, frame: &Frame, panel: &[Styled]) {
     for Styled { series, pen } in panel {
         let points = series.points.iter().map(|&[x, y]| frame.at(x, y));
         match series.style {
-            Style::Line => {
+            Style::Line | Style::Dashes => {
                 let points = thinned(points);
                 canvas.line(&points, pen);
                 // A single point makes no line.

@@ -1,6 +1,6 @@
 //! Linear and angular momentum, and the impulses that change them.
 
-use crate::Vector;
+use crate::{Vector, parallel};
 
 /// One component of momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,21 @@ pub fn momentum_components(dimension: usize) -> &'static [MomentumComponent] {
         2 => &PLANE,
         _ => &SPACE,
     }
+}
+
+/// `sqrt(sum_a m_a |v_a - w_a|^2)` in J^(1/2) of the velocities v and w with which the rows of two
+/// states begin, of particles with the masses m in kg.
+pub(crate) fn kinetic_distance<const D: usize>(
+    [one, other]: [&[f64]; 2],
+    row_length: usize,
+    count: usize,
+    mass: impl Fn(usize) -> f64 + Sync,
+) -> f64 {
+    let velocity =
+        |state: &[f64], a: usize| Vector::<D>::from_column_slice(&state[a * row_length..][..D]);
+    let sum =
+        parallel::sum(count, |a| mass(a) * (velocity(one, a) - velocity(other, a)).norm_squared());
+    sum.sqrt()
 }
 
 /// The momentum of `vector` (mass times velocity, or a force) at `point`, as

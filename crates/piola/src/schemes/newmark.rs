@@ -73,6 +73,12 @@ impl Newmark {
         self.gamma > 0.5
     }
 
+    /// Order of its errors in the length of a step.
+    pub fn order(&self) -> i32 {
+        let second = 0.5 - self.alpha_m + self.alpha_f;
+        if (self.gamma - second).abs() < 1e-12 { 2 } else { 1 }
+    }
+
     /// How far into a step forces are evaluated, `1 - alpha_f`.
     pub fn reach(&self) -> f64 {
         1.0 - self.alpha_f
@@ -122,6 +128,9 @@ pub trait NewmarkScheme: Scheme {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution>;
+
+    /// `sqrt(sum_a m_a |v_a - w_a|^2)` of the velocities v and w of two states, in J^(1/2).
+    fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64;
 }
 
 #[cfg(test)]
@@ -173,6 +182,7 @@ mod tests {
             };
             let order = (error(100) / error(200)).log2();
             assert!((order - 2.0).abs() < 0.05, "{rule:?}: {order}");
+            assert_eq!(rule.order(), 2, "{rule:?}");
         }
     }
 
@@ -194,6 +204,7 @@ mod tests {
         // First order, with gamma above one half.
         let dissipative = Newmark::new(0.5, 0.9).expect("stable weights");
         assert!(growth(&dissipative, 1.0) < 0.9);
+        assert_eq!(dissipative.order(), 1);
     }
 
     #[test]

@@ -91,14 +91,14 @@ pub trait Scheme: Send {
         None
     }
 
-    /// The formulation as one that takes implicit steps of second order in time, if it is one and was
-    /// built for that.
+    /// The formulation as one that takes implicit steps of a system of second order in time, of masses
+    /// and accelerations, if it is one and was built for that.
     fn newmark(&mut self) -> Option<&mut dyn NewmarkScheme> {
         None
     }
 
-    /// The formulation as one that takes implicit steps of first order in time, if it is one and was
-    /// built for that.
+    /// The formulation as one that takes implicit steps of a system of first order in time, of its
+    /// state and its rates, if it is one and was built for that.
     fn theta(&mut self) -> Option<&mut dyn ThetaScheme> {
         None
     }

@@ -59,6 +59,11 @@ impl Theta {
         self.theta > 0.5
     }
 
+    /// Order of its errors in the length of a step.
+    pub fn order(&self) -> i32 {
+        if self.theta == 0.5 { 2 } else { 1 }
+    }
+
     /// Share of the rate at the start of a step.
     pub fn share_at_start(&self) -> f64 {
         if self.is_midpoint { 0.0 } else { 1.0 - self.theta }
@@ -97,6 +102,21 @@ pub trait ThetaScheme: Scheme {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution>;
+
+    /// Taylor test of the tangent of a step of `rule` from `state`: how far the residual is from
+    /// linear at a distance of each of `sizes` in one direction. It falls as the square of these
+    /// where the tangent is the derivative, Upwind (6.24) to (6.26).
+    fn remainders(
+        &mut self,
+        rule: &Theta,
+        time: f64,
+        step: f64,
+        state: &[f64],
+        sizes: &[f64],
+    ) -> Vec<f64>;
+
+    /// `sqrt(sum_a m_a |v_a - w_a|^2)` of the velocities v and w of two states, in J^(1/2).
+    fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64;
 }
 
 #[cfg(test)]

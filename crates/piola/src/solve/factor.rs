@@ -10,6 +10,7 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
+use sysinfo::System;
 use thiserror::Error;
 
 use super::SparseMatrix;
@@ -27,11 +28,20 @@ pub struct Factor {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum FactorError {
-    /// There is not enough memory.
-    #[error("the factors of {unknowns} unknowns do not fit into memory; use the `krylov` solver")]
+    /// There is not enough memory, by the number of entries that the factors will have.
+    #[error(
+        "the factors of {unknowns} unknowns take {:.2} GB, and {:.2} GB are free: set \
+         `time.linear_solver = \"krylov\"`, or take fewer particles",
+        *needed as f64 / 1e9,
+        *free as f64 / 1e9
+    )]
     Memory {
         /// Rows of the matrix.
         unknowns: usize,
+        /// Bytes that are needed.
+        needed: u64,
+        /// Bytes that are free.
+        free: u64,
     },
     /// A pivot is zero or not a number.
     #[error("the matrix is singular: pivot {index} vanishes or is no number")]
@@ -46,10 +56,15 @@ impl Factor {
     /// the unknowns is kept: number them by [`dissect`](super::dissect).
     ///
     /// # Errors
-    /// [`FactorError::Memory`].
+    /// [`FactorError::Memory`], before that memory is taken.
     pub fn new(matrix: &SparseMatrix) -> Result<Self, FactorError> {
+        Self::within(free_memory(), matrix)
+    }
+
+    /// The same where so many bytes are free.
+    fn within(free: u64, matrix: &SparseMatrix) -> Result<Self, FactorError> {
         let unknowns = matrix.len();
-        let memory = FactorError::Memory { unknowns };
+        let too_much = |needed: u64| FactorError::Memory { unknowns, needed, free };
         let (offsets, rows, _) = matrix.parts();
         let pattern = SymbolicSparseColMatRef::new_checked(unknowns, unknowns, offsets, None, rows);
         // The order is that of the unknowns. It is given as a permutation because the analysis of
@@ -62,13 +77,17 @@ impl Factor {
             SymmetricOrdering::Custom(order),
             CholeskySymbolicParams::default(),
         )
-        .map_err(|_| memory)?;
+        .map_err(|_| too_much(size_of_val(rows) as u64))?;
         let request = symbolic
             .factorize_numeric_ldlt_scratch::<f64>(Par::Seq, parameters())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let buffer = MemBuffer::try_new(request).map_err(|_| memory)?;
+        let needed = (symbolic.len_val() * size_of::<f64>() + request.size_bytes()) as u64;
+        if needed > free {
+            return Err(too_much(needed));
+        }
+        let buffer = MemBuffer::try_new(request).map_err(|_| too_much(needed))?;
         let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| memory)?;
+        values.try_reserve_exact(symbolic.len_val()).map_err(|_| too_much(needed))?;
         values.resize(symbolic.len_val(), 0.0);
         Ok(Self { symbolic, values, memory: buffer })
     }
@@ -143,4 +162,33 @@ impl Factor {
 
 fn parameters() -> Spec<LdltParams, f64> {
     default()
+}
+
+/// Bytes of memory that nobody uses. Where the system does not tell there is no bound.
+fn free_memory() -> u64 {
+    let mut system = System::new();
+    system.refresh_memory();
+    let free = system.available_memory();
+    let of_group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.free_memory);
+    if free == 0 { u64::MAX } else { free.min(of_group) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of unknowns, each coupled to the next.
+    #[test]
+    fn what_does_not_fit_is_refused_beforehand() {
+        let columns = (0..1000).map(|k| if k == 999 { vec![k] } else { vec![k, k + 1] });
+        let matrix = SparseMatrix::of_columns(columns);
+        let factor = Factor::new(&matrix).expect("it is small");
+        assert!(factor.entries() >= 1999, "{}", factor.entries());
+        let error = Factor::within(1000, &matrix).err().expect("it does not fit");
+        let FactorError::Memory { unknowns: 1000, needed, free: 1000 } = error else {
+            panic!("{error}")
+        };
+        assert!(needed >= 8 * 1999, "{needed}");
+        assert!(error.to_string().contains("`time.linear_solver = \"krylov\"`"), "{error}");
+    }
 }

@@ -123,6 +123,27 @@ const LEAST_STEPS: usize = 5000;
 /// times as large.
 const FIRST_SHIFT: f64 = 1e-4;
 
+/// Steps of a Krylov method that are allowed for a number of unknowns.
+pub fn most_steps(unknowns: usize) -> usize {
+    LEAST_STEPS + unknowns / 20
+}
+
+impl Outcome {
+    /// Writes the solution, unless hardly anything of the right-hand side is solved for; how many steps
+    /// it took.
+    ///
+    /// # Errors
+    /// [`LinearError::NoConvergence`].
+    pub fn accept(self, solution: &mut [f64]) -> Result<usize, LinearError> {
+        let Self { steps, residual, .. } = self;
+        if !self.negative_curvature && residual > POOREST {
+            return Err(LinearError::NoConvergence { steps, residual });
+        }
+        solution.copy_from_slice(&self.solution);
+        Ok(steps)
+    }
+}
+
 /// A linear solver bound to the pattern of a tangent.
 pub struct LinearSolver<const D: usize> {
     reduction: Reduction<D>,
@@ -268,13 +289,8 @@ impl<const D: usize> LinearSolver<D> {
             self.precondition(right, solution);
         } else {
             let outcome = self.iterate(tangent, right, tolerance);
-            if !outcome.negative_curvature && outcome.residual > POOREST {
-                let Outcome { steps, residual, .. } = outcome;
-                return Err(LinearError::NoConvergence { steps, residual });
-            }
-            solution.copy_from_slice(&outcome.solution);
-            steps = outcome.steps;
             indefinite |= outcome.negative_curvature;
+            steps = outcome.accept(solution)?;
         }
         self.costs.solution += start.elapsed();
         Ok(LinearReport { steps, shift, indefinite })
@@ -321,7 +337,7 @@ impl<const D: usize> LinearSolver<D> {
         let precondition = |residual: &[f64], scaled: &mut [f64]| {
             self.precondition(residual, scaled);
         };
-        let most = LEAST_STEPS + right.len() / 20;
+        let most = most_steps(right.len());
         let outcome = match symmetric {
             true => conjugate_gradients(product, precondition, right, tolerance, most),
             false => gmres(product, precondition, right, tolerance, most),

@@ -38,7 +38,7 @@ pub use factor::{Factor, FactorError};
 pub use krylov::{Outcome, conjugate_gradients, gmres};
 pub use lanczos::{Mode, irregular, largest_mode};
 pub use linear::{
-    Costs, LinearError, LinearMethod, LinearReport, LinearSolver, Stability, Tangent,
+    Costs, LinearError, LinearMethod, LinearReport, LinearSolver, Stability, Tangent, most_steps,
 };
 pub use load_steps::{Increment, LoadError, LoadSteps, Path, follow};
 pub use newton::{

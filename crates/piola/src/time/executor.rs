@@ -73,6 +73,9 @@ impl Executor {
     /// What multiplies steps that retries have made shorter, after one that was quick.
     pub const GROWTH_FACTOR: f64 = 1.5;
 
+    /// What limits a step that the error of longer ones would be too large for.
+    pub const ACCURACY: &str = "accuracy";
+
     /// A run without observers and checkpoints, with as many steps as it takes and no retries.
     pub fn new(
         scheme: Box<dyn Scheme>,
@@ -159,6 +162,13 @@ impl Executor {
                 run.tally.watches.step.time(|| {
                     integrator.step(scheme, run.clock.time, met.step, &run.state, &mut next)
                 });
+            let growth = self.integrator.growth();
+            if let (Err(Failure::Inaccurate { .. }), Some(growth), true) =
+                (&taken, growth, self.control.adapts())
+            {
+                run.tally.factor *= growth * met.step / chosen.step;
+                continue;
+            }
             if let Err(failure) = taken {
                 if run.tally.retries.len() < self.retries && self.control.adapts() {
                     run.shorten(&failure);
@@ -170,9 +180,7 @@ impl Executor {
             std::mem::swap(&mut previous.1, &mut run.state);
             std::mem::swap(&mut run.state, &mut next);
             run.advance(self.control, met, soonest);
-            if self.integrator.was_quick(self.scheme.as_ref(), &run.state) {
-                run.tally.factor = (run.tally.factor * Self::GROWTH_FACTOR).min(1.0);
-            }
+            run.lengthen(self.integrator.as_ref(), self.scheme.as_ref(), chosen, met);
             progress(&Progress {
                 time: run.clock.time,
                 end: self.end,
@@ -362,6 +370,30 @@ impl Run {
         let kind = failure.kind().to_owned();
         let failure = failure.to_string();
         self.tally.retries.push(Retry { kind, failure, step, time, back_to: time, factor });
+    }
+
+    /// Lets the next step be longer, or shorter, by what is known of the step `met`, which is
+    /// `chosen` or was shortened to meet a due time.
+    fn lengthen(
+        &mut self,
+        integrator: &dyn Integrator,
+        scheme: &dyn Scheme,
+        chosen: ChosenStep,
+        met: ChosenStep,
+    ) {
+        let factor = self.tally.factor;
+        let next = match integrator.growth() {
+            Some(growth) => {
+                let wanted = factor * growth * met.step / chosen.step;
+                // What is good enough for a short step says little of one that was to be longer.
+                if met.step < chosen.step && growth > 1.0 { wanted.max(factor) } else { wanted }
+            }
+            None if factor < 1.0 && integrator.was_quick(scheme, &self.state) => {
+                factor * Executor::GROWTH_FACTOR
+            }
+            None => factor,
+        };
+        self.tally.factor = next.min(1.0);
     }
 
     /// Moves the clock on by the step `met`, which ends at `soonest` if it was shortened to.

@@ -155,6 +155,21 @@ pub enum Failure {
     /// The equations of a step have no solution, as far as was looked.
     #[error(transparent)]
     NoSolution(NoSolution),
+    /// A step is less accurate than was asked for. The run takes a shorter one.
+    #[error(
+        "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, and may have \
+         {largest:.1e}"
+    )]
+    Inaccurate {
+        /// What its error was estimated to be.
+        error: f64,
+        /// What it may be.
+        largest: f64,
+        /// Simulated time at its start in s.
+        time: f64,
+        /// Its length in s.
+        step: f64,
+    },
     /// The number of steps allowed is used up.
     #[error(
         "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
@@ -182,6 +197,7 @@ impl Failure {
                 Missed::Inverted => "inverted",
                 Missed::Unstable => "unstable",
             },
+            Self::Inaccurate { .. } => "inaccurate",
             Self::TooManySteps { .. } => "too_many_steps",
         }
     }
@@ -196,7 +212,7 @@ impl Failure {
             | Self::FixedStepTooLarge { index, .. }
             | Self::StepBelowFloor { index, .. } => Some(*index),
             // What led there is in its message; to take the steps once more would take long.
-            Self::NoSolution(_) | Self::TooManySteps { .. } => None,
+            Self::NoSolution(_) | Self::Inaccurate { .. } | Self::TooManySteps { .. } => None,
         }
     }
 }

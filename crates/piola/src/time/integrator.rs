@@ -1,12 +1,13 @@
 //! Time integration of a state that it knows only as numbers.
 
+use std::ops::RangeInclusive;
+
 use super::failure::Failure;
+use super::implicit::ImplicitStepping;
 use super::kick_drift_kick::KickDriftKick;
 use super::load_steps::LoadStepping;
-use super::newmark::NewmarkStepping;
-use super::theta::ThetaStepping;
 use super::tvd_rk2::TvdRk2;
-use crate::schemes::{NEWTON_ITERATIONS, Newmark, Scheme, Theta};
+use crate::schemes::{ImplicitRule, NEWTON_ITERATIONS, Newmark, Scheme, Theta};
 
 /// A method that takes a state one step further.
 pub trait Integrator: Send {
@@ -30,24 +31,28 @@ pub trait Integrator: Send {
         new: &mut [f64],
     ) -> Result<(), Failure>;
 
+    /// What the next step should be over the one that was tried last, for its error to be what is
+    /// allowed; `None` where no error is estimated.
+    fn growth(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether the step that led to `state` was found so quickly that the next may be longer, where
-    /// failures have made steps shorter. Explicit methods do not know.
-    fn was_quick(&self, _scheme: &dyn Scheme, _state: &[f64]) -> bool {
-        false
+    /// failures have made steps shorter: with few iterations, which a scheme that solves for its
+    /// states has among its figures. Those of explicit steps are none.
+    fn was_quick(&self, scheme: &dyn Scheme, state: &[f64]) -> bool {
+        let mut names = scheme.description().figures.iter();
+        let Some(index) = names.position(|(name, _)| *name == NEWTON_ITERATIONS) else {
+            return false;
+        };
+        let mut figures = Vec::new();
+        scheme.figures(state, &mut figures);
+        figures.get(index).is_some_and(|&iterations| QUICK.contains(&iterations))
     }
 }
 
-/// Most iterations of Newton's method in a step that counts as quick.
-const QUICK: f64 = 5.0;
-
-/// Whether a step that was solved for took few iterations, which a scheme has among its figures.
-pub(super) fn took_few_iterations(scheme: &dyn Scheme, state: &[f64]) -> bool {
-    let mut names = scheme.description().figures.iter();
-    let Some(index) = names.position(|(name, _)| *name == NEWTON_ITERATIONS) else { return false };
-    let mut figures = Vec::new();
-    scheme.figures(state, &mut figures);
-    figures.get(index).is_some_and(|&iterations| iterations <= QUICK)
-}
+/// Iterations of Newton's method in a step that counts as quick.
+const QUICK: RangeInclusive<f64> = 1.0..=5.0;
 
 /// The integrators by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,26 +127,29 @@ impl IntegratorKind {
         match self {
             Self::TvdRk2 => Box::new(TvdRk2::new(length)),
             Self::KickDriftKick => Box::new(KickDriftKick),
-            Self::Newmark => self.weighted(Newmark::AVERAGE_ACCELERATION),
-            Self::HhtAlpha => self.weighted(Newmark::hilber_hughes_taylor(Self::ALPHA)),
-            Self::GeneralisedAlpha => {
-                self.weighted(Newmark::generalised_alpha(Self::SPECTRAL_RADIUS))
-            }
             Self::Static => Box::new(LoadStepping),
-            Self::BackwardEuler => self.shared(Theta::BACKWARD_EULER),
-            Self::CrankNicolson => self.shared(Theta::CRANK_NICOLSON),
-            Self::Theta => self.shared(Theta::DAMPED),
-            Self::ImplicitMidpoint => self.shared(Theta::MIDPOINT),
+            Self::Newmark => self.with(ImplicitRule::Newmark(Newmark::AVERAGE_ACCELERATION), None),
+            Self::HhtAlpha => {
+                self.with(ImplicitRule::Newmark(Newmark::hilber_hughes_taylor(Self::ALPHA)), None)
+            }
+            Self::GeneralisedAlpha => {
+                let rule = Newmark::generalised_alpha(Self::SPECTRAL_RADIUS);
+                self.with(ImplicitRule::Newmark(rule), None)
+            }
+            Self::BackwardEuler => self.with(ImplicitRule::Theta(Theta::BACKWARD_EULER), None),
+            Self::CrankNicolson => self.with(ImplicitRule::Theta(Theta::CRANK_NICOLSON), None),
+            Self::Theta => self.with(ImplicitRule::Theta(Theta::DAMPED), None),
+            Self::ImplicitMidpoint => self.with(ImplicitRule::Theta(Theta::MIDPOINT), None),
         }
     }
 
-    /// An integrator of implicit steps with a share of the end of one's own.
-    pub fn shared(self, rule: Theta) -> Box<dyn Integrator> {
-        Box::new(ThetaStepping { name: self.name(), rule })
-    }
-
-    /// An integrator of implicit steps with weights of one's own.
-    pub fn weighted(self, rule: Newmark) -> Box<dyn Integrator> {
-        Box::new(NewmarkStepping { name: self.name(), rule })
+    /// An integrator of implicit steps with a rule of one's own, and with the largest error of a step
+    /// and the length of states, if errors are to be kept below one.
+    pub fn with(self, rule: ImplicitRule, error: Option<(f64, usize)>) -> Box<dyn Integrator> {
+        let plain = ImplicitStepping::new(self.name(), rule);
+        Box::new(match error {
+            Some((largest, length)) => plain.with_error(largest, length),
+            None => plain,
+        })
     }
 }

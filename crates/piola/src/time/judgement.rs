@@ -92,6 +92,9 @@ impl Executor {
             }
         })?;
         chosen.step *= tally.factor;
+        if tally.factor < 1.0 && self.integrator.growth().is_some() {
+            chosen.limiter = Self::ACCURACY;
+        }
         // Before the first step, and after one without any limit, there is nothing to compare to.
         let first_step = tally.first_step;
         let first = if first_step.is_finite() { first_step } else { 0.0 };
@@ -102,6 +105,8 @@ impl Executor {
             let Health { smallest_ratio: ratio, smallest_ratio_particle, .. } = clock.health;
             let advice = if ratio < Self::CRUSHED {
                 self.scheme.collapse_advice(smallest_ratio_particle)
+            } else if limiter == Self::ACCURACY {
+                "raise `time.error`, or lower `time.min_step`".into()
             } else {
                 format!("{}, or lower `time.min_step`", self.scheme.stability_advice())
             };

@@ -1,7 +1,7 @@
 //! Statics as an integrator: each step is one of the loads.
 
 use super::failure::Failure;
-use super::integrator::{Integrator, took_few_iterations};
+use super::integrator::Integrator;
 use crate::schemes::Scheme;
 
 /// Goes from equilibrium to equilibrium. The time is the load factor, so that output, probes,
@@ -31,9 +31,5 @@ impl Integrator for LoadStepping {
         new.copy_from_slice(old);
         let Some(scheme) = scheme.equilibrium() else { return Ok(()) };
         scheme.equilibrate(time, time + step, old, new).map_err(Failure::NoSolution)
-    }
-
-    fn was_quick(&self, scheme: &dyn Scheme, state: &[f64]) -> bool {
-        took_few_iterations(scheme, state)
     }
 }

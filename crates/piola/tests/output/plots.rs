@@ -46,6 +46,18 @@ fn a_line_goes_from_corner_to_corner_and_breaks_where_it_is_not_finite() {
     assert!(image.spot(BLUE, gap(41.0), gap(59.0)).is_none(), "the gap is bridged");
 }
 
+/// What is compared with a line and lies on it leaves it to be seen.
+#[test]
+fn dashes_let_what_is_below_them_be_seen() {
+    let points: Vec<[f64; 2]> = (0..=100).map(|i| [f64::from(i), 1.0]).collect();
+    let one = series("one", "m", Style::Line, &points);
+    let image = draw(vec![one.clone(), series("other", "m", Style::Dashes, &points)]);
+    let rows = image.level_lines(300);
+    let middle = (rows[0] + rows[1]) / 2 + 1;
+    let blue = (0..image.width).filter(|&x| image.at(x, middle) == BLUE).count();
+    assert!((200..800).contains(&blue), "{blue} pixels");
+}
+
 #[test]
 fn a_million_points_keep_their_extremes() {
     let mut points: Vec<[f64; 2]> = (0..1_000_000).map(|i| [f64::from(i), 0.0]).collect();
@@ -112,16 +124,16 @@ proptest! {
             (
                 "\\PC{0,30}",
                 "m|J|",
-                any::<bool>(),
+                0..3_usize,
                 proptest::collection::vec(any::<[u64; 2]>(), 0..8),
             ),
             0..30,
         ),
     ) {
-        let series = curves.into_iter().map(|(name, unit, line, bits)| Series {
+        let series = curves.into_iter().map(|(name, unit, style, bits)| Series {
             column: Column::new(name, unit),
             points: bits.into_iter().map(|pair| pair.map(f64::from_bits)).collect(),
-            style: if line { Style::Line } else { Style::Marks },
+            style: [Style::Line, Style::Dashes, Style::Marks][style],
         });
         draw(series.collect());
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use piola::Vector;
 use piola::boundaries::{BodyForce, PrescribedVelocity, Traction};
 use piola::schemes::dual_support::{DualSupport, DualSupportInput, Motion};
-use piola::schemes::{Missed, Newmark, Scheme, momentum_components};
+use piola::schemes::{ImplicitRule, Missed, Newmark, Scheme, momentum_components};
 use piola::solve::{LinearMethod, Newton};
 use piola::time::{Failure, IntegratorKind};
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants};
@@ -49,7 +49,7 @@ fn march<const D: usize>(
 ) -> Vec<f64> {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::Newmark.weighted(rule);
+    let mut integrator = IntegratorKind::Newmark.with(ImplicitRule::Newmark(rule), None);
     for count in 0..steps {
         integrator.step(scheme, count as f64 * step, step, &state, &mut new).unwrap();
         std::mem::swap(&mut state, &mut new);

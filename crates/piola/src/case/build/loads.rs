@@ -1,12 +1,11 @@
 //! What acts on bodies: body forces, tractions and pressures.
 
 use std::cell::OnceCell;
-use std::sync::Arc;
 
 use super::bodies::{self, vector};
 use super::selections::{Selection, function, not_empty, selection, trace_numbers};
 use crate::Vector;
-use crate::boundaries::{BodyForce, FollowerPressure, SpaceTime, Traction};
+use crate::boundaries::{BodyForce, FollowerPressure, Traction};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, LoadKind};
 use crate::case::source::{Located, Place};
@@ -31,7 +30,7 @@ pub(super) fn body_forces<const D: usize>(case: &Case) -> Vec<BodyForce<D>> {
 /// The surface of the bodies as loads see it. On bodies from meshes these are faces, which nodes
 /// share and centres of cells by their trace; on others the boundary areas of particles, which are
 /// asked for where there is a load on them.
-pub(super) struct Surface<'a, const D: usize, F> {
+pub(super) struct LoadedSurface<'a, const D: usize, F> {
     case: &'a Case,
     particles: &'a Particles<D>,
     domain: &'a Domain<D>,
@@ -43,13 +42,12 @@ pub(super) struct Surface<'a, const D: usize, F> {
 /// A share of a load on one particle.
 struct Share<const D: usize> {
     particle: u32,
-    share: f64,
-    /// Outward area vector in m^(D-1) of what is shared.
+    /// Outward area vector in m^(D-1) of its share.
     area: Vector<D>,
     place: Vector<D>,
 }
 
-impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> Surface<'a, D, F> {
+impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurface<'a, D, F> {
     /// The surface with the outward boundary area vectors of particles in m^(D-1), or why there are
     /// none.
     pub fn new(
@@ -68,39 +66,13 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> Surface<'a, 
         let mut tractions = Vec::new();
         for load in &self.case.loads {
             let LoadKind::Traction { region, traction } = &load.kind else { continue };
-            let value: [Arc<dyn SpaceTime>; D] = std::array::from_fn(|k| function(&traction[k]));
-            let Some(found) = self.parts(region, load.body.as_ref(), problems) else { continue };
-            let name = name(load, "traction");
-            if !found.faces.is_empty() {
-                let (name, value) = (name.clone(), value.clone());
-                let shares = self.shares(&found.faces);
-                tractions.push(Traction {
-                    name,
-                    particles: shares.iter().map(|it| it.particle).collect(),
-                    areas: shares.iter().map(|it| it.share * it.area.norm()).collect(),
-                    places: shares.iter().map(|it| it.place).collect(),
-                    value,
-                });
-            }
-            if found.particles.is_empty() {
-                continue;
-            }
-            if !matches!(&region.value, model::Region::Plane { .. }) {
-                problems.push(self.case.problem_at(
-                    region.place,
-                    "a traction needs a plane, whose normal tells the loaded side",
-                    "not a plane",
-                    Some("use where = { kind = \"plane\", point = .., normal = .. }".into()),
-                ));
-                continue;
-            }
-            let Some(areas) = self.facing(region, &found.particles, problems) else { continue };
+            let Some(shares) = self.loaded(load, region, problems) else { continue };
             tractions.push(Traction {
-                name,
-                areas: areas.iter().map(Vector::norm).collect(),
-                particles: found.particles,
-                places: Vec::new(),
-                value,
+                name: name(load, "traction"),
+                particles: shares.iter().map(|it| it.particle).collect(),
+                areas: shares.iter().map(|it| it.area.norm()).collect(),
+                places: shares.iter().map(|it| it.place).collect(),
+                value: std::array::from_fn(|k| function(&traction[k])),
             });
         }
         tractions
@@ -112,37 +84,63 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> Surface<'a, 
         let mut pressures = Vec::new();
         for load in &self.case.loads {
             let LoadKind::Pressure { region, pressure } = &load.kind else { continue };
-            let value = function(pressure);
-            let Some(found) = self.parts(region, load.body.as_ref(), problems) else { continue };
-            let name = name(load, "pressure");
-            if !found.faces.is_empty() {
-                let (name, value) = (name.clone(), value.clone());
-                let shares = self.shares(&found.faces);
-                pressures.push(FollowerPressure {
-                    name,
-                    particles: shares.iter().map(|it| it.particle).collect(),
-                    areas: shares.iter().map(|it| it.area * it.share).collect(),
-                    places: shares.iter().map(|it| it.place).collect(),
-                    value,
-                });
-            }
-            if found.particles.is_empty() {
-                continue;
-            }
-            let Some(areas) = self.facing(region, &found.particles, problems) else { continue };
-            if areas.iter().all(|area| area.amax() == 0.0) {
-                problems.push(self.case.problem_at(
-                    region.place,
-                    "none of the particles of this region lies on the boundary",
-                    "nothing to load",
-                    Some("select particles on the surface of a body".into()),
-                ));
-                continue;
-            }
-            let (particles, places) = (found.particles, Vec::new());
-            pressures.push(FollowerPressure { name, particles, areas, places, value });
+            let Some(shares) = self.loaded(load, region, problems) else { continue };
+            pressures.push(FollowerPressure {
+                name: name(load, "pressure"),
+                particles: shares.iter().map(|it| it.particle).collect(),
+                areas: shares.iter().map(|it| it.area).collect(),
+                places: shares.iter().map(|it| it.place).collect(),
+                value: function(pressure),
+            });
         }
         pressures
+    }
+
+    /// What of the surface is in the region of a load, of faces and of particles; a problem if that
+    /// is nothing.
+    fn loaded(
+        &self,
+        load: &model::Load,
+        region: &Located<model::Region>,
+        problems: &mut Vec<Problem>,
+    ) -> Option<Vec<Share<D>>> {
+        let found = self.parts(region, load.body.as_ref(), problems)?;
+        let mut shares = self.shares(&found.faces);
+        if found.particles.is_empty() {
+            return Some(shares);
+        }
+        let is_plane = matches!(&region.value, model::Region::Plane { .. });
+        if !is_plane && matches!(load.kind, LoadKind::Traction { .. }) {
+            // The area vectors of edges and corners are sums over sides, and shorter than their areas.
+            problems.push(self.case.problem_at(
+                region.place,
+                "a traction needs a plane, whose normal tells the loaded side",
+                "not a plane",
+                Some("use where = { kind = \"plane\", point = .., normal = .. }".into()),
+            ));
+            return None;
+        }
+        let areas = self.facing(region, &found.particles, problems)?;
+        let own = found.particles.iter().zip(areas).filter(|(_, area)| area.amax() > 0.0);
+        let place = |a: u32| self.particles.position[a as usize];
+        let own = own.map(|(&particle, area)| Share { particle, area, place: place(particle) });
+        shares.extend(own);
+        if shares.is_empty() {
+            let help = match is_plane {
+                true => {
+                    "select particles on the surface, with a normal that points out of the body"
+                }
+                false => "select particles on the surface of a body",
+            };
+            problems.push(self.case.problem_at(
+                region.place,
+                "none of the particles of this region lies on the boundary",
+                "nothing to load",
+                Some(help.into()),
+            ));
+            return None;
+        }
+        Some(shares)
     }
 
     /// The faces of bodies from meshes in a region, and the particles of others; a problem if there
@@ -238,7 +236,8 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> Surface<'a, 
                 self.trace.zip(numbers[face as usize]).map(|(trace, f)| trace.row(f as usize));
             for sample in self.particles.surface.faces[face as usize].samples() {
                 for &(particle, share) in traced.as_ref().unwrap_or(&sample.shares) {
-                    all.push(Share { particle, share, area: sample.area, place: sample.place });
+                    let area = sample.area * share;
+                    all.push(Share { particle, area, place: sample.place });
                 }
             }
         }

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::VolumetricLaw;
 
-use self::loads::Surface;
+use self::loads::LoadedSurface;
 use super::diagnostics::{Problem, Problems};
 use super::model::{self, Case};
 use super::simulation::Simulation;
@@ -157,7 +157,7 @@ fn upwind<const D: usize>(
             .map_err(|error| error.to_string())
     };
     let tractions =
-        Surface::new(case, &particles, &support.domain, None, areas).tractions(problems);
+        LoadedSurface::new(case, &particles, &support.domain, None, areas).tractions(problems);
     if !problems.is_empty() {
         return None;
     }
@@ -179,7 +179,7 @@ fn upwind<const D: usize>(
         body_forces,
         tractions,
         prescribed,
-        implicit: case.time.theta.map(|_| implicit_settings(case)),
+        implicit: case.time.rule.map(|_| implicit_settings(case)),
     });
     built
         .map_err(|error| {
@@ -308,9 +308,8 @@ fn integrator_kind(case: &Case) -> IntegratorKind {
 /// The integrator of a case, for states of `length` numbers.
 pub(super) fn integrator(case: &Case, length: usize) -> Box<dyn Integrator> {
     let kind = integrator_kind(case);
-    match (case.time.newmark, case.time.theta) {
-        (Some(rule), _) => kind.weighted(rule),
-        (None, Some(rule)) => kind.shared(rule),
-        (None, None) => kind.build(length),
+    match case.time.rule {
+        Some(rule) => kind.with(rule, case.time.error.map(|error| (error, length))),
+        None => kind.build(length),
     }
 }

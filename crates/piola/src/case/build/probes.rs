@@ -10,6 +10,7 @@ use crate::case::source::Located;
 use crate::fields::FieldDescription;
 use crate::geometry::Particles;
 use crate::observe::{Deviation, Interpolated, Line, Probe, ProbeKind};
+use crate::schemes::ImplicitRule;
 use crate::time::Schedule;
 
 /// The probes of a case.
@@ -43,6 +44,11 @@ pub(super) fn probes<const D: usize>(
                 let places = vec![at.value.clone()];
                 ProbeKind::Point(interpolated(case, particles, body, places, fields))
             }
+            model::ProbeKind::Tangent { step } => match case.time.rule {
+                Some(ImplicitRule::Theta(rule)) => ProbeKind::Tangent { rule, step: *step },
+                // The reader of cases has refused others.
+                _ => continue,
+            },
             // Those have tables of their own.
             model::ProbeKind::Line { .. } => continue,
             model::ProbeKind::Error { field, exact, without_mean, of_squares, region } => {

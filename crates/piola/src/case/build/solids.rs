@@ -3,7 +3,7 @@
 use piola_formulas::hyperelastic::Reduced;
 
 use super::bodies::{self, BodyReport};
-use super::loads::{self, Surface};
+use super::loads::{self, LoadedSurface};
 use super::selections::Held;
 use super::{Built, initial, integrator_kind, kernel, probes, selections};
 use crate::Vector;
@@ -83,7 +83,7 @@ pub(super) fn build<const D: usize>(
             (Vec::new(), Motion::Static(Box::new(input)))
         }
         _ => {
-            let motion = match case.time.newmark {
+            let motion = match case.time.rule {
                 Some(_) => Motion::Implicit(case.time.linear_solver, newton),
                 None => Motion::Explicit,
             };
@@ -96,7 +96,7 @@ pub(super) fn build<const D: usize>(
                 .to_owned()
         })
     };
-    let surface = Surface::new(case, &particles, &support.domain, trace.as_ref(), known);
+    let surface = LoadedSurface::new(case, &particles, &support.domain, trace.as_ref(), known);
     let tractions = surface.tractions(&mut problems);
     let pressures = surface.pressures(&mut problems);
     let materials = materials(case, &mut problems);

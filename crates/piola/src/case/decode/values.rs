@@ -10,7 +10,8 @@ use crate::case::spec::{Interval, Kind, Length, Variables};
 /// Every expression looks through the parameters one by one.
 const MAX_PARAMETERS: usize = 1000;
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+/// The axes by name.
+pub(in crate::case) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Context<'_> {
     /// Checks a value that is no table.

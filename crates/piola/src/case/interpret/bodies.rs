@@ -132,7 +132,7 @@ impl Reader<'_, '_> {
                 "`max` must be above `min` in every component, but {} is not above {} in {}",
                 max[axis],
                 min[axis],
-                ["x", "y", "z"][axis.min(2)]
+                AXES[axis.min(2)]
             );
             return self.refuse(Problem::new(max.place, message, "not above `min`"));
         }

@@ -5,6 +5,7 @@ use crate::case::catalogue;
 use crate::case::model::{Probe, ProbeKind, Quantity};
 use crate::case::suggest::one_of;
 use crate::fields::{Component, FieldDescription, FieldKind, FieldSelector, component_name};
+use crate::observe::TANGENT_COLUMNS;
 
 impl Reader<'_, '_> {
     /// The field called `name`, which stands at `place`.
@@ -138,6 +139,15 @@ impl Reader<'_, '_> {
                 let message = format!("the probe `{name}` does not record `{column}`");
                 let problem = Problem::new(text.place, message, "not recorded");
                 self.refuse(problem.help(format!("its column is `{name}.{own}`")))
+            }
+            ProbeKind::Tangent { .. } => {
+                let known = TANGENT_COLUMNS.map(|(own, _)| own);
+                if known.contains(&column) {
+                    return Some(());
+                }
+                let message = format!("the probe `{name}` does not record `{column}`");
+                let problem = Problem::new(text.place, message, "not recorded");
+                self.refuse(problem.help(suggestion(column, known)))
             }
             ProbeKind::Particle { fields, .. }
             | ProbeKind::Point { fields, .. }

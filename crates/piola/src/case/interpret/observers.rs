@@ -7,6 +7,7 @@ use crate::case::model::{
 };
 
 use crate::fields::FieldDescription;
+use crate::schemes::ImplicitRule;
 
 /// Particle files that a run may write at most.
 const MAX_FILES: f64 = 1e5;
@@ -31,6 +32,7 @@ impl Reader<'_, '_> {
                 let region = record.record("where").and_then(|region| self.region(region));
                 ProbeKind::Sum { field, region: region? }
             }
+            "tangent" => ProbeKind::Tangent { step: record.number("step")?.value },
             "error" => {
                 let field = record.text("field").and_then(|field| self.selector(&field));
                 let region = record.record("where").and_then(|region| self.region(region));
@@ -54,6 +56,22 @@ impl Reader<'_, '_> {
             _ => return None,
         };
         Some(Probe { name: record.text("name")?, body, kind })
+    }
+
+    /// Reports tests of tangents where no step has one.
+    pub(super) fn tangents_exist(&mut self, probes: &[Probe], time: &Time) {
+        let has_one = matches!(time.rule, Some(ImplicitRule::Theta(_)));
+        for probe in probes.iter().filter(|_| !has_one) {
+            if matches!(probe.kind, ProbeKind::Tangent { .. }) {
+                let message = format!(
+                    "the probe `{}` tests the tangent of a step, which the integrator `{}` does not \
+                     have",
+                    *probe.name, *time.integrator
+                );
+                let problem = Problem::new(probe.name.place, message, "no tangent to test");
+                self.report(problem.help("use `crank_nicolson`, with the scheme `upwind`"));
+            }
+        }
     }
 
     fn line(&mut self, record: &Record) -> Option<ProbeKind> {

@@ -144,7 +144,7 @@ impl Reader<'_, '_> {
     fn tied(&mut self, record: &Record) -> Option<Vec<Located<usize>>> {
         let mut tied: Vec<Located<usize>> = Vec::new();
         for name in record.texts("tied") {
-            let component = ["x", "y", "z"].iter().position(|axis| *axis == name.value)?;
+            let component = AXES.iter().position(|axis| *axis == name.value)?;
             let problem = if component >= self.dimension {
                 let message = format!("there is no component `{}` in {}D", *name, self.dimension);
                 Problem::new(name.place, message, "unknown component")

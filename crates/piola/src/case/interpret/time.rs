@@ -1,7 +1,7 @@
 //! Clock and integrator.
 
 use super::*;
-use crate::schemes::{Newmark, Theta};
+use crate::schemes::{ImplicitRule, Newmark, Theta};
 use crate::solve::LinearMethod;
 
 /// The kinds of integrator that the rest of the case depends on.
@@ -49,8 +49,10 @@ impl Reader<'_, '_> {
         let march = March::of(kind);
         self.suits_scheme(&integrator, march, natural);
         let step = self.step(record, march);
-        let newmark = self.newmark(record, kind);
-        let theta = self.theta(record, kind);
+        let rule = self.rule(record, kind);
+        if !matches!(march, March::Implicit | March::Theta) {
+            self.meaningless(record, "error", "without implicit steps in time");
+        }
         if march == March::Explicit {
             for key in ["tolerance", "linear_solver"] {
                 self.meaningless(record, key, "with this integrator, which solves no equations");
@@ -59,8 +61,8 @@ impl Reader<'_, '_> {
         Some(Time {
             end: record.number("end")?,
             integrator,
-            newmark: newmark?,
-            theta: theta?,
+            rule: rule?,
+            error: record.number("error").map(|it| it.value),
             tolerance: record.number("tolerance").map(|it| it.value),
             linear_solver: match record.text("linear_solver").as_deref().map(String::as_str) {
                 Some("direct") => LinearMethod::Direct,
@@ -155,32 +157,32 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The weights of an implicit step: `Some(None)` if steps are not of that kind.
-    fn newmark(
+    /// The rule of an implicit step: `Some(None)` for integrators that have none.
+    fn rule(
         &mut self,
         record: &Record,
         kind: Option<IntegratorKind>,
-    ) -> Option<Option<Newmark>> {
+    ) -> Option<Option<ImplicitRule>> {
         let own: &[&str] = match kind {
             Some(IntegratorKind::Newmark) => &["beta", "gamma"],
             Some(IntegratorKind::HhtAlpha) => &["alpha"],
             Some(IntegratorKind::GeneralisedAlpha) => &["spectral_radius"],
+            Some(IntegratorKind::Theta) => &["theta"],
             _ => &[],
         };
-        for key in ["beta", "gamma", "alpha", "spectral_radius"] {
+        for key in ["beta", "gamma", "alpha", "spectral_radius", "theta"] {
             if !own.contains(&key) {
                 self.meaningless(record, key, "with this integrator");
             }
         }
         let number = |key: &str, usual: f64| record.number(key).map_or(usual, |it| it.value);
-        let rule = match kind {
+        let newmark = match kind {
             Some(IntegratorKind::Newmark) => {
                 let gamma = number("gamma", 0.5);
-                let rule = Newmark::new(number("beta", 0.25), gamma);
-                let place = first_place(record, own);
-                match rule {
+                match Newmark::new(number("beta", 0.25), gamma) {
                     Ok(rule) => rule,
                     Err(error) => {
+                        let place = first_place(record, own);
                         let problem = Problem::new(place, error.to_string(), "not stable");
                         let help = format!("set `beta = {}` or larger", 0.5 * gamma);
                         return self.refuse(problem.help(help));
@@ -194,27 +196,24 @@ impl Reader<'_, '_> {
                 let radius = number("spectral_radius", IntegratorKind::SPECTRAL_RADIUS);
                 Newmark::generalised_alpha(radius)
             }
-            _ => return Some(None),
+            _ => return Some(self.theta(record, kind).map(ImplicitRule::Theta)),
         };
-        Some(Some(rule))
+        Some(Some(ImplicitRule::Newmark(newmark)))
     }
 
-    /// Which step of a first-order system: `Some(None)` if steps are not of that kind.
-    fn theta(&mut self, record: &Record, kind: Option<IntegratorKind>) -> Option<Option<Theta>> {
-        if kind != Some(IntegratorKind::Theta) {
-            self.meaningless(record, "theta", "with this integrator");
-        }
-        Some(match kind {
-            Some(IntegratorKind::BackwardEuler) => Some(Theta::BACKWARD_EULER),
-            Some(IntegratorKind::CrankNicolson) => Some(Theta::CRANK_NICOLSON),
-            Some(IntegratorKind::ImplicitMidpoint) => Some(Theta::MIDPOINT),
-            Some(IntegratorKind::Theta) => match record.number("theta") {
+    /// Which step of a first-order system, if steps are of that kind.
+    fn theta(&self, record: &Record, kind: Option<IntegratorKind>) -> Option<Theta> {
+        match kind? {
+            IntegratorKind::BackwardEuler => Some(Theta::BACKWARD_EULER),
+            IntegratorKind::CrankNicolson => Some(Theta::CRANK_NICOLSON),
+            IntegratorKind::ImplicitMidpoint => Some(Theta::MIDPOINT),
+            IntegratorKind::Theta => match record.number("theta") {
                 // The table of keys has refused others.
                 Some(theta) => Theta::new(*theta).ok(),
                 None => Some(Theta::DAMPED),
             },
             _ => None,
-        })
+        }
     }
 
     fn retries(&mut self, record: &Record, is_explicit: bool) -> Option<u64> {

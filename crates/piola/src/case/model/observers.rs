@@ -62,6 +62,11 @@ pub enum ProbeKind {
         /// Times in s, `None` for those of the particle files.
         times: Option<Vec<f64>>,
     },
+    /// The Taylor test of the tangent of an implicit step.
+    Tangent {
+        /// Length of the step in s.
+        step: f64,
+    },
     /// The difference of a field from what it should be.
     Error {
         /// A single number of each particle.

@@ -6,7 +6,7 @@ use piola_formulas::volumetric::{self, StressState};
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::schemes::{Newmark, Theta, dual_support, transport_velocity, upwind};
+use crate::schemes::{ImplicitRule, dual_support, transport_velocity, upwind};
 use crate::solve::LinearMethod;
 
 /// What a body is made of.
@@ -265,10 +265,10 @@ pub struct Time {
     pub end: Located<f64>,
     /// Name of the integrator.
     pub integrator: Located<String>,
-    /// Its weights, if it takes implicit steps of second order.
-    pub newmark: Option<Newmark>,
-    /// Which of them it takes, if it takes implicit steps of first-order systems.
-    pub theta: Option<Theta>,
+    /// Its rule, if it takes implicit steps.
+    pub rule: Option<ImplicitRule>,
+    /// Error of a step that is allowed, if the file says it.
+    pub error: Option<f64>,
     /// Relative residual at which Newton's method has arrived, if the file says it.
     pub tolerance: Option<f64>,
     /// How linear equations are solved.

@@ -25,7 +25,7 @@ pub(super) fn charts(case: &Case, page: &PageCase) -> Vec<(String, Plot)> {
             charts.push((format!("{name}-{}", *sweep.name), chart(&title, &abscissa, members)));
         }
     }
-    charts.retain(|(_, chart)| chart.series.iter().any(|series| series.style == Style::Line));
+    charts.retain(|(_, chart)| chart.series.iter().any(|series| series.style.is_line()));
     charts.extend(trends(case, &page.rows));
     charts
 }
@@ -53,20 +53,21 @@ fn last_part(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-/// Curves of the case itself, of a single column those of its variants too, and what is expected
-/// of them.
+/// Curves of the case itself, of a single column those of its variants too, with dashes, and what is
+/// expected of them.
 fn of_variants(case: &Case, page: &PageCase, curves: &[String]) -> Vec<Series> {
     let mut series = Vec::new();
     for name in curves {
         for (run, finished) in &page.runs {
-            let label = match run {
-                None => name.clone(),
+            let (label, style) = match run {
+                None => (name.clone(), Style::Line),
                 Some(run) if curves.len() == 1 && case.member(run).is_none() => {
-                    format!("{run}: {name}")
+                    (format!("{run}: {name}"), Style::Dashes)
                 }
                 Some(_) => continue,
             };
-            series.extend(finished.quantity(name).and_then(|found| curve_series(&label, found)));
+            let curve = finished.quantity(name).and_then(|found| curve_series(&label, found));
+            series.extend(curve.map(|curve| Series { style, ..curve }));
         }
         series.extend(expected(case, page, name));
     }

@@ -84,6 +84,20 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
             ],
         },
         KindSpec {
+            name: "tangent",
+            meaning: "the Taylor test of the tangent of an implicit step of `upwind` from the state of \
+                      the moment, for those who change the formulation: `NAME.least_slope` and \
+                      `NAME.largest_slope` are 2 where it is exact",
+            dimensions: &[1, 2, 3],
+            keys: &[key(
+                "step",
+                Kind::Number(Interval::POSITIVE),
+                "s",
+                Required,
+                "length of the step that is tested",
+            )],
+        },
+        KindSpec {
             name: "line",
             meaning: "a profile: fields interpolated at places along a straight line, against the distance from its start; each in a file of its own, the last one for plots and checks",
             dimensions: &[1, 2, 3],

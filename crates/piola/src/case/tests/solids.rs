@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::case::model::{Material, PlaneState, StepControl, SupportSize};
-use crate::schemes::Newmark;
+use crate::schemes::{ImplicitRule, Newmark};
 
 const GOOD: &str = "\
 version = 1
@@ -164,18 +164,18 @@ fn implicit_steps_are_of_any_size_and_take_their_own_weights() {
     let with = |time: &str| GOOD.replace("end = 0.01\n", &format!("end = 0.01\n{time}\n"));
     let rule = |time: &str| {
         let case = read_with(&with(time), &[]).unwrap_or_else(|problems| panic!("{problems}"));
-        (case.time.newmark.expect("a rule"), case.time.step.value)
+        (case.time.rule.expect("a rule"), case.time.step.value)
     };
     let (newmark, step) = rule("integrator = \"newmark\"\nstep = 0.002");
-    assert_eq!(newmark, Newmark::AVERAGE_ACCELERATION);
+    assert_eq!(newmark, ImplicitRule::Newmark(Newmark::AVERAGE_ACCELERATION));
     assert_eq!(step, StepControl::AtMost(0.002));
     let (damped, step) = rule("integrator = \"newmark\"\ngamma = 0.6\nbeta = 0.3\ncfl = 20.0");
-    assert_eq!(Ok(damped), Newmark::new(0.3, 0.6));
+    assert_eq!(Ok(damped), Newmark::new(0.3, 0.6).map(ImplicitRule::Newmark));
     assert_eq!(step, StepControl::Cfl(20.0));
     let hht = rule("integrator = \"hht_alpha\"\nalpha = 0.1\nstep = 0.002").0;
-    assert_eq!(hht, Newmark::hilber_hughes_taylor(0.1));
+    assert_eq!(hht, ImplicitRule::Newmark(Newmark::hilber_hughes_taylor(0.1)));
     let general = "integrator = \"generalised_alpha\"\nstep = 0.002\non_failure = \"retry\"";
-    assert_eq!(rule(general).0, Newmark::generalised_alpha(0.8));
+    assert_eq!(rule(general).0, ImplicitRule::Newmark(Newmark::generalised_alpha(0.8)));
 
     for (time, parts) in [
         ("integrator = \"newmark\"", ["`step` is missing", "multiples of the stable"]),
@@ -205,9 +205,20 @@ fn a_body_that_is_free_to_move_is_refused_where_statics_is_asked_for() {
     for part in ["shift along y", "statics needs a body that is held", "\"static\""] {
         assert!(message.contains(part), "{message}");
     }
+    // A second piece of the same body, which only the first one's support holds in words.
+    let whole = "shape = { kind = \"box\", min = [0.0, 0.0], max = [1.0, 1.0] }";
+    let text = in_statics().replace(
+        whole,
+        "shape = { kind = \"union\", of = [{ kind = \"box\", min = [0.0, 0.0], max = [1.0, 1.0] }, \
+         { kind = \"box\", min = [2.0, 0.0], max = [3.0, 1.0] }] }",
+    );
+    let message = built(&text).err().expect("nothing holds the second piece");
+    for part in ["nothing connects particle", "at [2.0, 0.0] with the rest", "free to shift"] {
+        assert!(message.contains(part), "{message}");
+    }
 }
 
-/// Where the particles of the block are that a condition of the case is about.
+/// The case as a simulation that is ready to run, or what is wrong with it.
 fn built(text: &str) -> Result<Box<crate::case::Simulation>, String> {
     let case = read_with(text, &[]).map_err(|problems| problems.to_string())?;
     crate::case::build(&case).map(Box::new).map_err(|problems| problems.to_string())

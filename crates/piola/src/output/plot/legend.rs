@@ -77,7 +77,9 @@ impl Legend {
                 let curve = entry.curve.and_then(|number| panel.get(number));
                 if let Some(Styled { series, pen }) = curve {
                     match series.style {
-                        Style::Line => canvas.line(&[(left, middle), (left + SAMPLE, middle)], pen),
+                        Style::Line | Style::Dashes => {
+                            canvas.line(&[(left, middle), (left + SAMPLE, middle)], pen);
+                        }
                         Style::Marks => {
                             ring(canvas, (left + SAMPLE / 2.0, middle), pen.colour);
                         }

@@ -44,8 +44,12 @@ pub fn chart(chart: &Chart) -> Markup {
 }
 
 fn class(number: usize, style: Style) -> String {
-    let dashes = ["", " dashed", " dotted"][(number / COLOURS).min(2)];
-    let kind = if style == Style::Marks { "marks" } else { "line" };
+    let dashes = match (style, number / COLOURS) {
+        (Style::Line | Style::Marks, 0) => "",
+        (_, 0 | 1) => " dashed",
+        _ => " dotted",
+    };
+    let kind = if style.is_line() { "line" } else { "marks" };
     format!("{kind} c{}{dashes}", number % COLOURS)
 }
 
@@ -53,7 +57,7 @@ fn class(number: usize, style: Style) -> String {
 fn numbers(panel: &[&Series]) -> Vec<usize> {
     let mut lines = 0_usize;
     let number = |series: &&Series| match series.style {
-        Style::Line => {
+        Style::Line | Style::Dashes => {
             lines += 1;
             lines - 1
         }
@@ -68,7 +72,7 @@ fn legend(panel: &[&Series]) -> Markup {
             @for (series, number) in panel.iter().zip(numbers(panel)) {
                 li {
                     svg viewBox="0 0 26 10" aria-hidden="true" {
-                        @if series.style == Style::Line {
+                        @if series.style.is_line() {
                             path .(class(number, series.style)) d="M1 5H25" {}
                         } @else {
                             path .(class(number, series.style).replace("marks", "reference")) d="M1 5H25" {}
@@ -120,7 +124,7 @@ fn drawing(chart: &Chart, panel: &[&Series], x: [f64; 2]) -> Markup {
                 @let class = class(number, series.style);
                 g .curve data-name=(series.column.name) {
                     @match series.style {
-                        Style::Line => { path .(class) d=(line(&points)) {} }
+                        Style::Line | Style::Dashes => { path .(class) d=(line(&points)) {} }
                         Style::Marks => {
                             path .(class.replace("marks", "reference")) d=(line(&points)) {}
                             path .(class) d=(rings(&points)) {}
@@ -141,7 +145,7 @@ fn points(
 ) -> Vec<(f32, f32)> {
     let points = series.points.iter().map(|&[x, y]| (at_x(x) as f32, at_y(y) as f32));
     match series.style {
-        Style::Line => plot::thinned(points),
+        Style::Line | Style::Dashes => plot::thinned(points),
         Style::Marks => {
             let step = series.points.len().div_ceil(MAX_MARKS).max(1);
             points.step_by(step).filter(|(x, y)| x.is_finite() && y.is_finite()).collect()

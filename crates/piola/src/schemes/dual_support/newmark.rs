@@ -3,6 +3,7 @@
 use super::equilibrium::kind;
 use super::statics::InertialStep;
 use super::{DualSupport, MECHANISMS, Row};
+use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Newmark, NewmarkScheme, NoSolution, Scheme};
 use crate::{Vector, parallel};
 
@@ -88,6 +89,10 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
         self.rate = rate;
         tail[Self::tail_length() - 1] = iterations as f64;
         Ok(())
+    }
+
+    fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64 {
+        kinetic_distance::<D>([one, other], Row::<D>::LENGTH, self.mass.len(), |a| self.mass[a])
     }
 }
 

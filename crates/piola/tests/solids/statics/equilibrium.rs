@@ -331,7 +331,7 @@ fn what_is_wrong_with_supports_is_named() {
     let held = |components: &[(usize, usize)]| -> Vec<PrescribedDisplacement<2>> {
         components.iter().map(|&(a, i)| moved(a, i, 0.0)).collect()
     };
-    let free = |motion: &str| StaticsError::Free { body: 0, motion: motion.into() };
+    let free = |motion: &str| StaticsError::Free { body: 0, part: None, motion: motion.into() };
     assert_eq!(refused(held(&[(0, 0), (0, 1)]), Vec::new()), free("turn about z"));
     assert_eq!(refused(held(&[(0, 1), (6, 1)]), Vec::new()), free("shift along x"));
     let error = refused(held(&[(99, 0)]), Vec::new());

@@ -49,10 +49,21 @@ pub enum StaticsError {
         component: usize,
     },
     /// A body that can move as a whole.
-    #[error("body {body} is free to {motion}: prescribe displacements that hold it")]
+    #[error(
+        "{}body {body} is free to {motion}: prescribe displacements that hold it",
+        match part {
+            Some((id, position)) => format!(
+                "nothing connects particle {id} at {position:?} with the rest: this part of "
+            ),
+            None => String::new(),
+        }
+    )]
     Free {
         /// Number of the body.
         body: u32,
+        /// A particle of the part of it that is free, where that does not hang together with the
+        /// rest: its number in the order of creation and its reference position in m.
+        part: Option<(u32, Vec<f64>)>,
         /// The motion, for example `turn about z`.
         motion: String,
     },

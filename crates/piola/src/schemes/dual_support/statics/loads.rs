@@ -1,11 +1,9 @@
 //! What acts on a body from outside, as a function of the load factor.
 
-use piola_formulas::tensor;
-
 use super::super::Discrete;
-use crate::boundaries::pressure::Pressed;
+use crate::Vector;
+use crate::boundaries::pressure::{Pressed, pressed_force};
 use crate::boundaries::{BodyForce, Traction, padded};
-use crate::{Tensor, Vector};
 
 /// Dead loads and follower pressures.
 #[derive(Clone, Default)]
@@ -64,7 +62,7 @@ impl<const D: usize> Loads<D> {
     }
 }
 
-/// Subtracts `cof(F_a) (p N)_a` from the forces of particles.
+/// Adds the forces of pressures on particles in N.
 pub(super) fn press<const D: usize>(
     discrete: &Discrete<D>,
     displacement: &[Vector<D>],
@@ -72,7 +70,6 @@ pub(super) fn press<const D: usize>(
     forces: &mut [Vector<D>],
 ) {
     for (a, pressing) in pressing.iter().enumerate().filter(|(_, p)| p.amax() > 0.0) {
-        let f = discrete.displacement_gradient(displacement, a) + Tensor::identity();
-        forces[a] -= tensor::cofactor(&f) * pressing;
+        forces[a] += pressed_force(&discrete.displacement_gradient(displacement, a), pressing);
     }
 }

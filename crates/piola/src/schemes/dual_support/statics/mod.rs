@@ -122,10 +122,18 @@ impl<const D: usize> Statics<D> {
     pub fn new(discrete: Arc<Discrete<D>>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
         let statics = Self::moving(discrete, input)?;
         let Self { discrete, supports, faces, .. } = &statics;
-        match free_motion(&discrete.particles, supports, faces.springs()) {
-            Some((body, motion)) => Err(StaticsError::Free { body, motion }),
-            None => Ok(statics),
-        }
+        let (particles, parts) = (&discrete.particles, discrete.support.list.parts());
+        let Some((first, motion)) = free_motion(particles, &parts, supports, faces.springs())
+        else {
+            return Ok(statics);
+        };
+        let body = particles.body[first];
+        let is_whole = |a: usize| particles.body[a] != body || parts[a] == parts[first];
+        let part = match (0..particles.len()).all(is_whole) {
+            true => None,
+            false => Some((particles.id[first], particles.position[first].as_slice().to_vec())),
+        };
+        Err(StaticsError::Free { body, part, motion })
     }
 
     /// As [`Self::new`], for a body that may move as a whole, with inertia: for [`Self::march`].

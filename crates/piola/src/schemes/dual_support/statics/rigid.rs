@@ -1,4 +1,4 @@
-//! Motions of a body as a whole that supports leave free.
+//! Motions of what hangs together, as a whole, that supports leave free.
 
 use nalgebra::DMatrix;
 
@@ -11,35 +11,38 @@ use crate::geometry::Particles;
 /// of them is free.
 const FREE: f64 = 1e-10;
 
-/// A rigid motion of a body that nothing holds, in words, with the number of the body.
+/// A rigid motion that nothing holds, in words, with the first particle of what moves. `parts` are
+/// the numbers of what hangs together, of each particle.
 pub(super) fn free_motion<const D: usize>(
     particles: &Particles<D>,
+    parts: &[u32],
     supports: &Supports<D>,
     springs: &[Spring<D>],
-) -> Option<(u32, String)> {
-    let bodies = particles.body.iter().max().map_or(0, |&body| body + 1);
-    (0..bodies).find_map(|body| free_motion_of(particles, supports, springs, body))
+) -> Option<(usize, String)> {
+    let count = parts.iter().max().map_or(0, |&part| part + 1);
+    (0..count).find_map(|part| free_motion_of(particles, (parts, part), supports, springs))
 }
 
 fn free_motion_of<const D: usize>(
     particles: &Particles<D>,
+    (parts, part): (&[u32], u32),
     supports: &Supports<D>,
     springs: &[Spring<D>],
-    body: u32,
-) -> Option<(u32, String)> {
-    let own: Vec<usize> = (0..particles.len()).filter(|&a| particles.body[a] == body).collect();
+) -> Option<(usize, String)> {
+    let own: Vec<usize> = (0..particles.len()).filter(|&a| parts[a] == part).collect();
+    let first = *own.first()?;
     let center = own.iter().map(|&a| particles.position[a]).sum::<Vector<D>>() / own.len() as f64;
     let reach = |&a: &usize| (particles.position[a] - center).norm();
     let size = own.iter().map(reach).fold(f64::MIN_POSITIVE, f64::max);
     let place = |a: usize| (particles.position[a] - center) / size;
-    let held = supports.entries().iter().filter(|entry| particles.body[entry.particle] == body);
+    let held = supports.entries().iter().filter(|entry| parts[entry.particle] == part);
     let mut rows: Vec<Vec<f64>> = held
         .map(|entry| {
             let direction = supports.frame(entry.particle).column(entry.component).into_owned();
             motions(&place(entry.particle), &direction)
         })
         .collect();
-    let own = |spring: &&Spring<D>| particles.body[spring.owner as usize] == body;
+    let own = |spring: &&Spring<D>| parts[spring.owner as usize] == part;
     rows.extend(
         springs
             .iter()
@@ -48,12 +51,12 @@ fn free_motion_of<const D: usize>(
     );
     for tie in supports.ties() {
         let axis = Vector::from_fn(|i, _| f64::from(u8::from(i == tie.component)));
-        let of = |a: u32| match particles.body[a as usize] == body {
+        let of = |a: u32| match parts[a as usize] == part {
             true => motions(&place(a as usize), &axis),
             false => vec![0.0; names::<D>().len()],
         };
-        let first = of(tie.particles[0]);
-        let apart = |a: &u32| of(*a).iter().zip(&first).map(|(m, f)| m - f).collect();
+        let leader = of(tie.particles[0]);
+        let apart = |a: &u32| of(*a).iter().zip(&leader).map(|(m, f)| m - f).collect();
         rows.extend(tie.particles[1..].iter().map(apart));
     }
     let modes = names::<D>().len();
@@ -67,7 +70,7 @@ fn free_motion_of<const D: usize>(
         return None;
     }
     let mode = eigen.eigenvectors.column(weakest);
-    Some((body, names::<D>()[mode.iamax()].to_owned()))
+    Some((first, names::<D>()[mode.iamax()].to_owned()))
 }
 
 fn names<const D: usize>() -> &'static [&'static str] {

@@ -10,17 +10,13 @@ use super::stage::{Fields, Stage};
 use super::tangent::Response;
 use crate::parallel::larger;
 use crate::solve::{
-    Equations, LinearError, LinearReport, Outcome, Reduction, Tangent, Trial, gmres,
+    Equations, LinearError, LinearReport, Reduction, Tangent, Trial, gmres, most_steps,
 };
 use crate::{Tensor, Vector, parallel};
 
 /// Steps of GMRES with the factors of an earlier state, above which the next iteration factorises
 /// anew.
 const MANY_STEPS: usize = 12;
-/// Steps of GMRES in one solution that are allowed.
-const MOST_STEPS: usize = 2000;
-/// Least reduction of a residual that a solution may give up with.
-const POOREST: f64 = 0.5;
 /// Roundings of the largest term of a sum that its residual may have.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
 
@@ -331,7 +327,7 @@ impl<const D: usize> StepEquations<'_, D> {
         let reduction = self.parts.solver.reduction().clone();
         let Implicit { solver, base, weight, fields, responses, outside, .. } = &mut *self.parts;
         let stage = Stage { scheme: self.scheme, weight: *weight, base, keeps_ratio: true };
-        let Outcome { solution: found, steps, residual, .. } = gmres(
+        let outcome = gmres(
             |direction, product| {
                 apply(&stage, (fields, &mut dual), &reduction, outside, direction, product);
             },
@@ -342,13 +338,10 @@ impl<const D: usize> StepEquations<'_, D> {
             },
             right,
             tolerance,
-            MOST_STEPS,
+            most_steps(right.len()),
         );
         self.parts.dual = Some(dual);
-        if residual > POOREST {
-            return Err(LinearError::NoConvergence { steps, residual });
-        }
-        solution.copy_from_slice(&found);
+        let steps = outcome.accept(solution)?;
         Ok(LinearReport { steps, shift: 0.0, indefinite: false })
     }
 }

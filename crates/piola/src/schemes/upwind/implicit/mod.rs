@@ -7,12 +7,14 @@
 mod equations;
 mod stage;
 mod tangent;
+mod taylor;
 
 use num_dual::Dual64;
 
 use super::local::Unknowns;
 use super::{FIGURES, Row, Upwind};
 use crate::boundaries::BodyForce;
+use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Missed, NoSolution, Scheme, Theta, ThetaScheme};
 use crate::solve::{
     BlockMatrix, Costs, Equations, Found, LinearError, LinearMethod, LinearSolver, Newton,
@@ -290,5 +292,25 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
         let figures = new.len() - FIGURES.len();
         new[figures..].copy_from_slice(&[iterations as f64, linear_steps as f64]);
         Ok(())
+    }
+
+    fn remainders(
+        &mut self,
+        rule: &Theta,
+        time: f64,
+        step: f64,
+        state: &[f64],
+        sizes: &[f64],
+    ) -> Vec<f64> {
+        let found = self.with_step_equations(rule, [time, step], state, |equations| {
+            let x = equations.start();
+            equations.remainders(&x, sizes)
+        });
+        found.unwrap_or_default()
+    }
+
+    fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64 {
+        let count = self.particles.len();
+        kinetic_distance::<D>([one, other], Row::<D>::LENGTH, count, |a| self.mass(a))
     }
 }
