@@ -47,6 +47,18 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
         .map(|timing| format!("{} {}", timing.stage, duration(timing.seconds)))
         .collect();
     line("wall time", &stages.join(", "));
+    if let Some(costs) = finished.linear {
+        let how = match costs.direct {
+            true => format!("direct, {} entries of factors", large(costs.factor_entries as f64)),
+            false => "krylov".to_owned(),
+        };
+        let [assembly, factors, solution] = [costs.assembly, costs.factorisation, costs.solution]
+            .map(|time| duration(time.as_secs_f64()));
+        let steps = count(costs.steps, "iterative step");
+        let text =
+            format!("{how}, {steps}; matrices {assembly}, factors {factors}, solutions {solution}");
+        line("equations", &text);
+    }
     energies(finished, &mut line);
     momentum(finished, &mut line);
     // Of a run that fails at its first look there are no figures.

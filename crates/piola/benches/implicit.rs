@@ -81,7 +81,7 @@ fn growth<const D: usize>(particles: usize, name: &str, method: LinearMethod) ->
             std::mem::swap(&mut old, &mut new);
         }
     });
-    let costs = scheme.implicit_costs().unwrap_or_default();
+    let costs = scheme.linear_costs().unwrap_or_default();
     let (count, each) = (scheme.particle_count(), seconds / f64::from(steps));
     let per_step = f64::from(steps);
     println!(

@@ -11,8 +11,8 @@ use super::simulation::{Finished, RUN_QUANTITIES, RunError};
 use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, Tables, WrittenFiles};
 use crate::output::checkpoint::Identity;
 use crate::output::{
-    self, BodyRecord, Column, Compression, Curve, FigureRecord, ReferenceRecord, ResultsFolder,
-    RetryRecord, RunRecord, StageRecord, Table, atomic, report, timestamp,
+    self, BodyRecord, Column, Compression, Curve, FigureRecord, LinearRecord, ReferenceRecord,
+    ResultsFolder, RetryRecord, RunRecord, StageRecord, Table, atomic, report, timestamp,
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
 
@@ -168,6 +168,14 @@ impl Outputs {
             calls: timing.calls,
         });
         record.stages = std::iter::once(build).chain(stages).collect();
+        record.linear = finished.linear.map(|costs| LinearRecord {
+            method: if costs.direct { "direct" } else { "krylov" }.into(),
+            factor_entries: costs.factor_entries,
+            steps: costs.steps,
+            assembly: costs.assembly.as_secs_f64(),
+            factorisation: costs.factorisation.as_secs_f64(),
+            solution: costs.solution.as_secs_f64(),
+        });
         record.figures = RUN_QUANTITIES
             .iter()
             .filter_map(|name| match finished.quantity(&format!("run.{name}")) {

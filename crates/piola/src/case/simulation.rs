@@ -13,6 +13,7 @@ use super::resume;
 use crate::observe::{ProfileRecorder, Recorder, Series, Tables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::Scheme;
+use crate::solve::Costs;
 use crate::time::{Checkpoints, Executor, Misfit, ObserveError, Progress, Schedule, Summary};
 
 /// A case with its particles, lists and scheme.
@@ -36,6 +37,8 @@ pub struct Finished {
     pub warnings: Vec<String>,
     /// Number of particles.
     pub particles: usize,
+    /// What linear equations took since the run started, or went on; `None` where there were none.
+    pub linear: Option<Costs>,
 }
 
 /// A fault of files or folders. A run that fails is a [`crate::time::Outcome`], not this.
@@ -178,7 +181,9 @@ impl Simulation {
                 "{gone} of {particles} particles escaped and were removed: `step.removed` has when"
             ));
         }
-        let mut finished = Finished { summary, tables, files: Vec::new(), warnings, particles };
+        let linear = executor.scheme().linear_costs();
+        let files = Vec::new();
+        let mut finished = Finished { summary, tables, files, warnings, particles, linear };
         if let Some(outputs) = outputs {
             finished.files = outputs.finish(&case, &finished, build_seconds)?;
         }

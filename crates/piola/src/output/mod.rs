@@ -40,8 +40,8 @@ pub use folder::ResultsFolder;
 pub use picture::{Bounds, Picture, When};
 pub use plot::{Plot, Series, Style};
 pub use record::{
-    BodyRecord, FigureRecord, RecordError, ReferenceRecord, RetryRecord, RunRecord, StageRecord,
-    timestamp,
+    BodyRecord, FigureRecord, LinearRecord, RecordError, ReferenceRecord, RetryRecord, RunRecord,
+    StageRecord, timestamp,
 };
 pub use table::{Column, Table};
 pub use vtp::Compression;

@@ -62,6 +62,8 @@ pub struct RunRecord {
     pub time_reached: f64,
     /// Where the time went.
     pub stages: Vec<StageRecord>,
+    /// What linear equations took; none where there were none.
+    pub linear: Option<LinearRecord>,
     /// Figures of the run as a whole, by the names that checks use after `run.`.
     pub figures: Vec<FigureRecord>,
     /// The reference curves of the case's checks.
@@ -134,6 +136,27 @@ pub struct StageRecord {
     pub calls: u64,
 }
 
+/// How the linear equations of a run were solved since it started, or went on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LinearRecord {
+    /// `direct` or `krylov`.
+    pub method: String,
+    /// Entries of the factors, of those of the coarse space with a Krylov method.
+    pub factor_entries: usize,
+    /// Steps of Krylov methods.
+    pub steps: u64,
+    /// Wall time in s to make matrices.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub assembly: f64,
+    /// Wall time in s to factorise them.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub factorisation: f64,
+    /// Wall time in s to solve with them.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub solution: f64,
+}
+
 /// A record could not be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -189,6 +212,7 @@ impl Default for RunRecord {
             end_time: 0.0,
             time_reached: 0.0,
             stages: Vec::new(),
+            linear: None,
             figures: Vec::new(),
             references: Vec::new(),
             files: Vec::new(),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{NewmarkScheme, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme};
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
+use crate::solve::Costs;
 
 /// A formulation bound to its particles, materials and kernel.
 ///
@@ -85,6 +86,11 @@ pub trait Scheme: Send {
 
     /// Bytes that the scheme holds, without states.
     fn memory(&self) -> usize;
+
+    /// What its linear equations have taken so far, if it solves any.
+    fn linear_costs(&self) -> Option<Costs> {
+        None
+    }
 
     /// The formulation as one that finds equilibria, if it is one and was built for that.
     fn equilibrium(&mut self) -> Option<&mut dyn StaticScheme> {

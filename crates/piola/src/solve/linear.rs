@@ -81,6 +81,8 @@ pub struct LinearReport {
 /// What all solutions so far took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Costs {
+    /// Whether a matrix is factorised; else a Krylov method solves alone.
+    pub direct: bool,
     /// Entries of the lower triangle that is factorised, of the coarse one where it is iterated.
     pub entries: usize,
     /// Entries of its factors.
@@ -192,6 +194,7 @@ impl<const D: usize> LinearSolver<D> {
         let parts = direct.as_ref().map(|(matrix, factor)| (matrix, factor));
         let costs = match parts.or(coarse.as_ref().map(Coarse::parts)) {
             Some((matrix, factor)) => Costs {
+                direct: direct.is_some(),
                 entries: matrix.entries(),
                 factor_entries: factor.entries(),
                 ..Costs::default()

@@ -98,6 +98,11 @@ impl Executor {
         }
     }
 
+    /// The formulation that it moves.
+    pub fn scheme(&self) -> &dyn Scheme {
+        self.scheme.as_ref()
+    }
+
     /// Lets the run go on from `checkpoint` instead of the start. Scheme, integrator, settings and
     /// observers have to be those of the run that it was taken from.
     ///

@@ -155,6 +155,20 @@ pub fn timings(record: &RunRecord) -> Markup {
                     } }
                 } }
             }
+            @if let Some(linear) = &record.linear {
+                p {
+                    (format!(
+                        "Linear equations: {}, {} entries of factors, {} iterative steps; matrices {}, \
+                         factors {}, solutions {}.",
+                        linear.method,
+                        linear.factor_entries,
+                        linear.steps,
+                        duration(linear.assembly),
+                        duration(linear.factorisation),
+                        duration(linear.solution)
+                    ))
+                }
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::schemes::{
     Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme,
     StaticScheme, StepLimit,
 };
+use crate::solve::Costs;
 use crate::{Vector, parallel};
 
 const FIGURES: [(&str, &str); 1] = [(NEWTON_ITERATIONS, "1")];
@@ -72,6 +73,10 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         figures.extend(state.last());
+    }
+
+    fn linear_costs(&self) -> Option<Costs> {
+        self.statics.as_ref().map(|statics| statics.costs())
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {

@@ -8,6 +8,7 @@ use super::{ENERGIES, FIGURES, IMPULSES, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::parallel;
 use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit, ThetaScheme};
+use crate::solve::Costs;
 
 const FIELDS: [FieldDescription; 13] = [
     FieldDescription::new("position", "m", FieldKind::Vector, "current position x"),
@@ -108,6 +109,10 @@ impl<const D: usize> Scheme for Upwind<D> {
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         figures.extend_from_slice(&state[state.len() - FIGURES.len()..]);
+    }
+
+    fn linear_costs(&self) -> Option<Costs> {
+        self.implicit.as_ref().map(|parts| parts.costs())
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {

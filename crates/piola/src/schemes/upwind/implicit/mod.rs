@@ -132,6 +132,11 @@ impl<const D: usize> Implicit<D> {
         Ok(new)
     }
 
+    /// What linear equations took so far.
+    pub fn costs(&self) -> Costs {
+        self.solver.costs()
+    }
+
     /// Bytes of its matrix and its factors, which are most of what it holds.
     pub fn memory(&self) -> usize {
         self.matrix.memory() + self.solver.costs().factor_entries * size_of::<f64>()
@@ -184,11 +189,6 @@ impl<const D: usize> Upwind<D> {
         let result = look(&mut equations);
         self.implicit = Some(parts);
         Some(result)
-    }
-
-    /// What linear equations took so far, if there were any.
-    pub fn implicit_costs(&self) -> Option<Costs> {
-        self.implicit.as_ref().map(|parts| parts.solver.costs())
     }
 }
 
