@@ -149,7 +149,18 @@ impl<const D: usize> FoldedGradient<D> {
     /// The gradient `du_i/dx_j` of a field at particle `a`.
     #[inline]
     pub fn gradient_at(&self, field: &[Vector<D>], data: &PlaneData<D>, a: usize) -> Tensor<D> {
-        let mut gradient = self.forward.gather(&self.class, a, |b, i| field[b][i]);
+        self.gradient_of(|b| field[b], data, a)
+    }
+
+    /// The gradient at particle `a` of a field that is known as a function of the particle.
+    #[inline]
+    pub fn gradient_of(
+        &self,
+        field: impl Fn(usize) -> Vector<D>,
+        data: &PlaneData<D>,
+        a: usize,
+    ) -> Tensor<D> {
+        let mut gradient = self.forward.gather(&self.class, a, field);
         for source in &self.sources {
             let datum = data[source.axis][source.side];
             for j in 0..D {
@@ -218,16 +229,16 @@ impl<const D: usize> FoldedGradient<D> {
 }
 
 impl<const D: usize> Block<D> {
-    /// `sum_q value_q^(i)_j f(q, i)` of a row.
+    /// `sum_q value_q^(i)_j f_i(q)` of a row.
     #[inline]
-    fn gather(&self, class: &[usize; D], a: usize, f: impl Fn(usize, usize) -> f64) -> Tensor<D> {
+    fn gather(&self, class: &[usize; D], a: usize, f: impl Fn(usize) -> Vector<D>) -> Tensor<D> {
         let mut sum = Tensor::zeros();
         for entry in self.offsets[a]..self.offsets[a + 1] {
-            let b = self.columns[entry] as usize;
+            let own = f(self.columns[entry] as usize);
             for i in 0..D {
-                let (values, own) = (&self.values[class[i]][entry], f(b, i));
+                let values = &self.values[class[i]][entry];
                 for j in 0..D {
-                    sum[(i, j)] += values[j] * own;
+                    sum[(i, j)] += values[j] * own[i];
                 }
             }
         }

@@ -2,12 +2,14 @@
 
 mod description;
 pub mod dual_support;
+pub mod elastodynamics;
 mod equilibrium;
 mod initial;
 pub(crate) mod input;
 pub mod momentum;
 mod newmark;
 mod scheme;
+pub(crate) mod solid;
 mod split;
 mod theta;
 pub mod transport_velocity;
