@@ -173,17 +173,13 @@ impl Joined {
         if self.pairs.is_empty() {
             return;
         }
-        let mut stays = vec![true; particles.len()];
-        for &(a, b) in &self.pairs {
-            particles.volume[a as usize] += particles.volume[b as usize];
-            stays[b as usize] = false;
-            if let Some(areas) = areas.as_deref_mut() {
+        if let Some(areas) = areas.as_deref_mut() {
+            for &(a, b) in &self.pairs {
                 let more = areas[b as usize];
                 areas[a as usize] += more;
             }
         }
-        let order: Vec<u32> = (0..particles.len() as u32).filter(|&a| stays[a as usize]).collect();
-        particles.reorder(&order);
+        let order = particles.join(&self.pairs);
         if let Some(areas) = areas {
             *areas = order.iter().map(|&a| areas[a as usize]).collect();
         }
