@@ -135,7 +135,7 @@ impl<const D: usize> Elastodynamics<D> {
             images: &made,
             kernel,
             radius: &radius,
-            domain: domain.clone(),
+            domain,
         };
         let (matrix, hourglass, ends) = match settings.form {
             Form::Strong => {

@@ -61,7 +61,7 @@ pub(super) fn matrices<const D: usize>(
             images: &made,
             kernel: cover.kernel,
             radius: cover.radius,
-            domain: cover.domain.clone(),
+            domain: cover.domain,
         };
         FoldedGradient::new(&cover, GradientForm::Plain)
     };

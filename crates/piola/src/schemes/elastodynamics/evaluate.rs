@@ -50,7 +50,7 @@ impl<const D: usize> Elastodynamics<D> {
             self.matrix.gradient(&self.velocity, &rates, &mut self.gradient_rate);
         }
         if self.settings.configuration == Configuration::Updated {
-            self.to_reference();
+            self.turn_to_reference();
         }
         let mut stress = std::mem::take(&mut self.stress);
         parallel::for_each_chunk(&mut stress, |first, rows| {
@@ -185,7 +185,7 @@ impl<const D: usize> Elastodynamics<D> {
             images: &[],
             kernel: self.kernel,
             radius: &self.radius,
-            domain: self.domain.clone(),
+            domain: self.domain,
         };
         match ends::matrices(&cover, &known.ends) {
             Ok([gradient, divergence]) => {
@@ -199,7 +199,7 @@ impl<const D: usize> Elastodynamics<D> {
 
     /// Turns gradients by the places of the moment into those by the reference places. A law of small
     /// strains makes no difference between them.
-    fn to_reference(&mut self) {
+    fn turn_to_reference(&mut self) {
         for a in 0..self.gradient.len() {
             if !is_linear(&self.mixtures[self.mixture[a] as usize]) {
                 let shrunk = Tensor::identity() - self.gradient[a];
