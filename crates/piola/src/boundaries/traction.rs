@@ -68,4 +68,9 @@ impl<const D: usize> Loaded<D> {
     pub fn force(&self, time: f64) -> Vector<D> {
         Vector::from_fn(|i, _| self.area * self.value[i].value(self.place, time))
     }
+
+    /// Its rate in N/s.
+    pub fn force_rate(&self, time: f64) -> Vector<D> {
+        Vector::from_fn(|i, _| self.area * self.value[i].rate(self.place, time))
+    }
 }

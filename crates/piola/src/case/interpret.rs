@@ -21,6 +21,7 @@ mod physics;
 mod solids;
 mod sweeps;
 mod time;
+mod waves;
 
 /// Which of the settings of a case file is read.
 #[derive(Clone, Copy, Debug)]
@@ -237,6 +238,7 @@ impl Reader<'_, '_> {
         let scheme = match record.kind {
             "transport_velocity" => Scheme::TransportVelocity(fluids::transport_velocity(record)?),
             "dual_support" => Scheme::DualSupport(self.dual_support(record)?),
+            "elastodynamics" => Scheme::Elastodynamics(self.elastodynamics(record)?),
             _ => Scheme::Upwind(physics::upwind(record)?),
         };
         Some(Located::new(scheme, record.place))

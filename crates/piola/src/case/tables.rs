@@ -12,6 +12,7 @@ mod fluids;
 mod geometry;
 mod observers;
 mod solids;
+mod waves;
 
 /// The case file as a whole.
 pub static CASE: TableSpec = TableSpec {
@@ -135,7 +136,7 @@ static SCHEME: TaggedSpec = TaggedSpec {
     title: "[scheme]",
     meaning: "The formulation and its settings.",
     common: &[],
-    kinds: &[UPWIND, fluids::TRANSPORT_VELOCITY, solids::DUAL_SUPPORT],
+    kinds: &[UPWIND, fluids::TRANSPORT_VELOCITY, solids::DUAL_SUPPORT, waves::ELASTODYNAMICS],
 };
 
 const UPWIND: KindSpec = KindSpec {
@@ -233,9 +234,9 @@ static TIME: TableSpec = TableSpec {
             Kind::Number(Interval::POSITIVE),
             "1",
             Derived(
-                "0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8) unless `step` is given; none with an implicit integrator",
+                "0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8, `elastodynamics`: 0.9) unless `step` is given; none with an implicit integrator",
             ),
-            "share of the time that a wave needs from particle to particle; with `dual_support`, of the largest stable step of central differences",
+            "share of the time that a wave needs from particle to particle; with `dual_support` and `elastodynamics`, of the largest stable step of central differences",
         ),
         key(
             "step",
@@ -498,6 +499,13 @@ static BOUNDARY: TableSpec = TableSpec {
             "m/s",
             Optional,
             "the components that are prescribed, as expressions of the reference position and time",
+        ),
+        key(
+            "mirror",
+            Kind::Boolean,
+            "",
+            Optional,
+            "with the scheme `elastodynamics`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed: a symmetry plane or a roller",
         ),
         key(
             "displacement",

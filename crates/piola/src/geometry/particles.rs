@@ -39,6 +39,33 @@ impl<const D: usize> Particles<D> {
     ///
     /// `order` is a permutation of `0..len`.
     pub fn reorder(&mut self, order: &[u32]) {
+        let mut place = vec![0; order.len()];
+        (0u32..).zip(order).for_each(|(new, &old)| place[old as usize] = new);
+        self.gather(order, &place);
+    }
+
+    /// Makes one particle of each pair of two: the first stays where it is, with the volumes of both.
+    /// What belonged to the second one on the surface of a mesh belongs to the first. Returns the old
+    /// index of each particle that is left.
+    ///
+    /// No particle is the second of two pairs, or the second of one and the first of another.
+    pub fn join(&mut self, pairs: &[(u32, u32)]) -> Vec<u32> {
+        let mut into: Vec<u32> = (0..self.len() as u32).collect();
+        for &(first, second) in pairs {
+            self.volume[first as usize] += self.volume[second as usize];
+            into[second as usize] = first;
+        }
+        let order: Vec<u32> =
+            (0u32..).zip(&into).filter(|(a, b)| a == *b).map(|(a, _)| a).collect();
+        let mut place = vec![0; self.len()];
+        (0u32..).zip(&order).for_each(|(new, &old)| place[old as usize] = new);
+        let places: Vec<u32> = into.iter().map(|&first| place[first as usize]).collect();
+        self.gather(&order, &places);
+        order
+    }
+
+    /// Takes the particles `order` in this order; `place` says where each of the old ones is then.
+    fn gather(&mut self, order: &[u32], place: &[u32]) {
         fn apply<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
             *values = order.iter().map(|&old| values[old as usize]).collect();
         }
@@ -48,8 +75,6 @@ impl<const D: usize> Particles<D> {
         apply(&mut self.spacing, order);
         apply(&mut self.body, order);
         apply(&mut self.id, order);
-        let mut place = vec![0; order.len()];
-        (0u32..).zip(order).for_each(|(new, &old)| place[old as usize] = new);
         self.surface.renumber(|old| place[old as usize]);
     }
 

@@ -50,6 +50,10 @@ pub enum Reduction<Reference = Curve> {
     LargestRise,
     /// Last value over first value, minus 1.
     Growth,
+    /// The integral over time between two times in s.
+    Integral([f64; 2]),
+    /// The time in s about which the integral between two times is balanced.
+    Centroid([f64; 2]),
     /// The largest absolute difference to a reference curve.
     Curve(Reference),
     /// The root mean square over time of the difference to a reference curve.
@@ -65,6 +69,8 @@ pub enum Argument {
     Time,
     /// A number counted from 1: the key `number`.
     Number,
+    /// Two times in s: the key `window`.
+    Window,
     /// A reference curve: the key `reference`.
     Reference,
 }
@@ -118,6 +124,10 @@ registry! {
     "largest_rise", None, Self::LargestRise,
         "the largest increase from one row to the next, negative if all rows fall";
     "growth", None, Self::Growth, "last value over first value, minus 1";
+    "integral", Window, Self::Integral(_),
+        "the integral over the time between those of `window`: of a pulse in stress over that of another the coefficient of reflection or transmission";
+    "centroid", Window, Self::Centroid(_),
+        "the mean of the times in `window`, weighted by the value: when a pulse passes";
     "curve", Reference, Self::Curve(_), "the largest absolute difference to a reference curve";
     "curve_rms", Reference, Self::CurveRms(_),
         "the root mean square over time, or along a line, of the difference to a reference curve";
@@ -151,6 +161,9 @@ impl<Reference> Reduction<Reference> {
     pub fn label(&self) -> String {
         match self {
             Self::At(time) => format!("{} {time} s", self.name()),
+            Self::Integral([first, last]) | Self::Centroid([first, last]) => {
+                format!("{} from {first} to {last} s", self.name())
+            }
             Self::Extremum(number) | Self::ExtremumTime(number) | Self::ZeroTime(number) => {
                 format!("{} {number}", self.name())
             }
@@ -159,11 +172,15 @@ impl<Reference> Reduction<Reference> {
     }
 
     /// The unit of the result for a quantity in `unit`.
-    pub fn unit<'a>(&self, unit: &'a str) -> &'a str {
+    pub fn unit(&self, unit: &str) -> String {
         match self {
-            Self::Period | Self::ExtremumTime(_) | Self::ZeroTime(_) => "s",
-            Self::Growth => "1",
-            _ => unit,
+            Self::Period | Self::ExtremumTime(_) | Self::ZeroTime(_) | Self::Centroid(_) => {
+                "s".into()
+            }
+            Self::Integral(_) if unit == "1" => "s".into(),
+            Self::Integral(_) => format!("{unit} s"),
+            Self::Growth => "1".into(),
+            _ => unit.into(),
         }
     }
 
@@ -198,6 +215,8 @@ impl<Reference> Reduction<Reference> {
             Self::ZeroTime(number) => Reduction::ZeroTime(*number),
             Self::LargestRise => Reduction::LargestRise,
             Self::Growth => Reduction::Growth,
+            Self::Integral(window) => Reduction::Integral(*window),
+            Self::Centroid(window) => Reduction::Centroid(*window),
             Self::Curve(reference) => Reduction::Curve(change(reference)?),
             Self::CurveRms(reference) => Reduction::CurveRms(change(reference)?),
         })
@@ -239,6 +258,11 @@ impl Reduction {
             Self::ZeroTime(number) => history.needs(2)?.zero_time(*number),
             Self::LargestRise => Ok(history.needs(2)?.largest_rise()),
             Self::Growth => history.needs(2)?.growth(),
+            Self::Integral(window) => Ok(history.needs(2)?.moments(*window)?[0]),
+            Self::Centroid(window) => {
+                let [integral, moment] = history.needs(2)?.moments(*window)?;
+                if integral == 0.0 { Err(ReduceError::NoPulse) } else { Ok(moment / integral) }
+            }
             Self::Curve(curve) => history.largest_difference(curve),
             Self::CurveRms(curve) => history.rms_difference(curve),
         }
@@ -321,6 +345,9 @@ pub enum ReduceError {
         /// Crossings in both directions.
         crossings: usize,
     },
+    /// There is nothing to balance.
+    #[error("the integral over this window is 0, so that no pulse passes in it")]
+    NoPulse,
     /// Growth has no meaning.
     #[error("the growth over a first value of 0 is not defined")]
     GrowthFromZero,

@@ -2,6 +2,7 @@
 
 mod description;
 pub mod dual_support;
+pub mod elastodynamics;
 mod equilibrium;
 mod initial;
 pub(crate) mod input;
@@ -9,6 +10,7 @@ pub mod momentum;
 mod newmark;
 mod rule;
 mod scheme;
+pub(crate) mod solid;
 mod split;
 mod theta;
 pub mod transport_velocity;

@@ -36,7 +36,7 @@ impl SparseMatrix {
 
     /// A pattern by columns, each with its rows in ascending order, the first on the diagonal; with
     /// zeros.
-    pub(super) fn of_columns(columns: impl Iterator<Item = Vec<usize>>) -> Self {
+    pub(crate) fn of_columns(columns: impl Iterator<Item = Vec<usize>>) -> Self {
         let (mut offsets, mut rows) = (vec![0], Vec::new());
         for column in columns {
             rows.extend(column);
@@ -47,7 +47,7 @@ impl SparseMatrix {
     }
 
     /// Takes the values of all entries in, column by column.
-    pub(super) fn set_values(&mut self, values: Vec<f64>) {
+    pub(crate) fn set_values(&mut self, values: Vec<f64>) {
         debug_assert_eq!(values.len(), self.rows.len(), "one value an entry");
         self.values = values;
     }

@@ -8,6 +8,7 @@ mod probes;
 mod selections;
 mod solids;
 mod tanks;
+mod waves;
 
 use std::time::{Duration, Instant};
 
@@ -70,6 +71,9 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
         }
         model::Scheme::DualSupport(settings) => {
             solids::build(case, settings, particles, bodies, domain)?
+        }
+        model::Scheme::Elastodynamics(settings) => {
+            waves::build(case, settings, particles, bodies, domain)?
         }
     };
     Ok(Simulation::new(case, built))
@@ -245,16 +249,25 @@ fn initial<const D: usize>(case: &Case, particles: &Particles<D>) -> Initial<D> 
     let rows = || particles.position.iter().zip(&particles.body);
     let body = |number: u32| &case.bodies[number as usize].initial;
     Initial {
-        velocity: rows()
-            .map(|(x, &number)| {
-                let place = crate::boundaries::padded(x);
-                crate::Vector::from_fn(|k, _| body(number).velocity[k].eval(place, 0.0))
-            })
-            .collect(),
+        velocity: at_start(case, particles, |initial| &initial.velocity),
         pressure: rows()
             .map(|(x, &number)| body(number).pressure.eval(crate::boundaries::padded(x), 0.0))
             .collect(),
     }
+}
+
+/// An initial vector of each particle.
+fn at_start<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    components: impl Fn(&model::Initial) -> &[super::expression::Expression],
+) -> Vec<crate::Vector<D>> {
+    let of = |(x, &body): (&crate::Vector<D>, &u32)| {
+        let (place, all) =
+            (crate::boundaries::padded(x), components(&case.bodies[body as usize].initial));
+        crate::Vector::from_fn(|k, _| all[k].eval(place, 0.0))
+    };
+    particles.position.iter().zip(&particles.body).map(of).collect()
 }
 
 /// A support that is neither the narrow one nor wide enough to be smooth is worth a word.

@@ -141,5 +141,10 @@ fn kernel_of(case: &Case) -> (Kernel, f64) {
             };
             (kernel, radius / kernel.support_over_h())
         }
+        model::Scheme::Elastodynamics(settings) => {
+            // Wide covers smooth; a value at a place is one of the particles around it.
+            let kernel = kernel(&settings.kernel);
+            (kernel, settings.support.min(2.5) / kernel.support_over_h())
+        }
     }
 }

@@ -164,7 +164,7 @@ fn trace<const D: usize>(
 /// The boundary area vectors of all particles in m^(D-1), of the lattices before they are displaced;
 /// particles that have one go back to their site. Of meshes those of nodes, and zero of cells, which
 /// get theirs from the trace. `None` if there is a body of points.
-fn areas<const D: usize>(
+pub(super) fn areas<const D: usize>(
     case: &Case,
     particles: &mut Particles<D>,
     domain: &Domain<D>,
@@ -223,7 +223,10 @@ fn gradients<const D: usize>(
     }
 }
 
-fn materials<const D: usize>(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material<D>> {
+pub(super) fn materials<const D: usize>(
+    case: &Case,
+    problems: &mut Vec<Problem>,
+) -> Vec<Material<D>> {
     let mut materials = Vec::new();
     for body in &case.bodies {
         // The reader of cases has refused others for this scheme.

@@ -7,6 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::engine::Number;
 use exmex::{BinOp, MakeOperators, Operator};
+use piola_formulas::kernels::Kernel;
 
 /// A function of expressions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +74,8 @@ describe! {
     "abs", f64::abs, sign, "absolute value";
     "sign", sign, zero, "-1 below 0, 0 at 0, 1 above";
     "step", step, zero, "0 below 0, 1 from 0 on";
+    "smooth", smooth, bell,
+        "0 below -1, 1 above 1, between them the step at 0 that the modified mollifier of radius 1 smooths";
     "floor", f64::floor, zero, "largest whole number not above";
     "ceil", f64::ceil, zero, "smallest whole number not below";
     "round", f64::round, zero, "nearest whole number";
@@ -111,6 +114,28 @@ fn sign(x: f64) -> f64 {
 
 fn step(x: f64) -> f64 {
     if x.is_nan() { x } else { f64::from(u8::from(x >= 0.0)) }
+}
+
+/// The modified mollifier of radius 1, Elastodynamics (2.19).
+fn bell(x: f64) -> f64 {
+    Kernel::ModifiedMollifier.value(1, x.abs(), 1.0)
+}
+
+/// The kernel approximation, Elastodynamics (2.4), of a step at 0 by the modified mollifier.
+fn smooth(x: f64) -> f64 {
+    if !(x.abs() < 1.0) {
+        return 0.5 + 0.5 * x.signum();
+    }
+    // Simpson's rule from 0: the function is smooth, and 64 intervals leave 1e-9.
+    const INTERVALS: u32 = 64;
+    let width = x / f64::from(INTERVALS);
+    let weight = |k: u32| match k {
+        0 | INTERVALS => 1.0,
+        _ if k % 2 == 1 => 4.0,
+        _ => 2.0,
+    };
+    let sum: f64 = (0..=INTERVALS).map(|k| weight(k) * bell(f64::from(k) * width)).sum();
+    0.5 + sum * width / 3.0
 }
 
 fn zero(_: f64) -> f64 {

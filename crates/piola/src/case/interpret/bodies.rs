@@ -179,11 +179,18 @@ impl Reader<'_, '_> {
     }
 
     fn initial(&mut self, record: &Record) -> Option<Initial> {
-        let velocity = match record.has("velocity") {
-            true => record.expressions("velocity")?,
-            false => vec![Expression::constant(0.0); self.dimension],
+        if self.names.scheme != "elastodynamics" {
+            self.meaningless(record, "displacement", "in this scheme");
+        }
+        let components = |key: &str| match record.has(key) {
+            true => record.expressions(key),
+            false => Some(vec![Expression::constant(0.0); self.dimension]),
         };
-        Some(Initial { velocity, pressure: record.expression("pressure")? })
+        Some(Initial {
+            velocity: components("velocity")?,
+            displacement: components("displacement")?,
+            pressure: record.expression("pressure")?,
+        })
     }
 
     fn material(&mut self, record: &Record) -> Option<Located<Material>> {

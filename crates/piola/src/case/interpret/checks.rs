@@ -131,6 +131,7 @@ impl Reader<'_, '_> {
             ("at", &["at"][..]),
             ("number", &["extremum", "extremum_time", "zero_time"]),
             ("reference", &["curve", "curve_rms"]),
+            ("window", &["integral", "centroid"]),
         ] {
             if only_for(names) {
                 self.meaningless(record, key, &format!("with the reduction `{}`", name.value));
@@ -153,6 +154,8 @@ impl Reader<'_, '_> {
             "zero_time" => Reduction::ZeroTime(number),
             "largest_rise" => Reduction::LargestRise,
             "growth" => Reduction::Growth,
+            "integral" => Reduction::Integral(self.window(record, end)?),
+            "centroid" => Reduction::Centroid(self.window(record, end)?),
             "curve" => Reduction::Curve(self.file(record, "reference")?),
             "curve_rms" => Reduction::CurveRms(self.file(record, "reference")?),
             "final" => Reduction::Final,
@@ -181,6 +184,21 @@ impl Reader<'_, '_> {
         );
         let help = format!("expected {}", one_of(ALONG_LINES));
         self.refuse(Problem::new(name.place, message, "no meaning here").help(help))
+    }
+
+    /// Two times in order, of a run that ends at `end`.
+    fn window(&mut self, record: &Record, end: Option<f64>) -> Option<[f64; 2]> {
+        let given = record.numbers("window")?;
+        let [first, last] = given.value[..] else {
+            let message = format!("expected two times, got {}", given.value.len());
+            return self.refuse(Problem::new(given.place, message, "not two"));
+        };
+        if !(first < last) {
+            let message = format!("the window ends at {last} s, not after its start at {first} s");
+            return self.refuse(Problem::new(given.place, message, "not in order"));
+        }
+        self.at(Located::new(last, given.place), end)?;
+        Some([first, last])
     }
 
     fn at(&mut self, time: Located<f64>, end: Option<f64>) -> Option<f64> {

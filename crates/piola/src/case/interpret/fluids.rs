@@ -59,12 +59,12 @@ impl Reader<'_, '_> {
         for body in bodies {
             let help = match (scheme, &body.material.value) {
                 ("transport_velocity", Material::WeaklyCompressible { .. })
-                | ("dual_support", Material::Hyperelastic { .. })
+                | ("dual_support" | "elastodynamics", Material::Hyperelastic { .. })
                 | ("upwind", Material::Linear { .. } | Material::GammaLaw { .. }) => None,
                 ("transport_velocity", _) => {
                     Some("use `kind = \"weakly_compressible\"`, for walls too".to_owned())
                 }
-                ("dual_support", _) => {
+                ("dual_support" | "elastodynamics", _) => {
                     Some(format!("use one of {}", HyperelasticLaw::NAMES.join(", ")))
                 }
                 _ => Some("use `linear` or `gamma_law`".to_owned()),
@@ -74,7 +74,9 @@ impl Reader<'_, '_> {
                 let problem = Problem::new(body.material.place, message, "of another scheme");
                 self.report(problem.help(help));
             }
-            if scheme == "dual_support" && body.initial.pressure.as_constant() != Some(0.0) {
+            if matches!(scheme, "dual_support" | "elastodynamics")
+                && body.initial.pressure.as_constant() != Some(0.0)
+            {
                 let message =
                     format!("body `{}` starts with a pressure, which no strain makes", *body.name);
                 let problem = Problem::new(body.name.place, message, "no meaning in this scheme");

@@ -112,6 +112,12 @@ impl Reader<'_, '_> {
             let problem = Problem::new(record.place, message, "prescribes nothing");
             self.report(problem.help(format!("add `{known} = {{ x = \"0\" }}`")));
         }
+        let mirror = record
+            .boolean("mirror")
+            .map(|on| Located::new(on, record.key_place("mirror").unwrap_or(record.place)));
+        if self.names.scheme != "elastodynamics" {
+            self.meaningless(record, "mirror", "in this scheme");
+        }
         let roller = record.record("roller").map(|roller| self.roller(roller));
         let has_all = region.as_ref().is_some_and(|region| region.value == Region::All);
         let is_between = has_all && body.is_none() && self.names.bodies.len() > 1;
@@ -125,6 +131,7 @@ impl Reader<'_, '_> {
             body,
             region: region?,
             velocity: expressions_per_axis(record, "velocity"),
+            mirror: mirror.filter(|mirror| mirror.value),
             displacement: expressions_per_axis(record, "displacement"),
             roller: match roller {
                 Some(roller) => Some(roller?),

@@ -110,7 +110,7 @@ impl Reader<'_, '_> {
                 format!("the scheme `{scheme}` cannot be split for this integrator"),
                 "use `tvd_rk2`".into(),
             ),
-            March::Explicit if scheme == "transport_velocity" && *name != natural.name() => (
+            March::Explicit if scheme != "dual_support" && *name != natural.name() => (
                 format!("the scheme `{scheme}` keeps its accelerations in its state"),
                 "use `kick_drift_kick`".into(),
             ),
@@ -142,6 +142,7 @@ impl Reader<'_, '_> {
                 let cfl = match self.names.scheme {
                     "transport_velocity" => 0.25,
                     "dual_support" => 0.8,
+                    "elastodynamics" => 0.9,
                     _ => 0.3,
                 };
                 Some(Located::new(StepControl::Cfl(cfl), record.place))

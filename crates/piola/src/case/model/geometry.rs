@@ -154,6 +154,8 @@ pub enum LatticeOrigin {
 pub struct Initial {
     /// Velocity in m/s.
     pub velocity: Vec<Expression>,
+    /// Displacement in m.
+    pub displacement: Vec<Expression>,
     /// Pressure in Pa, positive in compression.
     pub pressure: Expression,
 }

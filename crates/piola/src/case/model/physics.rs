@@ -6,7 +6,7 @@ use piola_formulas::volumetric::{self, StressState};
 use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::schemes::{ImplicitRule, dual_support, transport_velocity, upwind};
+use crate::schemes::{ImplicitRule, dual_support, elastodynamics, transport_velocity, upwind};
 use crate::solve::LinearMethod;
 
 /// What a body is made of.
@@ -139,6 +139,8 @@ pub enum Scheme {
     TransportVelocity(TransportVelocity),
     /// Elastic solids from one discrete energy.
     DualSupport(DualSupport),
+    /// Elastic solids on SPH matrices.
+    Elastodynamics(Elastodynamics),
 }
 
 impl Scheme {
@@ -148,6 +150,7 @@ impl Scheme {
             Self::Upwind(_) => upwind::DESCRIPTION,
             Self::TransportVelocity(_) => transport_velocity::DESCRIPTION,
             Self::DualSupport(_) => dual_support::DESCRIPTION,
+            Self::Elastodynamics(_) => elastodynamics::DESCRIPTION,
         };
         description.name
     }
@@ -200,6 +203,19 @@ pub struct DualSupport {
     pub gradients: Option<Located<GradientKind>>,
     /// Coefficient of the hourglass energy in units of the shear modulus, if it is given.
     pub hourglass: Option<f64>,
+}
+
+/// Settings of the scheme `elastodynamics`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elastodynamics {
+    /// Name in the kernel registry.
+    pub kernel: Located<String>,
+    /// Support radius in particle spacings.
+    pub support: Located<f64>,
+    /// What is summed under the kernel.
+    pub weights: Weights,
+    /// All that the formulation itself knows.
+    pub settings: Located<elastodynamics::Settings>,
 }
 
 /// How large the support of a particle is.
@@ -376,6 +392,8 @@ pub struct Boundary {
     /// Per component, the velocity in m/s as an expression of the reference position and time, or
     /// `None` where the particle is free.
     pub velocity: Vec<Option<Expression>>,
+    /// Whether the body is continued by mirror images beyond the plane of the region.
+    pub mirror: Option<Located<bool>>,
     /// In statics, per component, the displacement in m as an expression of the reference position
     /// and the load factor, or `None` where the particle is free.
     pub displacement: Vec<Option<Expression>>,

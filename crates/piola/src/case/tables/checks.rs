@@ -100,6 +100,13 @@ pub(super) static CHECK: TableSpec = TableSpec {
             "the time, or of a line the distance from its start in m, for the reduction `at`",
         ),
         key(
+            "window",
+            Kind::Numbers(Length::Any, Interval::NOT_NEGATIVE),
+            "s",
+            Optional,
+            "two times, for the reductions `integral` and `centroid`",
+        ),
+        key(
             "number",
             Kind::Integer(Interval::at_least(1.0)),
             "1",

@@ -376,6 +376,13 @@ static INITIAL: TableSpec = TableSpec {
             "one expression a component",
         ),
         key(
+            "displacement",
+            Kind::Expressions(Variables::Position),
+            "m",
+            Derived("0"),
+            "one expression a component; for the scheme `elastodynamics`",
+        ),
+        key(
             "pressure",
             Kind::Expression(Variables::Position),
             "Pa",

@@ -284,7 +284,7 @@ fn measure<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> Result<Got,
                 .try_map(|file| Curve::read_csv(file))
                 .map_err(|error| format!("the reference curve cannot be used: {error}"))?;
             let value = reduction.apply(&abscissa, &values).map_err(|error| error.to_string())?;
-            Ok(Got::Number(value, reduction.unit(&unit).to_owned()))
+            Ok(Got::Number(value, reduction.unit(&unit)))
         }
     }
 }

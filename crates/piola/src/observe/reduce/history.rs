@@ -88,6 +88,24 @@ impl<'a> History<'a> {
         rows.map(|(t, v)| (0.5 * v[0] + 0.5 * v[1]) * ((t[1] - t[0]) / (last - first))).sum()
     }
 
+    /// Integrals between two times of the value, and of the value times the time.
+    pub fn moments(&self, [first, last]: [f64; 2]) -> Result<[f64; 2], ReduceError> {
+        let ends = [(first, self.at(first)?), (last, self.at(last)?)];
+        let rows = self.time.iter().copied().zip(self.values.iter().copied());
+        let inside = rows.filter(|(time, _)| *time > first && *time < last);
+        let mut sums = [0.0; 2];
+        let mut before = ends[0];
+        for row in inside.chain([ends[1]]) {
+            let ((t, v), (s, w)) = (before, row);
+            let width = s - t;
+            sums[0] += 0.5 * width * (v + w);
+            // Exact for straight lines.
+            sums[1] += width * (v * (2.0 * t + s) + w * (t + 2.0 * s)) / 6.0;
+            before = row;
+        }
+        Ok(sums)
+    }
+
     pub fn largest_rise(&self) -> f64 {
         let rises = self.values.windows(2).map(|pair| pair[1] - pair[0]);
         rises.fold(f64::NEG_INFINITY, f64::max)

@@ -55,6 +55,8 @@ fn all() -> Vec<Reduction> {
         Reduction::ZeroTime(1),
         Reduction::LargestRise,
         Reduction::Growth,
+        Reduction::Integral([0.25, 2.0]),
+        Reduction::Centroid([0.25, 2.0]),
         Reduction::Curve(curve.clone()),
         Reduction::CurveRms(curve),
     ]
@@ -74,6 +76,20 @@ fn every_registered_name_belongs_to_one_reduction() {
         assert_eq!(reduction.try_map(|curve| Ok::<_, ()>(curve.clone())), Ok(reduction));
     }
     assert_eq!(ReductionEntry::from_name("Maximum"), None);
+}
+
+#[test]
+fn a_pulse_has_an_integral_and_a_time_at_which_it_passes() {
+    // A triangle of height 3 and width 2 about 1.5, in a window that cuts rows.
+    let (time, values) = ([0.0, 0.5, 1.5, 2.5, 4.0], [0.0, 0.0, 3.0, 0.0, 0.0]);
+    let of = |reduction: Reduction| reduction.apply(&time, &values);
+    assert_eq!(of(Reduction::Integral([0.25, 3.0])), Ok(3.0));
+    assert_eq!(of(Reduction::Centroid([0.25, 3.0])), Ok(1.5));
+    assert_eq!(of(Reduction::Integral([1.5, 2.5])), Ok(1.5));
+    assert_eq!(of(Reduction::Centroid([3.0, 4.0])), Err(ReduceError::NoPulse));
+    let outside = ReduceError::TimeOutside { time: 5.0, first: 0.0, last: 4.0 };
+    assert_eq!(of(Reduction::Integral([1.0, 5.0])), Err(outside));
+    assert_eq!(Reduction::<Curve>::Integral([0.0, 1.0]).unit("Pa"), "Pa s");
 }
 
 #[test]

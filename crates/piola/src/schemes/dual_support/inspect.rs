@@ -4,9 +4,10 @@ use piola_formulas::hyperelastic::Reduced;
 use piola_formulas::tensor;
 
 use super::{DualSupport, Row};
+use crate::Tensor;
 use crate::parallel::CHUNK;
+use crate::schemes::solid::wave_moduli;
 use crate::schemes::{Health, StepLimit};
-use crate::{Tensor, Vector};
 
 /// Figures of some particles.
 #[derive(Clone, Copy)]
@@ -75,42 +76,10 @@ impl<const D: usize> DualSupport<D> {
     }
 }
 
-/// Largest eigenvalue of the acoustic tensors `N . dP/dF . N` in the principal directions N of the
-/// deformation, Pa.
+/// Largest modulus of a wave in a principal direction of the deformation, Pa.
 pub(super) fn largest_wave_modulus<const D: usize>(
     law: &Reduced<D>,
     displacement_gradient: &Tensor<D>,
 ) -> f64 {
-    let tangent = law.tangent(displacement_gradient);
-    let strain = tensor::right_cauchy_green(&(displacement_gradient + Tensor::identity()));
-    let directions = principal_directions(&strain);
-    let modulus = |n: Vector<D>| {
-        let acoustic = Tensor::<D>::from_fn(|i, k| {
-            (0..D * D)
-                .map(|m| (m / D, m % D))
-                .map(|(j, l)| n[j] * n[l] * tangent[k][l][(i, j)])
-                .sum()
-        });
-        tensor::largest_eigenvalue(&acoustic)
-    };
-    directions.into_iter().map(modulus).fold(0.0, f64::max)
-}
-
-/// Principal directions of a symmetric tensor; the axes where they cannot be found.
-fn principal_directions<const D: usize>(tensor: &Tensor<D>) -> [Vector<D>; D] {
-    // The directions that are not resolved get an eigenvalue apart from all others.
-    let apart = 2.0 * (tensor.trace() + 1.0);
-    let mut padded = nalgebra::Matrix3::<f64>::identity() * apart;
-    padded.view_mut((0, 0), (D, D)).copy_from(tensor);
-    let Some(eigen) = nalgebra::SymmetricEigen::try_new(padded, f64::EPSILON, 1000) else {
-        return std::array::from_fn(|axis| Vector::from_fn(|i, _| f64::from(u8::from(i == axis))));
-    };
-    let mut all: Vec<Vector<D>> = Vec::with_capacity(3);
-    for column in eigen.eigenvectors.column_iter() {
-        let resolved = Vector::<D>::from_fn(|i, _| column[i]);
-        if resolved.norm() > 0.5 {
-            all.push(resolved);
-        }
-    }
-    std::array::from_fn(|axis| all.get(axis).copied().unwrap_or_else(Vector::zeros))
+    wave_moduli(law, displacement_gradient)[1]
 }

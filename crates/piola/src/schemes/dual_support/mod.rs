@@ -32,13 +32,15 @@ mod statics;
 pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
 pub use scheme::DESCRIPTION;
-pub use settings::{Gradients, Material, Motion, Settings};
+pub use settings::{Gradients, Motion, Settings};
 pub use statics::{
     InertialStep, Known, Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness,
 };
 
 use std::sync::Arc;
 
+pub use super::solid::Material;
+use super::solid::Row;
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, pressure::Pressed, traction::Loaded};
@@ -82,31 +84,3 @@ const BODY_FORCE: usize = 0;
 const TRACTION: usize = 1;
 const PRESSURE: usize = 2;
 const BOUNDARY_MOTION: usize = 3;
-
-/// Where the unknowns stand in a row of the state: v, u, and the acceleration, which the next step
-/// needs.
-struct Row<const D: usize>;
-
-impl<const D: usize> Row<D> {
-    const DISPLACEMENT: usize = D;
-    const ACCELERATION: usize = 2 * D;
-    const LENGTH: usize = 3 * D;
-
-    /// Velocity of a row.
-    #[inline]
-    fn velocity(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[..D])
-    }
-
-    /// Displacement of a row.
-    #[inline]
-    fn displacement(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::DISPLACEMENT..Self::ACCELERATION])
-    }
-
-    /// Acceleration that a row keeps, zero where a velocity is prescribed.
-    #[inline]
-    fn acceleration(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::ACCELERATION..])
-    }
-}

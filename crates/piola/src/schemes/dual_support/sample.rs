@@ -1,13 +1,9 @@
 //! The fields of the formulation.
 
-use nalgebra::Matrix3;
-use piola_formulas::hyperelastic::HyperelasticResponse;
-use piola_formulas::tensor;
-
 use super::{DualSupport, Row};
-use crate::Tensor;
 use crate::fields::{FieldDescription, FieldKind};
 use crate::schemes::Scheme;
+use crate::schemes::solid::append_field;
 
 pub(super) const FIELDS: [FieldDescription; 15] = [
     FieldDescription::new("position", "m", FieldKind::Vector, "current position x"),
@@ -115,37 +111,13 @@ impl<const D: usize> DualSupport<D> {
     /// Appends a field that belongs to the deformation of one particle.
     fn sample_material(&self, field: &str, a: usize, values: &mut Vec<f64>) {
         let gradient = self.discrete.displacement_gradient(&self.displacement, a);
-        let deformation = gradient + Tensor::identity();
-        let law = &self.discrete.material(a).law;
-        let cauchy = || {
-            let all = law.in_three(&gradient);
-            let (stress, f): (Matrix3<f64>, _) =
-                (law.law().stress(&all), all + Matrix3::identity());
-            stress * f.transpose() / tensor::determinant(&f)
-        };
         let per_volume = |part: usize| {
             self.discrete.energy_of(&self.displacement, a)[part] / self.discrete.particles.volume[a]
         };
-        // nalgebra stores columns, fields are written row by row.
-        let mut rows = |tensor: &Tensor<D>| {
-            values.extend((0..D * D).map(|k| tensor[(k / D, k % D)]));
-        };
         match field {
-            "deformation_gradient" => rows(&deformation),
-            "stress" => rows(&law.stress(&gradient)),
-            "cauchy_stress" => {
-                let cauchy = cauchy();
-                rows(&Tensor::from_fn(|i, j| cauchy[(i, j)]));
-            }
-            "determinant" => values.push(tensor::determinant(&deformation)),
-            "von_mises" => {
-                let cauchy = cauchy();
-                let deviator = cauchy - Matrix3::identity() * (cauchy.trace() / 3.0);
-                values.push((1.5 * deviator.norm_squared()).sqrt());
-            }
             "strain_energy" => values.push(per_volume(0)),
             "hourglass_energy" => values.push(per_volume(1)),
-            _ => {}
+            _ => append_field(&self.discrete.material(a).law, &gradient, field, values),
         }
     }
 }

@@ -1,7 +1,5 @@
 //! The choices of the dual-support formulation.
 
-use piola_formulas::hyperelastic::Reduced;
-
 use super::StaticsInput;
 use crate::Vector;
 use crate::solve::{LinearMethod, Newton};
@@ -40,14 +38,4 @@ pub enum Motion<const D: usize> {
     /// Not at all: in equilibrium, each with the loads of its load factor. Body forces, tractions
     /// and pressures are those of the body in motion.
     Static(Box<StaticsInput<D>>),
-}
-
-/// The material of one body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material<const D: usize> {
-    /// Density in kg/m^3. In 1D and 2D masses, forces and energies are those of a body of 1 m in
-    /// each of the missing dimensions.
-    pub density: f64,
-    /// Strain energy, with what holds the missing dimensions.
-    pub law: Reduced<D>,
 }

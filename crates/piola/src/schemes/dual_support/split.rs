@@ -1,48 +1,18 @@
 //! The formulation as kick-drift-kick integrators see it: central differences.
 
 use super::{BODY_FORCE, DualSupport, MECHANISMS, PRESSURE, Row, Side, TRACTION};
-use crate::schemes::SplitScheme;
+use crate::schemes::{SplitScheme, solid};
 use crate::{Vector, parallel};
 
 impl<const D: usize> SplitScheme for DualSupport<D> {
-    /// Work is force times the mean of the velocities before and after, so that it is the change
-    /// of the kinetic energy to round-off.
     fn kick(&mut self, duration: f64, state: &mut [f64]) {
         let (rows, tail) = state.split_at_mut(self.mass.len() * Row::<D>::LENGTH);
-        parallel::for_each_row(rows, Row::<D>::LENGTH, |_, row| {
-            for axis in 0..D {
-                row[axis] += duration * row[Row::<D>::ACCELERATION + axis];
-            }
-        });
-        let (sums, rest) = tail.split_at_mut(Self::ledger_length());
-        let (rates, growths) = rest.split_at_mut(sums.len());
-        // Of a power that grows evenly, that half way is the mean.
-        let grow = |rates: &mut [f64]| {
-            for (power, growth) in rates.iter_mut().zip(&growths[..MECHANISMS.len()]) {
-                *power += 0.5 * duration * growth;
-            }
-        };
-        grow(rates);
-        for (sum, rate) in sums.iter_mut().zip(&*rates) {
-            *sum += duration * rate;
-        }
-        grow(rates);
+        solid::kick::<D>(rows, tail, (Self::ledger_length(), MECHANISMS.len()), duration);
     }
 
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
-        let length = Row::<D>::LENGTH;
-        let (rows, _) = state.split_at_mut(self.mass.len() * length);
-        parallel::for_each_row(rows, length, |_, row| {
-            for axis in 0..D {
-                row[Row::<D>::DISPLACEMENT + axis] += step * row[axis];
-            }
-        });
-        // Kicks leave a prescribed velocity alone; it moves its particle by its value half way.
-        for entry in self.prescribed.iter() {
-            let row = &mut rows[entry.particle * length..][..length];
-            let middle = entry.value.value(entry.place, time + 0.5 * step);
-            row[Row::<D>::DISPLACEMENT + entry.component] += step * (middle - row[entry.component]);
-        }
+        let (rows, _) = state.split_at_mut(self.mass.len() * Row::<D>::LENGTH);
+        solid::drift::<D>(rows, &self.prescribed, time, step);
     }
 
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {

@@ -1,0 +1,250 @@
+//! From particles and settings to a scheme that is ready to run.
+
+use piola_formulas::kernels::Kernel;
+use thiserror::Error;
+
+use super::ends::{self, End, Ends};
+use super::{Configuration, Elastodynamics, Form, Mixture, Settings, stable_step::Bound};
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
+use crate::geometry::Particles;
+use crate::neighbors::Domain;
+use crate::operators::{Cover, FoldedGradient, GradientForm, Mirror, OperatorError, images};
+use crate::schemes::InputError;
+use crate::schemes::input::{
+    check_conditions, check_index, check_lengths, check_particle, check_particles,
+};
+use crate::schemes::solid::Row;
+use crate::{Tensor, Vector};
+
+/// All that the formulation is bound to.
+pub struct ElastodynamicsInput<const D: usize> {
+    /// The particles, in the order in which they shall lie in memory.
+    pub particles: Particles<D>,
+    /// The cover function.
+    pub kernel: Kernel,
+    /// Support radius of each particle in m.
+    pub radius: Vec<f64>,
+    /// Number of the group of each particle: those of other groups are not seen.
+    pub group: Vec<u32>,
+    /// The box and its periodic axes.
+    pub domain: Domain<D>,
+    /// Numerical settings.
+    pub settings: Settings,
+    /// What particles are made of.
+    pub mixtures: Vec<Mixture<D>>,
+    /// Which mixture each particle is made of.
+    pub mixture: Vec<u32>,
+    /// Initial displacement of each particle in m.
+    pub displacement: Vec<Vector<D>>,
+    /// Initial velocity of each particle in m/s.
+    pub velocity: Vec<Vector<D>>,
+    /// Body forces, which add up.
+    pub body_forces: Vec<BodyForce<D>>,
+    /// Dead tractions, which add up.
+    pub tractions: Vec<Traction<D>>,
+    /// Prescribed velocity components.
+    pub prescribed: Vec<PrescribedVelocity>,
+    /// In the adjoint form symmetry planes and rollers, each with a particle on it whose velocity
+    /// across is prescribed.
+    pub mirrors: Vec<(Mirror, u32)>,
+}
+
+/// Input that the formulation cannot work with.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ElastodynamicsError {
+    /// A matrix does not exist.
+    #[error(transparent)]
+    Operator(#[from] OperatorError),
+    /// Parts that do not fit together.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The strong form elsewhere than in one row of particles.
+    #[error(
+        "the strong form is for one row of particles in one dimension: there are {dimension} \
+         dimensions and {rows} rows; use `form = \"adjoint\"`"
+    )]
+    Strong {
+        /// Dimensions of space.
+        dimension: usize,
+        /// Groups of particles.
+        rows: usize,
+    },
+    /// Matrices of the moment in the adjoint form.
+    #[error(
+        "`configuration = \"updated\"` is for the strong form, in one dimension, to show the tensile \
+         instability; use `configuration = \"total\"`"
+    )]
+    Updated,
+    /// A coefficient that is negative or no number.
+    #[error("{what} must be at least 0 and finite, got {value}")]
+    Coefficient {
+        /// Which.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+}
+
+impl<const D: usize> Elastodynamics<D> {
+    /// Builds matrices, scratch and the initial state; nothing is allocated in a step afterwards.
+    ///
+    /// # Errors
+    /// [`ElastodynamicsError`] for arrays that do not fit together, particles without mass or
+    /// gradient, impossible values, and forms that are for other bodies.
+    pub fn new(input: ElastodynamicsInput<D>) -> Result<Self, ElastodynamicsError> {
+        let ElastodynamicsInput { particles, kernel, radius, group, domain, settings, .. } = input;
+        let count = particles.len();
+        check_particles(&particles)?;
+        let lists = [
+            ("the list of supports", radius.len()),
+            ("the list of groups", group.len()),
+            ("the list of mixtures", input.mixture.len()),
+            ("the initial displacement", input.displacement.len()),
+            ("the initial velocity", input.velocity.len()),
+        ];
+        check_lengths(count, &lists)?;
+        check_settings(&settings)?;
+        check_conditions(count, &input.tractions, &input.prescribed)?;
+        for &mixture in &input.mixture {
+            check_index(|| "the mixture".into(), mixture as usize, input.mixtures.len())?;
+        }
+        for (mirror, particle) in &input.mirrors {
+            check_index(|| "a mirror: particle".into(), *particle as usize, count)?;
+            check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
+        }
+        let mut mass = Vec::with_capacity(count);
+        for (a, velocity) in input.velocity.iter().enumerate() {
+            let own = input.mixtures[input.mixture[a] as usize].density() * particles.volume[a];
+            check_particle(&particles, a, own, velocity)?;
+            check_particle(&particles, a, own, &input.displacement[a])?;
+            mass.push(own);
+        }
+        let positions = &particles.position;
+        let prescribed = PrescribedComponents::new(&input.prescribed, positions);
+        let mirrors: Vec<Mirror> = input.mirrors.iter().map(|(mirror, _)| *mirror).collect();
+        let reach = radius.iter().copied().fold(0.0, f64::max);
+        let made = match settings.form {
+            Form::Adjoint => images(positions, &particles.spacing, &mirrors, reach),
+            Form::Strong => Vec::new(),
+        };
+        let cover = Cover {
+            particles: &particles,
+            group: &group,
+            images: &made,
+            kernel,
+            radius: &radius,
+            domain,
+        };
+        let (matrix, hourglass, ends) = match settings.form {
+            Form::Strong => {
+                let known = ends_of(&particles, &group, &prescribed)?;
+                let [matrix, divergence] = ends::matrices(&cover, &known)?;
+                (matrix, None, Some(Ends { ends: known, divergence }))
+            }
+            Form::Adjoint if settings.configuration == Configuration::Updated => {
+                return Err(ElastodynamicsError::Updated);
+            }
+            Form::Adjoint if settings.hourglass > 0.0 => {
+                let coefficient = |a: usize| {
+                    let shear = input.mixtures[input.mixture[a] as usize].shear_modulus();
+                    settings.hourglass * shear * particles.volume[a]
+                };
+                let coefficients: Vec<f64> = (0..count).map(coefficient).collect();
+                let form = GradientForm::Corrected;
+                let (matrix, hourglass) =
+                    FoldedGradient::with_hourglass(&cover, form, &coefficients)?;
+                (matrix, Some(hourglass), None)
+            }
+            Form::Adjoint => (FoldedGradient::new(&cover, GradientForm::Corrected)?, None, None),
+        };
+        let at_rest = |mixture: &Mixture<D>| mixture.wave_moduli(&Tensor::zeros());
+        let moduli: Vec<[f64; 2]> = input.mixtures.iter().map(at_rest).collect();
+        let rate_length = if settings.is_viscous() { count } else { 0 };
+        let mut scheme = Self {
+            mirrors: input.mirrors.iter().map(|&(mirror, on)| (mirror, on as usize)).collect(),
+            loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
+            prescribed,
+            matrix,
+            hourglass,
+            ends,
+            stable: Bound::default(),
+            least_at_rest: moduli.iter().map(|moduli| moduli[0]).collect(),
+            modulus_at_rest: moduli.iter().map(|moduli| moduli[1]).collect(),
+            body_forces: input.body_forces,
+            displacement: vec![Vector::zeros(); count],
+            velocity: vec![Vector::zeros(); count],
+            gradient: vec![Tensor::zeros(); count],
+            gradient_rate: vec![Tensor::zeros(); rate_length],
+            stress: vec![Tensor::zeros(); count],
+            tension: vec![Tensor::zeros(); count],
+            force: vec![Vector::zeros(); count],
+            slopes: [0.0; 2],
+            rate: vec![0.0; count * Row::<D>::LENGTH + Self::tail_length()],
+            initial: Vec::new(),
+            mixtures: input.mixtures,
+            mixture: input.mixture,
+            mass,
+            particles,
+            kernel,
+            radius,
+            group,
+            domain,
+            settings,
+        };
+        scheme.stable = scheme.bound();
+        scheme.initial = scheme.first_state(&input.displacement, &input.velocity);
+        Ok(scheme)
+    }
+
+    /// The state at the start, with the accelerations that belong to it.
+    fn first_state(&mut self, displacement: &[Vector<D>], velocity: &[Vector<D>]) -> Vec<f64> {
+        let mut state = vec![0.0; self.rate.len()];
+        let rows = state.chunks_exact_mut(Row::<D>::LENGTH);
+        for ((row, velocity), displacement) in rows.zip(velocity).zip(displacement) {
+            row[..D].copy_from_slice(velocity.as_slice());
+            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(displacement.as_slice());
+        }
+        crate::schemes::Scheme::constrain(self, 0.0, &mut state);
+        crate::schemes::SplitScheme::accelerate(self, 0.0, &mut state);
+        state
+    }
+}
+
+fn check_settings(settings: &Settings) -> Result<(), ElastodynamicsError> {
+    let [linear, quadratic] = settings.artificial_viscosity;
+    let all = [
+        ("the hourglass coefficient", settings.hourglass),
+        ("the viscosity", settings.viscosity),
+        ("the linear artificial viscosity", linear),
+        ("the quadratic artificial viscosity", quadratic),
+        ("the damping", settings.damping),
+    ];
+    let wrong = all.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite()));
+    wrong.map_or(Ok(()), |(what, value)| Err(ElastodynamicsError::Coefficient { what, value }))
+}
+
+/// The ends of the one row that the strong form is for.
+fn ends_of<const D: usize>(
+    particles: &Particles<D>,
+    group: &[u32],
+    prescribed: &PrescribedComponents,
+) -> Result<Vec<End>, ElastodynamicsError> {
+    let mut rows: Vec<u32> = group.to_vec();
+    rows.sort_unstable();
+    rows.dedup();
+    if D != 1 || rows.len() != 1 {
+        return Err(ElastodynamicsError::Strong { dimension: D, rows: rows.len() });
+    }
+    let place = |a: &usize| particles.position[*a][0];
+    let by_place = |a: &usize, b: &usize| place(a).total_cmp(&place(b));
+    let all = || 0..particles.len();
+    let found = [(all().min_by(by_place), false), (all().max_by(by_place), true)];
+    let end = |(particle, is_upper): (Option<usize>, bool)| {
+        let particle = particle?;
+        let is_held = prescribed.iter().any(|entry| entry.particle == particle);
+        Some(End { particle, is_upper, is_held })
+    };
+    Ok(found.into_iter().filter_map(end).collect())
+}

@@ -1,0 +1,172 @@
+//! What acts on the body from outside, with the work and the momentum that enter with it.
+
+use super::{
+    BODY_FORCE, BOUNDARY_MOTION, DAMPING, DAMPING_IMPULSE, Elastodynamics, IMPULSES, MECHANISMS,
+    TRACTION, VISCOSITY,
+};
+use crate::boundaries::BodyForce;
+use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
+use crate::schemes::solid::Row;
+use crate::{Vector, parallel};
+
+/// Power, and forces with their moments.
+const SUMS: usize = 1 + MOST_COMPONENTS;
+
+impl<const D: usize> Elastodynamics<D> {
+    /// Numbers at the end of a state: the work of each mechanism, then the impulse of each way
+    /// in which momentum enters, component by component.
+    pub(super) fn ledger_length() -> usize {
+        MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len()
+    }
+
+    /// Numbers behind the rows: the ledger, its rates, how fast its powers grow in a kick, and the
+    /// slopes of the displacement at loaded ends.
+    pub(super) fn tail_length() -> usize {
+        Self::slopes_at() + 2
+    }
+
+    /// Where the slopes stand behind the rows.
+    pub(super) fn slopes_at() -> usize {
+        2 * Self::ledger_length() + MECHANISMS.len()
+    }
+
+    /// Current position of particle a in m.
+    #[inline]
+    pub(super) fn position(&self, a: usize) -> Vector<D> {
+        self.particles.position[a] + self.displacement[a]
+    }
+
+    /// Whether a load at a particle is the stress of a loaded end, which the ghosts make.
+    fn is_of_end(&self, particle: usize) -> bool {
+        let mut loaded = self.ends.iter().flat_map(super::Ends::loaded);
+        loaded.any(|end| end.particle == particle)
+    }
+
+    #[inline]
+    fn body_acceleration(&self, a: usize, time: f64) -> Vector<D> {
+        let particles = &self.particles;
+        BodyForce::sum(&self.body_forces, particles.body[a], &particles.position[a], time)
+    }
+
+    /// Writes the rates of the loaded state, whose forces have been evaluated.
+    pub(super) fn external_pass(&mut self, time: f64, rate: &mut [f64]) {
+        let length = Row::<D>::LENGTH;
+        let components = momentum_components(D).len();
+        let damping = self.settings.damping;
+        let (rows, tail) = rate.split_at_mut(self.mass.len() * length);
+        parallel::for_each_row(rows, length, |a, row| {
+            let acceleration = self.force[a] / self.mass[a] + self.body_acceleration(a, time)
+                - self.velocity[a] * damping;
+            row[..D].copy_from_slice(acceleration.as_slice());
+            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(self.velocity[a].as_slice());
+            row[Row::<D>::ACCELERATION..].fill(0.0);
+        });
+        let (tail, growths) = tail.split_at_mut(Self::ledger_length());
+        growths.fill(0.0);
+        let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
+        powers.fill(0.0);
+        impulses.fill(0.0);
+        let mut enters = |way: usize, sums: [f64; SUMS]| {
+            let impulse = &mut impulses[way * components..][..components];
+            impulse.iter_mut().zip(&sums[1..]).for_each(|(sum, part)| *sum += part);
+            sums[0]
+        };
+        let over_all = |force: &(dyn Fn(usize) -> Vector<D> + Sync)| {
+            parallel::sums::<SUMS>(self.mass.len(), |a, sums| {
+                let force = force(a);
+                sums[0] += force.dot(&self.velocity[a]);
+                add_moments(&self.position(a), &force, &mut sums[1..]);
+            })
+        };
+        let body = |a: usize| self.body_acceleration(a, time) * self.mass[a];
+        powers[BODY_FORCE] = enters(BODY_FORCE, over_all(&body));
+        if damping > 0.0 {
+            let drag = |a: usize| self.velocity[a] * (-damping * self.mass[a]);
+            powers[DAMPING] = enters(DAMPING_IMPULSE, over_all(&drag));
+        }
+        if self.ends.is_some() || !self.mirrors.is_empty() {
+            // What bodies beyond planes and ends do on this one.
+            enters(BOUNDARY_MOTION, over_all(&|a: usize| self.force[a]));
+        }
+        if self.settings.is_viscous() {
+            powers[VISCOSITY] = -parallel::sum(self.mass.len(), |a| {
+                self.viscous_stress(a).dot(&self.gradient_rate[a]) * self.particles.volume[a]
+            });
+        }
+        let rates = self.data_rates(time);
+        let ghosts = self.ghost_powers(time, &self.velocity, &rates);
+        powers[TRACTION] = ghosts.traction;
+        powers[BOUNDARY_MOTION] = ghosts.motion;
+        for load in self.loaded.iter().filter(|load| !self.is_of_end(load.particle)) {
+            let (a, force) = (load.particle, load.force(time));
+            for (component, force) in force.iter().enumerate() {
+                rows[a * length + component] += force / self.mass[a];
+            }
+            let mut sums = [0.0; SUMS];
+            sums[0] = force.dot(&self.velocity[a]);
+            add_moments(&self.position(a), &force, &mut sums[1..]);
+            powers[TRACTION] += enters(TRACTION, sums);
+        }
+        for entry in self.prescribed.iter() {
+            let (a, component) = (entry.particle, entry.component);
+            let acceleration = &mut rows[a * length + component];
+            let wanted = entry.value.rate(entry.place, time);
+            let mut force = Vector::<D>::zeros();
+            force[component] = self.mass[a] * (wanted - *acceleration);
+            *acceleration = wanted;
+            let mut sums = [0.0; SUMS];
+            sums[0] = force.dot(&self.velocity[a]);
+            add_moments(&self.position(a), &force, &mut sums[1..]);
+            powers[BOUNDARY_MOTION] += enters(BOUNDARY_MOTION, sums);
+        }
+    }
+
+    /// Keeps what kicks need of the rates in the state they belong to: accelerations, those of
+    /// prescribed components zero; rates of the ledger; and how fast the powers grow, force times
+    /// acceleration.
+    pub(super) fn store(&self, time: f64, rate: &[f64], state: &mut [f64]) {
+        let length = Row::<D>::LENGTH;
+        let rows = self.mass.len() * length;
+        parallel::for_each_row(&mut state[..rows], length, |a, row| {
+            row[Row::<D>::ACCELERATION..].copy_from_slice(&rate[a * length..][..D]);
+        });
+        for entry in self.prescribed.iter() {
+            state[entry.particle * length + Row::<D>::ACCELERATION + entry.component] = 0.0;
+        }
+        let (rows, tail) = state.split_at_mut(rows);
+        let acceleration: Vec<Vector<D>> =
+            rows.chunks_exact(length).map(Row::<D>::acceleration).collect();
+        let ledger = Self::ledger_length();
+        tail[ledger..2 * ledger].copy_from_slice(&rate[rows.len()..][..ledger]);
+        tail[Self::slopes_at()..].copy_from_slice(&self.slopes);
+        let growths = &mut tail[2 * ledger..][..MECHANISMS.len()];
+        growths.fill(0.0);
+        growths[BODY_FORCE] = parallel::sum(self.mass.len(), |a| {
+            self.mass[a] * self.body_acceleration(a, time).dot(&acceleration[a])
+        });
+        growths[DAMPING] = -2.0
+            * self.settings.damping
+            * parallel::sum(self.mass.len(), |a| {
+                self.mass[a] * self.velocity[a].dot(&acceleration[a])
+            });
+        let own = self.loaded.iter().filter(|load| !self.is_of_end(load.particle));
+        growths[TRACTION] =
+            own.map(|load| load.force(time).dot(&acceleration[load.particle])).sum();
+        if self.ends.is_some() {
+            growths[TRACTION] += self.ghost_powers(time, &acceleration, &[[0.0; 2]; D]).traction;
+        }
+    }
+
+    /// Momentum of all particles together.
+    pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        parallel::sums(self.mass.len(), |a, sum| {
+            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            let momentum = Row::<D>::velocity(row) * self.mass[a];
+            add_moments(
+                &(self.particles.position[a] + Row::<D>::displacement(row)),
+                &momentum,
+                sum,
+            );
+        })
+    }
+}

@@ -1,0 +1,99 @@
+//! The elastodynamics formulation: total Lagrangian solids on SPH matrices.
+//! Paper: Elastodynamics.
+//!
+//! Unknowns of a particle are v and the displacement u. A step takes two products with the matrices
+//! of [`FoldedGradient`]: one for the displacement gradient, one for the forces, theory (63):
+//!
+//! ```text
+//! A = X u,   P = P(I + A),   m dv/dt = -X^T (V P) + H u + loads,   du/dt = v
+//! ```
+//!
+//! the *adjoint* form, for any cloud and dimension, or in one dimension the *strong* form of the
+//! paper, `rho dv/dt = X P`, with ghosts that carry displacements and stresses on beyond both ends,
+//! theory (64). Both are stepped by central differences, Elastodynamics (4.4), as kicks and drifts.
+
+mod build;
+mod dissipation;
+mod ends;
+mod evaluate;
+mod external;
+mod inspect;
+mod sample;
+mod scheme;
+mod settings;
+mod split;
+mod stable_step;
+
+pub use build::{ElastodynamicsError, ElastodynamicsInput};
+pub use scheme::DESCRIPTION;
+pub use settings::{Configuration, Form, Mixture, Settings};
+
+use piola_formulas::kernels::Kernel;
+
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::boundaries::{BodyForce, traction::Loaded};
+use crate::geometry::Particles;
+use crate::neighbors::Domain;
+use crate::operators::{FoldedGradient, FoldedHourglass, Mirror};
+use crate::{Tensor, Vector};
+
+use ends::Ends;
+
+/// The elastodynamics formulation bound to its particles.
+pub struct Elastodynamics<const D: usize> {
+    particles: Particles<D>,
+    kernel: Kernel,
+    radius: Vec<f64>,
+    group: Vec<u32>,
+    domain: Domain<D>,
+    settings: Settings,
+    mixtures: Vec<Mixture<D>>,
+    /// Which mixture each particle is made of.
+    mixture: Vec<u32>,
+    mass: Vec<f64>,
+    matrix: FoldedGradient<D>,
+    hourglass: Option<FoldedHourglass<D>>,
+    /// Symmetry planes and rollers, each with a particle that lies on it.
+    mirrors: Vec<(Mirror, usize)>,
+    /// The ends of a row, in the strong form.
+    ends: Option<Ends<D>>,
+    stable: stable_step::Bound,
+    /// Modulus of the fastest wave at rest of each mixture, Pa.
+    modulus_at_rest: Vec<f64>,
+    /// That of the slowest.
+    least_at_rest: Vec<f64>,
+    body_forces: Vec<BodyForce<D>>,
+    loaded: Vec<Loaded<D>>,
+    prescribed: PrescribedComponents,
+    displacement: Vec<Vector<D>>,
+    velocity: Vec<Vector<D>>,
+    gradient: Vec<Tensor<D>>,
+    /// Rate of the gradient; empty without dissipation.
+    gradient_rate: Vec<Tensor<D>>,
+    /// Elastic first Piola-Kirchhoff stress.
+    stress: Vec<Tensor<D>>,
+    tension: Vec<Tensor<D>>,
+    force: Vec<Vector<D>>,
+    /// Slopes of the displacement at the lower and the upper end, where it is loaded.
+    slopes: [f64; 2],
+    /// Scratch of the length of a state.
+    rate: Vec<f64>,
+    /// The state at the start.
+    initial: Vec<f64>,
+}
+
+/// The energies of the formulation.
+const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
+
+/// The mechanisms of its ledger, in the order of the state's tail.
+const MECHANISMS: [&str; 5] = ["body_force", "traction", "boundary_motion", "viscosity", "damping"];
+
+/// The ways in which momentum enters.
+const IMPULSES: [&str; 4] = ["body_force", "traction", "boundary_motion", "damping"];
+
+const BODY_FORCE: usize = 0;
+const TRACTION: usize = 1;
+const BOUNDARY_MOTION: usize = 2;
+const VISCOSITY: usize = 3;
+const DAMPING: usize = 4;
+const DAMPING_IMPULSE: usize = 3;

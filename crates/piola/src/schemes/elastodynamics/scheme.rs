@@ -1,0 +1,147 @@
+//! The elastodynamics formulation as integrators, clock and output see it.
+
+use super::sample::FIELDS;
+use super::{ENERGIES, Elastodynamics, IMPULSES, MECHANISMS};
+use crate::parallel;
+use crate::schemes::solid::Row;
+use crate::schemes::{Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
+
+/// What the formulation is called and what it shows.
+pub const DESCRIPTION: SchemeDescription = SchemeDescription {
+    name: "elastodynamics",
+    fields: &FIELDS,
+    energies: &ENERGIES,
+    mechanisms: &MECHANISMS,
+    impulses: &IMPULSES,
+    figures: &[],
+};
+
+impl<const D: usize> Scheme for Elastodynamics<D> {
+    fn description(&self) -> &'static SchemeDescription {
+        &DESCRIPTION
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn particle_count(&self) -> usize {
+        self.mass.len()
+    }
+
+    fn row_length(&self) -> usize {
+        Row::<D>::LENGTH
+    }
+
+    fn initial_state(&self) -> Vec<f64> {
+        self.initial.clone()
+    }
+
+    fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
+        self.load(state);
+        self.evaluate(time);
+        self.external_pass(time, rate);
+    }
+
+    fn constrain(&self, time: f64, state: &mut [f64]) {
+        for entry in self.prescribed.iter() {
+            state[entry.particle * Row::<D>::LENGTH + entry.component] =
+                entry.value.value(entry.place, time);
+        }
+    }
+
+    fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        self.look(state, limits)
+    }
+
+    fn energies(&self, state: &[f64], energies: &mut [f64]) {
+        let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+        let displacement: Vec<_> =
+            (0..self.mass.len()).map(|a| Row::<D>::displacement(row(a))).collect();
+        let data = self.data_of(&displacement, state);
+        let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
+            sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
+            let gradient = self.matrix.gradient_at(&displacement, &data, a);
+            let mixture = &self.mixtures[self.mixture[a] as usize];
+            sums[1] += mixture.energy(&gradient) * self.particles.volume[a];
+            if let Some(hourglass) = &self.hourglass {
+                let moment = gradient * self.matrix.shape(a);
+                sums[2] -= hourglass.coefficient(a) * gradient.dot(&moment);
+            }
+        });
+        energies.copy_from_slice(&sums);
+        if let Some(hourglass) = &self.hourglass {
+            energies[2] += hourglass.energy(&displacement, &data);
+        }
+    }
+
+    fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        let all = self.momentum_of(state);
+        momentum.copy_from_slice(&all[..momentum.len()]);
+    }
+
+    fn sample(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    ) {
+        self.sample_field(time, state, field, particles, values);
+    }
+
+    fn bodies(&self) -> &[u32] {
+        &self.particles.body
+    }
+
+    fn ids(&self) -> &[u32] {
+        &self.particles.id
+    }
+
+    fn particle(&self, index: usize) -> Particle {
+        Particle {
+            id: self.particles.id[index],
+            reference: self.particles.position[index].iter().copied().collect(),
+        }
+    }
+
+    fn neighborhood(&self, index: usize) -> Vec<u32> {
+        self.matrix.row(index).iter().copied().filter(|&b| b as usize != index).collect()
+    }
+
+    fn split(&mut self) -> Option<&mut dyn SplitScheme> {
+        Some(self)
+    }
+
+    fn stability_advice(&self) -> &'static str {
+        "lower `time.cfl`, or raise `scheme.viscosity` or `scheme.hourglass`"
+    }
+
+    fn collapse_advice(&self, index: usize) -> String {
+        let mixture = &self.mixtures[self.mixture[index] as usize];
+        let [least, _] = mixture.wave_moduli(&self.gradient[index]);
+        match least < 0.0 {
+            true => "the material has lost its convexity at this deformation, which no numerical \
+                     method can follow without a length: add `scheme.viscosity`, or use another law"
+                .to_owned(),
+            false => "lower `time.cfl`, or raise `scheme.hourglass`; laws of small strains do not \
+                      resist being turned inside out"
+                .to_owned(),
+        }
+    }
+
+    fn memory(&self) -> usize {
+        self.matrix.memory()
+            + self.ends.as_ref().map_or(0, |ends| ends.divergence.memory())
+            + self.hourglass.as_ref().map_or(0, |hourglass| hourglass.memory())
+            + size_of_val(self.particles.position.as_slice())
+            + 2 * size_of_val(self.displacement.as_slice())
+            + 2 * size_of_val(self.force.as_slice())
+            + size_of_val(self.gradient.as_slice())
+            + size_of_val(self.gradient_rate.as_slice())
+            + size_of_val(self.stress.as_slice())
+            + size_of_val(self.tension.as_slice())
+            + size_of_val(self.rate.as_slice())
+    }
+}

@@ -1,0 +1,178 @@
+//! What formulations of elastic solids have in common: rows of the state, central differences, fields
+//! and wave speeds of a deformation.
+
+use nalgebra::Matrix3;
+use piola_formulas::hyperelastic::{HyperelasticResponse, Reduced};
+use piola_formulas::tensor;
+
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::{Tensor, Vector, parallel};
+
+/// The material of one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material<const D: usize> {
+    /// Density in kg/m^3. In 1D and 2D masses, forces and energies are those of a body of 1 m in
+    /// each of the missing dimensions.
+    pub density: f64,
+    /// Strain energy, with what holds the missing dimensions.
+    pub law: Reduced<D>,
+}
+
+/// Where the unknowns stand in a row of the state: v, u, and the acceleration, which the next step
+/// needs.
+pub(crate) struct Row<const D: usize>;
+
+impl<const D: usize> Row<D> {
+    pub const DISPLACEMENT: usize = D;
+    pub const ACCELERATION: usize = 2 * D;
+    pub const LENGTH: usize = 3 * D;
+
+    /// Velocity of a row.
+    #[inline]
+    pub fn velocity(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[..D])
+    }
+
+    /// Displacement of a row.
+    #[inline]
+    pub fn displacement(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[Self::DISPLACEMENT..Self::ACCELERATION])
+    }
+
+    /// Acceleration that a row keeps, zero where a velocity is prescribed.
+    #[inline]
+    pub fn acceleration(row: &[f64]) -> Vector<D> {
+        Vector::from_column_slice(&row[Self::ACCELERATION..])
+    }
+}
+
+/// Half a step of velocities with the accelerations in `rows`. The tail begins with a ledger of
+/// `ledger` integrals, of which the first `mechanisms` are works; behind it stand its rates, and how
+/// fast these powers grow.
+///
+/// Work is force times the mean of the velocities before and after, so that it is the change of the
+/// kinetic energy to round-off.
+pub(crate) fn kick<const D: usize>(
+    rows: &mut [f64],
+    tail: &mut [f64],
+    (ledger, mechanisms): (usize, usize),
+    duration: f64,
+) {
+    parallel::for_each_row(rows, Row::<D>::LENGTH, |_, row| {
+        for axis in 0..D {
+            row[axis] += duration * row[Row::<D>::ACCELERATION + axis];
+        }
+    });
+    let (sums, rest) = tail.split_at_mut(ledger);
+    let (rates, growths) = rest.split_at_mut(sums.len());
+    // Of a power that grows evenly, that half way is the mean.
+    let grow = |rates: &mut [f64]| {
+        for (power, growth) in rates.iter_mut().zip(&growths[..mechanisms]) {
+            *power += 0.5 * duration * growth;
+        }
+    };
+    grow(rates);
+    for (sum, rate) in sums.iter_mut().zip(&*rates) {
+        *sum += duration * rate;
+    }
+    grow(rates);
+}
+
+/// A step of displacements with the velocities in `rows`, which are those half way.
+pub(crate) fn drift<const D: usize>(
+    rows: &mut [f64],
+    prescribed: &PrescribedComponents,
+    time: f64,
+    step: f64,
+) {
+    let length = Row::<D>::LENGTH;
+    parallel::for_each_row(rows, length, |_, row| {
+        for axis in 0..D {
+            row[Row::<D>::DISPLACEMENT + axis] += step * row[axis];
+        }
+    });
+    // Kicks leave a prescribed velocity alone; it moves its particle by its value half way.
+    for entry in prescribed.iter() {
+        let row = &mut rows[entry.particle * length..][..length];
+        let middle = entry.value.value(entry.place, time + 0.5 * step);
+        row[Row::<D>::DISPLACEMENT + entry.component] += step * (middle - row[entry.component]);
+    }
+}
+
+/// Smallest and largest eigenvalue of the acoustic tensors `N . dP/dF . N` in the principal directions
+/// N of the deformation, Pa. Where the smallest is negative the law has lost its convexity there, and
+/// no wave travels.
+pub(crate) fn wave_moduli<const D: usize>(
+    law: &Reduced<D>,
+    displacement_gradient: &Tensor<D>,
+) -> [f64; 2] {
+    let tangent = law.tangent(displacement_gradient);
+    let strain = tensor::right_cauchy_green(&(displacement_gradient + Tensor::identity()));
+    let mut moduli = [f64::INFINITY, 0.0_f64];
+    for n in principal_directions(&strain) {
+        let acoustic = Tensor::<D>::from_fn(|i, k| {
+            (0..D * D)
+                .map(|m| (m / D, m % D))
+                .map(|(j, l)| n[j] * n[l] * tangent[k][l][(i, j)])
+                .sum()
+        });
+        moduli[0] = moduli[0].min(tensor::smallest_eigenvalue(&acoustic));
+        moduli[1] = moduli[1].max(tensor::largest_eigenvalue(&acoustic));
+    }
+    moduli
+}
+
+/// Principal directions of a symmetric tensor; the axes where they cannot be found.
+fn principal_directions<const D: usize>(tensor: &Tensor<D>) -> [Vector<D>; D] {
+    // The directions that are not resolved get an eigenvalue apart from all others.
+    let apart = 2.0 * (tensor.trace() + 1.0);
+    let mut padded = Matrix3::<f64>::identity() * apart;
+    padded.view_mut((0, 0), (D, D)).copy_from(tensor);
+    let Some(eigen) = nalgebra::SymmetricEigen::try_new(padded, f64::EPSILON, 1000) else {
+        return std::array::from_fn(|axis| Vector::from_fn(|i, _| f64::from(u8::from(i == axis))));
+    };
+    let mut all: Vec<Vector<D>> = Vec::with_capacity(3);
+    for column in eigen.eigenvectors.column_iter() {
+        let resolved = Vector::<D>::from_fn(|i, _| column[i]);
+        if resolved.norm() > 0.5 {
+            all.push(resolved);
+        }
+    }
+    std::array::from_fn(|axis| all.get(axis).copied().unwrap_or_else(Vector::zeros))
+}
+
+/// Appends a tensor as fields have it, row by row.
+pub(crate) fn append_rows<const D: usize>(tensor: &Tensor<D>, values: &mut Vec<f64>) {
+    // nalgebra stores columns.
+    values.extend((0..D * D).map(|k| tensor[(k / D, k % D)]));
+}
+
+/// Appends a field that a law and a displacement gradient make, if it is one of these.
+pub(crate) fn append_field<const D: usize>(
+    law: &Reduced<D>,
+    gradient: &Tensor<D>,
+    field: &str,
+    values: &mut Vec<f64>,
+) {
+    let deformation = gradient + Tensor::identity();
+    let cauchy = || {
+        let all = law.in_three(gradient);
+        let (stress, f): (Matrix3<f64>, _) = (law.law().stress(&all), all + Matrix3::identity());
+        stress * f.transpose() / tensor::determinant(&f)
+    };
+    match field {
+        "deformation_gradient" => append_rows(&deformation, values),
+        "stress" => append_rows(&law.stress(gradient), values),
+        "cauchy_stress" => {
+            let cauchy = cauchy();
+            append_rows(&Tensor::<D>::from_fn(|i, j| cauchy[(i, j)]), values);
+        }
+        "determinant" => values.push(tensor::determinant(&deformation)),
+        "von_mises" => {
+            let cauchy = cauchy();
+            let deviator = cauchy - Matrix3::identity() * (cauchy.trace() / 3.0);
+            values.push((1.5 * deviator.norm_squared()).sqrt());
+        }
+        _ => {}
+    }
+}

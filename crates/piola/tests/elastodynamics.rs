@@ -1,0 +1,289 @@
+//! The elastodynamics formulation: stable steps, conservation, exact boundaries.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+mod support;
+
+use std::sync::Arc;
+
+use piola::boundaries::{PrescribedVelocity, SpaceTime, Traction};
+use piola::neighbors::Domain;
+use piola::operators::{Continuation, Mirror};
+use piola::schemes::dual_support::Material;
+use piola::schemes::elastodynamics::{
+    Configuration, Elastodynamics, ElastodynamicsInput, Form, Mixture, Settings,
+};
+use piola::schemes::{Ledger, Scheme};
+use piola::time::IntegratorKind;
+use piola::{Tensor, Vector};
+use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
+use piola_formulas::kernels::Kernel;
+use piola_formulas::volumetric::StressState;
+use support::lattice;
+
+const PLAIN: Settings = Settings {
+    form: Form::Adjoint,
+    configuration: Configuration::Total,
+    hourglass: 0.05,
+    viscosity: 0.0,
+    artificial_viscosity: [0.0; 2],
+    damping: 0.0,
+};
+
+const DENSITY: f64 = 8000.0;
+
+fn mixture<const D: usize>(law: fn(LameConstants) -> HyperelasticLaw) -> Mixture<D> {
+    let constants = LameConstants::from_young(200e9, 0.3).unwrap();
+    let state = match D {
+        1 => StressState::UniaxialStrain,
+        2 => StressState::PlaneStrain,
+        _ => StressState::ThreeDimensional,
+    };
+    Mixture(vec![(
+        Material { density: DENSITY, law: Reduced::new(law(constants), state).unwrap() },
+        1.0,
+    )])
+}
+
+fn input<const D: usize>(
+    intervals: [usize; D],
+    law: fn(LameConstants) -> HyperelasticLaw,
+    (kernel, cover): (Kernel, f64),
+    settings: Settings,
+) -> ElastodynamicsInput<D> {
+    let particles = lattice(intervals.map(|n| n as f64), intervals);
+    let count = particles.len();
+    ElastodynamicsInput {
+        particles,
+        kernel,
+        radius: vec![cover; count],
+        group: vec![0; count],
+        domain: Domain::default(),
+        settings,
+        mixtures: vec![mixture(law)],
+        mixture: vec![0; count],
+        displacement: vec![Vector::zeros(); count],
+        velocity: vec![Vector::zeros(); count],
+        body_forces: Vec::new(),
+        tractions: Vec::new(),
+        prescribed: Vec::new(),
+        mirrors: Vec::new(),
+    }
+}
+
+fn strong() -> Settings {
+    Settings { form: Form::Strong, hourglass: 0.0, ..PLAIN }
+}
+
+fn march(scheme: &mut dyn Scheme, step: f64, steps: usize) -> Vec<f64> {
+    let mut integrator = IntegratorKind::KickDriftKick.build(0);
+    let mut state = scheme.initial_state();
+    let mut new = state.clone();
+    for number in 0..steps {
+        integrator.step(scheme, number as f64 * step, step, &state, &mut new).unwrap();
+        std::mem::swap(&mut state, &mut new);
+    }
+    state
+}
+
+fn stable_step(scheme: &mut dyn Scheme) -> f64 {
+    let mut limits = Vec::new();
+    scheme.inspect(&scheme.initial_state(), &mut limits);
+    limits[0].step
+}
+
+fn total(scheme: &dyn Scheme, state: &[f64]) -> f64 {
+    let mut energies = [0.0; 3];
+    scheme.energies(state, &mut energies);
+    energies.iter().sum()
+}
+
+/// `dt c/dx` of the symbols of the kernels on an endless row, to a part in a thousand.
+#[test]
+fn the_stable_step_is_that_of_the_kernels_symbol() {
+    let known = [
+        (Kernel::ModifiedMollifier, 5.5, 3.974),
+        (Kernel::ModifiedMollifier, 3.5, 2.528),
+        (Kernel::ModifiedMollifier, 2.5, 1.970),
+        (Kernel::Mollifier, 5.5, 7.74),
+        (Kernel::Lucy, 5.5, 5.692),
+        (Kernel::CubicSpline, 2.0, 2.000),
+        (Kernel::CubicSpline, 2.4, 2.269),
+        (Kernel::CubicSpline, 2.6, 2.478),
+        (Kernel::CubicSpline, 4.0, 3.864),
+        (Kernel::QuinticSpline, 3.0, 2.355),
+        (Kernel::QuinticSpline, 3.6, 2.818),
+        (Kernel::Gaussian, 3.0, 2.364),
+    ];
+    let constants = LameConstants::from_young(200e9, 0.3).unwrap();
+    let speed = ((constants.lambda + 2.0 * constants.mu) / DENSITY).sqrt();
+    for (kernel, cover, expected) in known {
+        let made = input([200], HyperelasticLaw::linear_elastic, (kernel, cover), strong());
+        let mut scheme = Elastodynamics::new(made).unwrap();
+        let got = stable_step(&mut scheme) * speed;
+        assert!((got / expected - 1.0).abs() < 4e-3, "{kernel:?} {cover}: {got}, not {expected}");
+    }
+}
+
+/// A turning, trembling body in two and three dimensions: energy, momentum and threads.
+#[test]
+fn a_free_body_keeps_energy_and_momentum_on_any_number_of_threads() {
+    fn check<const D: usize>(intervals: [usize; D]) {
+        let run = |threads: usize| {
+            let cover = (Kernel::ModifiedMollifier, 2.5);
+            let mut made = input(intervals, HyperelasticLaw::neo_hookean_logarithmic, cover, PLAIN);
+            made.velocity = (made.particles.position.iter())
+                .map(|x| {
+                    Vector::from_fn(|i, _| match i {
+                        0 => -60.0 * x[1] + 20.0 * x[0],
+                        1 => 60.0 * x[0],
+                        _ => 5.0 * (x[0] * x[1]).sin(),
+                    })
+                })
+                .collect();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut scheme = Elastodynamics::new(made).unwrap();
+                let start = scheme.initial_state();
+                let step = 0.5 * stable_step(&mut scheme);
+                let end = march(&mut scheme, step, 300);
+                let mut momentum = [[0.0; 6]; 2];
+                scheme.momentum(
+                    &start,
+                    &mut momentum[0][..piola::schemes::momentum_components(D).len()],
+                );
+                scheme.momentum(
+                    &end,
+                    &mut momentum[1][..piola::schemes::momentum_components(D).len()],
+                );
+                let energy = [total(&scheme, &start), total(&scheme, &end)];
+                (end, energy, momentum)
+            })
+        };
+        let (end, [before, after], momentum) = run(1);
+        assert!((after / before - 1.0).abs() < 2e-3, "{before} {after}");
+        let size = momentum[0].iter().fold(0.0_f64, |size, p| size.max(p.abs()));
+        for (before, after) in momentum[0].iter().zip(&momentum[1]) {
+            assert!((before - after).abs() < 1e-10 * size, "{before} {after}");
+        }
+        assert_eq!(end, run(3).0);
+    }
+    check([9, 6]);
+    check([4, 4, 3]);
+}
+
+/// A pressure that rises and falls, Pa.
+struct Load;
+
+impl SpaceTime for Load {
+    fn value(&self, _x: [f64; 3], t: f64) -> f64 {
+        2e8 * (100.0 * t).sin().powi(2)
+    }
+
+    fn rate(&self, _x: [f64; 3], t: f64) -> f64 {
+        2e10 * (200.0 * t).sin()
+    }
+
+    fn is_steady(&self) -> bool {
+        false
+    }
+}
+
+/// The load of an end is its stress, a held end stays, and all energy is the load's.
+#[test]
+fn ends_of_a_row_are_met_exactly() {
+    for law in [HyperelasticLaw::linear_elastic, HyperelasticLaw::neo_hookean_logarithmic] {
+        let mut made = input([120], law, (Kernel::ModifiedMollifier, 5.5), strong());
+        made.tractions = vec![Traction {
+            name: "load".into(),
+            particles: vec![0],
+            areas: vec![1.0],
+            places: vec![],
+            value: [Arc::new(Load)],
+        }];
+        made.prescribed = vec![PrescribedVelocity {
+            name: "held".into(),
+            particles: vec![120],
+            component: 0,
+            value: Arc::new(0.0),
+        }];
+        let mut scheme = Elastodynamics::new(made).unwrap();
+        let step = 0.5 * stable_step(&mut scheme);
+        let steps = 400;
+        let end = march(&mut scheme, step, steps);
+        let time = step * steps as f64;
+        let mut stress = Vec::new();
+        scheme.sample(time, &end, "stress", &[0], &mut stress);
+        assert_eq!(stress, [-Load.value([0.0; 3], time)]);
+        let mut held = Vec::new();
+        scheme.sample(time, &end, "displacement", &[120], &mut held);
+        assert_eq!(held, [0.0]);
+        let work: f64 = Ledger::of(&scheme, &end).work.iter().sum();
+        let energy = total(&scheme, &end);
+        assert!((work / energy - 1.0).abs() < 2e-3, "{work} {energy}");
+    }
+}
+
+/// Between rollers a homogeneous stretch has no forces but on the planes, whatever the law.
+#[test]
+fn rollers_hold_a_homogeneous_stretch() {
+    let cover = (Kernel::ModifiedMollifier, 2.5);
+    let mut made = input([6, 4], HyperelasticLaw::neo_hookean_logarithmic, cover, PLAIN);
+    let planes = [(0, 0.0, false), (0, 6.0, true), (1, 0.0, false), (1, 4.0, true)];
+    let positions = made.particles.position.clone();
+    for (axis, place, is_upper) in planes {
+        let on: Vec<u32> = (0..positions.len() as u32)
+            .filter(|&a| (positions[a as usize][axis] - place).abs() < 1e-9)
+            .collect();
+        let mirror = Mirror { axis, place, is_upper, continuation: Continuation::Odd };
+        made.mirrors.push((mirror, on[0]));
+        made.prescribed.push(PrescribedVelocity {
+            name: "roller".into(),
+            particles: on,
+            component: axis,
+            value: Arc::new(0.0),
+        });
+    }
+    made.displacement = positions.iter().map(|x| Vector::from([0.5 * x[0], -0.2 * x[1]])).collect();
+    let mut scheme = Elastodynamics::new(made).unwrap();
+    let state = scheme.initial_state();
+    let all: Vec<u32> = (0..positions.len() as u32).collect();
+    let (mut gradient, mut acceleration) = (Vec::new(), Vec::new());
+    scheme.sample(0.0, &state, "deformation_gradient", &all, &mut gradient);
+    scheme.sample(0.0, &state, "acceleration", &all, &mut acceleration);
+    for gradient in gradient.chunks_exact(4) {
+        let gradient = Tensor::<2>::from_row_slice(gradient);
+        assert!((gradient - Tensor::<2>::new(1.5, 0.0, 0.0, 0.8)).amax() < 1e-12);
+    }
+    // Of 1e7 m/s2 and more that the stress over a spacing would make.
+    assert!(acceleration.iter().all(|a| a.abs() < 1e-5), "{acceleration:?}");
+}
+
+/// What viscosity and damping take is missing from the energy, and the bound on the step holds.
+#[test]
+fn dissipation_is_in_the_ledger() {
+    let settings =
+        Settings { viscosity: 2e7, artificial_viscosity: [0.1, 1.0], damping: 50.0, ..PLAIN };
+    let cover = (Kernel::ModifiedMollifier, 2.5);
+    let mut made = input([12, 6], HyperelasticLaw::neo_hookean_logarithmic, cover, settings);
+    made.velocity =
+        made.particles.position.iter().map(|x| Vector::from([30.0 * x[0].sin(), 0.0])).collect();
+    let mut scheme = Elastodynamics::new(made).unwrap();
+    let start = scheme.initial_state();
+    let before = total(&scheme, &start);
+    let step = stable_step(&mut scheme);
+    let loss = |scheme: &mut Elastodynamics<2>, step: f64, steps: usize| {
+        let end = march(scheme, step, steps);
+        let work: f64 = Ledger::of(scheme, &end).work.iter().sum();
+        (total(scheme, &end) - before, work)
+    };
+    let mut errors = Vec::new();
+    for parts in [4, 8, 16] {
+        let (change, work) = loss(&mut scheme, step / f64::from(parts), 40 * parts as usize);
+        assert!(change < -0.05 * before, "{change}");
+        errors.push((change - work).abs() / before);
+    }
+    // Rates are those of velocities half a step back.
+    assert!(errors[2] < 0.6 * errors[1] && errors[1] < 0.6 * errors[0], "{errors:?}");
+    let (change, _) = loss(&mut scheme, 0.98 * step, 1000);
+    assert!(change < 0.0, "stable: {change}");
+}
