@@ -287,3 +287,51 @@ fn dissipation_is_in_the_ledger() {
     let (change, _) = loss(&mut scheme, 0.98 * step, 1000);
     assert!(change < 0.0, "stable: {change}");
 }
+
+/// On one thread, which is the one that counts.
+#[test]
+fn steps_after_the_first_allocate_nothing() {
+    fn check<const D: usize>(made: ElastodynamicsInput<D>) {
+        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut integrator = IntegratorKind::KickDriftKick.build(0);
+        let state = scheme.initial_state();
+        let (mut new, mut limits) = (state.clone(), Vec::with_capacity(4));
+        let step = 0.1 * stable_step(&mut scheme);
+        let mut advance = || {
+            scheme.inspect(&state, &mut limits);
+            integrator.step(&mut scheme, 0.0, step, &state, &mut new).unwrap();
+        };
+        advance();
+        assert_eq!(allocation_counter::measure(|| (0..2).for_each(|_| advance())).count_total, 0);
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        let viscous = Settings { viscosity: 1e5, damping: 1.0, ..PLAIN };
+        let law = HyperelasticLaw::neo_hookean_logarithmic;
+        check(input([40, 40], law, (Kernel::ModifiedMollifier, 2.5), viscous));
+        check(input([1200], law, (Kernel::ModifiedMollifier, 5.5), strong()));
+    });
+}
+
+#[test]
+fn what_cannot_be_built_says_why() {
+    let cover = (Kernel::ModifiedMollifier, 2.5);
+    let law = HyperelasticLaw::linear_elastic;
+    let refused = |made: ElastodynamicsInput<2>| {
+        Elastodynamics::new(made).err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    let plane = input([4, 4], law, cover, strong());
+    assert!(refused(plane).contains("strong form is for one row"));
+    let updated = Settings { configuration: Configuration::Updated, ..PLAIN };
+    assert!(refused(input([4, 4], law, cover, updated)).contains("updated"));
+    let negative = Settings { viscosity: -1.0, ..PLAIN };
+    assert!(refused(input([4, 4], law, cover, negative)).contains("viscosity must be at least 0"));
+    let mut periodic = input([4, 4], law, cover, PLAIN);
+    periodic.domain = Domain::new([Some([0.0, 5.0]), None]).unwrap();
+    let mirror = Mirror { axis: 0, place: 0.0, is_upper: false, continuation: Continuation::Odd };
+    periodic.mirrors = vec![(mirror, 0)];
+    assert!(refused(periodic).contains("repeats itself along axis 0"));
+    let mut short = input([4, 4], law, cover, PLAIN);
+    short.displacement.pop();
+    assert!(refused(short).contains("the initial displacement has 24 entries"));
+}

@@ -505,7 +505,7 @@ static BOUNDARY: TableSpec = TableSpec {
             Kind::Boolean,
             "",
             Optional,
-            "with the scheme `elastodynamics`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed: a symmetry plane or a roller",
+            "with the scheme `elastodynamics`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed, the same all over it: a symmetry plane or a roller",
         ),
         key(
             "displacement",

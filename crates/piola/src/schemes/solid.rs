@@ -131,14 +131,16 @@ fn principal_directions<const D: usize>(tensor: &Tensor<D>) -> [Vector<D>; D] {
     let Some(eigen) = nalgebra::SymmetricEigen::try_new(padded, f64::EPSILON, 1000) else {
         return std::array::from_fn(|axis| Vector::from_fn(|i, _| f64::from(u8::from(i == axis))));
     };
-    let mut all: Vec<Vector<D>> = Vec::with_capacity(3);
+    let mut all = [Vector::zeros(); D];
+    let mut found = 0;
     for column in eigen.eigenvectors.column_iter() {
         let resolved = Vector::<D>::from_fn(|i, _| column[i]);
-        if resolved.norm() > 0.5 {
-            all.push(resolved);
+        if resolved.norm() > 0.5 && found < D {
+            all[found] = resolved;
+            found += 1;
         }
     }
-    std::array::from_fn(|axis| all.get(axis).copied().unwrap_or_else(Vector::zeros))
+    all
 }
 
 /// Appends a tensor as fields have it, row by row.

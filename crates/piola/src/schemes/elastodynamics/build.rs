@@ -77,6 +77,15 @@ pub enum ElastodynamicsError {
          instability; use `configuration = \"total\"`"
     )]
     Updated,
+    /// A plane or an end across an axis along which the box repeats itself.
+    #[error(
+        "the body repeats itself along axis {axis}, so that it cannot end on a plane across it; remove \
+         the plane, or the periodic axis"
+    )]
+    Periodic {
+        /// The axis, from 0.
+        axis: usize,
+    },
     /// A coefficient that is negative or no number.
     #[error("{what} must be at least 0 and finite, got {value}")]
     Coefficient {
@@ -88,7 +97,8 @@ pub enum ElastodynamicsError {
 }
 
 impl<const D: usize> Elastodynamics<D> {
-    /// Builds matrices, scratch and the initial state; nothing is allocated in a step afterwards.
+    /// Builds matrices, scratch and the initial state; nothing is allocated in a step afterwards,
+    /// unless matrices are made in each.
     ///
     /// # Errors
     /// [`ElastodynamicsError`] for arrays that do not fit together, particles without mass or
@@ -113,6 +123,11 @@ impl<const D: usize> Elastodynamics<D> {
         for (mirror, particle) in &input.mirrors {
             check_index(|| "a mirror: particle".into(), *particle as usize, count)?;
             check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
+        }
+        let planes = input.mirrors.iter().map(|(mirror, _)| mirror.axis);
+        let mut ended = planes.chain((settings.form == Form::Strong).then_some(0));
+        if let Some(axis) = ended.find(|&axis| domain.periodic()[axis].is_some()) {
+            return Err(ElastodynamicsError::Periodic { axis });
         }
         let mut mass = Vec::with_capacity(count);
         for (a, velocity) in input.velocity.iter().enumerate() {
@@ -175,6 +190,7 @@ impl<const D: usize> Elastodynamics<D> {
             body_forces: input.body_forces,
             displacement: vec![Vector::zeros(); count],
             velocity: vec![Vector::zeros(); count],
+            acceleration: vec![Vector::zeros(); count],
             gradient: vec![Tensor::zeros(); count],
             gradient_rate: vec![Tensor::zeros(); rate_length],
             stress: vec![Tensor::zeros(); count],

@@ -124,7 +124,7 @@ impl<const D: usize> Elastodynamics<D> {
     /// Keeps what kicks need of the rates in the state they belong to: accelerations, those of
     /// prescribed components zero; rates of the ledger; and how fast the powers grow, force times
     /// acceleration.
-    pub(super) fn store(&self, time: f64, rate: &[f64], state: &mut [f64]) {
+    pub(super) fn store(&mut self, time: f64, rate: &[f64], state: &mut [f64]) {
         let length = Row::<D>::LENGTH;
         let rows = self.mass.len() * length;
         parallel::for_each_row(&mut state[..rows], length, |a, row| {
@@ -134,8 +134,10 @@ impl<const D: usize> Elastodynamics<D> {
             state[entry.particle * length + Row::<D>::ACCELERATION + entry.component] = 0.0;
         }
         let (rows, tail) = state.split_at_mut(rows);
-        let acceleration: Vec<Vector<D>> =
-            rows.chunks_exact(length).map(Row::<D>::acceleration).collect();
+        let mut acceleration = std::mem::take(&mut self.acceleration);
+        for (acceleration, row) in acceleration.iter_mut().zip(rows.chunks_exact(length)) {
+            *acceleration = Row::<D>::acceleration(row);
+        }
         let ledger = Self::ledger_length();
         tail[ledger..2 * ledger].copy_from_slice(&rate[rows.len()..][..ledger]);
         tail[Self::slopes_at()..].copy_from_slice(&self.slopes);
@@ -155,6 +157,7 @@ impl<const D: usize> Elastodynamics<D> {
         if self.ends.is_some() {
             growths[TRACTION] += self.ghost_powers(time, &acceleration, &[[0.0; 2]; D]).traction;
         }
+        self.acceleration = acceleration;
     }
 
     /// Momentum of all particles together.

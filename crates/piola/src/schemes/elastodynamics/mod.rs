@@ -67,6 +67,7 @@ pub struct Elastodynamics<const D: usize> {
     prescribed: PrescribedComponents,
     displacement: Vec<Vector<D>>,
     velocity: Vec<Vector<D>>,
+    acceleration: Vec<Vector<D>>,
     gradient: Vec<Tensor<D>>,
     /// Rate of the gradient; empty without dissipation.
     gradient_rate: Vec<Tensor<D>>,
