@@ -55,7 +55,7 @@ pub enum ProbeKind {
 }
 
 /// Distances of the Taylor test, a decade apart.
-const SIZES: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
+const SIZES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 
 /// Columns of the Taylor test: the least and the largest of the slopes over a decade, which are 2
 /// where the tangent is exact, and what was left at each distance.
