@@ -44,7 +44,7 @@ fn direction(count: usize) -> Vec<f64> {
 /// `|r(x + e d) - r(x) - e r'(x) d|` falls as e^2: Upwind (6.24) to (6.26) with every term on.
 fn taylor<const D: usize>(choice: Choice<D>, settings: Settings) {
     with_equations(choice, settings, |equations, x| {
-        let left = equations.remainders(x, &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5]);
+        let left = equations.remainders(x, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]);
         for pair in left.windows(2) {
             let slope = (pair[0] / pair[1]).log10();
             assert!((slope - 2.0).abs() < 0.02, "{D}D {settings:?}: {left:?}");

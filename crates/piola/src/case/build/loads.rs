@@ -42,7 +42,9 @@ pub(super) struct LoadedSurface<'a, const D: usize, F> {
 /// A share of a load on one particle.
 struct Share<const D: usize> {
     particle: u32,
-    /// Outward area vector in m^(D-1) of its share.
+    /// Its part of the load on an area; by the trace of a face it may be negative.
+    share: f64,
+    /// Outward area vector in m^(D-1) of what is shared.
     area: Vector<D>,
     place: Vector<D>,
 }
@@ -70,7 +72,7 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
             tractions.push(Traction {
                 name: name(load, "traction"),
                 particles: shares.iter().map(|it| it.particle).collect(),
-                areas: shares.iter().map(|it| it.area.norm()).collect(),
+                areas: shares.iter().map(|it| it.share * it.area.norm()).collect(),
                 places: shares.iter().map(|it| it.place).collect(),
                 value: std::array::from_fn(|k| function(&traction[k])),
             });
@@ -88,7 +90,7 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
             pressures.push(FollowerPressure {
                 name: name(load, "pressure"),
                 particles: shares.iter().map(|it| it.particle).collect(),
-                areas: shares.iter().map(|it| it.area).collect(),
+                areas: shares.iter().map(|it| it.area * it.share).collect(),
                 places: shares.iter().map(|it| it.place).collect(),
                 value: function(pressure),
             });
@@ -123,7 +125,12 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
         let areas = self.facing(region, &found.particles, problems)?;
         let own = found.particles.iter().zip(areas).filter(|(_, area)| area.amax() > 0.0);
         let place = |a: u32| self.particles.position[a as usize];
-        let own = own.map(|(&particle, area)| Share { particle, area, place: place(particle) });
+        let own = own.map(|(&particle, area)| Share {
+            particle,
+            share: 1.0,
+            area,
+            place: place(particle),
+        });
         shares.extend(own);
         if shares.is_empty() {
             let help = match is_plane {
@@ -236,8 +243,7 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
                 self.trace.zip(numbers[face as usize]).map(|(trace, f)| trace.row(f as usize));
             for sample in self.particles.surface.faces[face as usize].samples() {
                 for &(particle, share) in traced.as_ref().unwrap_or(&sample.shares) {
-                    let area = sample.area * share;
-                    all.push(Share { particle, area, place: sample.place });
+                    all.push(Share { particle, share, area: sample.area, place: sample.place });
                 }
             }
         }
