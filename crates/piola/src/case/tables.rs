@@ -12,6 +12,7 @@ mod fluids;
 mod geometry;
 mod observers;
 mod solids;
+mod time;
 mod waves;
 
 /// The case file as a whole.
@@ -57,10 +58,10 @@ pub static CASE: TableSpec = TableSpec {
             "the bodies, each a table `[[body]]`",
         ),
         key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),
-        key("time", Kind::Table(&TIME), "", Required, "clock and integrator"),
+        key("time", Kind::Table(&time::TIME), "", Required, "clock and integrator"),
         key(
             "checkpoint",
-            Kind::Table(&CHECKPOINT),
+            Kind::Table(&time::CHECKPOINT),
             "",
             Optional,
             "when the run writes a file that it can be resumed from; it also does on Ctrl-C and SIGTERM",
@@ -216,198 +217,6 @@ const WAVE_SPEEDS: Choices = choices(&[
     choice("constant", "that of the reference state"),
     choice("stretch", "divided by the stretch, Upwind (3.57)"),
 ]);
-
-static TIME: TableSpec = TableSpec {
-    title: "[time]",
-    meaning: "Clock and integrator. The time starts at 0.",
-    keys: &[
-        key("end", Kind::Number(Interval::POSITIVE), "s", Required, "time at which the run ends"),
-        key(
-            "integrator",
-            Kind::Name(Choices::Registry(catalogue::integrators)),
-            "",
-            Derived("`kick_drift_kick`; `tvd_rk2` for the scheme `upwind`"),
-            "time integrator",
-        ),
-        key(
-            "cfl",
-            Kind::Number(Interval::POSITIVE),
-            "1",
-            Derived(
-                "0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8, `elastodynamics`: 0.9) unless `step` is given; none with an implicit integrator",
-            ),
-            "share of the time that a wave needs from particle to particle; with `dual_support` and `elastodynamics`, of the largest stable step of central differences",
-        ),
-        key(
-            "step",
-            Kind::Number(Interval::POSITIVE),
-            "s",
-            Derived("none; a tenth of `end` with the integrator `static`"),
-            "fixed time step instead of `cfl`, checked against the stable step; with an implicit integrator or `static` the largest step, shortened to meet output",
-        ),
-        key(
-            "beta",
-            Kind::Number(Interval::between(0.25, 1.0)),
-            "1",
-            Derived("0.25, with the integrator `newmark`"),
-            "weight of the new acceleration in the displacement, at least half of `gamma`",
-        ),
-        key(
-            "gamma",
-            Kind::Number(Interval::between(0.5, 1.0)),
-            "1",
-            Derived("0.5, with the integrator `newmark`"),
-            "weight of the new acceleration in the velocity: above 0.5 all periods are damped, and steps are of first order",
-        ),
-        key(
-            "alpha",
-            Kind::Number(Interval::between(0.0, 1.0 / 3.0)),
-            "1",
-            Derived("0.05, with the integrator `hht_alpha`"),
-            "share of the forces at the start of a step: the larger, the more short periods are damped",
-        ),
-        key(
-            "spectral_radius",
-            Kind::Number(Interval::between(0.0, 1.0)),
-            "1",
-            Derived("0.8, with the integrator `generalised_alpha`"),
-            "what a step multiplies the shortest periods by; 1 is the implicit midpoint rule, without damping",
-        ),
-        key(
-            "theta",
-            Kind::Number(Interval::between(0.5, 1.0)),
-            "1",
-            Derived("0.55, with the integrator `theta`"),
-            "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
-        ),
-        key(
-            "error",
-            Kind::Number(Interval::between(1e-10, 0.5)),
-            "1",
-            Optional,
-            "with an implicit integrator: error of a step that is allowed, of the velocities over those \
-             that all energy would give. Each step is taken as a whole and in two halves, and is as long \
-             as the difference of both allows, `step` at most",
-        ),
-        key(
-            "tolerance",
-            Kind::Number(Interval::between(1e-13, 1e-2)),
-            "1",
-            Derived("1e-8 with `static` or an implicit integrator, 1e-10 with `upwind`"),
-            "what Newton's method may leave of the forces, over loads and reactions; with `upwind` of \
-             the momentum of a step, over what there is and what forces change of it",
-        ),
-        key(
-            "linear_solver",
-            Kind::Name(LINEAR_SOLVERS),
-            "",
-            Derived("`automatic` with `static` or an implicit integrator"),
-            "how the linear equations of Newton's method are solved",
-        ),
-        key(
-            "max_steps",
-            Kind::Integer(Interval::at_least(1.0)),
-            "1",
-            Optional,
-            "the run fails after so many steps",
-        ),
-        key(
-            "min_step",
-            Kind::Number(Interval::POSITIVE),
-            "s",
-            Optional,
-            "the run fails when the stable step falls below",
-        ),
-        key(
-            "max_speed",
-            Kind::Number(Interval::POSITIVE),
-            "m/s",
-            Derived("10 times the sum of the largest speed and wave speed at the start"),
-            "the run fails when a particle is faster",
-        ),
-        key(
-            "on_failure",
-            Kind::Name(REACTIONS),
-            "",
-            Default("\"stop\""),
-            "what happens when a state turns out to be broken",
-        ),
-        key(
-            "retries",
-            Kind::Integer(Interval::between(1.0, 60.0)),
-            "1",
-            Derived("5 with `on_failure = \"retry\"`"),
-            "how often the run may go back; the steps are halved each time, and grow again where Newton's method is quick",
-        ),
-    ],
-};
-
-const LINEAR_SOLVERS: Choices = choices(&[
-    choice(
-        "automatic",
-        "`direct` for bodies that are quick to factorise, `krylov` for larger ones",
-    ),
-    choice(
-        "direct",
-        "by a sparse factorisation, of the symmetric half where the tangent is not symmetric, with \
-         GMRES for the rest",
-    ),
-    choice(
-        "krylov",
-        "by conjugate gradients, or GMRES where the tangent is not symmetric: with `upwind`, and with \
-         pressures that follow the surface",
-    ),
-]);
-
-const REACTIONS: Choices = choices(&[
-    choice("stop", "the run ends with the last good state"),
-    choice(
-        "retry",
-        "the run goes back some steps and on with half the step, and stops after too many retries; not for a fixed step of time",
-    ),
-]);
-
-static CHECKPOINT: TableSpec = TableSpec {
-    title: "[checkpoint]",
-    meaning: "When checkpoints are written, from which `piola run --resume` goes on. Results do not depend on them.",
-    keys: &[
-        key(
-            "every_steps",
-            Kind::Integer(Interval::at_least(1.0)),
-            "1",
-            Optional,
-            "steps between checkpoints",
-        ),
-        key(
-            "every",
-            Kind::Number(Interval::POSITIVE),
-            "s",
-            Optional,
-            "simulated time between checkpoints; steps are not shortened to meet it",
-        ),
-        key(
-            "every_wall",
-            Kind::Number(Interval::POSITIVE),
-            "s",
-            Derived("300 unless `every_steps` or `every` is given"),
-            "wall time between checkpoints",
-        ),
-        key(
-            "keep",
-            Kind::Integer(Interval::between(1.0, 1e6)),
-            "1",
-            Default("2"),
-            "how many are kept, the newest",
-        ),
-        key(
-            "at_end",
-            Kind::Boolean,
-            "",
-            Default("false"),
-            "whether one is written at the end, to go on from with a later `time.end`",
-        ),
-    ],
-};
 
 static LOAD: TaggedSpec = TaggedSpec {
     title: "[[load]]",

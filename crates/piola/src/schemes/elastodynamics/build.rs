@@ -97,8 +97,8 @@ pub enum ElastodynamicsError {
 }
 
 impl<const D: usize> Elastodynamics<D> {
-    /// Builds matrices, scratch and the initial state; nothing is allocated in a step afterwards,
-    /// unless matrices are made in each.
+    /// Builds matrices, scratch and the initial state; what is allocated in a step afterwards is a
+    /// number a chunk of particles for each sum of the ledger, unless matrices are made in each step.
     ///
     /// # Errors
     /// [`ElastodynamicsError`] for arrays that do not fit together, particles without mass or
