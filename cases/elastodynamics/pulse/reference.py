@@ -41,3 +41,9 @@ for name, place in [("left", 0.0), ("near", LENGTH / 3), ("far", 2 * LENGTH / 3)
         t = k * 5e-8
         rows.append(f"{t:.10g},{stress(place, t):.8g}")
     Path(__file__).with_name("reference").joinpath(f"{name}.csv").write_text("\n".join(rows) + "\n")
+
+rows = ["time,factor"]
+for k in range(301):
+    t = k * 5e-8
+    rows.append(f"{t:.10g},{abs(pulse(t)) / STRESS:.8g}")
+Path(__file__).with_name("reference").joinpath("load.csv").write_text("\n".join(rows) + "\n")

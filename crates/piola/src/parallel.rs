@@ -75,6 +75,24 @@ pub fn maximum(count: usize, least: f64, term: impl Fn(usize) -> f64 + Sync) -> 
         .reduce(|| least, f64::max)
 }
 
+/// Joins `term(i)` over `0..count` to one value, from `neutral` on. `join` has to be associative; it gets
+/// values in the order of their indices.
+pub fn join<T: Copy + Send + Sync>(
+    count: usize,
+    neutral: T,
+    term: impl Fn(usize) -> T + Sync,
+    join: impl Fn(T, T) -> T + Sync,
+) -> T {
+    let of = |range: std::ops::Range<usize>| range.map(&term).fold(neutral, &join);
+    if count <= CHUNK {
+        return of(0..count);
+    }
+    let chunks = (0..count.div_ceil(CHUNK)).into_par_iter();
+    chunks
+        .map(|chunk| of(chunk * CHUNK..((chunk + 1) * CHUNK).min(count)))
+        .reduce(|| neutral, &join)
+}
+
 /// Calls `body(number, row)` for each row of `length` numbers, in chunks as [`for_each_chunk`].
 pub fn for_each_row<T: Send>(rows: &mut [T], length: usize, body: impl Fn(usize, &mut [T]) + Sync) {
     let chunk = |first: usize, rows: &mut [T]| {

@@ -3,6 +3,7 @@
 mod body_force;
 mod function;
 mod held;
+mod history;
 pub(crate) mod prescribed;
 pub(crate) mod pressure;
 pub(crate) mod traction;
@@ -10,6 +11,7 @@ pub(crate) mod traction;
 pub use body_force::BodyForce;
 pub use function::{SpaceTime, padded};
 pub use held::{PrescribedDisplacement, PrescribedFaces, Tie};
+pub use history::{History, Scaled};
 pub use prescribed::PrescribedVelocity;
 pub use pressure::FollowerPressure;
 pub use traction::Traction;

@@ -15,6 +15,7 @@ mod bodies;
 mod checks;
 mod fields;
 mod fluids;
+mod interpolation;
 mod members;
 mod observers;
 mod physics;
@@ -47,7 +48,7 @@ pub(super) fn case(
     reader.names.scheme = scheme.as_ref().map_or("upwind", |scheme| scheme.value.name());
     let domain = reader.domain(record.record("domain"));
     let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
-    let time = record.record("time").and_then(|time| reader.time(time));
+    let time = reader.clock(record);
     reader.names.is_static =
         time.as_ref().is_some_and(|time| *time.integrator == IntegratorKind::Static.name());
     let end = time.as_ref().map(|time| *time.end);
@@ -61,6 +62,9 @@ pub(super) fn case(
     let boundaries: Option<Vec<_>> = boundaries.into_iter().collect();
     if let (Some(bodies), Some(boundaries)) = (&bodies, &boundaries) {
         reader.fits_scheme(bodies, boundaries);
+    }
+    if let (Some(bodies), Some(scheme)) = (&bodies, &scheme) {
+        reader.one_cloud(bodies, scheme);
     }
     let probes: Vec<_> = record.records("probe").map(|probe| reader.probe(probe)).collect();
     let probes: Option<Vec<_>> = probes.into_iter().collect();
@@ -239,6 +243,7 @@ impl Reader<'_, '_> {
             "transport_velocity" => Scheme::TransportVelocity(fluids::transport_velocity(record)?),
             "dual_support" => Scheme::DualSupport(self.dual_support(record)?),
             "elastodynamics" => Scheme::Elastodynamics(self.elastodynamics(record)?),
+            interpolation::NAME => Scheme::Interpolation(interpolation::settings(record)?),
             _ => Scheme::Upwind(physics::upwind(record)?),
         };
         Some(Located::new(scheme, record.place))

@@ -8,10 +8,12 @@ use super::model::{self, Case};
 use super::report::charts;
 use super::resume::{Resumed, Store};
 use super::simulation::{Finished, RUN_QUANTITIES, RunError};
-use crate::observe::{FrameWriter, PictureRequest, PictureWriter, Series, Tables, WrittenFiles};
+use crate::observe::{
+    FrameWriter, PictureRequest, PictureWriter, Series, SpaceTime, Tables, WrittenFiles,
+};
 use crate::output::checkpoint::Identity;
 use crate::output::{
-    self, BodyRecord, Column, Compression, Curve, FigureRecord, LinearRecord, ReferenceRecord,
+    self, BodyRecord, Column, Compression, Curve, FigureRecord, LinearRecord, Map, ReferenceRecord,
     ResultsFolder, RetryRecord, RunRecord, StageRecord, Table, atomic, report, timestamp,
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
@@ -134,7 +136,14 @@ impl Outputs {
     ) -> Result<Vec<PathBuf>, RunError> {
         for plot in &case.plots {
             let path = self.folder.plot(&plot.name)?;
-            chart(case, plot, &finished.tables).write_png(&path)?;
+            match plot.over_time {
+                false => chart(case, plot, &finished.tables).write_png(&path)?,
+                true => match map(case, plot, &finished.tables) {
+                    Some(map) => map.write_png(&path)?,
+                    // The run ended before the line was looked at.
+                    None => continue,
+                },
+            };
             self.written.push(path);
         }
         self.copy_references(case)?;
@@ -220,6 +229,15 @@ fn failure_table(trace: &Trace) -> Table {
     let mut table = Table::new(columns.collect());
     table.set_numbers(trace.numbers.clone()).expect("a trace has whole rows");
     table
+}
+
+/// The map of a column over place and time, if it was recorded at all.
+fn map<'a>(case: &'a Case, plot: &model::Plot, tables: &'a Tables) -> Option<Map<'a>> {
+    let name = plot.curves.first()?.name();
+    let kept = tables.over_time.iter().find(|kept| kept.column.name == name)?;
+    let SpaceTime { column, distances, times, values } = kept;
+    let title = &case.title;
+    (!times.is_empty()).then_some(Map { title, column, distances, times, values })
 }
 
 /// The chart of some columns, with the reference curves of checks.

@@ -95,6 +95,7 @@ fn tables(folder: &ResultsFolder, notes: &mut Vec<String>) -> Tables {
         momentum: read(folder.momentum()),
         steps: read(folder.steps()),
         profiles: Vec::new(),
+        over_time: Vec::new(),
     }
 }
 

@@ -70,8 +70,15 @@ pub(super) fn most_bytes(case: &Case, tables: &Tables, lines: usize, state_lengt
     const ROOM: f64 = (64 << 20) as f64;
     const STATES: f64 = 3.0;
     let columns: usize = tables.all().iter().map(|table| table.columns().len()).sum();
-    let rows = 2.0 * (*case.time.end / *case.output.table_every + 16.0);
-    (ROOM + 8.0 * (rows * columns as f64 + lines as f64 + STATES * state_length as f64)) as u64
+    let rows = rows(*case.time.end, *case.output.table_every);
+    (ROOM + 8.0 * ((rows * columns) as f64 + lines as f64 + STATES * state_length as f64)) as u64
+}
+
+/// Most rows that something has which is recorded every so often up to `end`, twice over.
+pub(super) fn rows(end: f64, every: f64) -> usize {
+    let intervals = end / every;
+    // Where there is no time, there are none.
+    (2.0 * (if intervals.is_finite() { intervals } else { 0.0 } + 16.0)) as usize
 }
 
 /// The newest sound checkpoint in `folder`; none if there are no checkpoints at all.

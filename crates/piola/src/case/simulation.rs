@@ -10,7 +10,7 @@ use super::model::Case;
 use super::outputs::Outputs;
 use super::report;
 use super::resume;
-use crate::observe::{ProfileRecorder, Recorder, Series, Tables};
+use crate::observe::{Line, ProfileRecorder, Recorder, Series, Tables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::Scheme;
 use crate::solve::Costs;
@@ -120,7 +120,13 @@ impl Simulation {
         // Without a record there is nothing to go on from.
         let old = folder.filter(|_| resume).and_then(|path| ResultsFolder::of_run(path).ok());
         let columns = Recorder::columns(built.scheme.as_ref(), &built.probes);
-        let lines = built.lines.iter().map(|line| line.numbers(case.dimension)).sum();
+        let profiles = |line: &Line| match &line.schedule {
+            Schedule::At(times) => times.len() + 1,
+            // The checkpoint of a run that is to go on has no later ones.
+            _ => resume::rows(*case.time.end, *case.output.every),
+        };
+        let lines =
+            built.lines.iter().map(|line| line.numbers(case.dimension, profiles(line))).sum();
         let most = resume::most_bytes(&case, &columns, lines, length);
         let found =
             old.map(|(folder, _)| resume::find(&folder, &identity, most)).transpose()?.flatten();

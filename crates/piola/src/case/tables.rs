@@ -10,6 +10,7 @@ use super::spec::{
 mod checks;
 mod fluids;
 mod geometry;
+mod interpolation;
 mod observers;
 mod solids;
 mod time;
@@ -58,7 +59,13 @@ pub static CASE: TableSpec = TableSpec {
             "the bodies, each a table `[[body]]`",
         ),
         key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),
-        key("time", Kind::Table(&time::TIME), "", Required, "clock and integrator"),
+        key(
+            "time",
+            Kind::Table(&time::TIME),
+            "",
+            Derived("needed by all schemes but `interpolation`"),
+            "clock and integrator",
+        ),
         key(
             "checkpoint",
             Kind::Table(&time::CHECKPOINT),
@@ -137,7 +144,13 @@ static SCHEME: TaggedSpec = TaggedSpec {
     title: "[scheme]",
     meaning: "The formulation and its settings.",
     common: &[],
-    kinds: &[UPWIND, fluids::TRANSPORT_VELOCITY, solids::DUAL_SUPPORT, waves::ELASTODYNAMICS],
+    kinds: &[
+        UPWIND,
+        fluids::TRANSPORT_VELOCITY,
+        solids::DUAL_SUPPORT,
+        waves::ELASTODYNAMICS,
+        interpolation::INTERPOLATION,
+    ],
 };
 
 const UPWIND: KindSpec = KindSpec {
@@ -218,6 +231,14 @@ const WAVE_SPEEDS: Choices = choices(&[
     choice("stretch", "divided by the stretch, Upwind (3.57)"),
 ]);
 
+const HISTORY: KeySpec = key(
+    "history",
+    Kind::File,
+    "",
+    Optional,
+    "CSV file of two columns, time in s (in statics the load factor) and a factor: all expressions here are multiplied with it; straight lines between its rows, the first and the last value beyond them",
+);
+
 static LOAD: TaggedSpec = TaggedSpec {
     title: "[[load]]",
     meaning: "A force on particles.",
@@ -230,6 +251,7 @@ static LOAD: TaggedSpec = TaggedSpec {
             Derived("all bodies; a traction or pressure needs it if there are several"),
             "name of the body that it acts on",
         ),
+        HISTORY,
     ],
     kinds: &[
         KindSpec {
@@ -302,6 +324,7 @@ static BOUNDARY: TableSpec = TableSpec {
             Required,
             "the particles, selected in the reference state",
         ),
+        HISTORY,
         key(
             "velocity",
             Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),

@@ -14,6 +14,7 @@ mod points;
 mod region;
 mod shape;
 mod surface;
+mod surroundings;
 mod way_out;
 
 pub use cloud::{
@@ -29,6 +30,7 @@ pub use points::{PointsError, PointsFault, from_points};
 pub use region::Region;
 pub use shape::Shape;
 pub use surface::Surface;
+pub use surroundings::surroundings;
 
 #[cfg(test)]
 mod tests;

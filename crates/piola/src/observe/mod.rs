@@ -21,4 +21,4 @@ pub use pictures::{PictureRequest, PictureWriter};
 pub use probe::{Probe, ProbeKind, TANGENT_COLUMNS};
 pub use profile::{Line, ProfileRecorder};
 pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns, momentum_columns};
-pub use tables::{Series, Tables};
+pub use tables::{Series, SpaceTime, Tables};

@@ -5,6 +5,7 @@ use super::interpolation::Interpolated;
 use super::memory::{decode, encode, inside};
 use super::probe::component_columns;
 use super::recorder::SharedTables;
+use super::tables::{SpaceTime, Tables};
 use crate::output::{Column, ResultsFolder, Table};
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
@@ -19,6 +20,8 @@ pub struct Line {
     pub values: Interpolated,
     /// Times at which it is recorded.
     pub schedule: Schedule,
+    /// Columns that are kept at all times.
+    pub over_time: Vec<String>,
 }
 
 impl Line {
@@ -29,9 +32,9 @@ impl Line {
         place.chain(component_columns(&self.name, &self.values.fields, dimension)).collect()
     }
 
-    /// Numbers of its table in `dimension` dimensions.
-    pub fn numbers(&self, dimension: usize) -> usize {
-        self.columns(dimension).len() * self.distances.len()
+    /// Numbers of its table in `dimension` dimensions, and of what is kept at `times` times.
+    pub fn numbers(&self, dimension: usize, times: usize) -> usize {
+        (self.columns(dimension).len() + self.over_time.len() * times) * self.distances.len()
     }
 }
 
@@ -44,6 +47,8 @@ pub struct ProfileRecorder {
     tables: SharedTables,
     /// Number of its table among the profiles.
     number: usize,
+    /// Of each column that is kept, where it is in a profile and in the tables.
+    kept: Vec<(usize, usize)>,
     /// The files so far, and the times of all profiles in s.
     files: Vec<String>,
     times: Vec<f64>,
@@ -61,10 +66,21 @@ impl ProfileRecorder {
     ) -> Self {
         let mut shared = tables.lock();
         let number = shared.profiles.len();
-        shared.profiles.push(Table::new(line.columns(dimension)));
+        let profile = Table::new(line.columns(dimension));
+        let mut kept = Vec::new();
+        for place in line.over_time.iter().filter_map(|name| profile.index(name)) {
+            kept.push((place, shared.over_time.len()));
+            shared.over_time.push(SpaceTime {
+                column: profile.columns()[place].clone(),
+                distances: line.distances.clone(),
+                times: Vec::new(),
+                values: Vec::new(),
+            });
+        }
+        shared.profiles.push(profile);
         drop(shared);
         let (files, times, scratch) = Default::default();
-        Self { line, folder, tables, number, files, times, scratch }
+        Self { line, folder, tables, number, kept, files, times, scratch }
     }
 
     fn record(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
@@ -84,9 +100,15 @@ impl ProfileRecorder {
                 std::iter::once(distance).chain(place).chain(values).copied()
             });
         let mut tables = self.tables.lock();
-        let table = &mut tables.profiles[self.number];
+        let Tables { profiles, over_time, .. } = &mut *tables;
+        let table = &mut profiles[self.number];
         table.set_numbers(rows.collect()).expect("a place has a number for each column");
         self.times.push(moment.time);
+        for &(place, number) in &self.kept {
+            let kept = &mut over_time[number];
+            kept.times.push(moment.time);
+            kept.values.extend(table.rows().map(|row| row[place]));
+        }
         let Some((folder, written)) = &self.folder else { return Ok(()) };
         let fail = |source: crate::output::OutputError| ObserveError {
             what: "writing a profile",
@@ -120,16 +142,28 @@ impl Observer for ProfileRecorder {
 
     fn save(&self) -> Vec<u8> {
         let tables = self.tables.lock();
-        encode(&(&self.files, &self.times, tables.profiles[self.number].numbers()))
+        let kept = self.kept.iter().map(|(_, number)| &tables.over_time[*number].values);
+        let kept: Vec<&Vec<f64>> = kept.collect();
+        encode(&(&self.files, &self.times, tables.profiles[self.number].numbers(), kept))
     }
 
     fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
         let what = format!("the line {}", self.line.name);
-        let numbers;
-        (self.files, self.times, numbers) = decode(saved, &what)?;
+        let (numbers, values);
+        (self.files, self.times, numbers, values) = decode(saved, &what)?;
+        let values: Vec<Vec<f64>> = values;
         inside(&self.files)?;
+        let length = self.times.len() * self.line.distances.len();
+        if values.len() != self.kept.len() || values.iter().any(|kept| kept.len() != length) {
+            return Err(Misfit(format!("{what} keeps other columns over time, and not in it")));
+        }
+        let mut tables = self.tables.lock();
+        for ((_, number), values) in self.kept.iter().zip(values) {
+            let kept = &mut tables.over_time[*number];
+            (kept.times, kept.values) = (self.times.clone(), values);
+        }
         let other = |columns| Misfit(format!("{what} has {columns} columns, and not in it"));
-        self.tables.lock().profiles[self.number].set_numbers(numbers).map_err(other)
+        tables.profiles[self.number].set_numbers(numbers).map_err(other)
     }
 
     fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {
@@ -145,6 +179,11 @@ impl Observer for ProfileRecorder {
         }
         // What follows is recorded again, at the latest at the end of the run.
         let mut tables = self.tables.lock();
+        for (_, number) in &self.kept {
+            let column = &mut tables.over_time[*number];
+            column.times.truncate(kept);
+            column.values.truncate(kept * column.distances.len());
+        }
         tables.profiles[self.number].set_numbers(Vec::new()).expect("no rows are whole rows");
         Ok(())
     }

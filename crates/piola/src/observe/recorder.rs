@@ -127,6 +127,7 @@ impl Recorder {
             momentum: Table::new(momentum),
             steps: Table::new(steps),
             profiles: Vec::new(),
+            over_time: Vec::new(),
         }
     }
 

@@ -15,6 +15,21 @@ pub struct Tables {
     pub steps: Table,
     /// The last profile along each line: distance from its start, place, and the fields.
     pub profiles: Vec<Table>,
+    /// Columns of lines at all times.
+    pub over_time: Vec<SpaceTime>,
+}
+
+/// A column of a line at all times at which it was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceTime {
+    /// Name and unit of the column.
+    pub column: Column,
+    /// Distances from the start of the line in m, ascending.
+    pub distances: Vec<f64>,
+    /// Times in s, ascending.
+    pub times: Vec<f64>,
+    /// The values, one row of all places for each time.
+    pub values: Vec<f64>,
 }
 
 /// What a name stands for in the record of a run.

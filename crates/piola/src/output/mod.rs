@@ -12,6 +12,7 @@
 //! | reference curves, read | [`Curve::read_csv`] |
 //! | particles coloured by a number | [`Picture::write_png`] |
 //! | curves against time | [`Plot::write_png`] |
+//! | values over place and time | [`Map::write_png`] |
 //! | all of a run in one page | [`report::write`] |
 //! | where a run can go on from | [`checkpoint::write`] |
 //! | what was run and how it went | [`RunRecord::write`] |
@@ -24,6 +25,7 @@ mod drawing;
 mod error;
 mod folder;
 mod head;
+mod map;
 mod picture;
 mod plot;
 pub mod pvd;
@@ -37,6 +39,7 @@ pub use checkpoint::CheckpointError;
 pub use csv_reader::{Curve, TableError};
 pub use error::OutputError;
 pub use folder::ResultsFolder;
+pub use map::Map;
 pub use picture::{Bounds, Picture, When};
 pub use plot::{Plot, Series, Style};
 pub use record::{

@@ -193,11 +193,17 @@ pub(super) fn ordinates(panel: &[&Series]) -> [f64; 2] {
 
 /// What the names of `panel` have in common: `displacement.y` of `top.displacement.y` and
 /// `tip.displacement.y`, `energy` of `energy.kinetic` and `energy.strain`. References over curves
-/// may be called anything.
+/// may be called anything, and of members of a sweep or variants a value or a name stands in front.
 pub(super) fn common_name(panel: &[&Series]) -> String {
     let only_marks = !panel.iter().any(|series| series.style.is_line());
     let counted = || panel.iter().filter(|series| only_marks || series.style.is_line());
-    let names = || counted().map(|series| series.column.name.split('.'));
+    let bare = |name: &'_ str| name.rfind(": ").map_or(0, |end| end + 2);
+    let names = || {
+        counted().map(|series| {
+            let name = &series.column.name;
+            name[bare(name)..].split('.')
+        })
+    };
     let mut end = common_start(names().map(Iterator::rev));
     end.reverse();
     if end.is_empty() { common_start(names()).join(".") } else { end.join(".") }

@@ -1,6 +1,6 @@
 //! What a formulation is called and what it shows, known before one is built.
 
-use super::{dual_support, elastodynamics, transport_velocity, upwind};
+use super::{dual_support, elastodynamics, interpolation, transport_velocity, upwind};
 use crate::fields::FieldDescription;
 
 /// The figure of formulations that solve for a state: how many iterations the last step took.
@@ -27,11 +27,12 @@ pub struct SchemeDescription {
 
 impl SchemeDescription {
     /// All formulations.
-    pub const ALL: [&'static Self; 4] = [
+    pub const ALL: [&'static Self; 5] = [
         &upwind::DESCRIPTION,
         &transport_velocity::DESCRIPTION,
         &dual_support::DESCRIPTION,
         &elastodynamics::DESCRIPTION,
+        &interpolation::DESCRIPTION,
     ];
 
     /// The formulation of a name.

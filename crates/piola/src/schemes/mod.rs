@@ -6,6 +6,8 @@ pub mod elastodynamics;
 mod equilibrium;
 mod initial;
 pub(crate) mod input;
+pub mod interpolation;
+mod look;
 pub mod momentum;
 mod newmark;
 mod rule;

@@ -39,6 +39,12 @@ pub trait Scheme: Send {
     /// of one in `limits`, which is cleared first.
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health;
 
+    /// What the user should know of the state that [`Scheme::inspect`] has just looked at, though it is
+    /// sound.
+    fn warning(&self) -> Option<String> {
+        None
+    }
+
     /// What is known of a particle (index in memory) that [`Scheme::inspect`] has just found to have
     /// escaped in `state`.
     fn escape(&self, _index: usize, _state: &[f64]) -> Option<Escape> {

@@ -49,6 +49,8 @@ struct Run {
     due: Vec<Option<f64>>,
     history: History,
     warnings: Vec<String>,
+    /// Whether the scheme has warned of a state.
+    warned: bool,
     resumed: Option<(f64, u64)>,
 }
 
@@ -229,7 +231,16 @@ impl Executor {
                 || Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
             let history = history.unwrap_or_else(|| History::new(mark()));
             let resumed = Some((clock.time, clock.step));
-            return Run { clock, tally, state, due, history, warnings: Vec::new(), resumed };
+            return Run {
+                clock,
+                tally,
+                state,
+                due,
+                history,
+                warnings: Vec::new(),
+                warned: false,
+                resumed,
+            };
         }
         let mut state = self.scheme.initial_state();
         self.scheme.constrain(0.0, &mut state);
@@ -244,7 +255,16 @@ impl Executor {
         let (clock, tally) = (Clock::START, Tally::START);
         let mark = Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
         let history = History::new(mark);
-        Run { clock, tally, state, due, history, warnings: Vec::new(), resumed: None }
+        Run {
+            clock,
+            tally,
+            state,
+            due,
+            history,
+            warnings: Vec::new(),
+            warned: false,
+            resumed: None,
+        }
     }
 
     /// Looks at the state: it is sound, or the run ends, or it goes back.
@@ -268,6 +288,11 @@ impl Executor {
             }
             self.go_back(run, &failure)?;
             return Ok(Verdict::Back);
+        }
+        if let (false, Some(warning)) = (run.warned, self.scheme.warning()) {
+            let Clock { step, time, .. } = *clock;
+            run.warnings.push(format!("{warning}; seen first at t = {time:e} s, step {step}"));
+            run.warned = true;
         }
         clock.health = health;
         tally.worst = tally.worst.worse(health);

@@ -6,7 +6,7 @@ use crate::case::model::{self, Body, Case};
 use crate::case::source::Located;
 use crate::geometry::{
     FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
-    from_mesh, from_points,
+    from_mesh, from_points, surroundings,
 };
 use crate::neighbors::{Domain, refuse_coincident};
 use crate::operators::relax;
@@ -106,6 +106,33 @@ pub(super) fn lattice<const D: usize>(
     domain: &Domain<D>,
     jitter: f64,
 ) -> Result<FillReport<D>, Problem> {
+    let (shape, spec) = lattice_of(case, body, domain)?;
+    fill(&shape, &LatticeSpec { jitter, ..spec })
+        .map_err(|error| refuse_spacing(case, body, &error))
+}
+
+/// The sites of the lattice of a body that lie around it, at most `reach` m away.
+pub(super) fn around<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+    reach: f64,
+) -> Result<Particles<D>, Problem> {
+    let (shape, spec) = lattice_of(case, body, domain)?;
+    surroundings(&shape, &spec, reach).map_err(|error| refuse_spacing(case, body, &error))
+}
+
+fn refuse_spacing(case: &Case, body: &Body, error: &GeometryError) -> Problem {
+    let label = format!("spacing of body `{}`", body.name.value);
+    case.problem_at(body.spacing.place, error.to_string(), label, None)
+}
+
+/// The shape of a body and the lattice that fills it, without jitter.
+fn lattice_of<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+) -> Result<(Shape<D>, LatticeSpec<D>), Problem> {
     let shape = shape(case, body, &body.shape)?;
     let (min, max) = shape.bounding_box();
     // Along a periodic axis a body that spans the box meets itself: its last layer is its first.
@@ -126,13 +153,10 @@ pub(super) fn lattice<const D: usize>(
             model::LatticeOrigin::Cells => Placement::Cells,
         },
         periodic,
-        jitter,
+        jitter: 0.0,
         seed: body.lattice.seed,
     };
-    fill(&shape, &spec).map_err(|error| {
-        let label = format!("spacing of body `{}`", body.name.value);
-        case.problem_at(body.spacing.place, error.to_string(), label, None)
-    })
+    Ok((shape, spec))
 }
 
 /// The particles of a lattice, moved apart as often as the case says.

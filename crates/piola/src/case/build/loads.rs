@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use super::bodies::{self, vector};
-use super::selections::{Selection, function, not_empty, selection, trace_numbers};
+use super::selections::{Selection, not_empty, over_time, selection, trace_numbers};
 use crate::Vector;
 use crate::boundaries::{BodyForce, FollowerPressure, Traction};
 use crate::case::diagnostics::Problem;
@@ -20,7 +20,9 @@ pub(super) fn body_forces<const D: usize>(case: &Case) -> Vec<BodyForce<D>> {
         if let LoadKind::BodyForce { acceleration } = &load.kind {
             forces.push(BodyForce {
                 body: load.body.as_ref().map(|body| body.value as u32),
-                acceleration: std::array::from_fn(|k| function(&acceleration[k])),
+                acceleration: std::array::from_fn(|k| {
+                    over_time(&acceleration[k], load.history.as_ref())
+                }),
             });
         }
     }
@@ -74,7 +76,7 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
                 particles: shares.iter().map(|it| it.particle).collect(),
                 areas: shares.iter().map(|it| it.share * it.area.norm()).collect(),
                 places: shares.iter().map(|it| it.place).collect(),
-                value: std::array::from_fn(|k| function(&traction[k])),
+                value: std::array::from_fn(|k| over_time(&traction[k], load.history.as_ref())),
             });
         }
         tractions
@@ -92,7 +94,7 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
                 particles: shares.iter().map(|it| it.particle).collect(),
                 areas: shares.iter().map(|it| it.area * it.share).collect(),
                 places: shares.iter().map(|it| it.place).collect(),
-                value: function(pressure),
+                value: over_time(pressure, load.history.as_ref()),
             });
         }
         pressures

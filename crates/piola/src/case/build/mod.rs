@@ -3,6 +3,7 @@
 pub(super) mod bodies;
 mod fluids;
 mod functions;
+mod interpolation;
 mod loads;
 mod probes;
 mod selections;
@@ -21,7 +22,7 @@ use super::model::{self, Case};
 use super::simulation::Simulation;
 use super::source::Located;
 use crate::geometry::Particles;
-use crate::neighbors::{Domain, NeighborError, spatial_order};
+use crate::neighbors::{Domain, NeighborError, NeighborStatistics, spatial_order};
 use crate::observe::{Line, Probe};
 use crate::operators::{Correction, GradientOperator, Support};
 use crate::schemes::upwind::{
@@ -55,7 +56,7 @@ pub(super) struct Built {
     pub probes: Vec<Probe>,
     pub lines: Vec<Line>,
     pub bodies: Vec<BodyReport>,
-    pub neighbors: crate::neighbors::NeighborStatistics,
+    pub neighbors: NeighborStatistics,
     /// Particles with fewer neighbours than dimensions, by index in memory.
     pub poorly_supported: Vec<u32>,
     pub warnings: Vec<String>,
@@ -64,7 +65,7 @@ pub(super) struct Built {
 fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
     let domain = domain::<D>(case)?;
     let (particles, bodies) = bodies::particles::<D>(case, &domain)?;
-    let built = match &case.scheme.value {
+    let mut built = match &case.scheme.value {
         model::Scheme::Upwind(settings) => build_upwind(case, settings, particles, bodies, domain)?,
         model::Scheme::TransportVelocity(settings) => {
             fluids::build(case, settings, particles, bodies, domain)?
@@ -75,8 +76,39 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
         model::Scheme::Elastodynamics(settings) => {
             waves::build(case, settings, particles, bodies, domain)?
         }
+        model::Scheme::Interpolation(settings) => {
+            interpolation::build(case, settings, particles, bodies, domain)?
+        }
     };
+    built.warnings.extend(uneven_steps(case));
     Ok(Simulation::new(case, built))
+}
+
+/// Central differences whose steps are as long as is stable one by one may grow when long and short ones
+/// take turns, which due times in no proportion make them do.
+fn uneven_steps(case: &Case) -> Option<String> {
+    let ratio = *case.output.every / *case.output.table_every;
+    let fits = (ratio - ratio.round()).abs() < 1e-6 * ratio;
+    let is_split = integrator_kind(case) == IntegratorKind::KickDriftKick;
+    let follows = matches!(*case.time.step, model::StepControl::Cfl(number) if number > 0.5);
+    (is_split && follows && !fits).then(|| {
+        "`output.every` is no multiple of `output.table_every`, so that longer and shorter steps take turns, \
+         which lets short waves grow near the stable step: make it one, or lower `time.cfl` to 0.5"
+            .to_owned()
+    })
+}
+
+/// How many neighbours the particles of a scheme have, and which have fewer than there are dimensions.
+fn row_statistics(scheme: &dyn Scheme) -> (NeighborStatistics, Vec<u32>) {
+    let count = scheme.particle_count();
+    let lengths: Vec<usize> = (0..count).map(|a| scheme.neighborhood(a).len()).collect();
+    let statistics = NeighborStatistics {
+        least: lengths.iter().copied().min().unwrap_or(0),
+        mean: lengths.iter().sum::<usize>() as f64 / count.max(1) as f64,
+        most: lengths.iter().copied().max().unwrap_or(0),
+    };
+    let poor = (0u32..).zip(&lengths).filter(|(_, length)| **length < scheme.dimension());
+    (statistics, poor.map(|(a, _)| a).collect())
 }
 
 /// The kernel of a name.
@@ -275,7 +307,7 @@ fn stencil_warning<const D: usize>(
     settings: &model::Upwind,
     bodies: &[BodyReport],
     kernel: Kernel,
-    neighbors: &crate::neighbors::NeighborStatistics,
+    neighbors: &NeighborStatistics,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     let reaches_diagonals = bodies.iter().any(|body| {

@@ -93,9 +93,19 @@ pub(super) fn lines<const D: usize>(case: &Case, particles: &Particles<D>) -> Ve
                 Some(times) => Schedule::at(times.clone()),
                 None => Schedule::Every(*case.output.every),
             },
+            over_time: maps_of(case, &probe.name),
         })
     };
     case.probes.iter().filter_map(line).collect()
+}
+
+/// The columns of a line that maps are drawn of.
+fn maps_of(case: &Case, line: &str) -> Vec<String> {
+    let maps = case.plots.iter().filter(|plot| plot.over_time);
+    let columns = maps.flat_map(|plot| &plot.curves).map(|curve| &curve.value);
+    let of_line = columns
+        .filter(|column| matches!(column, model::Quantity::Probe { probe, .. } if *probe == line));
+    of_line.map(model::Quantity::name).collect()
 }
 
 /// Fields of a body, or of all, at some places.
@@ -145,6 +155,10 @@ fn kernel_of(case: &Case) -> (Kernel, f64) {
             // Wide covers smooth; a value at a place is one of the particles around it.
             let kernel = kernel(&settings.kernel);
             (kernel, settings.support.min(2.5) / kernel.support_over_h())
+        }
+        // At a particle its own value, which others are not mixed into.
+        model::Scheme::Interpolation(_) => {
+            (Kernel::CubicSpline, 1.0 / Kernel::CubicSpline.support_over_h())
         }
     }
 }

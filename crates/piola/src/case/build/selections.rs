@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::bodies::vector;
 use crate::Vector;
 use crate::boundaries::{
-    PrescribedDisplacement, PrescribedFaces, PrescribedVelocity, SpaceTime, Tie,
+    History, PrescribedDisplacement, PrescribedFaces, PrescribedVelocity, Scaled, SpaceTime, Tie,
 };
 use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
@@ -158,6 +158,18 @@ pub(super) fn function(expression: &Expression) -> Arc<dyn SpaceTime> {
     }
 }
 
+/// An expression times what a table of its load or boundary gives over time.
+pub(super) fn over_time(
+    expression: &Expression,
+    history: Option<&Arc<History>>,
+) -> Arc<dyn SpaceTime> {
+    let value = function(expression);
+    match history {
+        Some(history) => Arc::new(Scaled { value, history: history.clone() }),
+        None => value,
+    }
+}
+
 /// The prescribed velocity components of all boundaries.
 pub(super) fn prescribed<const D: usize>(
     case: &Case,
@@ -173,7 +185,7 @@ pub(super) fn prescribed<const D: usize>(
                     name: boundary.name.value.clone(),
                     particles: selected.clone(),
                     component,
-                    value: function(value),
+                    value: over_time(value, boundary.history.as_ref()),
                 });
             }
         }
@@ -214,7 +226,7 @@ pub(super) fn held<const D: usize>(
         let rollers = boundary.roller.iter();
         let along_normal = rollers.map(|roller| (vector(&roller.normal), &roller.displacement));
         for (direction, value) in along_axes.chain(along_normal) {
-            let (name, value) = (name.clone(), function(value));
+            let (name, value) = (name.clone(), over_time(value, boundary.history.as_ref()));
             if !faces.is_empty() {
                 let (name, value, faces) = (name.clone(), value.clone(), faces.clone());
                 held.faces.push(PrescribedFaces { name, faces, direction, value });

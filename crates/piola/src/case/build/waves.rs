@@ -3,17 +3,17 @@
 use super::bodies::{self, BodyReport};
 use super::loads::{self, LoadedSurface};
 use super::solids::{areas, materials};
-use super::{Built, at_start, kernel, probes, selections};
+use super::{Built, at_start, kernel, probes, row_statistics, selections};
 use crate::Vector;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::geometry::Particles;
-use crate::neighbors::{Domain, NeighborError, NeighborStatistics, search, spatial_order};
+use crate::neighbors::{Domain, NeighborError, search, spatial_order};
 use crate::operators::{Continuation, Mirror};
+use crate::schemes::InputError;
 use crate::schemes::elastodynamics::{
     Elastodynamics, ElastodynamicsError, ElastodynamicsInput, Form, Mixture,
 };
-use crate::schemes::{InputError, Scheme};
 
 /// Particles of two bodies that are closer than this share of their spacing are one.
 const JOINED: f64 = 1e-6;
@@ -99,16 +99,9 @@ pub(super) fn build<const D: usize>(
         };
         vec![case.problem_at(place, error.to_string(), label, None)]
     })?;
-    let count = scheme.particle_count();
-    let lengths: Vec<usize> = (0..count).map(|a| scheme.neighborhood(a).len()).collect();
-    let neighbors = NeighborStatistics {
-        least: lengths.iter().copied().min().unwrap_or(0),
-        mean: lengths.iter().sum::<usize>() as f64 / count.max(1) as f64,
-        most: lengths.iter().copied().max().unwrap_or(0),
-    };
-    let poorly_supported = (0u32..).zip(&lengths).filter(|(_, length)| **length < D);
+    let (neighbors, poorly_supported) = row_statistics(&scheme);
     Ok(Built {
-        poorly_supported: poorly_supported.map(|(a, _)| a).collect(),
+        poorly_supported,
         scheme: Box::new(scheme),
         probes,
         lines,

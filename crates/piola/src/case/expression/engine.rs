@@ -195,9 +195,11 @@ impl Program {
         self.plain.eval(&values[..self.variables.len()]).unwrap_or(f64::NAN)
     }
 
-    pub(super) fn rate(&self, position: [f64; 3], time: f64) -> f64 {
-        let [x, y, z] = position.map(Dual::from_number);
-        let all = [x, y, z, Dual { value: time, rate: 1.0 }];
+    /// The derivative by one of the variables.
+    pub(super) fn derivative(&self, by: Variable, position: [f64; 3], time: f64) -> f64 {
+        let [x, y, z] = position;
+        let mut all = [x, y, z, time].map(Dual::from_number);
+        all[by as usize].rate = 1.0;
         let mut values = [Dual::default(); 4];
         for (value, variable) in values.iter_mut().zip(&self.variables) {
             *value = all[*variable as usize];

@@ -188,14 +188,19 @@ impl Expression {
         }
     }
 
-    /// Its rate, the exact derivative by time at a fixed position, computed with dual numbers.
-    ///
-    /// At a kink or jump (`abs`, `sign`, `min`, `max`, `floor`, `step`, `mod`) it is the rate of
-    /// the branch that [`eval`](Self::eval) takes there; a jump contributes none.
+    /// Its rate, the [derivative](Self::derivative) by time at a fixed position.
     pub fn rate(&self, position: [f64; 3], time: f64) -> f64 {
+        self.derivative(Variable::T, position, time)
+    }
+
+    /// Its exact derivative by a variable, the others being fixed, computed with dual numbers.
+    ///
+    /// At a kink or jump (`abs`, `sign`, `min`, `max`, `floor`, `step`, `mod`) it is that of the
+    /// branch that [`eval`](Self::eval) takes there; a jump contributes none.
+    pub fn derivative(&self, by: Variable, position: [f64; 3], time: f64) -> f64 {
         match &self.form {
             Form::Constant(_) => 0.0,
-            Form::Variable(program) => program.rate(position, time),
+            Form::Variable(program) => program.derivative(by, position, time),
         }
     }
 }

@@ -16,7 +16,7 @@ const STIFFNESSES: [&str; 3] = ["bulk_modulus", "wave_speed", "young_modulus"];
 impl Reader<'_, '_> {
     pub(super) fn body(&mut self, record: &Record) -> Option<Body> {
         let shape = record.record("shape").and_then(|shape| self.shape(shape));
-        let material = record.record("material").and_then(|material| self.material(material));
+        let material = self.body_material(record);
         let lattice = record.record("lattice").and_then(lattice);
         let initial = record.record("initial").and_then(|initial| self.initial(initial));
         let spacing = self.spacing(record, shape.as_ref());
@@ -193,7 +193,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    fn material(&mut self, record: &Record) -> Option<Located<Material>> {
+    pub(super) fn material(&mut self, record: &Record) -> Option<Located<Material>> {
         if HyperelasticLaw::NAMES.contains(&record.kind) {
             return self.elastic_solid(record);
         }

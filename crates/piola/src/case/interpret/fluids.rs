@@ -60,6 +60,7 @@ impl Reader<'_, '_> {
             let help = match (scheme, &body.material.value) {
                 ("transport_velocity", Material::WeaklyCompressible { .. })
                 | ("dual_support" | "elastodynamics", Material::Hyperelastic { .. })
+                | (interpolation::NAME, _)
                 | ("upwind", Material::Linear { .. } | Material::GammaLaw { .. }) => None,
                 ("transport_velocity", _) => {
                     Some("use `kind = \"weakly_compressible\"`, for walls too".to_owned())

@@ -184,7 +184,14 @@ impl Reader<'_, '_> {
             let problem = Problem::new(other.place, message, "of the other kind");
             return self.refuse(problem.help("make two plots of it"));
         }
-        Some(Plot { name: record.text("name")?, curves })
+        let over_time = record.boolean("over_time")?;
+        if over_time && (curves.len() != 1 || is_along(&curves[0]).is_none()) {
+            let place = record.key_place("over_time").unwrap_or(record.place);
+            let message = "a map over time is of one column of a line";
+            let problem = Problem::new(place, message, "not of one column of a line");
+            return self.refuse(problem.help("name one column of a probe of the kind `line`"));
+        }
+        Some(Plot { name: record.text("name")?, curves, over_time })
     }
 }
 

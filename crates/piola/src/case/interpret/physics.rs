@@ -1,10 +1,14 @@
 //! The scheme, loads and boundaries.
 
+use std::sync::Arc;
+
 use super::*;
+use crate::boundaries::History;
 use crate::case::expression::Expression;
 use crate::case::model::{
     Boundary, Correction, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Upwind, Weights,
 };
+use crate::output::Curve;
 
 /// Settings of the scheme `upwind`.
 pub(super) fn upwind(record: &Record) -> Option<Upwind> {
@@ -62,7 +66,27 @@ impl Reader<'_, '_> {
             },
             _ => return None,
         };
-        Some(Load { name: record.text("name"), body, kind })
+        let history = self.history(record)?;
+        Some(Load { name: record.text("name"), body, history, kind })
+    }
+
+    /// The factor over time that the file `history` of a load or boundary gives, if there is one.
+    fn history(&mut self, record: &Record) -> Option<Option<Arc<History>>> {
+        if !record.has("history") {
+            return Some(None);
+        }
+        let file = self.file(record, "history")?;
+        // Where the text of a case is from elsewhere, files are not looked for.
+        let Some(_) = self.setting.folder else { return Some(None) };
+        let refuse = |message: String| Problem::new(file.place, message, "this file");
+        let curve = match Curve::read_csv(&file) {
+            Ok(curve) => curve,
+            Err(error) => return self.refuse(refuse(error.to_string())),
+        };
+        match History::new(curve.abscissa, curve.ordinate) {
+            Some(history) => Some(Some(Arc::new(history))),
+            None => self.refuse(refuse("the file gives no factor over time".to_owned())),
+        }
     }
 
     /// The part of the surface that a load acts on.
@@ -130,6 +154,7 @@ impl Reader<'_, '_> {
             name: record.text("name")?,
             body,
             region: region?,
+            history: self.history(record)?,
             velocity: expressions_per_axis(record, "velocity"),
             mirror: mirror.filter(|mirror| mirror.value),
             displacement: expressions_per_axis(record, "displacement"),

@@ -142,4 +142,6 @@ pub struct Plot {
     pub name: Located<String>,
     /// At least one column of the tables; all against time or all along lines.
     pub curves: Vec<Located<super::Quantity>>,
+    /// Whether it is a map of one column of a line over place and time.
+    pub over_time: bool,
 }

@@ -1,13 +1,20 @@
 //! Materials, schemes, time, loads and boundaries.
 
+use std::sync::Arc;
+
 use piola_formulas::hyperelastic::HyperelasticLaw;
 use piola_formulas::volumetric::{self, StressState};
 
 use super::Region;
+use crate::boundaries::History;
 use crate::case::expression::Expression;
-use crate::case::source::Located;
-use crate::schemes::{ImplicitRule, dual_support, elastodynamics, transport_velocity, upwind};
+use crate::case::source::{Located, Place};
+use crate::operators::GradientForm;
+use crate::schemes::{
+    ImplicitRule, dual_support, elastodynamics, interpolation, transport_velocity, upwind,
+};
 use crate::solve::LinearMethod;
+use crate::time::IntegratorKind;
 
 /// What a body is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +56,10 @@ pub enum Material {
 }
 
 impl Material {
+    /// What bodies are made of of which no one asks.
+    pub const PLACEHOLDER: Self =
+        Self::Linear { density: 1.0, stiffness: Stiffness::BulkModulus(1.0) };
+
     /// Reference density in kg/m^3.
     pub fn density(&self) -> f64 {
         match *self {
@@ -141,6 +152,8 @@ pub enum Scheme {
     DualSupport(DualSupport),
     /// Elastic solids on SPH matrices.
     Elastodynamics(Elastodynamics),
+    /// No motion: sums of a known function.
+    Interpolation(Interpolation),
 }
 
 impl Scheme {
@@ -151,6 +164,7 @@ impl Scheme {
             Self::TransportVelocity(_) => transport_velocity::DESCRIPTION,
             Self::DualSupport(_) => dual_support::DESCRIPTION,
             Self::Elastodynamics(_) => elastodynamics::DESCRIPTION,
+            Self::Interpolation(_) => interpolation::DESCRIPTION,
         };
         description.name
     }
@@ -216,6 +230,23 @@ pub struct Elastodynamics {
     pub weights: Weights,
     /// All that the formulation itself knows.
     pub settings: Located<elastodynamics::Settings>,
+}
+
+/// Settings of the scheme `interpolation`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interpolation {
+    /// What is interpolated, of the position.
+    pub function: Located<Expression>,
+    /// Name in the kernel registry.
+    pub kernel: Located<String>,
+    /// Support radius in particle spacings.
+    pub support: Located<f64>,
+    /// What is summed under the kernel.
+    pub weights: Weights,
+    /// What kernel gradients are made into.
+    pub form: GradientForm,
+    /// What ghosts carry.
+    pub boundary: interpolation::Boundary,
 }
 
 /// How large the support of a particle is.
@@ -323,6 +354,25 @@ impl Default for Checkpoint {
     }
 }
 
+impl Time {
+    /// No time at all, for a case in which nothing moves.
+    pub fn none(place: Place) -> Self {
+        Self {
+            end: Located::new(0.0, place),
+            integrator: Located::new(IntegratorKind::TvdRk2.name().to_owned(), place),
+            rule: None,
+            error: None,
+            tolerance: None,
+            linear_solver: LinearMethod::Automatic,
+            step: Located::new(StepControl::AtMost(1.0), place),
+            max_steps: None,
+            min_step: None,
+            max_speed: None,
+            retries: 0,
+        }
+    }
+}
+
 /// How long a time step is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepControl {
@@ -341,6 +391,8 @@ pub struct Load {
     pub name: Option<Located<String>>,
     /// Number of the body that it acts on, `None` for all.
     pub body: Option<Located<usize>>,
+    /// Factor over time of all its expressions.
+    pub history: Option<Arc<History>>,
     /// What acts.
     pub kind: LoadKind,
 }
@@ -389,6 +441,8 @@ pub struct Boundary {
     pub body: Option<Located<usize>>,
     /// The particles.
     pub region: Located<Region>,
+    /// Factor over time of all its expressions.
+    pub history: Option<Arc<History>>,
     /// Per component, the velocity in m/s as an expression of the reference position and time, or
     /// `None` where the particle is free.
     pub velocity: Vec<Option<Expression>>,

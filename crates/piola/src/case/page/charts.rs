@@ -13,7 +13,7 @@ const MARKS: usize = 60;
 /// The charts of a case with names for their files.
 pub(super) fn charts(case: &Case, page: &PageCase) -> Vec<(String, Plot)> {
     let mut charts = Vec::new();
-    for plot in &case.plots {
+    for plot in case.plots.iter().filter(|plot| !plot.over_time) {
         let curves: Vec<String> = plot.curves.iter().map(|curve| curve.name()).collect();
         let name = &plot.name.value;
         let abscissa = abscissa(page, &curves[0]);

@@ -277,5 +277,12 @@ pub(super) static PLOT: TableSpec = TableSpec {
             Required,
             "columns of the tables, for example `top.displacement.y` or `energy.total`; all against time, or all of lines",
         ),
+        key(
+            "over_time",
+            Kind::Boolean,
+            "",
+            Default("false"),
+            "of one column of a line: a map of all its profiles in colours, over place and time",
+        ),
     ],
 };

@@ -2,3 +2,4 @@ mod fill;
 mod points;
 mod region;
 mod shape;
+mod surroundings;

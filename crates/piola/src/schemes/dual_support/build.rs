@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::inspect::largest_wave_modulus;
 use super::stable_step::stable_step;
 use super::{
     Discrete, DualSupport, Gradients, Material, Motion, Row, Settings, Side, Statics, StaticsError,
@@ -21,6 +20,7 @@ use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
     check_pressure,
 };
+use crate::schemes::solid::wave_moduli;
 use crate::{Tensor, Vector};
 
 /// All that the formulation is bound to.
@@ -127,8 +127,7 @@ impl<const D: usize> DualSupport<D> {
             mass.push(own);
         }
         let positions = &particles.position;
-        let at_rest =
-            |material: &Material<D>| largest_wave_modulus(&material.law, &Tensor::zeros());
+        let at_rest = |material: &Material<D>| wave_moduli(&material.law, &Tensor::zeros());
         let is_static = matches!(input.motion, Motion::Static(_));
         let (stable_step, stiffest) = match is_static {
             true => (f64::INFINITY, 0),
@@ -157,7 +156,8 @@ impl<const D: usize> DualSupport<D> {
             loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
             pressed: input.pressures.iter().flat_map(|load| load.pressed(positions)).collect(),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
-            modulus_at_rest: discrete.materials.iter().map(at_rest).collect(),
+            moduli_at_rest: discrete.materials.iter().map(at_rest).collect(),
+            not_convex: None,
             statics: statics.map(Box::new),
             is_static,
             stable_step,

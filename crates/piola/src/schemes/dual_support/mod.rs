@@ -41,9 +41,9 @@ use std::sync::Arc;
 
 pub use super::solid::Material;
 use super::solid::Row;
-use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, pressure::Pressed, traction::Loaded};
+use crate::{Tensor, Vector};
 
 /// The dual-support formulation bound to its particles.
 pub struct DualSupport<const D: usize> {
@@ -58,8 +58,10 @@ pub struct DualSupport<const D: usize> {
     /// Largest stable step of central differences at rest, s, and where it is felt most.
     stable_step: f64,
     stiffest: usize,
-    /// Modulus of the fastest wave at rest of each material, Pa.
-    modulus_at_rest: Vec<f64>,
+    /// Moduli of the slowest and the fastest wave at rest of each material, Pa.
+    moduli_at_rest: Vec<[f64; 2]>,
+    /// A particle of the last look that has lost its convexity, with its displacement gradient.
+    not_convex: Option<(usize, Tensor<D>)>,
     body_forces: Vec<BodyForce<D>>,
     loaded: Vec<Loaded<D>>,
     pressed: Vec<Pressed<D>>,

@@ -2,6 +2,7 @@
 
 use super::sample::FIELDS;
 use super::{DualSupport, ENERGIES, IMPULSES, MECHANISMS, Row, Side};
+use crate::schemes::look::convexity_is_lost;
 use crate::schemes::{
     Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme,
     StaticScheme, StepLimit,
@@ -77,6 +78,11 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn linear_costs(&self) -> Option<Costs> {
         self.statics.as_ref().map(|statics| statics.costs())
+    }
+
+    fn warning(&self) -> Option<String> {
+        let (index, gradient) = self.not_convex.as_ref()?;
+        Some(convexity_is_lost(&self.particle(*index), gradient, "use another law"))
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {

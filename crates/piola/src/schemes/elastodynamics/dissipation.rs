@@ -29,7 +29,7 @@ impl<const D: usize> Elastodynamics<D> {
     /// `b_1 rho c l` of the artificial viscosity, Pa s, with the wave speed at rest and the spacing l.
     pub(super) fn artificial_modulus(&self, a: usize) -> f64 {
         let mixture = self.mixture[a] as usize;
-        let impedance = (self.mixtures[mixture].density() * self.modulus_at_rest[mixture]).sqrt();
+        let impedance = (self.mixtures[mixture].density() * self.moduli_at_rest[mixture][1]).sqrt();
         self.settings.artificial_viscosity[0] * impedance * self.particles.spacing[a]
     }
 }

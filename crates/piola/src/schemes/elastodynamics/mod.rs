@@ -58,10 +58,10 @@ pub struct Elastodynamics<const D: usize> {
     /// The ends of a row, in the strong form.
     ends: Option<Ends<D>>,
     stable: stable_step::Bound,
-    /// Modulus of the fastest wave at rest of each mixture, Pa.
-    modulus_at_rest: Vec<f64>,
-    /// That of the slowest.
-    least_at_rest: Vec<f64>,
+    /// Moduli of the slowest and the fastest wave at rest of each mixture, Pa.
+    moduli_at_rest: Vec<[f64; 2]>,
+    /// A particle of the last look that has lost its convexity, with its displacement gradient.
+    not_convex: Option<(usize, Tensor<D>)>,
     body_forces: Vec<BodyForce<D>>,
     loaded: Vec<Loaded<D>>,
     prescribed: PrescribedComponents,

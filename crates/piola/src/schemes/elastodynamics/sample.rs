@@ -108,7 +108,7 @@ impl<const D: usize> Elastodynamics<D> {
             "strain_energy" => values.push(mixture.energy(gradient)),
             "convexity" => {
                 let [least, _] = mixture.wave_moduli(gradient);
-                values.push(least / self.least_at_rest[kind]);
+                values.push(least / self.moduli_at_rest[kind][0]);
             }
             "principal_stress" => {
                 let mut cauchy = Vec::with_capacity(D * D);

@@ -3,6 +3,7 @@
 use super::sample::FIELDS;
 use super::{ENERGIES, Elastodynamics, IMPULSES, MECHANISMS};
 use crate::parallel;
+use crate::schemes::look::convexity_is_lost;
 use crate::schemes::solid::Row;
 use crate::schemes::{Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
 
@@ -52,6 +53,12 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.look(state, limits)
+    }
+
+    fn warning(&self) -> Option<String> {
+        let (index, gradient) = self.not_convex.as_ref()?;
+        let advice = "add `scheme.viscosity`, or use another law";
+        Some(convexity_is_lost(&self.particle(*index), gradient, advice))
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {

@@ -1,10 +1,9 @@
 //! The elastodynamics formulation: stable steps, conservation, exact boundaries.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
 use std::sync::Arc;
 
+use crate::support::lattice;
 use piola::boundaries::{PrescribedVelocity, SpaceTime, Traction};
 use piola::neighbors::Domain;
 use piola::operators::{Continuation, Mirror};
@@ -18,7 +17,6 @@ use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::StressState;
-use support::lattice;
 
 const PLAIN: Settings = Settings {
     form: Form::Adjoint,

@@ -1,10 +1,9 @@
 //! Convergence of the upwind formulation to manufactured and exact solutions.
 
-mod support;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::support::{Choice, Function, PLAIN, lattice, march, march_from, varying};
 use nalgebra::Matrix2;
 use num_dual::{Dual, Dual64, DualNum};
 use piola::Vector;
@@ -14,7 +13,6 @@ use piola::schemes::Scheme;
 use piola::schemes::upwind::{BodyForce, Settings, Upwind};
 use piola_formulas::tensor::{cofactor, determinant};
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
-use support::{Choice, Function, PLAIN, lattice, march, march_from, varying};
 
 /// Numbers with derivatives of derivatives.
 type Twice = Dual<Dual64>;

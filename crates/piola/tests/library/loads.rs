@@ -1,21 +1,19 @@
 //! Loads, moving boundaries, prestress and periodic boxes of the upwind formulation, each against
 //! an exact solution, and the ledger of their work.
 
-mod support;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::support::{
+    Choice, Function, PLAIN, disturbed, energy, imbalance, lattice, march, march_from, noise,
+    varying, work,
+};
 use piola::Vector;
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::schemes::Scheme;
 use piola::schemes::upwind::{BodyForce, Initial, Material, Settings, Upwind};
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
-use support::{
-    Choice, Function, PLAIN, disturbed, energy, imbalance, lattice, march, march_from, noise,
-    varying, work,
-};
 
 fn linear(modulus: f64) -> VolumetricLaw {
     VolumetricLaw::linear(modulus).expect("a sound material")

@@ -56,6 +56,11 @@ fields = ["velocity"]
 [[plot]]
 name = "up"
 curves = ["up.velocity.x"]
+
+[[plot]]
+name = "map"
+curves = ["across.velocity.y"]
+over_time = true
 "#;
 
 fn parse(text: &str, folder: Option<&Path>) -> Case {
@@ -138,6 +143,16 @@ fn profiles_come_when_they_are_asked_for() {
         assert_ne!(last, profiles(&out, line)[0], "{line} has changed");
     }
     assert!(out.join("plots/up.png").is_file());
+    // What a map is drawn of is kept at all times.
+    assert!(out.join("plots/map.png").is_file());
+    let [kept] = &finished.tables.over_time[..] else { panic!("one map") };
+    assert_eq!(
+        (kept.column.name.as_str(), &kept.times[..]),
+        ("across.velocity.y", &[0.0, 0.003][..])
+    );
+    let all = profiles(&out, "across");
+    let written = all.iter().flat_map(|profile| profile.rows().map(|row| row[4]));
+    assert_eq!(kept.values, written.collect::<Vec<f64>>());
     // The report reads them from the folder.
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("data-x-name=\"distance\"") && page.contains("across.velocity.y"));

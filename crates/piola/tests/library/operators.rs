@@ -1,9 +1,8 @@
 //! The operators: what they reproduce exactly, how fast they converge, and what they refuse.
 
-mod support;
-
 use std::f64::consts::PI;
 
+use crate::support::{jittered, lattice, noise};
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{
@@ -11,7 +10,6 @@ use piola::operators::{
 };
 use piola::{Tensor, Vector};
 use piola_formulas::kernels::Kernel;
-use support::{jittered, lattice, noise};
 
 const CORRECTED: [Correction; 2] = [Correction::Gradient, Correction::KernelAndGradient];
 

@@ -1,8 +1,7 @@
 //! The rates of the upwind formulation against sums written out from the operators and the pair
 //! laws, particle by particle: theory (8) to (13) without anything that makes them fast.
 
-mod support;
-
+use crate::support::{Choice, disturbed, jittered, lattice};
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{Correction, GradientOperator, LeastSquares, Support};
@@ -13,7 +12,6 @@ use piola_formulas::kernels::Kernel;
 use piola_formulas::riemann::{Interface, stretched_wave_speed};
 use piola_formulas::tensor::{cofactor, right_cauchy_green, smallest_eigenvalue};
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
-use support::{Choice, disturbed, jittered, lattice};
 
 const DENSITY: f64 = 1000.0;
 const SPEED: f64 = 10.0;

@@ -1,20 +1,18 @@
 //! The upwind formulation: balances, invariances and exact solutions.
 
-mod support;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use crate::support::{
+    Choice, PLAIN, disturbed, energy, jittered, lattice, march, march_from, noise, work,
+};
 use piola::neighbors::Domain;
 use piola::schemes::upwind::{Initial, Settings, Upwind, UpwindInput};
 use piola::schemes::{Health, Ledger, Scheme};
 use piola::time::{Executor, IntegratorKind, Outcome, StepControl};
 use piola::{Tensor, Vector};
 use piola_formulas::volumetric::VolumetricLaw;
-use support::{
-    Choice, PLAIN, disturbed, energy, jittered, lattice, march, march_from, noise, work,
-};
 
 fn gamma() -> VolumetricLaw {
     VolumetricLaw::gamma_law_from_wave_speed(10.0, 1000.0, 7.0).expect("a sound material")

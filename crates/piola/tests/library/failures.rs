@@ -292,3 +292,20 @@ fn what_statics_misses_is_named() {
     let named = ["the residual went 1.0e0", "particle 107", "`time.step`", "halves it"];
     assert!(named.iter().all(|text| message.contains(text)), "{message}");
 }
+
+/// The bar of E11 at nu 0.49 loses its convexity at a stretch of 3.63; at nu 0.3 it never does.
+#[test]
+fn a_material_that_loses_its_convexity_is_named_once() {
+    let warnings = |ratio: &str| {
+        let set = ["parameters.homogeneous=0", "parameters.N=30", ratio];
+        let finished = run(&load_of("elastodynamics", "stretch", &set), None);
+        let lost = |text: &&String| text.contains("has lost its convexity");
+        finished.warnings.iter().filter(lost).cloned().collect::<Vec<_>>()
+    };
+    let [warning] = &warnings("parameters.nu=0.49")[..] else { panic!("one warning") };
+    let stretch = warning.split("at principal stretches from ").nth(1).unwrap();
+    let stretch: f64 = stretch.split(' ').next().unwrap().parse().unwrap();
+    assert!((3.63..4.0).contains(&stretch), "{warning}");
+    assert!(warning.contains("`scheme.viscosity`") && warning.contains("seen first at t = "));
+    assert_eq!(warnings("parameters.nu=0.3").len(), 0);
+}

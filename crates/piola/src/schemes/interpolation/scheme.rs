@@ -1,0 +1,148 @@
+//! The study as integrators, clock and output see it: nothing in it depends on time.
+
+use super::Interpolation;
+use crate::fields::{FieldDescription, FieldKind};
+use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit};
+
+/// What the study is called and what it shows.
+pub const DESCRIPTION: SchemeDescription = SchemeDescription {
+    name: "interpolation",
+    fields: &FIELDS,
+    energies: &[],
+    mechanisms: &[],
+    impulses: &[],
+    figures: &[
+        ("ghosts", "1"),
+        ("smallest_ghost_value", "1"),
+        ("largest_ghost_value", "1"),
+        ("condition", "1"),
+        ("boundary_error", "1"),
+    ],
+};
+
+const FIELDS: [FieldDescription; 8] = [
+    FieldDescription::new("position", "m", FieldKind::Vector, "position x"),
+    FieldDescription::new("function", "1", FieldKind::Scalar, "the function f"),
+    FieldDescription::new("approximation", "1", FieldKind::Scalar, "its interpolation <f> = W f"),
+    FieldDescription::new("error", "1", FieldKind::Scalar, "<f> - f"),
+    FieldDescription::new("gradient", "1/m", FieldKind::Vector, "the sum <grad f> = X f"),
+    FieldDescription::new(
+        "second_gradient",
+        "1/m2",
+        FieldKind::Tensor,
+        "the gradient of that, row by row",
+    ),
+    FieldDescription::new(
+        "neighbors",
+        "1",
+        FieldKind::Scalar,
+        "number of particles and ghosts in the support",
+    ),
+    FieldDescription::new("volume", "m3", FieldKind::Scalar, "quadrature volume V"),
+];
+
+impl<const D: usize> Scheme for Interpolation<D> {
+    fn description(&self) -> &'static SchemeDescription {
+        &DESCRIPTION
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn particle_count(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// There is no state.
+    fn row_length(&self) -> usize {
+        0
+    }
+
+    fn initial_state(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn rates(&mut self, _time: f64, _state: &[f64], _rate: &mut [f64]) {}
+
+    fn constrain(&self, _time: f64, _state: &mut [f64]) {}
+
+    fn inspect(&mut self, _state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        limits.clear();
+        Health { smallest_ratio: 1.0, ..Health::NEUTRAL }
+    }
+
+    fn figures(&self, _state: &[f64], figures: &mut Vec<f64>) {
+        let outcome = &self.outcome;
+        let [smallest, largest] = outcome.ghosts;
+        figures.extend([outcome.count, smallest, largest, outcome.condition, outcome.error]);
+    }
+
+    fn energies(&self, _state: &[f64], _energies: &mut [f64]) {}
+
+    fn momentum(&self, _state: &[f64], momentum: &mut [f64]) {
+        momentum.fill(0.0);
+    }
+
+    fn sample(
+        &mut self,
+        _time: f64,
+        _state: &[f64],
+        field: &str,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    ) {
+        for &particle in particles {
+            let a = particle as usize;
+            match field {
+                "position" => values.extend_from_slice(self.particles.position[a].as_slice()),
+                "function" => values.push(self.function[a]),
+                "approximation" => values.push(self.approximation[a]),
+                "error" => values.push(self.approximation[a] - self.function[a]),
+                "gradient" => values.extend_from_slice(self.gradient[a].as_slice()),
+                "second_gradient" => {
+                    values.extend(self.second_gradient[a].transpose().iter());
+                }
+                "neighbors" => values.push(self.value.row(a).count() as f64 - 1.0),
+                "volume" => values.push(self.particles.volume[a]),
+                _ => {}
+            }
+        }
+    }
+
+    fn bodies(&self) -> &[u32] {
+        &self.particles.body
+    }
+
+    fn ids(&self) -> &[u32] {
+        &self.particles.id
+    }
+
+    fn particle(&self, index: usize) -> Particle {
+        Particle {
+            id: self.particles.id[index],
+            reference: self.particles.position[index].iter().copied().collect(),
+        }
+    }
+
+    fn neighborhood(&self, index: usize) -> Vec<u32> {
+        let row = self.value.row(index).map(|(b, _)| b);
+        row.filter(|&b| b as usize != index && (b as usize) < self.particles.len()).collect()
+    }
+
+    fn stability_advice(&self) -> &'static str {
+        "nothing moves here"
+    }
+
+    fn collapse_advice(&self, _index: usize) -> String {
+        "nothing moves here".to_owned()
+    }
+
+    fn memory(&self) -> usize {
+        self.value.memory()
+            + size_of_val(self.particles.position.as_slice())
+            + 2 * size_of_val(self.function.as_slice())
+            + size_of_val(self.gradient.as_slice())
+            + size_of_val(self.second_gradient.as_slice())
+    }
+}

@@ -1,0 +1,21 @@
+//! The library as those see it who build on it: schemes and operators against exact results, runs,
+//! failures, resumption.
+//!
+//! One program, as the code of the library that is generic over the dimension is compiled anew for each.
+
+mod convergence;
+mod elastodynamics;
+mod executor;
+mod failures;
+mod fuzz;
+mod histories;
+mod ledger;
+mod loads;
+mod matrices;
+mod operators;
+mod pair_pass;
+mod profiles;
+mod resume;
+#[path = "../support/mod.rs"]
+mod support;
+mod upwind;
