@@ -2,6 +2,7 @@
 
 use multiversion::multiversion;
 
+use super::root::inverse_root;
 use super::{Kernel, KernelShape, KernelVisitor, ScaledKernel};
 
 /// A kernel of a smoothing length that fills arrays: one indirect call for many neighbours.
@@ -40,7 +41,7 @@ fn fill_values<K: KernelShape, const D: usize>(
     values: &mut [f64],
 ) {
     for (value, square) in values.iter_mut().zip(squares) {
-        *value = kernel.value(square.sqrt());
+        *value = kernel.value(square * inverse_root(*square));
     }
 }
 
@@ -51,7 +52,8 @@ fn fill_slopes<K: KernelShape, const D: usize>(
     slopes: &mut [f64],
 ) {
     for (slope, square) in slopes.iter_mut().zip(squares) {
-        *slope = kernel.derivative_over_r(square.sqrt());
+        let inverse = inverse_root(*square);
+        *slope = kernel.derivative_over_known_r(square * inverse, inverse);
     }
 }
 
@@ -63,9 +65,10 @@ fn fill_both<K: KernelShape, const D: usize>(
     slopes: &mut [f64],
 ) {
     for ((value, slope), square) in values.iter_mut().zip(slopes).zip(squares) {
-        let distance = square.sqrt();
+        let inverse = inverse_root(*square);
+        let distance = square * inverse;
         *value = kernel.value(distance);
-        *slope = kernel.derivative_over_r(distance);
+        *slope = kernel.derivative_over_known_r(distance, inverse);
     }
 }
 
