@@ -75,6 +75,7 @@ fn vortices<const D: usize>(
             density_drift: 0.02,
         },
         fluid: Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 },
+        solids: None,
         initial: Initial { velocity: velocity.collect(), pressure: vec![0.0; particles.len()] },
         walls: Vec::new(),
         motion: Vec::new(),

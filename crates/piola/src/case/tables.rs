@@ -11,6 +11,7 @@ mod checks;
 mod fluids;
 mod geometry;
 mod observers;
+mod plastic;
 mod solids;
 mod time;
 mod waves;

@@ -3,6 +3,7 @@
 mod escapes;
 mod operators;
 mod runs;
+mod solids;
 mod support;
 mod surfaces;
 mod taylor_green;

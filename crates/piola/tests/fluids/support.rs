@@ -67,6 +67,7 @@ pub fn fluid_in_box<const D: usize>(
         settings,
         fluid,
         initial: Initial { velocity, pressure },
+        solids: None,
         walls: Vec::new(),
         motion: Vec::new(),
         sliding: Vec::new(),

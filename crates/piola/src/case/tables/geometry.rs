@@ -343,6 +343,7 @@ static MATERIAL: TaggedSpec = TaggedSpec {
         solids::NEO_HOOKEAN_LOGARITHMIC,
         solids::MOONEY_RIVLIN,
         solids::OGDEN,
+        plastic::HYPOELASTIC,
     ],
 };
 

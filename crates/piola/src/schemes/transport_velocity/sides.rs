@@ -60,6 +60,7 @@ impl<const D: usize> TransportVelocity<D> {
             side.set(mass[number], row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
             Row::<D>::position(row)
         });
+        self.load_matter(state);
         self.lost = updated.is_err().then(|| {
             let lost = |row: &[f64]| !Row::<D>::position(row).iter().all(|x| x.is_finite());
             state.chunks_exact(Row::<D>::LENGTH).position(lost).unwrap_or(0)

@@ -64,8 +64,10 @@ impl<const D: usize> TransportVelocity<D> {
             passes += 1.0;
             let (found, places) = (&iteration.found, self.support.list().places());
             parallel::for_each_chunk(&mut iteration.positions, |first, rows| {
-                for (row, &place) in rows.iter_mut().zip(&places[first..]) {
-                    *row += found[place as usize].0;
+                for (offset, (row, &place)) in rows.iter_mut().zip(&places[first..]).enumerate() {
+                    if !self.is_held(first + offset) {
+                        *row += found[place as usize].0;
+                    }
                 }
             });
         }
@@ -131,7 +133,7 @@ impl<const D: usize> TransportVelocity<D> {
                     false => support.all(place),
                 };
                 while support.fill(&mut rest, Needs::Value, &mut block) {
-                    for neighbor in block.iter() {
+                    for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
                         sum += neighbor.value;
                         let distance = neighbor.square.sqrt();
                         let value = match within {

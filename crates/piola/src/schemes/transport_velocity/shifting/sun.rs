@@ -38,6 +38,10 @@ impl<const D: usize> TransportVelocity<D> {
                 if list.is_passive(place) {
                     continue;
                 }
+                if self.is_held(list.numbers()[place] as usize) {
+                    side.deviation = Vector::zeros();
+                    continue;
+                }
                 let crowding = self.forces[place].crowding;
                 let shift = match self.openings.get(place) {
                     None => crowding,
@@ -71,7 +75,7 @@ impl<const D: usize> TransportVelocity<D> {
         let size = (h / full).powi(D as i32 + 1);
         let (mut sum, mut rest) = (Vector::zeros(), self.support.all(place));
         while self.support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter() {
+            for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
                 let distance = neighbor.square.sqrt();
                 let weight = fluid::repulsion(neighbor.value * inverse)
                     * (size * kernel.derivative_over_r(D, distance, h))
