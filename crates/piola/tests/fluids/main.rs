@@ -1,5 +1,6 @@
 //! The transport-velocity formulation.
 
+mod bodies;
 mod escapes;
 mod operators;
 mod runs;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::schemes::transport_velocity::{
-    Contact, Corrections, DensityRule, Fluid, Forces, Heat, PressureRule, Rates, Settings, Shifting,
+    AtSurface, Contact, Corrections, DensityRule, Fluid, Forces, Heat, PressureRule, Rates, Settings, Shifting,
     Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
 use piola::schemes::{Initial, Scheme};
@@ -23,6 +23,7 @@ const SETTINGS: Settings = Settings {
     shifting: Shifting::Sun { factor: 1.0 },
     artificial_viscosity: 0.0,
     free_surface: false,
+    at_surface: AtSurface::Held,
     density_drift: 0.02,
 };
 

@@ -5,7 +5,7 @@ use piola_formulas::hyperelastic::HyperelasticLaw;
 use super::*;
 use crate::case::model::{Body, Boundary, Material, TransportVelocity, Wall};
 use crate::schemes::transport_velocity::{
-    Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
+    AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
 };
 
 /// Factor of the diffusivity of the pressure, CTVF (24), of fluids and of solids, unless the case has
@@ -66,6 +66,11 @@ pub(super) fn transport_velocity(&mut self, record: &Record) -> Option<Transport
             shifting,
             artificial_viscosity: record.number("artificial_viscosity")?.value,
             free_surface: record.boolean("free_surface").unwrap_or(is_solid),
+            at_surface: match record.text("surface_shifting").as_ref().map(|it| it.as_str()) {
+                Some("held") => AtSurface::Held,
+                None if !is_solid => AtSurface::Held,
+                _ => AtSurface::Along,
+            },
             density_drift: record.number("density_drift")?.value,
         },
         contact,

@@ -99,6 +99,13 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "whether free surfaces are looked for, near which shifting is limited, CTVF (44), (45)",
         ),
         key(
+            "surface_shifting",
+            Kind::Name(AT_SURFACES),
+            "",
+            Derived("`held`; `along` for solids"),
+            "how particles on free surfaces and near them are shifted",
+        ),
+        key(
             "corrected_gradients",
             Kind::Boolean,
             "",
@@ -150,6 +157,10 @@ const SHIFTINGS: Choices = choices(&[
     choice("none", "not at all"),
 ]);
 
+const AT_SURFACES: Choices = choices(&[
+    choice("held", "not on them, and by small supports near them, CTVF (44), (45) and algorithm 1"),
+    choice("along", "along them, by whole supports"),
+]);
 const CONTACTS: Choices = choices(&[
     choice("repulsive", "they compress each other, and push by that pressure and never pull"),
     choice("full", "all that particles of one body do, CTVF (30): they can weld"),

@@ -120,6 +120,17 @@ pub enum Shifting {
     },
 }
 
+/// How particles are shifted at free surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AtSurface {
+    /// Not on them, and near to them along them by supports that end there: CTVF (44), (45) with
+    /// algorithm 1. The outermost layers then are hardly shifted.
+    Held,
+    /// Along them, on and near them, by whole supports. Without it the stretched face of a solid
+    /// clusters and tears.
+    Along,
+}
+
 /// Numerical settings of the formulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -135,6 +146,8 @@ pub struct Settings {
     pub artificial_viscosity: f64,
     /// Whether free surfaces are looked for, CTVF (42) to (45).
     pub free_surface: bool,
+    /// How particles are shifted there.
+    pub at_surface: AtSurface,
     /// Largest relative departure of an integrated density from that of an integrated pressure.
     /// Nothing else ties the two to each other, and the density drifts; beyond this it is set to
     /// the density that the law of state gives for the pressure.

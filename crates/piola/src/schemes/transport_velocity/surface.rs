@@ -30,6 +30,15 @@ impl<const D: usize> Default for Opening<D> {
 }
 
 impl<const D: usize> Opening<D> {
+    /// Takes from a displacement what leads into or out of a surface that is within the support `h`,
+    /// theory (30) where particles on it are shifted, too.
+    pub fn tangential(&self, displacement: Vector<D>, h: f64) -> Vector<D> {
+        match self.reach < h {
+            true => displacement - self.normal * displacement.dot(&self.normal),
+            false => displacement,
+        }
+    }
+
     /// Takes from a displacement what leads into or out of a surface, CTVF (44), (45), theory (30).
     pub fn along_surface(&self, displacement: Vector<D>) -> Vector<D> {
         if self.is_surface {

@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 
 use crate::operators::{Needs, NeighborBlock};
-use crate::schemes::transport_velocity::{Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{AtSurface, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
 /// Largest Mach number of CTVF (35). A fluid that is faster is not weakly compressible: such a
@@ -43,8 +43,10 @@ impl<const D: usize> TransportVelocity<D> {
                     continue;
                 }
                 let crowding = self.forces[place].crowding;
+                let is_along = self.settings.at_surface == AtSurface::Along;
                 let shift = match self.openings.get(place) {
                     None => crowding,
+                    Some(opening) if is_along => opening.tangential(crowding, h),
                     Some(opening) if opening.is_surface => Vector::zeros(),
                     Some(opening) if opening.reach < h => {
                         let crowding = self.crowding_within(place, opening.reach, &mut block);

@@ -44,15 +44,15 @@ struct End<'a, const D: usize> {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// Fills the accelerations of solids, without body forces.
+    /// Fills the accelerations of solids, without body forces: theory (73) to (75).
     pub(in super::super) fn solid_force_pass(&mut self) {
         let Some(solids) = self.solids.as_deref() else { return };
         let h = self.support.smoothing_length();
         let spacing = self.particles.spacing[0];
         let artificial = self.settings.artificial_viscosity * h;
         let crowding = match self.settings.shifting {
-            Shifting::Sun { .. } => Some(1.0 / self.value_at_spacing(h)),
-            _ => None,
+            Shifting::Sun { .. } => 1.0 / self.value_at_spacing(h),
+            _ => 0.0,
         };
         let constants = Constants {
             softening: fluid::softening(h),
@@ -67,18 +67,9 @@ impl<const D: usize> TransportVelocity<D> {
                 _ => 0.0,
             },
             spacing,
-            crowding: crowding.unwrap_or(0.0),
+            crowding,
         };
-        let fill = match (solids.corrected, solids.several, crowding.is_some()) {
-            (false, false, false) => fill::<D, false, false, false>,
-            (false, false, true) => fill::<D, false, false, true>,
-            (false, true, false) => fill::<D, false, true, false>,
-            (false, true, true) => fill::<D, false, true, true>,
-            (true, false, false) => fill::<D, true, false, false>,
-            (true, false, true) => fill::<D, true, false, true>,
-            (true, true, false) => fill::<D, true, true, false>,
-            (true, true, true) => fill::<D, true, true, true>,
-        };
+        let fill = if solids.several { fill::<D, true> } else { fill::<D, false> };
         let mut forces = std::mem::take(&mut self.forces);
         parallel::for_each_chunk(&mut forces, |first, rows| fill(self, &constants, first, rows));
         self.forces = forces;
@@ -90,7 +81,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The sums of the particle at `place`.
     #[inline(always)]
-    fn gather_stresses<const CORRECTED: bool, const SEVERAL: bool, const CROWDING: bool>(
+    fn gather_stresses<const SEVERAL: bool>(
         &self,
         solids: &Solids<D>,
         place: usize,
@@ -107,7 +98,7 @@ impl<const D: usize> TransportVelocity<D> {
             crowding: [zero; D],
         };
         let (me, continuum) = (self.end(solids, place), self.continuum[place]);
-        let needs = if CROWDING { Needs::Both } else { Needs::Slope };
+        let needs = Needs::Both;
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, needs, block) {
             for group in block.groups() {
@@ -121,14 +112,12 @@ impl<const D: usize> TransportVelocity<D> {
                     };
                     let other = End { side: sides[lane], tension: tensions[lane] };
                     let neighbor = group.neighbor(lane);
-                    sums.add_stress::<CORRECTED>(lane, me, other, own, &neighbor);
+                    sums.add_stress(lane, me, other, own, &neighbor);
                     sums.add_artificial(lane, me, other, own, &neighbor, constants);
                     if SEVERAL {
                         sums.add_contact(lane, me, other, 1.0 - own, &neighbor, constants);
                     }
-                    if CROWDING {
-                        sums.crowd(lane, other.side.volume * own, &neighbor, constants);
-                    }
+                    sums.crowd(lane, other.side.volume * own, &neighbor, constants);
                 }
             }
         }
@@ -140,13 +129,11 @@ impl<const D: usize> TransportVelocity<D> {
                 for lane in 0..LANES {
                     let other = End { side: sides[lane], tension: tensions[lane] };
                     let neighbor = group.neighbor(lane);
-                    let force = pull::<CORRECTED, D>(me, other, &neighbor);
+                    let force = pull(me, other, &neighbor);
                     for i in 0..D {
                         sums.walls[i][lane] += force[i];
                     }
-                    if CROWDING {
-                        sums.crowd(lane, other.side.volume, &neighbor, constants);
-                    }
+                    sums.crowd(lane, other.side.volume, &neighbor, constants);
                 }
             }
         }
@@ -154,7 +141,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// The force of solids on a wall particle, over its mass.
-    fn reaction_of_solids<const CORRECTED: bool>(
+    fn reaction_of_solids(
         &self,
         solids: &Solids<D>,
         place: usize,
@@ -165,23 +152,22 @@ impl<const D: usize> TransportVelocity<D> {
         while self.support.fill(&mut rest, Needs::Slope, block) {
             for neighbor in block.iter() {
                 let other = self.end(solids, neighbor.place);
-                sum += Vector::from(pull::<CORRECTED, D>(me, other, &neighbor));
+                sum += Vector::from(pull(me, other, &neighbor));
             }
         }
-        Forces { walls: sum * share::<CORRECTED, D>(me.side), ..Forces::default() }
+        Forces { walls: sum * me.tension.share, ..Forces::default() }
     }
 }
 
 /// `m_b (sigma_a/rho_a^2 + sigma_b/rho_b^2) . grad W_ab`, with corrected gradients
 /// `V_b (sigma_a L_a + sigma_b L_b) . grad W_ab`.
 #[inline(always)]
-fn pull<const CORRECTED: bool, const D: usize>(
+fn pull<const D: usize>(
     me: End<'_, D>,
     other: End<'_, D>,
     neighbor: &Neighbor<D>,
 ) -> [f64; D] {
-    let mass = if CORRECTED { other.side.volume } else { other.side.mass() };
-    let weight = mass * neighbor.slope;
+    let weight = other.tension.weight * neighbor.slope;
     let mut force = [0.0; D];
     for i in 0..D {
         let mut sum = 0.0;
@@ -194,15 +180,9 @@ fn pull<const CORRECTED: bool, const D: usize>(
     force
 }
 
-/// What makes an acceleration of the sum of [`pull`].
-#[inline(always)]
-fn share<const CORRECTED: bool, const D: usize>(me: &Side<D>) -> f64 {
-    if CORRECTED { 1.0 / me.density } else { 1.0 }
-}
-
 impl<const D: usize> Sums<Lanes, D> {
     #[inline(always)]
-    fn add_stress<const CORRECTED: bool>(
+    fn add_stress(
         &mut self,
         lane: usize,
         me: End<'_, D>,
@@ -210,7 +190,7 @@ impl<const D: usize> Sums<Lanes, D> {
         own: f64,
         neighbor: &Neighbor<D>,
     ) {
-        let force = pull::<CORRECTED, D>(me, other, neighbor);
+        let force = pull(me, other, neighbor);
         for i in 0..D {
             self.stress[i][lane] += force[i] * own;
         }
@@ -297,7 +277,7 @@ impl<const D: usize> Sums<Lanes, D> {
 
 /// Fills some rows.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn fill<const D: usize, const CORRECTED: bool, const SEVERAL: bool, const CROWDING: bool>(
+fn fill<const D: usize, const SEVERAL: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
     first: usize,
@@ -308,14 +288,11 @@ fn fill<const D: usize, const CORRECTED: bool, const SEVERAL: bool, const CROWDI
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         if scheme.support.list().is_passive(place) {
-            *row = scheme.reaction_of_solids::<CORRECTED>(solids, place, &mut block);
+            *row = scheme.reaction_of_solids(solids, place, &mut block);
             continue;
         }
-        let sums = scheme
-            .gather_stresses::<CORRECTED, SEVERAL, CROWDING>(solids, place, constants, &mut block)
-            .total();
-        let side = &scheme.sides[place];
-        let share = share::<CORRECTED, D>(side);
+        let sums = scheme.gather_stresses::<SEVERAL>(solids, place, constants, &mut block).total();
+        let (side, share) = (&scheme.sides[place], solids.tensions[place].share);
         let contact = if constants.penalty > 0.0 { 1.0 / side.mass() } else { 1.0 };
         *row = Forces {
             pressure: Vector::from(sums.stress) * share + Vector::from(sums.contact) * contact,

@@ -83,12 +83,14 @@ impl<const D: usize> TransportVelocity<D> {
                 let stress = Tensor::<D>::from_fn(|i, j| {
                     matter[entry(i, j)] - if i == j { side.pressure } else { 0.0 }
                 });
-                let tensor = match corrections.get(place) {
-                    Some(correction) => stress * correction,
-                    None => stress / (side.density * side.density),
+                let (tensor, weight, share) = match corrections.get(place) {
+                    Some(correction) => (stress * correction, side.volume, 1.0 / side.density),
+                    None => (stress / (side.density * side.density), side.mass(), 1.0),
                 };
                 *row = Tension {
                     tensor: std::array::from_fn(|i| std::array::from_fn(|j| tensor[(i, j)])),
+                    weight,
+                    share,
                     wave_speed: material.state.wave_speed,
                     stiffness: material.bulk_modulus(),
                 };

@@ -116,6 +116,10 @@ const WALL: u32 = u32::MAX;
 struct Tension<const D: usize> {
     /// `sigma / rho^2`, with corrected gradients `sigma L`.
     tensor: [[f64; D]; D],
+    /// What neighbours weigh it with: the mass in kg, with corrected gradients the volume.
+    weight: f64,
+    /// What makes an acceleration of the particle's own sum: 1, with corrected gradients `1 / rho`.
+    share: f64,
     /// Bulk wave speed at rest in m/s.
     wave_speed: f64,
     /// Bulk modulus at rest in Pa.
@@ -124,7 +128,13 @@ struct Tension<const D: usize> {
 
 impl<const D: usize> Default for Tension<D> {
     fn default() -> Self {
-        Self { tensor: [[0.0; D]; D], wave_speed: 0.0, stiffness: 0.0 }
+        Self {
+            tensor: [[0.0; D]; D],
+            weight: 0.0,
+            share: 0.0,
+            wave_speed: 0.0,
+            stiffness: 0.0,
+        }
     }
 }
 
@@ -132,7 +142,6 @@ impl<const D: usize> Default for Tension<D> {
 pub(super) struct Solids<const D: usize> {
     materials: Vec<Solid>,
     contact: Contact,
-    corrected: bool,
     /// Whether there are several bodies that are apart from each other.
     several: bool,
     held: PrescribedComponents,
@@ -162,7 +171,6 @@ impl<const D: usize> Solids<D> {
             several: bodies.len() > 1 && input.contact != Contact::Full,
             materials: input.materials,
             contact: input.contact,
-            corrected: input.corrected,
             held,
             is_held,
             bonds: Bonds::new(particles, is_wall),

@@ -14,7 +14,7 @@ pub struct SolidRates<const D: usize> {
     /// Velocity gradient `d u_i / d x_j` in 1/s, CTVF (31), corrected or not.
     pub gradient: Tensor<D>,
     /// What the deviation carries of deviatoric stress (xx, yy, zz, yz, xz, xy, in Pa/s), plastic
-    /// strain, temperature and specific energy, a second each: `d . grad` of them, theory (69).
+    /// strain, temperature and specific energy, a second each: `d . grad` of them, theory (68).
     pub transport: [f64; MATTER],
     /// Heat of the artificial viscosity in W/kg.
     pub heating: f64,
@@ -35,6 +35,8 @@ struct Constants {
     diffusion: f64,
     /// 1 where the approach of other bodies compresses.
     couples: f64,
+    /// 1 where gradients are those of the transport velocity.
+    moves: f64,
     /// 1 where the transport terms of density and pressure are on.
     density: f64,
     pressure: f64,
@@ -63,6 +65,7 @@ struct Other<'a, const D: usize> {
 impl<const D: usize> TransportVelocity<D> {
     /// Fills the rates of solids from what has been loaded.
     pub(in super::super) fn solid_rate_pass(&mut self) {
+        self.tension_pass();
         let Some(solids) = &mut self.solids else { return };
         let (mut rates, couples) = (std::mem::take(&mut solids.rates), solids.contact);
         let mut common = std::mem::take(&mut self.rates);
@@ -76,17 +79,12 @@ impl<const D: usize> TransportVelocity<D> {
                 PressureRule::StateEquation => 0.0,
             },
             couples: one_if(couples == Contact::Repulsive),
+            moves: one_if(corrections.divergence == Divergence::Transport),
             density: one_if(corrections.density),
             pressure: one_if(corrections.pressure),
         };
         let carries = corrections.density || corrections.pressure;
-        let moves = corrections.divergence == Divergence::Transport;
-        let fill = match (carries, moves) {
-            (true, true) => fill::<D, true, true>,
-            (true, false) => fill::<D, true, false>,
-            (false, true) => fill::<D, false, true>,
-            (false, false) => fill::<D, false, false>,
-        };
+        let fill = if carries { fill::<D, true> } else { fill::<D, false> };
         parallel::maximum_of_chunks(&mut rates, &mut common, 0.0, |first, rates, common| {
             fill(self, &constants, first, rates, common);
             0.0
@@ -99,7 +97,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The sums of the particle at `place`.
     #[inline(always)]
-    fn gather_gradients<const CARRIES: bool, const MOVES: bool>(
+    fn gather_gradients<const CARRIES: bool>(
         &self,
         solids: &Solids<D>,
         place: usize,
@@ -135,7 +133,7 @@ impl<const D: usize> TransportVelocity<D> {
                         own: if is_own { 1.0 } else { 0.0 },
                     };
                     let neighbor = group.neighbor(lane);
-                    sums.add::<CARRIES, MOVES>(lane, (me, matter), &other, &neighbor, constants);
+                    sums.add::<CARRIES>(lane, (me, matter), &other, &neighbor, constants);
                 }
             }
         }
@@ -174,7 +172,7 @@ impl<const D: usize> TransportVelocity<D> {
 impl<const D: usize> Sums<D> {
     /// Adds the terms of one neighbour to those of its lane.
     #[inline(always)]
-    fn add<const CARRIES: bool, const MOVES: bool>(
+    fn add<const CARRIES: bool>(
         &mut self,
         lane: usize,
         (me, matter): (&Side<D>, &Matter),
@@ -187,7 +185,7 @@ impl<const D: usize> Sums<D> {
         let own = area * other.own;
         let jump = me.velocity - side.velocity;
         let approach = jump.dot(&neighbor.separation);
-        let flow = if MOVES { jump + (me.deviation - side.deviation) } else { jump };
+        let flow = jump + (me.deviation - side.deviation) * constants.moves;
         for i in 0..D {
             for j in 0..D {
                 self.gradient[i][j][lane] -= flow[i] * neighbor.separation[j] * own;
@@ -214,9 +212,9 @@ impl<const D: usize> Sums<D> {
     }
 }
 
-/// Fills some rows, with or without the transport terms and the deviation in the gradient.
+/// Fills some rows, with or without the transport terms.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn fill<const D: usize, const CARRIES: bool, const MOVES: bool>(
+fn fill<const D: usize, const CARRIES: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
     first: usize,
@@ -229,7 +227,7 @@ fn fill<const D: usize, const CARRIES: bool, const MOVES: bool>(
         let place = first + offset;
         if !scheme.support.list().is_passive(place) {
             let sums =
-                scheme.gather_gradients::<CARRIES, MOVES>(solids, place, constants, &mut block);
+                scheme.gather_gradients::<CARRIES>(solids, place, constants, &mut block);
             (*rates, *common) = scheme.solid_rates_of(solids, place, constants, &sums);
         }
     }
