@@ -57,8 +57,7 @@ fn the_rate_turns_with_the_observer() {
     let spin = Vector3::new(0.5, 0.2, -0.9).cross_matrix();
     let turned = turn * deviator * turn.transpose();
     let seen = jaumann_rate(G, &turned, &(turn * gradient * turn.transpose() + spin));
-    let expected = turn * jaumann_rate(G, &deviator, &gradient) * turn.transpose()
-        + spin * turned
+    let expected = turn * jaumann_rate(G, &deviator, &gradient) * turn.transpose() + spin * turned
         - turned * spin;
     assert!((seen - expected).norm() < 1e-13);
 }
@@ -109,8 +108,7 @@ fn stresses_return_to_the_yield_surface() {
     ];
     for (number, law) in laws.into_iter().enumerate() {
         for trial in [21.0, 40.0, 500.0, 5e4] {
-            let returned =
-                law.return_to_surface(trial, shear_modulus, plastic, temperature, step);
+            let returned = law.return_to_surface(trial, shear_modulus, plastic, temperature, step);
             let (strain, increment) = (plastic + returned.increment, returned.increment);
             let flow = match law {
                 Strength::Linear { yield_stress, hardening } => yield_stress + hardening * strain,

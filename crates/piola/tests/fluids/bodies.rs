@@ -1,7 +1,6 @@
 //! Runs of solids as a whole: what they conserve, what they do not depend on, what they come to.
 
 use piola::case::{self, Case, LoadOptions};
-use piola::schemes::Ledger;
 use piola::time::{IntegratorKind, Outcome};
 
 use super::escapes::{run, values};
@@ -14,29 +13,30 @@ dimension = 2
 
 [parameters]
 dx = 0.1
+gap = 0.1
 
 [[body]]
 name = "left"
-shape = { kind = "ball", center = [-0.55, 0.0], radius = 0.5 }
+shape = { kind = "ball", center = ["-0.5 - gap / 2", 0.0], radius = 0.5 }
 spacing = "dx"
 lattice = { on = "cells" }
 material = { kind = "hypoelastic", density = 1000, bulk_modulus = 1e7, shear_modulus = 4e6, specific_heat = 1000, strength = { kind = "linear", yield_stress = 2e5, hardening = 1e5 }, pressure_law = { kind = "mie_grueneisen", slope = 1.3, gruneisen = 2.0 } }
-initial = { velocity = ["10", "0"] }
+initial = { velocity = ["2", "0"] }
 
 [[body]]
 name = "right"
-shape = { kind = "ball", center = [0.55, 0.0], radius = 0.5 }
+shape = { kind = "ball", center = ["0.5 + gap / 2", 0.0], radius = 0.5 }
 spacing = "dx"
 lattice = { on = "cells" }
 material = { kind = "hypoelastic", density = 2000, bulk_modulus = 2e7, shear_modulus = 8e6 }
-initial = { velocity = ["-5", "0.5"] }
+initial = { velocity = ["-1", "0.1"] }
 
 [scheme]
 kind = "transport_velocity"
 artificial_viscosity = 1.0
 
 [time]
-end = 0.02
+end = 0.1
 
 [[probe]]
 name = "left"
@@ -115,11 +115,11 @@ fn advanced(set: &[&str], steps: usize, every: usize) -> Vec<u64> {
             simulation = fresh();
         }
         let scheme = simulation.scheme();
-        integrator.step(scheme, count as f64 * step, step, &state, &mut new).expect("it is explicit");
+        integrator
+            .step(scheme, count as f64 * step, step, &state, &mut new)
+            .expect("it is explicit");
         std::mem::swap(&mut state, &mut new);
     }
-    let work = Ledger::of(simulation.scheme(), &state).work.to_vec();
-    assert!(work.iter().any(|work| *work < 0.0), "something happens: {work:?}");
     bits(&state)
 }
 
@@ -127,7 +127,7 @@ fn advanced(set: &[&str], steps: usize, every: usize) -> Vec<u64> {
 fn states_of_solids_are_all_that_steps_depend_on() {
     let corrected = "scheme.corrected_gradients=true";
     for set in [&[][..], &[corrected], &["scheme.shifting='ipst'", corrected]] {
-        assert_eq!(advanced(set, 40, 7), advanced(set, 40, 40), "{set:?}");
+        assert!(advanced(set, 40, 7) == advanced(set, 40, 40), "{set:?}");
     }
 }
 
@@ -137,7 +137,7 @@ fn results_of_solids_do_not_depend_on_the_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         // More than a chunk of particles.
         pool.expect("threads can be started")
-            .install(|| advanced(&["parameters.dx=0.03"], 10, 10))
+            .install(|| advanced(&["parameters.dx=0.03", "parameters.gap=0"], 10, 10))
     };
-    assert_eq!(with(1), with(3));
+    assert!(with(1) == with(3));
 }

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, Fluid, Forces, Heat, PressureRule, Rates, Settings, Shifting,
-    Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
+    AtSurface, Contact, Corrections, DensityRule, Fluid, Forces, Heat, PressureRule, Rates,
+    Settings, Shifting, Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
 use piola::schemes::{Initial, Scheme};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
@@ -110,7 +110,12 @@ struct Found<const D: usize> {
     forces: Forces<D>,
 }
 
-fn terms<const D: usize>(side: usize, jitter: f64, settings: Settings, corrected: bool) -> Vec<Found<D>> {
+fn terms<const D: usize>(
+    side: usize,
+    jitter: f64,
+    settings: Settings,
+    corrected: bool,
+) -> Vec<Found<D>> {
     let mut particles = unit_box::<D>(side, jitter, 3);
     for (x, volume) in particles.position.iter().zip(&mut particles.volume) {
         *volume *= DENSITY.value(x) / SOLID.state.density;
@@ -172,9 +177,8 @@ fn second_order<const D: usize>(corrected: bool) {
             })
             .collect()
     };
-    let divergence = |f: &Found<D>| {
-        vec![(f.rates.divergence, (0..D).map(|i| velocity(i).slope(&f.x, i)).sum())]
-    };
+    let divergence =
+        |f: &Found<D>| vec![(f.rates.divergence, (0..D).map(|i| velocity(i).slope(&f.x, i)).sum())];
     let density = |f: &Found<D>| vec![(f.rates.density_transport, carried(f, DENSITY))];
     let pressure = |f: &Found<D>| vec![(f.rates.pressure_transport, carried(f, PRESSURE))];
     let checks: [(&str, &dyn Fn(&Found<D>) -> Vec<(f64, f64)>); 6] = [
@@ -191,6 +195,8 @@ fn second_order<const D: usize>(corrected: bool) {
         println!("{what} in {D}D, corrected {corrected}: {coarse:.4} {fine:.4} {disordered:.4}");
         assert!(fine < largest, "{what} in {D}D: {fine}");
         assert!((order..4.6).contains(&(coarse / fine)), "{what} in {D}D: {coarse} to {fine}");
+        // Sums of pairs of stresses do not vanish for constants where particles are out of order.
+        let disorder = if what.starts_with("div sigma") { 0.3 } else { disorder };
         assert!(disordered < disorder, "{what} in {D}D: {disordered}");
     }
 }

@@ -5,8 +5,8 @@ use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
-    AtSurface, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, TransportVelocity,
-    TransportVelocityInput,
+    AtSurface, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting,
+    TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::kernels::Kernel;
 use rand::{RngExt, SeedableRng};

@@ -16,68 +16,68 @@ const DIFFUSION: [f64; 2] = [0.5, 0.001];
 const OF_SOLIDS: [&str; 3] = ["corrected_gradients", "contact", "contact_stiffness"];
 
 impl Reader<'_, '_> {
-/// Settings of the scheme `transport_velocity`.
-pub(super) fn transport_velocity(&mut self, record: &Record) -> Option<TransportVelocity> {
-    let is_solid = self.names.is_solid;
-    for key in OF_SOLIDS.iter().filter(|_| !is_solid) {
-        self.meaningless(record, key, "for fluids");
-    }
-    let alpha = record.number("pressure_diffusion").map(|it| it.value);
-    let alpha = alpha.unwrap_or(DIFFUSION[usize::from(is_solid)]);
-    let pressure = record.text("pressure");
-    let edac = pressure.as_ref().map_or(!is_solid, |pressure| pressure.as_str() == "edac");
-    let density = record.text("density")?;
-    if is_solid && density.as_str() == "summation" {
-        let message = "the density of solids is found by the continuity equation";
-        let problem = Problem::new(density.place, message, "would see their faces as voids");
-        return self.refuse(problem.help("remove it"));
-    }
-    let stiffness = record.number("contact_stiffness").map_or(1.0, |it| it.value);
-    let contact = record.text("contact");
-    let contact = match contact.as_ref().map(|contact| contact.as_str()) {
-        Some("full") => Contact::Full,
-        Some("penalty") => Contact::Penalty { stiffness },
-        _ => Contact::Repulsive,
-    };
-    if !matches!(contact, Contact::Penalty { .. }) {
-        self.meaningless(record, "contact_stiffness", "without `contact = \"penalty\"`");
-    }
-    let shifting = match record.text("shifting")?.as_str() {
-        "none" => Shifting::None,
-        "ipst" => Shifting::Iterative {
-            tolerance: record.number("shifting_tolerance")?.value,
-            most_passes: record.whole::<u32>("shifting_passes")?.value,
-        },
-        _ => Shifting::Sun { factor: record.number("shifting_factor")?.value },
-    };
-    Some(TransportVelocity {
-        kernel: record.text("kernel")?,
-        smoothing_length: record.number("smoothing_length")?,
-        settings: Settings {
-            density: match density.as_str() {
-                "summation" => DensityRule::Summation,
-                _ => DensityRule::Continuity,
+    /// Settings of the scheme `transport_velocity`.
+    pub(super) fn transport_velocity(&mut self, record: &Record) -> Option<TransportVelocity> {
+        let is_solid = self.names.is_solid;
+        for key in OF_SOLIDS.iter().filter(|_| !is_solid) {
+            self.meaningless(record, key, "for fluids");
+        }
+        let alpha = record.number("pressure_diffusion").map(|it| it.value);
+        let alpha = alpha.unwrap_or(DIFFUSION[usize::from(is_solid)]);
+        let pressure = record.text("pressure");
+        let edac = pressure.as_ref().map_or(!is_solid, |pressure| pressure.as_str() == "edac");
+        let density = record.text("density")?;
+        if is_solid && density.as_str() == "summation" {
+            let message = "the density of solids is found by the continuity equation";
+            let problem = Problem::new(density.place, message, "would see their faces as voids");
+            return self.refuse(problem.help("remove it"));
+        }
+        let stiffness = record.number("contact_stiffness").map_or(1.0, |it| it.value);
+        let contact = record.text("contact");
+        let contact = match contact.as_ref().map(|contact| contact.as_str()) {
+            Some("full") => Contact::Full,
+            Some("penalty") => Contact::Penalty { stiffness },
+            _ => Contact::Repulsive,
+        };
+        if !matches!(contact, Contact::Penalty { .. }) {
+            self.meaningless(record, "contact_stiffness", "without `contact = \"penalty\"`");
+        }
+        let shifting = match record.text("shifting")?.as_str() {
+            "none" => Shifting::None,
+            "ipst" => Shifting::Iterative {
+                tolerance: record.number("shifting_tolerance")?.value,
+                most_passes: record.whole::<u32>("shifting_passes")?.value,
             },
-            pressure: match edac {
-                false => PressureRule::StateEquation,
-                true => PressureRule::Edac { alpha },
+            _ => Shifting::Sun { factor: record.number("shifting_factor")?.value },
+        };
+        Some(TransportVelocity {
+            kernel: record.text("kernel")?,
+            smoothing_length: record.number("smoothing_length")?,
+            settings: Settings {
+                density: match density.as_str() {
+                    "summation" => DensityRule::Summation,
+                    _ => DensityRule::Continuity,
+                },
+                pressure: match edac {
+                    false => PressureRule::StateEquation,
+                    true => PressureRule::Edac { alpha },
+                },
+                corrections: Corrections::from_name(&record.text("corrections")?.value)?,
+                shifting,
+                artificial_viscosity: record.number("artificial_viscosity")?.value,
+                free_surface: record.boolean("free_surface").unwrap_or(is_solid),
+                at_surface: match record.text("surface_shifting").as_ref().map(|it| it.as_str()) {
+                    Some("held") => AtSurface::Held,
+                    None if !is_solid => AtSurface::Held,
+                    _ => AtSurface::Along,
+                },
+                density_drift: record.number("density_drift")?.value,
             },
-            corrections: Corrections::from_name(&record.text("corrections")?.value)?,
-            shifting,
-            artificial_viscosity: record.number("artificial_viscosity")?.value,
-            free_surface: record.boolean("free_surface").unwrap_or(is_solid),
-            at_surface: match record.text("surface_shifting").as_ref().map(|it| it.as_str()) {
-                Some("held") => AtSurface::Held,
-                None if !is_solid => AtSurface::Held,
-                _ => AtSurface::Along,
-            },
-            density_drift: record.number("density_drift")?.value,
-        },
-        contact,
-        corrected_gradients: record.boolean("corrected_gradients").unwrap_or(false),
-        removes_escaped: record.text("escaped")?.as_str() == "remove",
-    })
-}
+            contact,
+            corrected_gradients: record.boolean("corrected_gradients").unwrap_or(false),
+            removes_escaped: record.text("escaped")?.as_str() == "remove",
+        })
+    }
 }
 
 /// A body that is a wall.

@@ -22,8 +22,9 @@ impl Reader<'_, '_> {
         };
         let bulk_modulus = constants.bulk_modulus();
         if !(bulk_modulus > 0.0 && bulk_modulus.is_finite()) {
-            let message =
-                format!("these values make a bulk modulus of {bulk_modulus} Pa, which is impossible");
+            let message = format!(
+                "these values make a bulk modulus of {bulk_modulus} Pa, which is impossible"
+            );
             return self.refuse(Problem::new(record.place, message, "out of range"));
         }
         let density = number(record, "density")?;
@@ -65,8 +66,7 @@ impl Reader<'_, '_> {
         if let (Some(place), Some(melting)) = (record.key_place("melting_temperature"), melting)
             && melting <= temperature
         {
-            let message =
-                format!("the solid melts at {melting} K and starts at {temperature} K");
+            let message = format!("the solid melts at {melting} K and starts at {temperature} K");
             let problem = Problem::new(place, message, "must be above `temperature`");
             return self.refuse(problem);
         }

@@ -48,12 +48,11 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let mut figures = std::mem::take(&mut self.chunk_figures);
         let rows = &state[..self.particles.len() * Row::<D>::LENGTH];
-        rows.par_chunks(CHUNK * Row::<D>::LENGTH)
-            .zip(&mut figures)
-            .enumerate()
-            .for_each(|(chunk, (rows, figures))| {
+        rows.par_chunks(CHUNK * Row::<D>::LENGTH).zip(&mut figures).enumerate().for_each(
+            |(chunk, (rows, figures))| {
                 *figures = self.look_at_rows(chunk * CHUNK, rows, state);
-            });
+            },
+        );
         let worst = figures.iter().copied().fold(ChunkFigures::NEUTRAL, ChunkFigures::worse);
         self.chunk_figures = figures;
 
@@ -112,8 +111,7 @@ impl<const D: usize> TransportVelocity<D> {
                 if signal > worst.signal.0 {
                     worst.signal = (signal, number);
                 }
-                worst.health.largest_wave_speed =
-                    worst.health.largest_wave_speed.max(wave_speed);
+                worst.health.largest_wave_speed = worst.health.largest_wave_speed.max(wave_speed);
             }
             let acceleration = Row::<D>::acceleration(row).norm_squared();
             if acceleration > worst.acceleration.0 {

@@ -57,7 +57,8 @@ pub use escape::Guard;
 pub use forces::Forces;
 pub use scheme::DESCRIPTION;
 pub use settings::{
-    AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings, Shifting, Slip,
+    AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,
+    Shifting, Slip,
 };
 pub use solids::{Contact, Heat, Solid, SolidRates, SolidsInput};
 

@@ -51,11 +51,12 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let mut passes = 0.0;
         for _ in 0..most_passes {
-            let positions = &iteration.positions;
+            let (positions, builds) = (&iteration.positions, self.support.list().builds());
             // Places that are lost are noticed when the state is loaded.
             if self.support.update(|number| positions[number]).is_err() {
                 break;
             }
+            self.follow_places(builds, state);
             let found = &mut iteration.found;
             let largest = self.displacements(reach, &iteration.openings, found);
             if (largest - iteration.even).abs() <= tolerance {

@@ -3,10 +3,10 @@
 use piola_formulas::hypoelastic::{advance, von_mises};
 
 use super::{ENERGY, MATTER, PLASTIC, Solid, SolidRates, TEMPERATURE, full, store};
+use crate::Tensor;
 use crate::parallel;
 use crate::schemes::transport_velocity::ledger::Tail;
 use crate::schemes::transport_velocity::{PressureRule, Row, TransportVelocity};
-use crate::Tensor;
 
 /// What a step brings to the matter of a particle besides its own rates.
 struct Surroundings {
@@ -91,8 +91,8 @@ impl Solid {
         let step = around.step;
         let gradient = in_three(&rates.gradient);
         let old = full(matter);
-        let stress = advance(self.shear_modulus, &old, &gradient, step)
-            + full(&rates.transport) * step;
+        let stress =
+            advance(self.shear_modulus, &old, &gradient, step) + full(&rates.transport) * step;
         for (value, rate) in matter.iter_mut().zip(&rates.transport).skip(PLASTIC) {
             *value += step * rate;
         }
@@ -112,8 +112,7 @@ impl Solid {
         store(&(stress * returned.scale), matter);
         let work = returned.stress * returned.increment;
         matter[PLASTIC] += returned.increment;
-        matter[TEMPERATURE] +=
-            self.heat.share * work / (around.density * self.heat.specific_heat);
+        matter[TEMPERATURE] += self.heat.share * work / (around.density * self.heat.specific_heat);
         work
     }
 }

@@ -162,11 +162,7 @@ impl<const D: usize> TransportVelocity<D> {
 /// `m_b (sigma_a/rho_a^2 + sigma_b/rho_b^2) . grad W_ab`, with corrected gradients
 /// `V_b (sigma_a L_a + sigma_b L_b) . grad W_ab`.
 #[inline(always)]
-fn pull<const D: usize>(
-    me: End<'_, D>,
-    other: End<'_, D>,
-    neighbor: &Neighbor<D>,
-) -> [f64; D] {
+fn pull<const D: usize>(me: End<'_, D>, other: End<'_, D>, neighbor: &Neighbor<D>) -> [f64; D] {
     let weight = other.tension.weight * neighbor.slope;
     let mut force = [0.0; D];
     for i in 0..D {
@@ -236,8 +232,8 @@ impl<const D: usize> Sums<Lanes, D> {
         let distance = neighbor.square.sqrt();
         let overlap = (constants.spacing - distance).max(0.0);
         let spring = constants.penalty * (2.0 * one * two / (one + two)) * overlap;
-        let push = spring / distance.max(f64::MIN_POSITIVE)
-            - load * other.side.mass() * neighbor.slope;
+        let push =
+            spring / distance.max(f64::MIN_POSITIVE) - load * other.side.mass() * neighbor.slope;
         for i in 0..D {
             self.contact[i][lane] += neighbor.separation[i] * (push * apart);
         }
@@ -245,13 +241,7 @@ impl<const D: usize> Sums<Lanes, D> {
 
     /// Adds what shifting and surfaces need.
     #[inline(always)]
-    fn crowd(
-        &mut self,
-        lane: usize,
-        volume: f64,
-        neighbor: &Neighbor<D>,
-        constants: &Constants,
-    ) {
+    fn crowd(&mut self, lane: usize, volume: f64, neighbor: &Neighbor<D>, constants: &Constants) {
         let factor = fluid::repulsion(neighbor.value * constants.crowding);
         let slope = volume * neighbor.slope;
         for i in 0..D {
@@ -304,4 +294,3 @@ fn fill<const D: usize, const SEVERAL: bool>(
         };
     }
 }
-

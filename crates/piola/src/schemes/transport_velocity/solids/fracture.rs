@@ -72,7 +72,8 @@ impl<const D: usize> TransportVelocity<D> {
                 let b = list.numbers()[other as usize] as usize;
                 let is_linked = b > a
                     && self.particles.body[a] == self.particles.body[b]
-                    && list.domain().separation(&position(a), &position(b)).norm_squared() <= square;
+                    && list.domain().separation(&position(a), &position(b)).norm_squared()
+                        <= square;
                 if is_linked {
                     let (one, two) = (root_of(&mut root, a), root_of(&mut root, b));
                     if one != two {

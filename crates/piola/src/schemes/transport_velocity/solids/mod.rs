@@ -128,13 +128,7 @@ struct Tension<const D: usize> {
 
 impl<const D: usize> Default for Tension<D> {
     fn default() -> Self {
-        Self {
-            tensor: [[0.0; D]; D],
-            weight: 0.0,
-            share: 0.0,
-            wave_speed: 0.0,
-            stiffness: 0.0,
-        }
+        Self { tensor: [[0.0; D]; D], weight: 0.0, share: 0.0, wave_speed: 0.0, stiffness: 0.0 }
     }
 }
 

@@ -5,7 +5,9 @@ use piola_formulas::fluid;
 
 use super::{Contact, MATTER, Matter, Solids, Tension, WALL};
 use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, all_of, total};
-use crate::schemes::transport_velocity::{Divergence, PressureRule, Rates, Side, TransportVelocity};
+use crate::schemes::transport_velocity::{
+    Divergence, PressureRule, Rates, Side, TransportVelocity,
+};
 use crate::{Tensor, parallel};
 
 /// Rates of a particle of a solid that are not in [`Rates`].
@@ -226,8 +228,7 @@ fn fill<const D: usize, const CARRIES: bool>(
     for (offset, (rates, common)) in rates.iter_mut().zip(common).enumerate() {
         let place = first + offset;
         if !scheme.support.list().is_passive(place) {
-            let sums =
-                scheme.gather_gradients::<CARRIES>(solids, place, constants, &mut block);
+            let sums = scheme.gather_gradients::<CARRIES>(solids, place, constants, &mut block);
             (*rates, *common) = scheme.solid_rates_of(solids, place, constants, &sums);
         }
     }
