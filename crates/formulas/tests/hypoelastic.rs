@@ -1,7 +1,7 @@
 //! Exact solutions of hypoelastic and elastic-plastic solids.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use num_dual::{Dual64, DualNum};
+use num_dual::Dual64;
 use piola_formulas::hypoelastic::{
     EquationOfState, JohnsonCook, PressureLaw, Strength, advance, jaumann_rate, von_mises,
 };
@@ -194,11 +194,11 @@ fn the_energy_of_compression_is_the_work_of_the_pressure() {
     for law in &LAWS[..2] {
         let state = state(*law);
         for ratio in [0.9, 1.05] {
-            let density = Dual64::new(2785.0 * ratio, 1.0);
+            let density: f64 = 2785.0 * ratio;
             let step = 1e-4 * 2785.0;
             let energy = |density: f64| state.compression_energy(density, 0.0);
-            let slope = (energy(density.re() + step) - energy(density.re() - step)) / (2.0 * step);
-            let expected = state.pressure(density.re(), 0.0) / density.re().powi(2);
+            let slope = (energy(density + step) - energy(density - step)) / (2.0 * step);
+            let expected = state.pressure(density, 0.0) / (density * density);
             assert!((slope / expected - 1.0).abs() < 1e-6, "{law:?}: {slope} {expected}");
         }
         assert_eq!(state.compression_energy(2785.0, 0.0), 0.0);

@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Fluid, Forces, Heat, PressureRule, Rates,
     Settings, Shifting, Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
 use piola::schemes::{Initial, Scheme};
+use piola::{Tensor, Vector};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 use piola_formulas::kernels::Kernel;
 
@@ -142,8 +142,11 @@ fn terms<const D: usize>(
     all.map(|((x, (rates, forces)), solid)| Found { x, rates, solid, forces }).collect()
 }
 
+/// Numbers of a particle as they are found and as they should be.
+type Pairs<'a, const D: usize> = &'a dyn Fn(&Found<D>) -> Vec<(f64, f64)>;
+
 /// Relative error over all particles of several numbers each.
-fn error<const D: usize>(found: &[Found<D>], pair: &dyn Fn(&Found<D>) -> Vec<(f64, f64)>) -> f64 {
+fn error<const D: usize>(found: &[Found<D>], pair: Pairs<'_, D>) -> f64 {
     let (mut off, mut size) = (0.0, 0.0);
     for (got, expected) in found.iter().flat_map(pair) {
         off += (got - expected).powi(2);
@@ -181,7 +184,7 @@ fn second_order<const D: usize>(corrected: bool) {
         |f: &Found<D>| vec![(f.rates.divergence, (0..D).map(|i| velocity(i).slope(&f.x, i)).sum())];
     let density = |f: &Found<D>| vec![(f.rates.density_transport, carried(f, DENSITY))];
     let pressure = |f: &Found<D>| vec![(f.rates.pressure_transport, carried(f, PRESSURE))];
-    let checks: [(&str, &dyn Fn(&Found<D>) -> Vec<(f64, f64)>); 6] = [
+    let checks: [(&str, Pairs<'_, D>); 6] = [
         ("grad u", &gradient),
         ("d . grad matter", &transport),
         ("div sigma / rho", &force),
@@ -238,9 +241,7 @@ fn two_blocks<const D: usize>(
     // Any numbers that are no function of place.
     let noise = |k: usize| (k as f64 * 12.9898).sin();
     for (number, row) in state[..start].chunks_mut(4 * D + 2).take(count).enumerate() {
-        for i in 0..D {
-            row[i] = noise(7 * number + i);
-        }
+        row[..D].iter_mut().enumerate().for_each(|(i, u)| *u = noise(7 * number + i));
         row[2 * D] *= 1.0 + 0.02 * noise(3 * number);
         row[2 * D + 1] = 5.0 * noise(5 * number + 1);
     }
@@ -324,11 +325,8 @@ fn corrected_gradients_are_exact_for_linear_fields() {
     scheme.terms(0.0, &state);
     // At the faces of each of the bodies too, whatever the other one does.
     for rates in scheme.solid_rates() {
-        for i in 0..2 {
-            for j in 0..2 {
-                assert!((rates.gradient[(i, j)] - gradient[i][j]).abs() < 1e-12);
-            }
-        }
+        let expected = Tensor::<2>::from_fn(|i, j| gradient[i][j]);
+        assert!((rates.gradient - expected).norm() < 1e-12, "{}", rates.gradient);
     }
 }
 

@@ -130,8 +130,8 @@ impl<const D: usize> TransportVelocity<D> {
                     let other = End { side: sides[lane], tension: tensions[lane] };
                     let neighbor = group.neighbor(lane);
                     let force = pull(me, other, &neighbor);
-                    for i in 0..D {
-                        sums.walls[i][lane] += force[i];
+                    for (sum, force) in sums.walls.iter_mut().zip(force) {
+                        sum[lane] += force;
                     }
                     sums.crowd(lane, other.side.volume, &neighbor, constants);
                 }
@@ -165,13 +165,13 @@ impl<const D: usize> TransportVelocity<D> {
 fn pull<const D: usize>(me: End<'_, D>, other: End<'_, D>, neighbor: &Neighbor<D>) -> [f64; D] {
     let weight = other.tension.weight * neighbor.slope;
     let mut force = [0.0; D];
-    for i in 0..D {
+    for (i, force) in force.iter_mut().enumerate() {
         let mut sum = 0.0;
         for j in 0..D {
             let tensor = me.tension.tensor[i][j] + other.tension.tensor[i][j];
             sum += tensor * neighbor.separation[j];
         }
-        force[i] = sum * weight;
+        *force = sum * weight;
     }
     force
 }
@@ -187,8 +187,8 @@ impl<const D: usize> Sums<Lanes, D> {
         neighbor: &Neighbor<D>,
     ) {
         let force = pull(me, other, neighbor);
-        for i in 0..D {
-            self.stress[i][lane] += force[i] * own;
+        for (sum, force) in self.stress.iter_mut().zip(force) {
+            sum[lane] += force * own;
         }
     }
 
