@@ -6,6 +6,7 @@
 
 pub mod fluid;
 pub mod hyperelastic;
+pub mod hypoelastic;
 pub mod kernels;
 mod power;
 pub mod riemann;

@@ -16,8 +16,8 @@ use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
-    Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, TransportVelocity,
-    TransportVelocityInput,
+    AtSurface, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting,
+    TransportVelocity, TransportVelocityInput,
 };
 use piola::schemes::{Initial, Scheme};
 use piola::time::IntegratorKind;
@@ -72,9 +72,11 @@ fn vortices<const D: usize>(
             shifting: Shifting::Sun { factor: 1.0 },
             artificial_viscosity: 0.0,
             free_surface: false,
+            at_surface: AtSurface::Held,
             density_drift: 0.02,
         },
         fluid: Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 },
+        solids: None,
         initial: Initial { velocity: velocity.collect(), pressure: vec![0.0; particles.len()] },
         walls: Vec::new(),
         motion: Vec::new(),

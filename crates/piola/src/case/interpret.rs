@@ -19,6 +19,7 @@ mod interpolation;
 mod members;
 mod observers;
 mod physics;
+mod plastic;
 mod solids;
 mod sweeps;
 mod time;
@@ -129,6 +130,8 @@ struct Names {
     variants: Vec<String>,
     scheme: &'static str,
     is_static: bool,
+    /// Whether a body is of a hypoelastic solid.
+    is_solid: bool,
 }
 
 impl Reader<'_, '_> {
@@ -144,6 +147,8 @@ impl Reader<'_, '_> {
     /// Collects the names of bodies and variants, and checks the names of all named tables.
     fn collect_names(&mut self, record: &Record) {
         self.names.bodies = self.unique_names(record, "body", &[]);
+        let materials = record.records("body").filter_map(|body| body.record("material"));
+        self.names.is_solid = materials.into_iter().any(|material| material.kind == "hypoelastic");
         self.names.variants = self.unique_names(record, "variant", &["base"]);
         self.unique_names(record, "sweep", &[]);
         self.unique_names(record, "probe", &["energy", "momentum", "step", "run"]);
@@ -240,7 +245,7 @@ impl Reader<'_, '_> {
 
     fn scheme(&mut self, record: &Record) -> Option<Located<Scheme>> {
         let scheme = match record.kind {
-            "transport_velocity" => Scheme::TransportVelocity(fluids::transport_velocity(record)?),
+            "transport_velocity" => Scheme::TransportVelocity(self.transport_velocity(record)?),
             "dual_support" => Scheme::DualSupport(self.dual_support(record)?),
             "elastodynamics" => Scheme::Elastodynamics(self.elastodynamics(record)?),
             interpolation::NAME => Scheme::Interpolation(interpolation::settings(record)?),

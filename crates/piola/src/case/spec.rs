@@ -179,6 +179,11 @@ impl Interval {
     /// At least 0.
     pub const NOT_NEGATIVE: Self = Self { has_lower: true, ..Self::POSITIVE };
 
+    /// Above `lower`.
+    pub const fn above(lower: f64) -> Self {
+        Self { lower, ..Self::ANY }
+    }
+
     /// At least `lower`.
     pub const fn at_least(lower: f64) -> Self {
         Self { lower, has_lower: true, ..Self::ANY }

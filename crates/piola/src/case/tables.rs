@@ -12,6 +12,7 @@ mod fluids;
 mod geometry;
 mod interpolation;
 mod observers;
+mod plastic;
 mod solids;
 mod time;
 mod waves;

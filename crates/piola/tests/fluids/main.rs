@@ -1,8 +1,10 @@
 //! The transport-velocity formulation.
 
+mod bodies;
 mod escapes;
 mod operators;
 mod runs;
+mod solids;
 mod support;
 mod surfaces;
 mod taylor_green;

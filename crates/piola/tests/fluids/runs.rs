@@ -84,9 +84,9 @@ fn the_ledger_closes_for_every_choice() {
         let mut scheme = scheme(settings);
         let start = scheme.initial_state();
         let total = |scheme: &TransportVelocity<2>, state: &[f64]| {
-            let mut energies = [0.0; 2];
+            let mut energies = [0.0; 3];
             scheme.energies(state, &mut energies);
-            energies[0] + energies[1]
+            energies.iter().sum::<f64>()
         };
         let before = total(&scheme, &start);
         let state = advance(&mut scheme, start, 0, 50);

@@ -5,8 +5,8 @@ use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
-    Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, TransportVelocity,
-    TransportVelocityInput,
+    AtSurface, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting,
+    TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::kernels::Kernel;
 use rand::{RngExt, SeedableRng};
@@ -20,6 +20,7 @@ pub const SETTINGS: Settings = Settings {
     shifting: Shifting::Sun { factor: 1.0 },
     artificial_viscosity: 0.0,
     free_surface: false,
+    at_surface: AtSurface::Held,
     density_drift: 0.02,
 };
 
@@ -67,6 +68,7 @@ pub fn fluid_in_box<const D: usize>(
         settings,
         fluid,
         initial: Initial { velocity, pressure },
+        solids: None,
         walls: Vec::new(),
         motion: Vec::new(),
         sliding: Vec::new(),

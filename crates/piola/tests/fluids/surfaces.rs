@@ -34,6 +34,7 @@ fn at_rest<const D: usize>(positions: Vec<Vector<D>>) -> TransportVelocity<D> {
         smoothing_length: SPACING,
         settings: Settings { free_surface: true, ..SETTINGS },
         fluid: Fluid { density: 1000.0, wave_speed: 10.0, viscosity: 0.0 },
+        solids: None,
         initial: Initial { velocity: vec![Vector::zeros(); count], pressure: vec![0.0; count] },
         walls: Vec::new(),
         faces: vec![Faces::default(); count],

@@ -10,7 +10,8 @@ use crate::geometry::{Faces, Particles, Shape};
 use crate::neighbors::{Domain, NeighborStatistics, spatial_order};
 use crate::schemes::Scheme;
 use crate::schemes::transport_velocity::{
-    Fluid, Guard, TransportVelocity, TransportVelocityError, TransportVelocityInput, Wall,
+    Fluid, Guard, Solid, SolidsInput, TransportVelocity, TransportVelocityError,
+    TransportVelocityInput, Wall,
 };
 
 /// Builds the scheme `transport_velocity`.
@@ -29,7 +30,11 @@ pub(super) fn build<const D: usize>(
     particles.reorder(&order.map_err(|error| {
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
-    let fluid = fluid(case)?;
+    let solids = materials(case);
+    let fluid = match &solids {
+        Some(materials) => Fluid::of_solids(materials),
+        None => fluid(case)?,
+    };
     let (faces, shape) = faces(case, &particles)?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
@@ -39,6 +44,10 @@ pub(super) fn build<const D: usize>(
         return Err(problems);
     }
     let walls = walls(case);
+    let (motion, held) = match solids {
+        Some(_) => split(motion, &particles, &walls),
+        None => (motion, Vec::new()),
+    };
     let mut warnings = Vec::new();
     let no_face = Faces::default();
     if faces
@@ -64,6 +73,12 @@ pub(super) fn build<const D: usize>(
         smoothing_length,
         settings: settings.settings,
         fluid,
+        solids: solids.map(|materials| SolidsInput {
+            materials,
+            contact: settings.contact,
+            corrected: settings.corrected_gradients,
+            held,
+        }),
         initial,
         walls,
         faces,
@@ -115,6 +130,31 @@ fn fluid(case: &Case) -> Result<Fluid, Vec<Problem>> {
         }
     }
     found.ok_or_else(|| vec![case.problem_at(case.scheme.place, "no fluid", "needs one", None)])
+}
+
+/// The solids of all bodies, if they are solids; the reader of cases has refused a mixture.
+fn materials(case: &Case) -> Option<Vec<Solid>> {
+    let solid = |body: &model::Body| match body.material.value {
+        model::Material::Hypoelastic(solid) => Some(solid),
+        _ => None,
+    };
+    case.bodies.iter().map(solid).collect()
+}
+
+/// The prescribed velocities of walls, and those of solids.
+fn split<const D: usize>(
+    conditions: Vec<PrescribedVelocity>,
+    particles: &Particles<D>,
+    walls: &[Wall],
+) -> (Vec<PrescribedVelocity>, Vec<PrescribedVelocity>) {
+    let is_wall = |a: &u32| walls.iter().any(|wall| wall.body == particles.body[*a as usize]);
+    let (mut motion, mut held) = (Vec::new(), Vec::new());
+    for condition in conditions {
+        let (of_walls, others) = condition.particles.iter().copied().partition(is_wall);
+        motion.push(PrescribedVelocity { particles: of_walls, ..condition.clone() });
+        held.push(PrescribedVelocity { particles: others, ..condition });
+    }
+    (motion, held)
 }
 
 fn walls(case: &Case) -> Vec<Wall> {

@@ -256,7 +256,8 @@ fn materials(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material> {
             // The reader of cases has refused others for this scheme.
             model::Material::Linear { .. }
             | model::Material::WeaklyCompressible { .. }
-            | model::Material::Hyperelastic { .. } => VolumetricLaw::linear(bulk_modulus),
+            | model::Material::Hyperelastic { .. }
+            | model::Material::Hypoelastic(_) => VolumetricLaw::linear(bulk_modulus),
             model::Material::GammaLaw { gamma, .. } => {
                 VolumetricLaw::gamma_law(bulk_modulus, gamma)
             }

@@ -197,6 +197,9 @@ impl Reader<'_, '_> {
         if HyperelasticLaw::NAMES.contains(&record.kind) {
             return self.elastic_solid(record);
         }
+        if record.kind == "hypoelastic" {
+            return self.hypoelastic(record);
+        }
         let stiffness = self.stiffness(record);
         let density = number(record, "density");
         let material = match record.kind {

@@ -5,40 +5,79 @@ use piola_formulas::hyperelastic::HyperelasticLaw;
 use super::*;
 use crate::case::model::{Body, Boundary, Material, TransportVelocity, Wall};
 use crate::schemes::transport_velocity::{
-    Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
+    AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
 };
 
-/// Settings of the scheme `transport_velocity`.
-pub(super) fn transport_velocity(record: &Record) -> Option<TransportVelocity> {
-    let alpha = record.number("pressure_diffusion")?.value;
-    let shifting = match record.text("shifting")?.as_str() {
-        "none" => Shifting::None,
-        "ipst" => Shifting::Iterative {
-            tolerance: record.number("shifting_tolerance")?.value,
-            most_passes: record.whole::<u32>("shifting_passes")?.value,
-        },
-        _ => Shifting::Sun { factor: record.number("shifting_factor")?.value },
-    };
-    Some(TransportVelocity {
-        kernel: record.text("kernel")?,
-        smoothing_length: record.number("smoothing_length")?,
-        settings: Settings {
-            density: match record.text("density")?.as_str() {
-                "summation" => DensityRule::Summation,
-                _ => DensityRule::Continuity,
+/// Factor of the diffusivity of the pressure, CTVF (24), of fluids and of solids, unless the case has
+/// one. With that of fluids the pressure crosses a plate within a hundredth of its period.
+const DIFFUSION: [f64; 2] = [0.5, 0.001];
+
+/// Keys of the scheme that say what solids do.
+const OF_SOLIDS: [&str; 3] = ["corrected_gradients", "contact", "contact_stiffness"];
+
+impl Reader<'_, '_> {
+    /// Settings of the scheme `transport_velocity`.
+    pub(super) fn transport_velocity(&mut self, record: &Record) -> Option<TransportVelocity> {
+        let is_solid = self.names.is_solid;
+        for key in OF_SOLIDS.iter().filter(|_| !is_solid) {
+            self.meaningless(record, key, "for fluids");
+        }
+        let alpha = record.number("pressure_diffusion").map(|it| it.value);
+        let alpha = alpha.unwrap_or(DIFFUSION[usize::from(is_solid)]);
+        let pressure = record.text("pressure");
+        let edac = pressure.as_ref().map_or(!is_solid, |pressure| pressure.as_str() == "edac");
+        let density = record.text("density")?;
+        if is_solid && density.as_str() == "summation" {
+            let message = "the density of solids is found by the continuity equation";
+            let problem = Problem::new(density.place, message, "would see their faces as voids");
+            return self.refuse(problem.help("remove it"));
+        }
+        let stiffness = record.number("contact_stiffness").map_or(1.0, |it| it.value);
+        let contact = record.text("contact");
+        let contact = match contact.as_ref().map(|contact| contact.as_str()) {
+            Some("full") => Contact::Full,
+            Some("penalty") => Contact::Penalty { stiffness },
+            _ => Contact::Repulsive,
+        };
+        if !matches!(contact, Contact::Penalty { .. }) {
+            self.meaningless(record, "contact_stiffness", "without `contact = \"penalty\"`");
+        }
+        let shifting = match record.text("shifting")?.as_str() {
+            "none" => Shifting::None,
+            "ipst" => Shifting::Iterative {
+                tolerance: record.number("shifting_tolerance")?.value,
+                most_passes: record.whole::<u32>("shifting_passes")?.value,
             },
-            pressure: match record.text("pressure")?.as_str() {
-                "state_equation" => PressureRule::StateEquation,
-                _ => PressureRule::Edac { alpha },
+            _ => Shifting::Sun { factor: record.number("shifting_factor")?.value },
+        };
+        Some(TransportVelocity {
+            kernel: record.text("kernel")?,
+            smoothing_length: record.number("smoothing_length")?,
+            settings: Settings {
+                density: match density.as_str() {
+                    "summation" => DensityRule::Summation,
+                    _ => DensityRule::Continuity,
+                },
+                pressure: match edac {
+                    false => PressureRule::StateEquation,
+                    true => PressureRule::Edac { alpha },
+                },
+                corrections: Corrections::from_name(&record.text("corrections")?.value)?,
+                shifting,
+                artificial_viscosity: record.number("artificial_viscosity")?.value,
+                free_surface: record.boolean("free_surface").unwrap_or(is_solid),
+                at_surface: match record.text("surface_shifting").as_ref().map(|it| it.as_str()) {
+                    Some("held") => AtSurface::Held,
+                    None if !is_solid => AtSurface::Held,
+                    _ => AtSurface::Along,
+                },
+                density_drift: record.number("density_drift")?.value,
             },
-            corrections: Corrections::from_name(&record.text("corrections")?.value)?,
-            shifting,
-            artificial_viscosity: record.number("artificial_viscosity")?.value,
-            free_surface: record.boolean("free_surface")?,
-            density_drift: record.number("density_drift")?.value,
-        },
-        removes_escaped: record.text("escaped")?.as_str() == "remove",
-    })
+            contact,
+            corrected_gradients: record.boolean("corrected_gradients").unwrap_or(false),
+            removes_escaped: record.text("escaped")?.as_str() == "remove",
+        })
+    }
 }
 
 /// A body that is a wall.
@@ -58,12 +97,15 @@ impl Reader<'_, '_> {
         let is_fluid = scheme == "transport_velocity";
         for body in bodies {
             let help = match (scheme, &body.material.value) {
-                ("transport_velocity", Material::WeaklyCompressible { .. })
+                (
+                    "transport_velocity",
+                    Material::WeaklyCompressible { .. } | Material::Hypoelastic(_),
+                )
                 | ("dual_support" | "elastodynamics", Material::Hyperelastic { .. })
                 | (interpolation::NAME, _)
                 | ("upwind", Material::Linear { .. } | Material::GammaLaw { .. }) => None,
                 ("transport_velocity", _) => {
-                    Some("use `kind = \"weakly_compressible\"`, for walls too".to_owned())
+                    Some("use `weakly_compressible` or `hypoelastic`, for walls too".to_owned())
                 }
                 ("dual_support" | "elastodynamics", _) => {
                     Some(format!("use one of {}", HyperelasticLaw::NAMES.join(", ")))
@@ -75,7 +117,13 @@ impl Reader<'_, '_> {
                 let problem = Problem::new(body.material.place, message, "of another scheme");
                 self.report(problem.help(help));
             }
-            if matches!(scheme, "dual_support" | "elastodynamics")
+            let is_solid = matches!(body.material.value, Material::Hypoelastic(_));
+            if is_fluid && is_solid != self.names.is_solid {
+                let message = "fluids and solids cannot be in one case";
+                let problem = Problem::new(body.material.place, message, "a fluid beside solids");
+                self.report(problem.help("give all bodies, walls too, one kind of material"));
+            }
+            if (matches!(scheme, "dual_support" | "elastodynamics") || is_solid)
                 && body.initial.pressure.as_constant() != Some(0.0)
             {
                 let message =
@@ -95,7 +143,7 @@ impl Reader<'_, '_> {
             let of_wall = |body: &Located<usize>| {
                 bodies.get(body.value).is_some_and(|body| body.wall.is_some())
             };
-            if !boundary.body.as_ref().is_some_and(of_wall) {
+            if !self.names.is_solid && !boundary.body.as_ref().is_some_and(of_wall) {
                 let message = "only walls move as prescribed: the key `body` must name one";
                 let place = boundary.body.as_ref().map_or(boundary.name.place, |body| body.place);
                 self.report(Problem::new(place, message, "no wall"));

@@ -90,7 +90,10 @@ impl Reader<'_, '_> {
     }
 
     /// Lame's constants from the two keys that give them; `None` if these are not two that do.
-    fn constants(&mut self, record: &Record) -> Option<Result<LameConstants, MaterialError>> {
+    pub(super) fn constants(
+        &mut self,
+        record: &Record,
+    ) -> Option<Result<LameConstants, MaterialError>> {
         let given: Vec<&str> = CONSTANTS.iter().copied().filter(|name| record.has(name)).collect();
         let value = |name: &str| number(record, name);
         match given[..] {

@@ -53,6 +53,8 @@ pub enum Material {
         /// What the directions that the case does not have do. Without meaning in 3D.
         plane: PlaneState,
     },
+    /// A solid whose stress is integrated in time, CTVF (4).
+    Hypoelastic(transport_velocity::Solid),
 }
 
 impl Material {
@@ -67,6 +69,7 @@ impl Material {
             | Self::GammaLaw { density, .. }
             | Self::WeaklyCompressible { density, .. }
             | Self::Hyperelastic { density, .. } => density,
+            Self::Hypoelastic(solid) => solid.state.density,
         }
     }
 
@@ -81,6 +84,7 @@ impl Material {
             Self::GammaLaw { density, gamma, stiffness } => (density, gamma, stiffness),
             Self::WeaklyCompressible { density, stiffness, .. } => (density, 1.0, stiffness),
             Self::Hyperelastic { law, .. } => return law.small_strain().bulk_modulus(),
+            Self::Hypoelastic(solid) => return solid.bulk_modulus(),
         };
         match stiffness {
             Stiffness::BulkModulus(modulus) => modulus,
@@ -200,6 +204,10 @@ pub struct TransportVelocity {
     pub smoothing_length: Located<f64>,
     /// All that the formulation itself knows.
     pub settings: transport_velocity::Settings,
+    /// What bodies of solids do to each other.
+    pub contact: transport_velocity::Contact,
+    /// Whether velocity gradients of solids are corrected.
+    pub corrected_gradients: bool,
     /// Whether particles that escape are removed; otherwise the run ends.
     pub removes_escaped: bool,
 }

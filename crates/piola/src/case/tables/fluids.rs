@@ -4,7 +4,7 @@ use super::*;
 
 pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
     name: "transport_velocity",
-    meaning: "weakly compressible fluids that move with a corrected transport velocity",
+    meaning: "weakly compressible fluids, or elastic-plastic solids, that move with a corrected transport velocity",
     dimensions: &[1, 2, 3],
     keys: &[
         key(
@@ -39,14 +39,14 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "pressure",
             Kind::Name(PRESSURES),
             "",
-            Default("\"edac\""),
+            Derived("`edac`; `state_equation` for solids"),
             "how the pressure is found",
         ),
         key(
             "pressure_diffusion",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
-            Default("0.5"),
+            Derived("0.5; 0.001 for solids"),
             "factor of the diffusivity of the pressure, CTVF (24); for `edac`",
         ),
         key(
@@ -95,8 +95,36 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "free_surface",
             Kind::Boolean,
             "",
-            Default("false"),
+            Derived("false; true for solids"),
             "whether free surfaces are looked for, near which shifting is limited, CTVF (44), (45)",
+        ),
+        key(
+            "surface_shifting",
+            Kind::Name(AT_SURFACES),
+            "",
+            Derived("`held`; `along` for solids"),
+            "how particles on free surfaces and near them are shifted",
+        ),
+        key(
+            "corrected_gradients",
+            Kind::Boolean,
+            "",
+            Derived("false; no meaning for fluids"),
+            "whether velocity gradients of solids are exact for linear fields, with the momentum equation that is conjugate to that",
+        ),
+        key(
+            "contact",
+            Kind::Name(CONTACTS),
+            "",
+            Derived("`repulsive`; no meaning for fluids"),
+            "what solids of different bodies do to each other",
+        ),
+        key(
+            "contact_stiffness",
+            Kind::Number(Interval::POSITIVE),
+            "1",
+            Derived("1.0; for `penalty`"),
+            "stiffness of the springs of `penalty` in units of the bulk modulus times dx^(D-2)",
         ),
         key(
             "escaped",
@@ -127,6 +155,16 @@ const SHIFTINGS: Choices = choices(&[
     choice("spst", "by a velocity deviation, CTVF (35)"),
     choice("ipst", "by an iterated displacement, CTVF (37) to (41)"),
     choice("none", "not at all"),
+]);
+
+const AT_SURFACES: Choices = choices(&[
+    choice("held", "not on them, and by small supports near them, CTVF (44), (45) and algorithm 1"),
+    choice("along", "along them, by whole supports"),
+]);
+const CONTACTS: Choices = choices(&[
+    choice("repulsive", "they compress each other, and push by that pressure and never pull"),
+    choice("full", "all that particles of one body do, CTVF (30): they can weld"),
+    choice("penalty", "springs push where particles are closer than a spacing"),
 ]);
 
 const ESCAPES: Choices = choices(&[

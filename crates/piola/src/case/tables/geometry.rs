@@ -349,6 +349,7 @@ static MATERIAL: TaggedSpec = TaggedSpec {
         solids::NEO_HOOKEAN_LOGARITHMIC,
         solids::MOONEY_RIVLIN,
         solids::OGDEN,
+        plastic::HYPOELASTIC,
     ],
 };
 

@@ -58,15 +58,15 @@ const GRADIENTS: Choices = choices(&[
     choice("plain", "those of the paper, Dual-support (12)"),
 ]);
 
-const YOUNG_MODULUS: KeySpec =
+pub(super) const YOUNG_MODULUS: KeySpec =
     key("young_modulus", Kind::Number(Interval::POSITIVE), "Pa", Optional, "Young's modulus");
-const POISSON_RATIO: KeySpec =
+pub(super) const POISSON_RATIO: KeySpec =
     key("poisson_ratio", Kind::Number(Interval::ANY), "1", Optional, "Poisson's ratio");
-const BULK_MODULUS: KeySpec =
+pub(super) const BULK_MODULUS: KeySpec =
     key("bulk_modulus", Kind::Number(Interval::POSITIVE), "Pa", Optional, "bulk modulus kappa");
-const SHEAR_MODULUS: KeySpec =
+pub(super) const SHEAR_MODULUS: KeySpec =
     key("shear_modulus", Kind::Number(Interval::POSITIVE), "Pa", Optional, "shear modulus mu");
-const LAME_LAMBDA: KeySpec =
+pub(super) const LAME_LAMBDA: KeySpec =
     key("lame_lambda", Kind::Number(Interval::ANY), "Pa", Optional, "Lame's first constant");
 const PLANE: KeySpec = key(
     "plane",

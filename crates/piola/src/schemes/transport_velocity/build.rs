@@ -5,18 +5,19 @@ use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
 use super::inspect::ChunkFigures;
-use super::ledger::Tail;
 use super::shifting::Iteration;
 use super::{
-    DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip,
-    TransportVelocity, WallParticle, WallValues,
+    DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip, Solids,
+    SolidsInput, TransportVelocity, WallParticle, WallValues,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
 use crate::geometry::{Faces, Particles};
 use crate::neighbors::{Domain, NeighborError};
 use crate::operators::MovingSupport;
-use crate::schemes::input::{check_index, check_lengths, check_particles};
+use crate::schemes::input::{
+    check_index, check_lengths, check_materials, check_particles, check_selected,
+};
 use crate::schemes::{Initial, InputError, SplitScheme};
 use crate::{Vector, parallel};
 
@@ -41,8 +42,10 @@ pub struct TransportVelocityInput<const D: usize> {
     pub smoothing_length: f64,
     /// Numerical settings.
     pub settings: Settings,
-    /// The fluid.
+    /// The fluid; of solids the numbers that stand for all of them, [`Fluid::of_solids`].
     pub fluid: Fluid,
+    /// The solids, if there are some in place of the fluid.
+    pub solids: Option<SolidsInput>,
     /// Initial velocity and pressure.
     pub initial: Initial<D>,
     /// The bodies that are walls.
@@ -65,7 +68,7 @@ pub enum TransportVelocityError {
     #[error(transparent)]
     Neighbors(#[from] NeighborError),
     /// There is no particle of fluid.
-    #[error("there is no particle of fluid: every body is a wall")]
+    #[error("there is no particle of fluid or solid: every body is a wall")]
     NoFluid,
     /// Particles of different sizes.
     #[error(
@@ -146,8 +149,12 @@ impl<const D: usize> TransportVelocity<D> {
             input.smoothing_length,
             input.domain,
         )?;
+        let solids = input.solids.map(|solids| Box::new(Solids::new(solids, &particles, &is_wall)));
         let densities: Vec<f64> = (0..count)
-            .map(|number| start_density(&settings, &fluid, initial.pressure[number]))
+            .map(|number| match &solids {
+                Some(solids) => solids.density(particles.body[number]),
+                None => start_density(&settings, &fluid, initial.pressure[number]),
+            })
             .collect();
         let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
         let mut scheme = Self {
@@ -162,6 +169,8 @@ impl<const D: usize> TransportVelocity<D> {
             found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
             iteration: Iteration::default(),
             chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
+            continuum: vec![0; if solids.is_some() { count } else { 0 }],
+            solids,
             guard: None,
             removed: Vec::new(),
             lost: None,
@@ -183,7 +192,9 @@ impl<const D: usize> TransportVelocity<D> {
     /// Makes the state of the start, with its accelerations and deviations.
     fn begin(&mut self, initial: &Initial<D>) -> Result<(), TransportVelocityError> {
         let count = self.particles.len();
-        let mut state = vec![0.0; count * Row::<D>::LENGTH + Tail::new(D).length()];
+        let mut state = vec![0.0; self.matter_start() + self.matter_length()];
+        let matter = self.matter_start();
+        self.begin_matter(&mut state[matter..]);
         for (number, row) in state.chunks_exact_mut(Row::<D>::LENGTH).take(count).enumerate() {
             let position = self.particles.position[number];
             let (velocity, pressure) = (initial.velocity[number], initial.pressure[number]);
@@ -203,6 +214,7 @@ impl<const D: usize> TransportVelocity<D> {
             row[Row::<D>::POSITION..][..D].copy_from_slice(position.as_slice());
             row[Row::<D>::DENSITY] = self.densities[number];
         }
+        self.hold_velocities(0.0, &mut state);
         self.load(&state);
         self.note_evenness();
         self.accelerate(0.0, &mut state);
@@ -241,6 +253,14 @@ fn check<const D: usize>(input: &TransportVelocityInput<D>) -> Result<(), Transp
     for condition in input.motion.iter().chain(&input.sliding) {
         let what = || format!("`{}`: velocity component", condition.name);
         check_index(what, condition.component, D)?;
+    }
+    if let Some(solids) = &input.solids {
+        check_materials(particles, solids.materials.len())?;
+        for condition in &solids.held {
+            check_selected(&condition.name, &condition.particles, particles.len())?;
+            let what = || format!("`{}`: velocity component", condition.name);
+            check_index(what, condition.component, D)?;
+        }
     }
     let positive = [
         ("the smoothing length", input.smoothing_length),

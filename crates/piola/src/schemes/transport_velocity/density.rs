@@ -32,6 +32,9 @@ impl<const D: usize> TransportVelocity<D> {
     /// each other, and ties a density that has drifted to its pressure again. Returns the largest
     /// speed of the fluid in m/s, as it passes over all particles anyhow.
     pub(super) fn update_density_and_pressure(&mut self) -> f64 {
+        if self.solids.is_some() {
+            return self.update_pressure_of_solids();
+        }
         let sums = self.settings.density == DensityRule::Summation;
         let algebraic = self.settings.pressure == PressureRule::StateEquation;
         if sums {

@@ -38,6 +38,9 @@ struct Sums {
 impl<const D: usize> TransportVelocity<D> {
     /// Fills `rates` from the sides, for the fluid at a time in s.
     pub(super) fn rate_pass(&mut self, time: f64) {
+        if self.solids.is_some() {
+            return self.solid_rate_pass();
+        }
         let mut rates = std::mem::take(&mut self.rates);
         let h = self.support.smoothing_length();
         let corrections = self.settings.corrections;

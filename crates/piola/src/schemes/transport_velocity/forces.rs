@@ -11,7 +11,7 @@ use crate::{Vector, parallel};
 /// Accelerations of a particle in m/s^2, term by term, and sums that the same pass gathers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forces<const D: usize> {
-    /// Of the pressure between particles of the fluid.
+    /// Of the pressure between particles of the fluid, of the stress between those of solids.
     pub pressure: Vector<D>,
     /// Of the viscosity between particles of the fluid.
     pub viscosity: Vector<D>,
@@ -76,6 +76,10 @@ impl<const D: usize> TransportVelocity<D> {
     /// Fills `forces` from the sides, without body forces. On wall particles it is the reaction
     /// of the fluid.
     pub(super) fn force_pass(&mut self) {
+        if self.solids.is_some() {
+            self.tension_pass();
+            return self.solid_force_pass();
+        }
         let mut forces = std::mem::take(&mut self.forces);
         let h = self.support.smoothing_length();
         let corrections = &self.settings.corrections;

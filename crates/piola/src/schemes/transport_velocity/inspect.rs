@@ -13,11 +13,13 @@ pub(super) struct ChunkFigures {
     /// Squares of the largest speed and acceleration, with their particles.
     speed: (f64, usize),
     acceleration: (f64, usize),
+    /// Largest speed of signals, waves and what carries them, in m/s.
+    signal: (f64, usize),
 }
 
 impl ChunkFigures {
     pub const NEUTRAL: Self =
-        Self { health: Health::NEUTRAL, speed: (0.0, 0), acceleration: (0.0, 0) };
+        Self { health: Health::NEUTRAL, speed: (0.0, 0), acceleration: (0.0, 0), signal: (0.0, 0) };
 
     fn worse(self, other: Self) -> Self {
         let larger = |a: (f64, usize), b: (f64, usize)| if b.0 > a.0 { b } else { a };
@@ -25,6 +27,7 @@ impl ChunkFigures {
             health: self.health.worse(other.health),
             speed: larger(self.speed, other.speed),
             acceleration: larger(self.acceleration, other.acceleration),
+            signal: larger(self.signal, other.signal),
         }
     }
 }
@@ -32,7 +35,8 @@ impl ChunkFigures {
 impl<const D: usize> TransportVelocity<D> {
     /// The health of `state` and the bounds on the step, CTVF (61) corrected, theory (34):
     ///
-    /// - `acoustic`: `h / (c + |u|)` of the largest speed;
+    /// - `acoustic`: `h / (c + |u|)` of the largest speed; of solids with the speed of longitudinal waves,
+    ///   where the paper has that of bulk waves;
     /// - `viscous`: `h^2 / nu`;
     /// - `acceleration`: `sqrt(h / |du/dt|)` of the largest acceleration, where the paper has
     ///   that of gravity.
@@ -44,18 +48,22 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let mut figures = std::mem::take(&mut self.chunk_figures);
         let rows = &state[..self.particles.len() * Row::<D>::LENGTH];
-        rows.par_chunks(CHUNK * Row::<D>::LENGTH)
-            .zip(&mut figures)
-            .enumerate()
-            .for_each(|(chunk, (rows, figures))| *figures = self.look_at_rows(chunk * CHUNK, rows));
+        rows.par_chunks(CHUNK * Row::<D>::LENGTH).zip(&mut figures).enumerate().for_each(
+            |(chunk, (rows, figures))| {
+                *figures = self.look_at_rows(chunk * CHUNK, rows, state);
+            },
+        );
         let worst = figures.iter().copied().fold(ChunkFigures::NEUTRAL, ChunkFigures::worse);
         self.chunk_figures = figures;
 
         let h = self.support.smoothing_length();
         let limit = |name, step, particle| StepLimit { name, step, particle, scaled: true };
         limits.clear();
-        let fastest = self.fluid.wave_speed + worst.speed.0.sqrt();
-        limits.push(limit("acoustic", h / fastest, worst.speed.1));
+        let (fastest, particle) = match self.solids {
+            Some(_) => worst.signal,
+            None => (self.fluid.wave_speed + worst.speed.0.sqrt(), worst.speed.1),
+        };
+        limits.push(limit("acoustic", h / fastest, particle));
         if self.fluid.viscosity > 0.0 {
             limits.push(limit("viscous", h * h / self.fluid.viscosity, worst.speed.1));
         }
@@ -73,11 +81,15 @@ impl<const D: usize> TransportVelocity<D> {
         health
     }
 
-    fn look_at_rows(&self, first: usize, rows: &[f64]) -> ChunkFigures {
+    fn look_at_rows(&self, first: usize, rows: &[f64], state: &[f64]) -> ChunkFigures {
         let mut worst = ChunkFigures::NEUTRAL;
         for (offset, row) in rows.chunks_exact(Row::<D>::LENGTH).enumerate() {
             let number = first + offset;
-            if row.iter().any(|value| !value.is_finite()) {
+            let matter = match self.solids {
+                Some(_) => self.matter_of(number, state),
+                None => &[],
+            };
+            if row.iter().chain(matter).any(|value| !value.is_finite()) {
                 worst.health.first_not_finite.get_or_insert(number);
                 continue;
             }
@@ -89,10 +101,17 @@ impl<const D: usize> TransportVelocity<D> {
                 continue;
             }
             // The inverse has the sign of the density, and is the volume ratio.
-            let ratio = self.fluid.density / row[Row::<D>::DENSITY];
+            let ratio = self.reference_density(number) / row[Row::<D>::DENSITY];
             if ratio < worst.health.smallest_ratio {
                 worst.health.smallest_ratio = ratio;
                 worst.health.smallest_ratio_particle = number;
+            }
+            if let Some(wave_speed) = self.signal_speed(number, state) {
+                let signal = wave_speed + speed.sqrt();
+                if signal > worst.signal.0 {
+                    worst.signal = (signal, number);
+                }
+                worst.health.largest_wave_speed = worst.health.largest_wave_speed.max(wave_speed);
             }
             let acceleration = Row::<D>::acceleration(row).norm_squared();
             if acceleration > worst.acceleration.0 {
@@ -101,7 +120,9 @@ impl<const D: usize> TransportVelocity<D> {
         }
         worst.health.largest_speed = worst.speed.0.sqrt();
         worst.health.largest_speed_particle = worst.speed.1;
-        worst.health.largest_wave_speed = self.fluid.wave_speed;
+        if self.solids.is_none() {
+            worst.health.largest_wave_speed = self.fluid.wave_speed;
+        }
         worst
     }
 }

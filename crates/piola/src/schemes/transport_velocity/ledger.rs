@@ -7,8 +7,8 @@
 use std::ops::Range;
 
 use super::{
-    ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PRESSURE, PRESSURE_DIFFUSION, REMOVED, Row,
-    TRANSPORT, TransportVelocity,
+    ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PLASTICITY, PRESSURE, PRESSURE_DIFFUSION,
+    REMOVED, Row, TRANSPORT, TransportVelocity,
 };
 use crate::schemes::momentum::{self, MOST_COMPONENTS};
 use crate::schemes::momentum_components;
@@ -199,6 +199,11 @@ impl<const D: usize> TransportVelocity<D> {
     /// Books a change of the energy of compression that belongs to the law of state.
     pub(super) fn book_pressure(gained: f64, tail: &mut [f64]) {
         tail[PRESSURE] += gained;
+    }
+
+    /// Books what plastic work takes, in J.
+    pub(super) fn book_plasticity(gained: f64, tail: &mut [f64]) {
+        tail[PLASTICITY] += gained;
     }
 
     /// Sets what has been booked so far to nothing.

@@ -22,6 +22,9 @@
 //! `p_b - p_a - rho0 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the same; at a
 //! free surface, which has neighbours below only, the pressure of depth would diffuse out without end.
 //!
+//! Instead of a fluid there may be elastic and elastic-plastic bodies, see [`Solid`]; what is said of the
+//! fluid of neighbours, walls, surfaces, shifting and time holds for them.
+//!
 //! Walls are layers of ghost particles, CTVF (46) to (52). Everything that a state needs to go on
 //! is in its rows: u, r, rho, p, du/dt and d of each particle.
 
@@ -38,6 +41,7 @@ mod scheme;
 mod settings;
 mod shifting;
 mod sides;
+mod solids;
 mod split;
 mod surface;
 mod walls;
@@ -53,12 +57,15 @@ pub use escape::Guard;
 pub use forces::Forces;
 pub use scheme::DESCRIPTION;
 pub use settings::{
-    Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings, Shifting, Slip,
+    AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,
+    Shifting, Slip,
 };
+pub use solids::{Contact, Heat, Solid, SolidRates, SolidsInput};
 
 use inspect::ChunkFigures;
 use shifting::Iteration;
 use sides::Side;
+use solids::Solids;
 use surface::Opening;
 use walls::{WallParticle, WallValues};
 
@@ -94,6 +101,10 @@ pub struct TransportVelocity<const D: usize> {
     chunk_figures: Vec<ChunkFigures>,
     /// Who looks for particles that escape, with the width of everything at the start in m.
     guard: Option<(Guard, f64)>,
+    /// What there is besides where particles are of solids.
+    solids: Option<Box<Solids<D>>>,
+    /// To which continuum a particle belongs, by place; empty for fluids, where all is one.
+    continuum: Vec<u32>,
     /// The particles that have been removed, by number; empty where none ever is. They are passive,
     /// as walls are.
     removed: Vec<bool>,
@@ -102,13 +113,13 @@ pub struct TransportVelocity<const D: usize> {
 }
 
 /// The energies of the formulation.
-const ENERGIES: [&str; 2] = ["kinetic", "compression"];
+const ENERGIES: [&str; 3] = ["kinetic", "compression", "shear"];
 
 /// The mechanisms of its ledger, in the order of the state's tail.
 ///
 /// `pressure` is what the exchange between kinetic energy and that of compression fails to
-/// conserve: the discrete force and divergence are not exact adjoints.
-const MECHANISMS: [&str; 8] = [
+/// conserve: the discrete force and divergence are not exact adjoints. Of solids it is all stress.
+const MECHANISMS: [&str; 9] = [
     "pressure",
     "viscosity",
     "artificial_viscosity",
@@ -117,6 +128,7 @@ const MECHANISMS: [&str; 8] = [
     "body_force",
     "pressure_diffusion",
     "removed",
+    "plasticity",
 ];
 
 /// The ways in which momentum enters, in the order of the state's tail. Viscous forces act along
@@ -128,6 +140,7 @@ const PRESSURE: usize = 0;
 const TRANSPORT: usize = 3;
 const PRESSURE_DIFFUSION: usize = 6;
 const REMOVED: usize = 7;
+const PLASTICITY: usize = 8;
 /// The mechanisms that accelerate, which stand first.
 const ACCELERATING: usize = 6;
 /// The ways in of accelerations, which stand first.

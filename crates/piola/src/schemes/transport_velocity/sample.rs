@@ -9,10 +9,12 @@ impl<const D: usize> TransportVelocity<D> {
     /// All passes at a state as it is: sides, rates and forces are those of `state` afterwards.
     pub(super) fn all_passes(&mut self, time: f64, state: &[f64]) {
         self.load(state);
+        self.correct_gradients();
         self.wall_pass(time);
         self.rate_pass(time);
         self.force_pass();
         self.add_body_forces(time);
+        self.hold_accelerations();
     }
 
     /// The terms of the equations at a state, particle by particle, for those who want to see
@@ -43,7 +45,12 @@ impl<const D: usize> TransportVelocity<D> {
         }
         for &number in particles {
             let number = number as usize;
-            self.push_field(field, number, Row::<D>::of(state, number), values);
+            match field {
+                "cauchy_stress" | "von_mises" | "plastic_strain" | "temperature" => {
+                    self.push_solid_field(field, number, state, values);
+                }
+                _ => self.push_field(field, number, Row::<D>::of(state, number), values),
+            }
         }
     }
 

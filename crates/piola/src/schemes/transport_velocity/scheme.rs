@@ -5,7 +5,7 @@ use super::{ENERGIES, IMPULSES, MECHANISMS, Row, TransportVelocity};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::schemes::{Escape, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
 
-const FIELDS: [FieldDescription; 16] = [
+const FIELDS: [FieldDescription; 20] = [
     FieldDescription::new(
         "position",
         "m",
@@ -71,6 +71,25 @@ const FIELDS: [FieldDescription; 16] = [
         "unit normal of walls, towards the fluid",
     ),
     FieldDescription::new(
+        "cauchy_stress",
+        "Pa",
+        FieldKind::Tensor,
+        "Cauchy stress of solids, positive in tension; 0 for fluids",
+    ),
+    FieldDescription::new(
+        "von_mises",
+        "Pa",
+        FieldKind::Scalar,
+        "equivalent stress of von Mises of solids, with the stress across in plane strain",
+    ),
+    FieldDescription::new(
+        "plastic_strain",
+        "1",
+        FieldKind::Scalar,
+        "equivalent plastic strain of solids",
+    ),
+    FieldDescription::new("temperature", "K", FieldKind::Scalar, "temperature of solids"),
+    FieldDescription::new(
         "neighbors",
         "1",
         FieldKind::Scalar,
@@ -80,7 +99,8 @@ const FIELDS: [FieldDescription; 16] = [
 ];
 
 /// Names and units of the figures of the formulation.
-const FIGURES: [(&str, &str); 2] = [("shifting_passes", "1"), ("removed", "1")];
+const FIGURES: [(&str, &str); 4] =
+    [("shifting_passes", "1"), ("removed", "1"), ("gap", "1"), ("pieces", "1")];
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
@@ -114,7 +134,8 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     }
 
     /// Rates with the deviations of the state. The stored accelerations and deviations are not
-    /// unknowns and have none.
+    /// unknowns and have none, and neither has the matter of solids, whose stress does not only follow
+    /// from rates.
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         self.all_passes(time, state);
         rate.fill(0.0);
@@ -134,6 +155,7 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
+        self.hold_velocities(time, state);
         for entry in self.motion.iter() {
             let number = self.walls[entry.particle].number as usize;
             state[number * Row::<D>::LENGTH + entry.component] =
@@ -151,12 +173,20 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let tail = &state[self.particles.len() * Row::<D>::LENGTH..];
-        figures.extend([tail[Tail::new(D).passes()], self.removed_count(state)]);
+        figures.extend([
+            tail[Tail::new(D).passes()],
+            self.removed_count(state),
+            self.largest_gap(state),
+            self.piece_count(state),
+        ]);
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         energies[0] = self.kinetic_energy(state);
-        energies[1] = self.compression_energy(state);
+        [energies[1], energies[2]] = match self.solids {
+            Some(_) => self.energies_of_solids(state),
+            None => [self.compression_energy(state), 0.0],
+        };
     }
 
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
@@ -207,7 +237,9 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     fn memory(&self) -> usize {
         let side = size_of::<super::Side<D>>() + size_of::<super::Forces<D>>();
         let particle = side + size_of::<super::Rates>() + 4 * size_of::<f64>();
-        self.support.memory() + self.particles.len() * particle + size_of_val(self.start.as_slice())
+        let solids = if self.solids.is_some() { 4 * size_of::<super::Forces<D>>() } else { 0 };
+        let arrays = self.particles.len() * (particle + solids);
+        self.support.memory() + arrays + size_of_val(self.start.as_slice())
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

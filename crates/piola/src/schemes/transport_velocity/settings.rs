@@ -1,5 +1,7 @@
 //! The choices of the transport-velocity formulation.
 
+use super::Solid;
+
 /// How the density is found, theory (20) and (26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DensityRule {
@@ -118,6 +120,17 @@ pub enum Shifting {
     },
 }
 
+/// How particles are shifted at free surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AtSurface {
+    /// Not on them, and near to them along them by supports that end there: CTVF (44), (45) with
+    /// algorithm 1. The outermost layers then are hardly shifted.
+    Held,
+    /// Along them, on and near them, by whole supports. Without it the stretched face of a solid
+    /// clusters and tears.
+    Along,
+}
+
 /// Numerical settings of the formulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -133,6 +146,8 @@ pub struct Settings {
     pub artificial_viscosity: f64,
     /// Whether free surfaces are looked for, CTVF (42) to (45).
     pub free_surface: bool,
+    /// How particles are shifted there.
+    pub at_surface: AtSurface,
     /// Largest relative departure of an integrated density from that of an integrated pressure.
     /// Nothing else ties the two to each other, and the density drifts; beyond this it is set to
     /// the density that the law of state gives for the pressure.
@@ -148,6 +163,19 @@ pub struct Fluid {
     pub wave_speed: f64,
     /// Kinematic viscosity in m^2/s.
     pub viscosity: f64,
+}
+
+impl Fluid {
+    /// What stands for some solids where one number is needed: density and wave speed of that with
+    /// the fastest bulk waves, which bounds the speed of shifting. Without any it is a fluid that
+    /// cannot be built.
+    pub fn of_solids(materials: &[Solid]) -> Self {
+        let fastest =
+            materials.iter().max_by(|a, b| a.state.wave_speed.total_cmp(&b.state.wave_speed));
+        let state = fastest.map(|solid| (solid.state.density, solid.state.wave_speed));
+        let (density, wave_speed) = state.unwrap_or_default();
+        Self { density, wave_speed, viscosity: 0.0 }
+    }
 }
 
 /// What a wall does to the fluid that moves along it.

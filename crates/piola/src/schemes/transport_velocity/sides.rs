@@ -1,7 +1,7 @@
 //! What neighbours gather of a particle, filled from a state.
 
 use super::{Row, TransportVelocity};
-use crate::Vector;
+use crate::{Vector, parallel};
 
 /// A particle as its neighbours see it, in one place so that it costs one stretch of memory.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +35,14 @@ impl<const D: usize> Side<D> {
         self.volume * self.density
     }
 
+    /// Takes what stands in a row of the state of a particle with a mass in kg.
+    #[inline]
+    fn take(&mut self, mass: f64, row: &[f64]) {
+        self.velocity = Row::<D>::velocity(row);
+        self.deviation = Row::<D>::deviation(row);
+        self.set(mass, row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
+    }
+
     /// Sets density and pressure and what follows from them and the mass in kg.
     #[inline]
     pub fn set(&mut self, mass: f64, density: f64, pressure: f64) {
@@ -46,6 +54,21 @@ impl<const D: usize> Side<D> {
 }
 
 impl<const D: usize> TransportVelocity<D> {
+    /// Fills the sides again where a new list has renewed the places since they were loaded.
+    pub(super) fn follow_places(&mut self, builds: u64, state: &[f64]) {
+        if self.support.list().builds() == builds {
+            return;
+        }
+        let (list, mass) = (self.support.list(), &self.mass);
+        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+            for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
+                let row = Row::<D>::of(state, number as usize);
+                side.take(mass[number as usize], row);
+            }
+        });
+        self.load_matter(state);
+    }
+
     /// Finds the neighbours at the positions of `state` and fills the sides of all particles.
     /// Those of walls are completed by the pass over walls.
     pub(super) fn load(&mut self, state: &[f64]) {
@@ -55,11 +78,10 @@ impl<const D: usize> TransportVelocity<D> {
         let (mass, sides) = (&self.mass, &mut self.sides);
         let updated = self.support.update_with(sides, |number, side| {
             let row = Row::<D>::of(state, number);
-            side.velocity = Row::<D>::velocity(row);
-            side.deviation = Row::<D>::deviation(row);
-            side.set(mass[number], row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
+            side.take(mass[number], row);
             Row::<D>::position(row)
         });
+        self.load_matter(state);
         self.lost = updated.is_err().then(|| {
             let lost = |row: &[f64]| !Row::<D>::position(row).iter().all(|x| x.is_finite());
             state.chunks_exact(Row::<D>::LENGTH).position(lost).unwrap_or(0)

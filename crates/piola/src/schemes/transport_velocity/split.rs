@@ -21,11 +21,17 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
 
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
         let middle = time + 0.5 * step;
+        self.hold_velocities(middle, state);
         if let Shifting::Iterative { .. } = self.settings.shifting {
             self.iterate_positions(step, state);
         }
         self.load(state);
+        self.correct_gradients();
         self.wall_pass(middle);
+        if self.solids.is_some() {
+            self.rate_pass(middle);
+            return self.drift_solids(step, middle, state);
+        }
         let evolves = self.settings.density == DensityRule::Continuity;
         let diffuses = matches!(self.settings.pressure, PressureRule::Edac { .. });
         if evolves || diffuses {
@@ -45,30 +51,24 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
             if diffuses {
                 row[Row::<D>::PRESSURE] += step * scheme.pressure_rates(place).iter().sum::<f64>();
             }
-            for axis in 0..D {
-                let velocity = row[axis] + row[Row::<D>::DEVIATION + axis];
-                row[Row::<D>::POSITION + axis] += step * velocity;
-            }
-            scheme.wrap(row);
+            scheme.move_row(step, row);
         });
         Self::book_drift(&sums, tail);
-        for entry in self.motion.iter() {
-            let number = self.walls[entry.particle].number as usize;
-            let row = &mut rows[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            row[Row::<D>::POSITION + entry.component] +=
-                step * entry.value.value(entry.place, middle);
-        }
+        self.move_walls(step, middle, state);
     }
 
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
         self.remove_escaped(state);
-        let algebraic = self.settings.pressure == PressureRule::StateEquation;
+        let is_fluid = self.solids.is_none();
+        let algebraic = is_fluid && self.settings.pressure == PressureRule::StateEquation;
         let before = if algebraic { self.compression_energy(state) } else { 0.0 };
         self.load(state);
         let fastest = self.update_density_and_pressure();
+        self.correct_gradients();
         self.wall_pass(time);
         self.force_pass();
         self.add_body_forces(time);
+        self.hold_accelerations();
         self.shift(fastest);
         let (rows, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
@@ -112,7 +112,8 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Rates of the pressure in Pa/s by compression, transport and diffusion.
     pub(super) fn pressure_rates(&self, place: usize) -> [f64; 3] {
-        let (rates, stiffness) = (&self.rates[place], self.fluid.wave_speed.powi(2));
+        let number = self.support.list().numbers()[place] as usize;
+        let (rates, stiffness) = (&self.rates[place], self.reference_wave_speed(number).powi(2));
         let compression = -self.sides[place].density * stiffness * rates.divergence;
         [compression, rates.pressure_transport, rates.pressure_diffusion]
     }
@@ -140,6 +141,25 @@ impl<const D: usize> TransportVelocity<D> {
     pub(super) fn body_force_at(&self, number: usize, place: usize, time: f64) -> Vector<D> {
         let position = &self.support.list().positions()[place];
         BodyForce::sum(&self.body_forces, self.particles.body[number], position, time)
+    }
+
+    /// Moves walls as prescribed for a `step` in s with the velocities half way.
+    pub(super) fn move_walls(&self, step: f64, middle: f64, rows: &mut [f64]) {
+        for entry in self.motion.iter() {
+            let number = self.walls[entry.particle].number as usize;
+            let row = &mut rows[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            row[Row::<D>::POSITION + entry.component] +=
+                step * entry.value.value(entry.place, middle);
+        }
+    }
+
+    /// Moves the particle of a row along its transport velocity.
+    pub(super) fn move_row(&self, step: f64, row: &mut [f64]) {
+        for axis in 0..D {
+            let velocity = row[axis] + row[Row::<D>::DEVIATION + axis];
+            row[Row::<D>::POSITION + axis] += step * velocity;
+        }
+        self.wrap(row);
     }
 
     /// Moves the position of a row into the bounds of the domain.

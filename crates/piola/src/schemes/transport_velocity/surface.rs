@@ -30,6 +30,15 @@ impl<const D: usize> Default for Opening<D> {
 }
 
 impl<const D: usize> Opening<D> {
+    /// Takes from a displacement what leads into or out of a surface that is within the support `h`,
+    /// theory (30) where particles on it are shifted, too.
+    pub fn tangential(&self, displacement: Vector<D>, h: f64) -> Vector<D> {
+        match self.reach < h {
+            true => displacement - self.normal * displacement.dot(&self.normal),
+            false => displacement,
+        }
+    }
+
     /// Takes from a displacement what leads into or out of a surface, CTVF (44), (45), theory (30).
     pub fn along_surface(&self, displacement: Vector<D>) -> Vector<D> {
         if self.is_surface {
@@ -53,7 +62,7 @@ impl<const D: usize> TransportVelocity<D> {
                 }
                 let (mut sum, mut rest) = (Vector::zeros(), support.all(place));
                 while support.fill(&mut rest, Needs::Slope, &mut block) {
-                    for neighbor in block.iter() {
+                    for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
                         let weight = sides[neighbor.place].volume * neighbor.slope;
                         sum -= neighbor.separation * weight;
                     }
@@ -121,13 +130,14 @@ impl<const D: usize> TransportVelocity<D> {
         let mut normal = openings[place].sharp * (me.volume * support.centre());
         let mut rest = support.all(place);
         while support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter() {
+            for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
                 let other = &self.sides[neighbor.place];
                 density += other.mass() * neighbor.value;
                 normal += openings[neighbor.place].sharp * (other.volume * neighbor.value);
             }
         }
-        let alone = density < 0.5 * self.fluid.density;
+        let number = support.list().numbers()[place] as usize;
+        let alone = density < 0.5 * self.reference_density(number);
         if normal.norm_squared() == 0.0 {
             return (normal, alone);
         }
@@ -137,6 +147,7 @@ impl<const D: usize> TransportVelocity<D> {
         while !covered && support.fill(&mut rest, Needs::Nothing, block) {
             covered = block
                 .iter()
+                .filter(|neighbor| self.is_own(place, neighbor.place))
                 .any(|neighbor| -neighbor.separation.dot(&normal) > CONE * neighbor.square.sqrt());
         }
         (normal, alone || !covered)
@@ -155,7 +166,8 @@ impl<const D: usize> TransportVelocity<D> {
         let mut nearest = f64::INFINITY;
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, Needs::Nothing, block) {
-            for neighbor in block.iter().filter(|neighbor| found[neighbor.place].1) {
+            let near = block.iter().filter(|b| found[b.place].1 && self.is_own(place, b.place));
+            for neighbor in near {
                 nearest = nearest.min(neighbor.square);
             }
         }

@@ -1,4 +1,4 @@
-//! Walls of ghost particles, CTVF (46) to (52), theory (31), (32).
+//! Walls of ghost particles, CTVF (46) to (53), theory (31), (32), (72).
 
 use piola_formulas::fluid;
 
@@ -29,6 +29,10 @@ pub(super) struct WallValues<const D: usize> {
     deviation: Vector<D>,
     shear: Vector<D>,
     pressure: f64,
+    /// Deviatoric stress of solids in Pa, as xx, yy, zz, yz, xz, xy.
+    deviator: [f64; 6],
+    /// The normal towards what is around, if that slides.
+    mirror: Option<Vector<D>>,
 }
 
 impl<const D: usize> Default for WallValues<D> {
@@ -42,6 +46,8 @@ impl<const D: usize> Default for WallValues<D> {
             deviation: zero,
             shear: zero,
             pressure: 0.0,
+            deviator: [0.0; 6],
+            mirror: None,
         }
     }
 }
@@ -61,16 +67,30 @@ impl<const D: usize> TransportVelocity<D> {
             }
         });
         for (wall, values) in self.walls.iter().zip(&values) {
-            let place = self.support.list().places()[wall.number as usize] as usize;
+            let number = wall.number as usize;
+            let place = self.support.list().places()[number] as usize;
+            let (density, wave_speed) =
+                (self.reference_density(number), self.reference_wave_speed(number));
             let side = &mut self.sides[place];
             side.velocity = values.velocity;
             side.deviation = values.deviation;
             let pressure = values.pressure;
-            let density = fluid::density(pressure, self.fluid.density, self.fluid.wave_speed);
-            side.set(self.mass[wall.number as usize], density, pressure);
+            side.set(self.mass[number], fluid::density(pressure, density, wave_speed), pressure);
             self.shear[place] = values.shear;
         }
+        if self.solids.is_some() {
+            self.stress_walls(&values);
+        }
         self.wall_values = values;
+    }
+
+    /// Gives walls of solids their deviatoric stress.
+    fn stress_walls(&mut self, values: &[WallValues<D>]) {
+        for (index, values) in values.iter().enumerate() {
+            let number = self.walls[index].number as usize;
+            let place = self.support.list().places()[number] as usize;
+            self.set_deviator(place, &values.deviator, values.mirror.as_ref());
+        }
     }
 
     /// Sets velocity and acceleration of the walls themselves.
@@ -109,6 +129,7 @@ impl<const D: usize> TransportVelocity<D> {
                 deviation += side.deviation * neighbor.value;
                 pressure += side.pressure * neighbor.value;
                 arm += neighbor.separation * (side.density * neighbor.value);
+                self.add_deviator(neighbor.place, neighbor.value, &mut values.deviator);
             }
         }
         let surface = values.motion + values.sliding;
@@ -118,6 +139,7 @@ impl<const D: usize> TransportVelocity<D> {
             return;
         }
         let (velocity, deviation) = (velocity / weight, deviation / weight);
+        values.deviator.iter_mut().for_each(|stress| *stress /= weight);
         let gravity = self.body_force_at(wall.number as usize, place, time);
         values.pressure = (pressure + (gravity - values.acceleration).dot(&arm)) / weight;
         // An edge faces the fluid that is there: what hits one of its sides must not be turned along it.
@@ -131,5 +153,14 @@ impl<const D: usize> TransportVelocity<D> {
             Slip::No => surface * 2.0 - velocity,
             Slip::Free => values.velocity,
         };
+        if self.solids.is_some() {
+            match wall.slip {
+                // What is clamped does not slide in its gradients either.
+                Slip::No => {
+                    (values.velocity, values.deviation) = (values.shear, -deviation);
+                }
+                Slip::Free => values.mirror = Some(*normal),
+            }
+        }
     }
 }

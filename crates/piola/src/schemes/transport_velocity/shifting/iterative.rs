@@ -2,7 +2,7 @@
 
 use crate::operators::{Needs, NeighborBlock};
 use crate::schemes::transport_velocity::ledger::Tail;
-use crate::schemes::transport_velocity::{Opening, Row, Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{AtSurface, Opening, Row, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
 /// Scratch and figures of the iteration.
@@ -51,11 +51,12 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let mut passes = 0.0;
         for _ in 0..most_passes {
-            let positions = &iteration.positions;
+            let (positions, builds) = (&iteration.positions, self.support.list().builds());
             // Places that are lost are noticed when the state is loaded.
             if self.support.update(|number| positions[number]).is_err() {
                 break;
             }
+            self.follow_places(builds, state);
             let found = &mut iteration.found;
             let largest = self.displacements(reach, &iteration.openings, found);
             if (largest - iteration.even).abs() <= tolerance {
@@ -64,8 +65,10 @@ impl<const D: usize> TransportVelocity<D> {
             passes += 1.0;
             let (found, places) = (&iteration.found, self.support.list().places());
             parallel::for_each_chunk(&mut iteration.positions, |first, rows| {
-                for (row, &place) in rows.iter_mut().zip(&places[first..]) {
-                    *row += found[place as usize].0;
+                for (offset, (row, &place)) in rows.iter_mut().zip(&places[first..]).enumerate() {
+                    if !self.is_held(first + offset) {
+                        *row += found[place as usize].0;
+                    }
                 }
             });
         }
@@ -118,6 +121,7 @@ impl<const D: usize> TransportVelocity<D> {
         let (support, list) = (&self.support, self.support.list());
         let h = support.smoothing_length();
         let scale = h.powi(D as i32);
+        let is_along = self.settings.at_surface == AtSurface::Along;
         parallel::for_each_chunk(found, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
@@ -126,15 +130,16 @@ impl<const D: usize> TransportVelocity<D> {
                 let (mut sum, mut direction) = (support.centre(), Vector::zeros());
                 let opening = openings.get(list.numbers()[place] as usize);
                 let within = opening.map(|opening| opening.reach).filter(|&reach| reach < h);
+                let support_of = within.filter(|_| !is_along);
                 let mut rest = match list.is_passive(place) {
                     true => continue,
                     false => support.all(place),
                 };
                 while support.fill(&mut rest, Needs::Value, &mut block) {
-                    for neighbor in block.iter() {
+                    for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
                         sum += neighbor.value;
                         let distance = neighbor.square.sqrt();
-                        let value = match within {
+                        let value = match support_of {
                             Some(h) if h > 0.0 => support.kernel().value(D, distance, h),
                             Some(_) => 0.0,
                             None => neighbor.value,
@@ -146,7 +151,10 @@ impl<const D: usize> TransportVelocity<D> {
                     }
                 }
                 if let (Some(opening), Some(_)) = (opening, within) {
-                    direction = opening.along_surface(direction);
+                    direction = match is_along {
+                        true => opening.tangential(direction, h),
+                        false => opening.along_surface(direction),
+                    };
                 }
                 *row = (direction * reach, scale * sum);
             }

@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 
 use crate::operators::{Needs, NeighborBlock};
-use crate::schemes::transport_velocity::{Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{AtSurface, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
 /// Largest Mach number of CTVF (35). A fluid that is faster is not weakly compressible: such a
@@ -38,9 +38,15 @@ impl<const D: usize> TransportVelocity<D> {
                 if list.is_passive(place) {
                     continue;
                 }
+                if self.is_held(list.numbers()[place] as usize) {
+                    side.deviation = Vector::zeros();
+                    continue;
+                }
                 let crowding = self.forces[place].crowding;
+                let is_along = self.settings.at_surface == AtSurface::Along;
                 let shift = match self.openings.get(place) {
                     None => crowding,
+                    Some(opening) if is_along => opening.tangential(crowding, h),
                     Some(opening) if opening.is_surface => Vector::zeros(),
                     Some(opening) if opening.reach < h => {
                         let crowding = self.crowding_within(place, opening.reach, &mut block);
@@ -71,7 +77,7 @@ impl<const D: usize> TransportVelocity<D> {
         let size = (h / full).powi(D as i32 + 1);
         let (mut sum, mut rest) = (Vector::zeros(), self.support.all(place));
         while self.support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter() {
+            for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
                 let distance = neighbor.square.sqrt();
                 let weight = fluid::repulsion(neighbor.value * inverse)
                     * (size * kernel.derivative_over_r(D, distance, h))

@@ -1,0 +1,129 @@
+//! Equations of state of solids: the pressure as a function of density and energy.
+
+use crate::Scalar;
+
+/// How the pressure of a solid follows its density.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PressureLaw {
+    /// `c^2 (rho - rho0)`, CTVF (8).
+    Linear,
+    /// `rho0 c^2 / gamma ((rho / rho0)^gamma - 1)` with the exponent gamma, above 1.
+    Tait {
+        /// The exponent gamma.
+        exponent: f64,
+    },
+    /// That of Mie and Grueneisen about the Hugoniot of shocks `U = c + S u`, with `Gamma rho`
+    /// constant: `p = p_H (1 - Gamma eta / 2) + Gamma rho0 e`, `eta = 1 - rho0 / rho`,
+    /// `p_H = rho0 c^2 eta / (1 - S eta)^2` in compression and `c^2 (rho - rho0)` for `p_H` and
+    /// its factor in tension.
+    MieGrueneisen {
+        /// The slope S of shock over particle speed.
+        slope: f64,
+        /// Grueneisen's Gamma at rest.
+        gruneisen: f64,
+    },
+}
+
+/// An equation of state, theory (71).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquationOfState {
+    /// Density rho0 without pressure in kg/m^3.
+    pub density: f64,
+    /// Bulk wave speed c without pressure in m/s, `sqrt(K / rho0)`.
+    pub wave_speed: f64,
+    /// The law.
+    pub law: PressureLaw,
+}
+
+/// Share of the largest compression `eta = 1 / S` that a shock can reach, beyond which the law of
+/// Mie and Grueneisen is not followed: there it has a pole.
+const MOST_COMPRESSION: f64 = 0.95;
+
+impl EquationOfState {
+    /// Pressure in Pa at a density in kg/m^3 and a specific internal energy in J/kg, which only the
+    /// law of Mie and Grueneisen looks at.
+    #[inline]
+    pub fn pressure<T: Scalar>(&self, density: T, energy: T) -> T {
+        let square = self.wave_speed * self.wave_speed;
+        let linear = (density - self.density) * square;
+        match self.law {
+            PressureLaw::Linear => linear,
+            PressureLaw::Tait { exponent } => {
+                let ratio = density / self.density;
+                (ratio.powf(exponent) - 1.0) * (self.density * square / exponent)
+            }
+            PressureLaw::MieGrueneisen { slope, gruneisen } => {
+                let thermal = energy * (gruneisen * self.density);
+                match self.compression(density, slope) {
+                    None => linear + thermal,
+                    Some(eta) => {
+                        let rest = -eta * slope + 1.0;
+                        let hugoniot = eta * (self.density * square) / (rest * rest);
+                        hugoniot * (-eta * (0.5 * gruneisen) + 1.0) + thermal
+                    }
+                }
+            }
+        }
+    }
+
+    /// `eta`, where a solid is compressed.
+    fn compression<T: Scalar>(&self, density: T, slope: f64) -> Option<T> {
+        let eta = -(density.recip() * self.density) + 1.0;
+        let most = if slope > 0.0 { MOST_COMPRESSION / slope } else { MOST_COMPRESSION };
+        match eta.re() {
+            eta if eta <= 0.0 => None,
+            large if large > most => Some(T::from(most)),
+            _ => Some(eta),
+        }
+    }
+
+    /// Square of the bulk wave speed in m^2/s^2, `dp/drho` at constant entropy; not below a
+    /// hundredth of that at rest.
+    pub fn wave_speed_squared(&self, density: f64, energy: f64) -> f64 {
+        let at_rest = self.wave_speed * self.wave_speed;
+        let square = match self.law {
+            PressureLaw::Linear => at_rest,
+            PressureLaw::Tait { exponent } => {
+                at_rest * (density / self.density).powf(exponent - 1.0)
+            }
+            PressureLaw::MieGrueneisen { slope, gruneisen } => {
+                let pressure = self.pressure(density, energy);
+                let thermal = gruneisen * self.density * pressure / (density * density);
+                let cold = match self.compression(density, slope) {
+                    None => at_rest,
+                    Some(eta) => {
+                        let rest = 1.0 - slope * eta;
+                        let hugoniot = self.density * at_rest * eta / (rest * rest);
+                        let growth = self.density * at_rest * (1.0 + slope * eta) / rest.powi(3);
+                        (growth * (1.0 - 0.5 * gruneisen * eta) - 0.5 * gruneisen * hugoniot)
+                            * self.density
+                            / (density * density)
+                    }
+                };
+                cold + thermal
+            }
+        };
+        square.max(0.01 * at_rest)
+    }
+
+    /// Specific energy of compression in J/kg: the integral of `p / rho^2 d rho`; with the law of
+    /// Mie and Grueneisen the internal energy itself.
+    pub fn compression_energy(&self, density: f64, energy: f64) -> f64 {
+        let square = self.wave_speed * self.wave_speed;
+        let ratio = density / self.density;
+        match self.law {
+            // ln x + 1/x - 1 with the digits of small x - 1.
+            PressureLaw::Linear => square * ((ratio - 1.0).ln_1p() - (ratio - 1.0) / ratio),
+            PressureLaw::Tait { exponent } => {
+                let power = ((exponent - 1.0) * ratio.ln()).exp_m1() / (exponent - 1.0);
+                square / exponent * (power - (ratio - 1.0) / ratio)
+            }
+            PressureLaw::MieGrueneisen { .. } => energy,
+        }
+    }
+
+    /// Whether the pressure depends on the internal energy.
+    pub fn is_caloric(&self) -> bool {
+        matches!(self.law, PressureLaw::MieGrueneisen { .. })
+    }
+}

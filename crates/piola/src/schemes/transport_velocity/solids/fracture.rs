@@ -1,0 +1,97 @@
+//! Whether bodies have come apart in the numbers: gaps between first neighbours, and pieces.
+
+use super::TransportVelocity;
+use crate::geometry::Particles;
+use crate::schemes::transport_velocity::Row;
+
+/// First neighbours of the start are those within so many spacings, and particles hang together
+/// within that.
+const FIRST: f64 = 1.2;
+const LINK: f64 = 1.5;
+
+/// Pairs of particles of solids that are first neighbours at the start.
+pub(super) struct Bonds {
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Bonds {
+    /// The pairs of one body that are nearest at the start.
+    pub fn new<const D: usize>(particles: &Particles<D>, is_wall: &[bool]) -> Self {
+        // Along the first axis, so that only what is near has to be looked at.
+        let mut order: Vec<u32> =
+            (0..particles.len() as u32).filter(|&a| !is_wall[a as usize]).collect();
+        let along = |a: u32| particles.position[a as usize][0];
+        order.sort_by(|&a, &b| along(a).total_cmp(&along(b)));
+        let mut pairs = Vec::new();
+        for (k, &a) in order.iter().enumerate() {
+            let reach = FIRST * particles.spacing[a as usize];
+            let near = order[k + 1..].iter().take_while(|&&b| along(b) - along(a) <= reach);
+            for &b in near {
+                let (one, two) = (a as usize, b as usize);
+                let distance = (particles.position[one] - particles.position[two]).norm();
+                if particles.body[one] == particles.body[two] && distance <= reach {
+                    pairs.push([a, b]);
+                }
+            }
+        }
+        Self { pairs }
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// The largest distance between particles that were first neighbours at the start, in spacings;
+    /// 0 for fluids.
+    pub(in super::super) fn largest_gap(&self, state: &[f64]) -> f64 {
+        let Some(solids) = &self.solids else { return 0.0 };
+        let domain = self.support.list().domain();
+        let position = |a: u32| Row::<D>::position(Row::<D>::of(state, a as usize));
+        let largest = solids.bonds.pairs.iter().fold(0.0, |largest: f64, &[a, b]| {
+            largest.max(domain.separation(&position(a), &position(b)).norm_squared())
+        });
+        largest.sqrt() / self.particles.spacing[0]
+    }
+
+    /// The number of pieces that hang together by links of up to 1.5 spacings inside of their body;
+    /// 0 for fluids.
+    pub(in super::super) fn piece_count(&self, state: &[f64]) -> f64 {
+        if self.solids.is_none() {
+            return 0.0;
+        }
+        let list = self.support.list();
+        let position = |a: usize| Row::<D>::position(Row::<D>::of(state, a));
+        let square = (LINK * self.particles.spacing[0]).powi(2);
+        let mut root: Vec<u32> = (0..self.particles.len() as u32).collect();
+        let mut pieces = self.is_wall.iter().filter(|is_wall| !**is_wall).count();
+        // Candidates of the list are all that are near, at any state since it was made.
+        for (place, &number) in list.numbers().iter().enumerate() {
+            let a = number as usize;
+            if self.is_wall[a] {
+                continue;
+            }
+            for &other in list.active_row(place) {
+                let b = list.numbers()[other as usize] as usize;
+                let is_linked = b > a
+                    && self.particles.body[a] == self.particles.body[b]
+                    && list.domain().separation(&position(a), &position(b)).norm_squared()
+                        <= square;
+                if is_linked {
+                    let (one, two) = (root_of(&mut root, a), root_of(&mut root, b));
+                    if one != two {
+                        root[one.max(two)] = one.min(two) as u32;
+                        pieces -= 1;
+                    }
+                }
+            }
+        }
+        pieces as f64
+    }
+}
+
+/// The particle that stands for the piece of another, with shorter ways to it from then on.
+fn root_of(root: &mut [u32], mut a: usize) -> usize {
+    while root[a] as usize != a {
+        root[a] = root[root[a] as usize];
+        a = root[a] as usize;
+    }
+    a
+}

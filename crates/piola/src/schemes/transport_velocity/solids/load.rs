@@ -1,0 +1,180 @@
+//! What solids take from a state and put into it: matter by place, pressures, stresses.
+
+use piola_formulas::hypoelastic::von_mises;
+
+use super::{ENERGY, MATTER, TEMPERATURE, Tension, WALL, entry, full};
+use crate::parallel;
+use crate::schemes::transport_velocity::{PressureRule, Row, Side, TransportVelocity};
+use crate::{Tensor, Vector};
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Fills what neighbours see of solids, by place, from a state whose neighbours are known.
+    pub(in super::super) fn load_matter(&mut self, state: &[f64]) {
+        let start = self.matter_start();
+        let Some(solids) = &mut self.solids else { return };
+        let (list, rows) = (self.support.list(), &state[start..]);
+        parallel::for_each_chunk(&mut solids.matter, |first, places| {
+            for (matter, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
+                matter.copy_from_slice(&rows[number as usize * MATTER..][..MATTER]);
+            }
+        });
+        let several = solids.several;
+        let (bodies, is_wall) = (&self.particles.body, &self.is_wall);
+        parallel::for_each_chunk(&mut self.continuum, |first, places| {
+            for (continuum, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
+                let number = number as usize;
+                *continuum = match (is_wall[number], several) {
+                    (true, _) => WALL,
+                    (false, true) => bodies[number],
+                    (false, false) => 0,
+                };
+            }
+        });
+    }
+
+    /// Fills the matter of the start.
+    pub(in super::super) fn begin_matter(&self, rows: &mut [f64]) {
+        let Some(solids) = &self.solids else { return };
+        for (number, row) in rows.chunks_exact_mut(MATTER).enumerate() {
+            row.fill(0.0);
+            let material = &solids.materials[self.particles.body[number] as usize];
+            row[TEMPERATURE] = material.heat.temperature;
+        }
+    }
+
+    /// Gives solids the pressure of their density, if it is not integrated. Returns the largest
+    /// speed in m/s.
+    pub(in super::super) fn update_pressure_of_solids(&mut self) -> f64 {
+        let Some(solids) = &mut self.solids else { return 0.0 };
+        let algebraic = self.settings.pressure == PressureRule::StateEquation;
+        let (list, bodies, materials) =
+            (self.support.list(), &self.particles.body, &solids.materials);
+        let update = |first: usize, sides: &mut [Side<D>], matter: &mut [super::Matter]| {
+            let mut fastest = 0.0;
+            for (offset, (side, matter)) in sides.iter_mut().zip(matter).enumerate() {
+                let place = first + offset;
+                if list.is_passive(place) {
+                    continue;
+                }
+                if algebraic {
+                    let body = bodies[list.numbers()[place] as usize];
+                    let state = &materials[body as usize].state;
+                    let pressure = state.pressure(side.density, matter[ENERGY]);
+                    side.set(side.mass(), side.density, pressure);
+                }
+                fastest = parallel::larger(fastest, side.velocity.norm_squared());
+            }
+            fastest
+        };
+        parallel::maximum_of_chunks(&mut self.sides, &mut solids.matter, 0.0, update).sqrt()
+    }
+
+    /// Fills the stresses that forces gather, of solids and walls.
+    pub(in super::super) fn tension_pass(&mut self) {
+        let Some(solids) = &mut self.solids else { return };
+        let (list, sides, bodies) = (self.support.list(), &self.sides, &self.particles.body);
+        let (matter, materials) = (&solids.matter, &solids.materials);
+        let corrections = &solids.corrections;
+        parallel::for_each_chunk(&mut solids.tensions, |first, rows| {
+            for (offset, row) in rows.iter_mut().enumerate() {
+                let place = first + offset;
+                let (side, matter) = (&sides[place], &matter[place]);
+                let material = &materials[bodies[list.numbers()[place] as usize] as usize];
+                let stress = Tensor::<D>::from_fn(|i, j| {
+                    matter[entry(i, j)] - if i == j { side.pressure } else { 0.0 }
+                });
+                let (tensor, weight, share) = match corrections.get(place) {
+                    Some(correction) => (stress * correction, side.volume, 1.0 / side.density),
+                    None => (stress / (side.density * side.density), side.mass(), 1.0),
+                };
+                *row = Tension {
+                    tensor: std::array::from_fn(|i| std::array::from_fn(|j| tensor[(i, j)])),
+                    weight,
+                    share,
+                    wave_speed: material.state.wave_speed,
+                    stiffness: material.bulk_modulus(),
+                };
+            }
+        });
+    }
+
+    /// Adds the deviatoric stress of a solid, at a place, to that of a wall, CTVF (53).
+    #[inline]
+    pub(in super::super) fn add_deviator(&self, place: usize, weight: f64, sum: &mut [f64; 6]) {
+        if let Some(solids) = &self.solids {
+            for (sum, stress) in sum.iter_mut().zip(&solids.matter[place]) {
+                *sum += weight * stress;
+            }
+        }
+    }
+
+    /// Gives the wall particle at a place its deviatoric stress. Of a wall that lets slide it is the
+    /// mirror image across the normal, so that there is no shear at its face.
+    pub(in super::super) fn set_deviator(
+        &mut self,
+        place: usize,
+        deviator: &[f64; 6],
+        mirror: Option<&Vector<D>>,
+    ) {
+        let Some(solids) = &mut self.solids else { return };
+        let stored = &mut solids.matter[place][..6];
+        match mirror {
+            None => stored.copy_from_slice(deviator),
+            Some(normal) => {
+                let normal = super::padded(normal);
+                let mirror = Tensor::<3>::identity() - normal * normal.transpose() * 2.0;
+                super::store(&(mirror * full(deviator) * mirror), stored);
+            }
+        }
+    }
+
+    /// The specific energies of compression and shear of a solid (number) in J/kg.
+    pub(in super::super) fn specific_energies(&self, number: usize, state: &[f64]) -> [f64; 2] {
+        let Some(solid) = self.solid(number) else { return [0.0; 2] };
+        let density = Row::<D>::of(state, number)[Row::<D>::DENSITY];
+        let matter = self.matter_of(number, state);
+        let shear = von_mises(&full(matter)).powi(2) / (6.0 * solid.shear_modulus * density);
+        [solid.state.compression_energy(density, matter[ENERGY]), shear]
+    }
+
+    /// The matter of a particle (number) in a state of solids.
+    pub(in super::super) fn matter_of<'a>(&self, number: usize, state: &'a [f64]) -> &'a [f64] {
+        &state[self.matter_start() + number * MATTER..][..MATTER]
+    }
+
+    /// Speed of longitudinal waves in a solid (number) in m/s.
+    pub(in super::super) fn signal_speed(&self, number: usize, state: &[f64]) -> Option<f64> {
+        let solid = self.solid(number)?;
+        let density = Row::<D>::of(state, number)[Row::<D>::DENSITY];
+        let energy = self.matter_of(number, state)[ENERGY];
+        let bulk = solid.state.wave_speed_squared(density, energy);
+        Some((bulk + 4.0 / 3.0 * solid.shear_modulus / density).sqrt())
+    }
+
+    /// Appends a field of solids; fluids have zeros.
+    pub(in super::super) fn push_solid_field(
+        &self,
+        name: &str,
+        number: usize,
+        state: &[f64],
+        values: &mut Vec<f64>,
+    ) {
+        let row = Row::<D>::of(state, number);
+        let pressure = row[Row::<D>::PRESSURE];
+        if self.solids.is_none() {
+            let count = if name == "cauchy_stress" { D * D } else { 1 };
+            values.extend(std::iter::repeat_n(0.0, count));
+            return;
+        }
+        let matter = self.matter_of(number, state);
+        match name {
+            "cauchy_stress" => values.extend((0..D * D).map(|k| {
+                let (i, j) = (k / D, k % D);
+                matter[entry(i, j)] - if i == j { pressure } else { 0.0 }
+            })),
+            "von_mises" => values.push(von_mises(&full(matter))),
+            "plastic_strain" => values.push(matter[super::PLASTIC]),
+            _ => values.push(matter[TEMPERATURE]),
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! Elastic and elastic-plastic solids in the transport-velocity formulation, CTVF sections 3.2 and
+//! 4.4 to 4.7.
+//!
+//! ```text
+//! drho_a/dt = - rho_a tr L_a + sum V_b (rho_b - rho_a) d_b . grad W_ab
+//!   ds_a/dt = 2 G dev sym L_a + Omega_a s_a - s_a Omega_a + sum V_b (s_b - s_a) d_b . grad W_ab
+//!   du_a/dt = sum m_b [ sigma_a / rho_a^2 + sigma_b / rho_b^2 - Pi_ab ] . grad W_ab + g
+//!      L_a  = - sum V_b u_ab (x) grad W_ab
+//! ```
+//!
+//! with `sigma = s - p` and the pressure of an equation of state: theory (68) to (75), which say
+//! where the paper departs. L is made of the momentum velocity, not of the transport velocity.
+//! Gradients, surfaces and shifting see only the particle's own body and walls; what other bodies
+//! do is [`Contact`]. Beside its row, each particle has [`Matter`] at the end of the state.
+
+mod advance;
+mod correction;
+mod forces;
+mod fracture;
+mod held;
+mod load;
+mod rates;
+
+use piola_formulas::hypoelastic::{EquationOfState, Strength};
+
+use super::TransportVelocity;
+use super::ledger::Tail;
+use crate::boundaries::PrescribedVelocity;
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::geometry::Particles;
+use crate::{Tensor, Vector};
+
+pub use rates::SolidRates;
+
+use fracture::Bonds;
+
+/// The material of one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solid {
+    /// Pressure, with the density in kg/m^3 and the bulk wave speed in m/s at rest.
+    pub state: EquationOfState,
+    /// Shear modulus in Pa.
+    pub shear_modulus: f64,
+    /// When it flows.
+    pub strength: Strength,
+    /// What plastic work does to the temperature.
+    pub heat: Heat,
+}
+
+/// How plastic work heats a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heat {
+    /// Temperature at the start in K.
+    pub temperature: f64,
+    /// Specific heat in J/(kg K).
+    pub specific_heat: f64,
+    /// Share of the plastic work that becomes heat.
+    pub share: f64,
+}
+
+impl Heat {
+    /// Room temperature and a solid that does not warm up.
+    pub const NONE: Self = Self { temperature: 293.15, specific_heat: 1.0, share: 0.0 };
+}
+
+impl Solid {
+    /// Bulk modulus at rest in Pa.
+    pub fn bulk_modulus(&self) -> f64 {
+        self.state.density * self.state.wave_speed * self.state.wave_speed
+    }
+}
+
+/// What particles of different bodies do to each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Contact {
+    /// They approach and part as matter would, so that density and pressure rise between them, and
+    /// the pressure acts where it pushes. With it bodies come apart again.
+    Repulsive,
+    /// All that particles of one body do to each other, as the paper has it: bodies can weld.
+    Full,
+    /// A spring where they are closer than one spacing.
+    Penalty {
+        /// Its stiffness in units of the mean bulk modulus times `dx^(D-2)`.
+        stiffness: f64,
+    },
+}
+
+/// All that the formulation needs to know of solids.
+pub struct SolidsInput {
+    /// Material of each body, of walls too.
+    pub materials: Vec<Solid>,
+    /// What bodies do to each other.
+    pub contact: Contact,
+    /// Whether velocity gradients are corrected to be exact for linear fields, with the momentum
+    /// equation that is conjugate to that, theory (74).
+    pub corrected: bool,
+    /// Velocity components of particles of solids that are prescribed.
+    pub held: Vec<PrescribedVelocity>,
+}
+
+/// Numbers of a particle beside its row: the deviatoric stress in Pa as xx, yy, zz, yz, xz, xy, the
+/// plastic strain, the temperature in K and the specific internal energy in J/kg.
+pub(super) type Matter = [f64; MATTER];
+
+/// Numbers of [`Matter`].
+pub(super) const MATTER: usize = 9;
+const PLASTIC: usize = 6;
+const TEMPERATURE: usize = 7;
+const ENERGY: usize = 8;
+
+/// The continuum of walls, which belong to every body.
+const WALL: u32 = u32::MAX;
+
+/// What forces gather of a particle of a solid beside its side.
+#[derive(Clone, Copy, Debug)]
+struct Tension<const D: usize> {
+    /// `sigma / rho^2`, with corrected gradients `sigma L`.
+    tensor: [[f64; D]; D],
+    /// What neighbours weigh it with: the mass in kg, with corrected gradients the volume.
+    weight: f64,
+    /// What makes an acceleration of the particle's own sum: 1, with corrected gradients `1 / rho`.
+    share: f64,
+    /// Bulk wave speed at rest in m/s.
+    wave_speed: f64,
+    /// Bulk modulus at rest in Pa.
+    stiffness: f64,
+}
+
+impl<const D: usize> Default for Tension<D> {
+    fn default() -> Self {
+        Self { tensor: [[0.0; D]; D], weight: 0.0, share: 0.0, wave_speed: 0.0, stiffness: 0.0 }
+    }
+}
+
+/// Solids bound to their particles, with scratch by place.
+pub(super) struct Solids<const D: usize> {
+    materials: Vec<Solid>,
+    contact: Contact,
+    /// Whether there are several bodies that are apart from each other.
+    several: bool,
+    held: PrescribedComponents,
+    is_held: Vec<bool>,
+    bonds: Bonds,
+    matter: Vec<Matter>,
+    tensions: Vec<Tension<D>>,
+    rates: Vec<SolidRates<D>>,
+    /// Corrections of gradients, if they are corrected.
+    corrections: Vec<Tensor<D>>,
+}
+
+impl<const D: usize> Solids<D> {
+    pub fn new(input: SolidsInput, particles: &Particles<D>, is_wall: &[bool]) -> Self {
+        let count = particles.len();
+        let mut bodies: Vec<u32> = (0..count)
+            .filter(|&number| !is_wall[number])
+            .map(|number| particles.body[number])
+            .collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let held = PrescribedComponents::new(&input.held, &particles.position);
+        let mut is_held = vec![false; count];
+        held.iter().for_each(|entry| is_held[entry.particle] = true);
+        let gradients = if input.corrected { count } else { 0 };
+        Self {
+            several: bodies.len() > 1 && input.contact != Contact::Full,
+            materials: input.materials,
+            contact: input.contact,
+            held,
+            is_held,
+            bonds: Bonds::new(particles, is_wall),
+            matter: vec![[0.0; MATTER]; count],
+            tensions: vec![Tension::default(); count],
+            rates: vec![SolidRates::default(); count],
+            corrections: vec![Tensor::identity(); gradients],
+        }
+    }
+
+    /// Density at the start of a body in kg/m^3: without pressure.
+    pub fn density(&self, body: u32) -> f64 {
+        self.materials[body as usize].state.density
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Where the matter of solids begins in a state.
+    pub(super) fn matter_start(&self) -> usize {
+        self.particles.len() * super::Row::<D>::LENGTH + Tail::new(D).length()
+    }
+
+    /// Numbers of the matter of all particles.
+    pub(super) fn matter_length(&self) -> usize {
+        if self.solids.is_some() { MATTER * self.particles.len() } else { 0 }
+    }
+
+    /// Whether two particles (places) belong to the same continuum: always in fluids; of solids one
+    /// body and walls.
+    #[inline]
+    pub(super) fn is_own(&self, place: usize, other: usize) -> bool {
+        if self.continuum.is_empty() {
+            return true;
+        }
+        self.continuum[other] == self.continuum[place] || self.continuum[other] == WALL
+    }
+
+    /// The solid that a particle (number) is of, if it is one.
+    pub(super) fn solid(&self, number: usize) -> Option<&Solid> {
+        let solids = self.solids.as_ref()?;
+        solids.materials.get(self.particles.body[number] as usize)
+    }
+
+    /// Density without pressure of a particle (number), in kg/m^3.
+    pub(super) fn reference_density(&self, number: usize) -> f64 {
+        self.solid(number).map_or(self.fluid.density, |solid| solid.state.density)
+    }
+
+    /// Bulk wave speed at rest of a particle (number), in m/s.
+    pub(super) fn reference_wave_speed(&self, number: usize) -> f64 {
+        self.solid(number).map_or(self.fluid.wave_speed, |solid| solid.state.wave_speed)
+    }
+
+    /// Whether a particle (number) is of a solid and moves as prescribed.
+    pub(super) fn is_held(&self, number: usize) -> bool {
+        self.solids.as_ref().is_some_and(|solids| solids.is_held[number])
+    }
+
+    /// The velocity gradients and other rates of solids of the last pass, by number, for those who
+    /// want to see them apart; empty for fluids.
+    pub fn solid_rates(&self) -> Vec<SolidRates<D>> {
+        let Some(solids) = &self.solids else { return Vec::new() };
+        let places = self.support.list().places().iter();
+        places.map(|&place| solids.rates[place as usize]).collect()
+    }
+}
+
+/// The entry of a symmetric 3 x 3 tensor that is stored as xx, yy, zz, yz, xz, xy.
+#[inline]
+fn entry(i: usize, j: usize) -> usize {
+    if i == j { i } else { 6 - i - j }
+}
+
+/// A stored tensor as a matrix.
+#[inline]
+fn full(stored: &[f64]) -> Tensor<3> {
+    Tensor::<3>::from_fn(|i, j| stored[entry(i, j)])
+}
+
+/// Stores a symmetric matrix.
+#[inline]
+fn store(tensor: &Tensor<3>, stored: &mut [f64]) {
+    for (i, j) in [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)] {
+        stored[entry(i, j)] = tensor[(i, j)];
+    }
+}
+
+/// The normal of a plane in three dimensions.
+fn padded<const D: usize>(vector: &Vector<D>) -> Vector<3> {
+    Vector::<3>::from_fn(|i, _| if i < D { vector[i] } else { 0.0 })
+}

@@ -1,0 +1,235 @@
+//! Velocity gradients of solids, and what the transport velocity carries.
+
+use multiversion::multiversion;
+use piola_formulas::fluid;
+
+use super::{Contact, MATTER, Matter, Solids, Tension, WALL};
+use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, all_of, total};
+use crate::schemes::transport_velocity::{
+    Divergence, PressureRule, Rates, Side, TransportVelocity,
+};
+use crate::{Tensor, parallel};
+
+/// Rates of a particle of a solid that are not in [`Rates`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolidRates<const D: usize> {
+    /// Velocity gradient `d u_i / d x_j` in 1/s, CTVF (31), corrected or not.
+    pub gradient: Tensor<D>,
+    /// What the deviation carries of deviatoric stress (xx, yy, zz, yz, xz, xy, in Pa/s), plastic
+    /// strain, temperature and specific energy, a second each: `d . grad` of them, theory (68).
+    pub transport: [f64; MATTER],
+    /// Heat of the artificial viscosity in W/kg.
+    pub heating: f64,
+}
+
+impl<const D: usize> Default for SolidRates<D> {
+    fn default() -> Self {
+        Self { gradient: Tensor::zeros(), transport: [0.0; MATTER], heating: 0.0 }
+    }
+}
+
+/// Constants of one pass.
+struct Constants {
+    softening: f64,
+    /// `alpha h` of CTVF (28).
+    artificial: f64,
+    /// `alpha h / 8` of CTVF (24), to be multiplied by a wave speed.
+    diffusion: f64,
+    /// 1 where the approach of other bodies compresses.
+    couples: f64,
+    /// 1 where gradients are those of the transport velocity.
+    moves: f64,
+    /// 1 where the transport terms of density and pressure are on.
+    density: f64,
+    pressure: f64,
+}
+
+/// Sums over neighbours, a lane each.
+struct Sums<const D: usize> {
+    gradient: [[Lanes; D]; D],
+    contact: Lanes,
+    density: Lanes,
+    pressure: Lanes,
+    diffusion: Lanes,
+    heating: Lanes,
+    carried: [Lanes; MATTER],
+}
+
+/// A neighbour, as gradients see it.
+struct Other<'a, const D: usize> {
+    side: &'a Side<D>,
+    matter: &'a Matter,
+    wave_speed: f64,
+    /// 1 if it belongs to the same body or to a wall, 0 otherwise.
+    own: f64,
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Fills the rates of solids from what has been loaded.
+    pub(in super::super) fn solid_rate_pass(&mut self) {
+        self.tension_pass();
+        let Some(solids) = &mut self.solids else { return };
+        let (mut rates, couples) = (std::mem::take(&mut solids.rates), solids.contact);
+        let mut common = std::mem::take(&mut self.rates);
+        let (h, corrections) = (self.support.smoothing_length(), self.settings.corrections);
+        let one_if = |is_on: bool| f64::from(u8::from(is_on));
+        let constants = Constants {
+            softening: fluid::softening(h),
+            artificial: self.settings.artificial_viscosity * h,
+            diffusion: match self.settings.pressure {
+                PressureRule::Edac { alpha } => fluid::pressure_diffusivity(alpha, h, 1.0),
+                PressureRule::StateEquation => 0.0,
+            },
+            couples: one_if(couples == Contact::Repulsive),
+            moves: one_if(corrections.divergence == Divergence::Transport),
+            density: one_if(corrections.density),
+            pressure: one_if(corrections.pressure),
+        };
+        let carries = corrections.density || corrections.pressure;
+        let fill = if carries { fill::<D, true> } else { fill::<D, false> };
+        parallel::maximum_of_chunks(&mut rates, &mut common, 0.0, |first, rates, common| {
+            fill(self, &constants, first, rates, common);
+            0.0
+        });
+        self.rates = common;
+        if let Some(solids) = &mut self.solids {
+            solids.rates = rates;
+        }
+    }
+
+    /// The sums of the particle at `place`.
+    #[inline(always)]
+    fn gather_gradients<const CARRIES: bool>(
+        &self,
+        solids: &Solids<D>,
+        place: usize,
+        constants: &Constants,
+        block: &mut NeighborBlock<D>,
+    ) -> Sums<D> {
+        let zero = [0.0; LANES];
+        let mut sums = Sums {
+            gradient: [[zero; D]; D],
+            contact: zero,
+            density: zero,
+            pressure: zero,
+            diffusion: zero,
+            heating: zero,
+            carried: [zero; MATTER],
+        };
+        let continuum = self.continuum[place];
+        let (me, matter) = (&self.sides[place], &solids.matter[place]);
+        let speed = solids.tensions[place].wave_speed;
+        let mut rest = self.support.all(place);
+        while self.support.fill(&mut rest, Needs::Slope, block) {
+            for group in block.groups() {
+                let sides = all_of(&self.sides, group.places);
+                let matters = all_of(&solids.matter, group.places);
+                let tensions: [&Tension<D>; LANES] = all_of(&solids.tensions, group.places);
+                let continua = all_of(&self.continuum, group.places);
+                for lane in 0..LANES {
+                    let is_own = *continua[lane] == continuum || *continua[lane] == WALL;
+                    let other = Other {
+                        side: sides[lane],
+                        matter: matters[lane],
+                        wave_speed: 0.5 * (speed + tensions[lane].wave_speed),
+                        own: if is_own { 1.0 } else { 0.0 },
+                    };
+                    let neighbor = group.neighbor(lane);
+                    sums.add::<CARRIES>(lane, (me, matter), &other, &neighbor, constants);
+                }
+            }
+        }
+        sums
+    }
+
+    /// The rates of a particle with these sums.
+    #[inline(never)]
+    fn solid_rates_of(
+        &self,
+        solids: &Solids<D>,
+        place: usize,
+        constants: &Constants,
+        sums: &Sums<D>,
+    ) -> (SolidRates<D>, Rates) {
+        let raw = Tensor::<D>::from_fn(|i, j| total(sums.gradient[i][j]));
+        let gradient = match solids.corrections.get(place) {
+            Some(correction) => raw * correction,
+            None => raw,
+        };
+        let rates = SolidRates {
+            gradient,
+            transport: sums.carried.map(total),
+            heating: total(sums.heating),
+        };
+        let common = Rates {
+            divergence: gradient.trace() + constants.couples * total(sums.contact),
+            density_transport: constants.density * total(sums.density),
+            pressure_transport: constants.pressure * total(sums.pressure),
+            pressure_diffusion: total(sums.diffusion),
+        };
+        (rates, common)
+    }
+}
+
+impl<const D: usize> Sums<D> {
+    /// Adds the terms of one neighbour to those of its lane.
+    #[inline(always)]
+    fn add<const CARRIES: bool>(
+        &mut self,
+        lane: usize,
+        (me, matter): (&Side<D>, &Matter),
+        other: &Other<'_, D>,
+        neighbor: &Neighbor<D>,
+        constants: &Constants,
+    ) {
+        let side = other.side;
+        let area = side.volume * neighbor.slope;
+        let own = area * other.own;
+        let jump = me.velocity - side.velocity;
+        let approach = jump.dot(&neighbor.separation);
+        let flow = jump + (me.deviation - side.deviation) * constants.moves;
+        for i in 0..D {
+            for j in 0..D {
+                self.gradient[i][j][lane] -= flow[i] * neighbor.separation[j] * own;
+            }
+        }
+        self.contact[lane] -= approach * (area - own);
+        let scale =
+            fluid::exchange_scale(me.density + side.density, neighbor.square, constants.softening);
+        let slope = side.mass() * neighbor.slope;
+        let strength = constants.artificial * other.wave_speed;
+        let artificial = fluid::artificial_viscosity(strength, approach, scale);
+        self.heating[lane] += 0.5 * artificial * approach * slope;
+        let diffusivity = constants.diffusion * other.wave_speed * other.own;
+        let exchange = fluid::diffusion(1.0, neighbor.square, slope, scale) * diffusivity;
+        self.diffusion[lane] -= exchange * (side.pressure - me.pressure);
+        if CARRIES {
+            let carried = side.deviation.dot(&neighbor.separation) * own;
+            self.density[lane] += carried * (side.density - me.density);
+            self.pressure[lane] += carried * (side.pressure - me.pressure);
+            for (k, sum) in self.carried.iter_mut().enumerate() {
+                sum[lane] += carried * (other.matter[k] - matter[k]);
+            }
+        }
+    }
+}
+
+/// Fills some rows, with or without the transport terms.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn fill<const D: usize, const CARRIES: bool>(
+    scheme: &TransportVelocity<D>,
+    constants: &Constants,
+    first: usize,
+    rates: &mut [SolidRates<D>],
+    common: &mut [Rates],
+) {
+    let Some(solids) = scheme.solids.as_deref() else { return };
+    let mut block = NeighborBlock::default();
+    for (offset, (rates, common)) in rates.iter_mut().zip(common).enumerate() {
+        let place = first + offset;
+        if !scheme.support.list().is_passive(place) {
+            let sums = scheme.gather_gradients::<CARRIES>(solids, place, constants, &mut block);
+            (*rates, *common) = scheme.solid_rates_of(solids, place, constants, &sums);
+        }
+    }
+}
