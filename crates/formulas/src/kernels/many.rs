@@ -2,7 +2,6 @@
 
 use multiversion::multiversion;
 
-use super::root::inverse_root;
 use super::{Kernel, KernelShape, KernelVisitor, ScaledKernel};
 
 /// A kernel of a smoothing length that fills arrays: one indirect call for many neighbours.
@@ -41,7 +40,7 @@ fn fill_values<K: KernelShape, const D: usize>(
     values: &mut [f64],
 ) {
     for (value, square) in values.iter_mut().zip(squares) {
-        *value = kernel.value(square * inverse_root(*square));
+        *value = kernel.value(square.sqrt());
     }
 }
 
@@ -52,8 +51,7 @@ fn fill_slopes<K: KernelShape, const D: usize>(
     slopes: &mut [f64],
 ) {
     for (slope, square) in slopes.iter_mut().zip(squares) {
-        let inverse = inverse_root(*square);
-        *slope = kernel.derivative_over_known_r(square * inverse, inverse);
+        *slope = kernel.derivative_over_r(square.sqrt());
     }
 }
 
@@ -65,10 +63,9 @@ fn fill_both<K: KernelShape, const D: usize>(
     slopes: &mut [f64],
 ) {
     for ((value, slope), square) in values.iter_mut().zip(slopes).zip(squares) {
-        let inverse = inverse_root(*square);
-        let distance = square * inverse;
+        let distance = square.sqrt();
         *value = kernel.value(distance);
-        *slope = kernel.derivative_over_known_r(distance, inverse);
+        *slope = kernel.derivative_over_r(distance);
     }
 }
 

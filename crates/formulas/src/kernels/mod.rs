@@ -17,7 +17,6 @@ mod many;
 mod mollifier;
 mod polynomial;
 mod registry;
-mod root;
 mod scaled;
 mod splines;
 mod wendland;
@@ -61,13 +60,6 @@ pub trait KernelShape: Copy + Default + Send + Sync + 'static {
     /// Where a kernel has a cusp and the limit is infinite it is zero at `q = 0`, so that the
     /// gradient of a particle's own kernel vanishes there by symmetry.
     fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T;
-
-    /// [`KernelShape::derivative_over_q`] where `1 / q` is known: shapes that would divide by q multiply
-    /// with it.
-    #[inline]
-    fn derivative_over_known_q(dimension: usize, q: f64, _inverse: f64) -> f64 {
-        Self::derivative_over_q(dimension, q)
-    }
 
     /// `f'(q)`; at the tip of a cusp the limit from above.
     #[inline]

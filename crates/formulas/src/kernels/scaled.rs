@@ -10,7 +10,6 @@ use crate::{Scalar, power::integer_power};
 /// The lengths `r` and `h` are metres, `W` is in m^-D.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaledKernel<K, const D: usize> {
-    length: f64,
     inverse_length: f64,
     value_factor: f64,
     shape: PhantomData<K>,
@@ -23,7 +22,7 @@ impl<K: KernelShape, const D: usize> ScaledKernel<K, D> {
         const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
         let inverse_length = 1.0 / smoothing_length;
         let value_factor = K::normalisation(D) * integer_power(inverse_length, D as u32);
-        Self { length: smoothing_length, inverse_length, value_factor, shape: PhantomData }
+        Self { inverse_length, value_factor, shape: PhantomData }
     }
 
     /// `W(r)`.
@@ -39,14 +38,6 @@ impl<K: KernelShape, const D: usize> ScaledKernel<K, D> {
     pub fn derivative_over_r<T: Scalar>(&self, r: T) -> T {
         let factor = self.value_factor * self.inverse_length * self.inverse_length;
         K::derivative_over_q(D, r * self.inverse_length) * factor
-    }
-
-    /// `W'(r) / r` where `1 / r` is known, too.
-    #[inline]
-    pub fn derivative_over_known_r(&self, r: f64, inverse: f64) -> f64 {
-        let factor = self.value_factor * self.inverse_length * self.inverse_length;
-        let (q, inverse) = (r * self.inverse_length, inverse * self.length);
-        K::derivative_over_known_q(D, q, inverse) * factor
     }
 
     /// `W'(r)`.

@@ -99,13 +99,6 @@ impl KernelShape for QuinticSpline {
     }
 
     #[inline]
-    fn derivative_over_known_q(_dimension: usize, q: f64, inverse: f64) -> f64 {
-        let inner = q * q * (q * -50.0 + 120.0) - 120.0;
-        let outer = outer_terms(q, 4) * -5.0 * inverse;
-        if q < 1.0 { inner } else { outer }
-    }
-
-    #[inline]
     fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
         let inner = q * q * (q * -200.0 + 360.0) - 120.0;
         let outer = outer_terms(q, 3) * 20.0;
