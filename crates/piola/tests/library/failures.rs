@@ -297,7 +297,7 @@ fn what_statics_misses_is_named() {
 #[test]
 fn a_material_that_loses_its_convexity_is_named_once() {
     let warnings = |ratio: &str| {
-        let set = ["parameters.homogeneous=0", "parameters.N=30", ratio];
+        let set = ["parameters.homogeneous=0", "parameters.cells=30", ratio];
         let finished = run(&load_of("elastodynamics", "stretch", &set), None);
         let lost = |text: &&String| text.contains("has lost its convexity");
         finished.warnings.iter().filter(lost).cloned().collect::<Vec<_>>()
