@@ -1,14 +1,13 @@
 //! Particles turned into a weakly compressible fluid between walls.
 
 use super::bodies::{self, BodyReport};
-use super::{Built, initial, kernel, loads, probes, selections, tanks};
+use super::{Built, initial, kernel, loads, probes, row_statistics, selections, tanks};
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::geometry::{Faces, Particles, Shape};
-use crate::neighbors::{Domain, NeighborStatistics, spatial_order};
-use crate::schemes::Scheme;
+use crate::neighbors::{Domain, spatial_order};
 use crate::schemes::transport_velocity::{
     Fluid, Guard, Solid, SolidsInput, TransportVelocity, TransportVelocityError,
     TransportVelocityInput, Wall,
@@ -101,7 +100,8 @@ pub(super) fn build<const D: usize>(
         bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
         removes: settings.removes_escaped,
     });
-    let (neighbors, poorly_supported) = statistics(&scheme);
+    let (neighbors, mut poorly_supported) = row_statistics(&scheme);
+    poorly_supported.retain(|&a| !scheme.is_wall(a));
     Ok(Built {
         scheme: Box::new(scheme),
         probes,
@@ -238,15 +238,4 @@ fn sliding<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<Prescri
         }
     }
     conditions
-}
-
-fn statistics<const D: usize>(scheme: &TransportVelocity<D>) -> (NeighborStatistics, Vec<u32>) {
-    let counts: Vec<usize> =
-        (0..scheme.particle_count()).map(|a| scheme.neighborhood(a).len()).collect();
-    let mean = counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64;
-    let least = counts.iter().copied().min().unwrap_or(0);
-    let most = counts.iter().copied().max().unwrap_or(0);
-    let poor = (0u32..).zip(&counts).filter(|(a, count)| **count < D && !scheme.is_wall(*a));
-    let poor = poor.map(|(a, _)| a).collect();
-    (NeighborStatistics { least, mean, most }, poor)
 }

@@ -149,7 +149,12 @@ impl<const D: usize> TransportVelocity<D> {
             input.smoothing_length,
             input.domain,
         )?;
-        let solids = input.solids.map(|solids| Box::new(Solids::new(solids, &particles, &is_wall)));
+        let solids = match input.solids {
+            Some(solids) => {
+                Some(Box::new(Solids::new(solids, &particles, &is_wall, &input.domain)?))
+            }
+            None => None,
+        };
         let densities: Vec<f64> = (0..count)
             .map(|number| match &solids {
                 Some(solids) => solids.density(particles.body[number]),

@@ -2,6 +2,7 @@
 
 use super::TransportVelocity;
 use crate::geometry::Particles;
+use crate::neighbors::{Domain, NeighborError, search};
 use crate::schemes::transport_velocity::Row;
 
 /// First neighbours of the start are those within so many spacings, and particles hang together
@@ -16,25 +17,23 @@ pub(super) struct Bonds {
 
 impl Bonds {
     /// The pairs of one body that are nearest at the start.
-    pub fn new<const D: usize>(particles: &Particles<D>, is_wall: &[bool]) -> Self {
-        // Along the first axis, so that only what is near has to be looked at.
-        let mut order: Vec<u32> =
-            (0..particles.len() as u32).filter(|&a| !is_wall[a as usize]).collect();
-        let along = |a: u32| particles.position[a as usize][0];
-        order.sort_by(|&a, &b| along(a).total_cmp(&along(b)));
+    ///
+    /// # Errors
+    /// When the search refuses the positions.
+    pub fn new<const D: usize>(
+        particles: &Particles<D>,
+        is_wall: &[bool],
+        domain: &Domain<D>,
+    ) -> Result<Self, NeighborError> {
+        let reach: Vec<f64> = particles.spacing.iter().map(|spacing| FIRST * spacing).collect();
+        let list = search(&particles.position, &reach, domain)?;
         let mut pairs = Vec::new();
-        for (k, &a) in order.iter().enumerate() {
-            let reach = FIRST * particles.spacing[a as usize];
-            let near = order[k + 1..].iter().take_while(|&&b| along(b) - along(a) <= reach);
-            for &b in near {
-                let (one, two) = (a as usize, b as usize);
-                let distance = (particles.position[one] - particles.position[two]).norm();
-                if particles.body[one] == particles.body[two] && distance <= reach {
-                    pairs.push([a, b]);
-                }
-            }
+        for a in (0..particles.len()).filter(|&a| !is_wall[a]) {
+            let of_body = |b: &&u32| particles.body[**b as usize] == particles.body[a];
+            let later = list.row(a).iter().filter(|&&b| b as usize > a).filter(of_body);
+            pairs.extend(later.map(|&b| [a as u32, b]));
         }
-        Self { pairs }
+        Ok(Self { pairs })
     }
 }
 

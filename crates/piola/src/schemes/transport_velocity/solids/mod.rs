@@ -28,6 +28,7 @@ use super::ledger::Tail;
 use crate::boundaries::PrescribedVelocity;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::geometry::Particles;
+use crate::neighbors::{Domain, NeighborError};
 use crate::{Tensor, Vector};
 
 pub use rates::SolidRates;
@@ -149,7 +150,12 @@ pub(super) struct Solids<const D: usize> {
 }
 
 impl<const D: usize> Solids<D> {
-    pub fn new(input: SolidsInput, particles: &Particles<D>, is_wall: &[bool]) -> Self {
+    pub fn new(
+        input: SolidsInput,
+        particles: &Particles<D>,
+        is_wall: &[bool],
+        domain: &Domain<D>,
+    ) -> Result<Self, NeighborError> {
         let count = particles.len();
         let mut bodies: Vec<u32> = (0..count)
             .filter(|&number| !is_wall[number])
@@ -161,18 +167,18 @@ impl<const D: usize> Solids<D> {
         let mut is_held = vec![false; count];
         held.iter().for_each(|entry| is_held[entry.particle] = true);
         let gradients = if input.corrected { count } else { 0 };
-        Self {
+        Ok(Self {
             several: bodies.len() > 1 && input.contact != Contact::Full,
             materials: input.materials,
             contact: input.contact,
             held,
             is_held,
-            bonds: Bonds::new(particles, is_wall),
+            bonds: Bonds::new(particles, is_wall, domain)?,
             matter: vec![[0.0; MATTER]; count],
             tensions: vec![Tension::default(); count],
             rates: vec![SolidRates::default(); count],
             corrections: vec![Tensor::identity(); gradients],
-        }
+        })
     }
 
     /// Density at the start of a body in kg/m^3: without pressure.
