@@ -18,6 +18,19 @@ pub fn for_each_chunk<T: Send>(rows: &mut [T], body: impl Fn(usize, &mut [T]) + 
     rows.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, rows)| body(chunk * CHUNK, rows));
 }
 
+/// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them.
+pub fn for_each_pair_of_chunks<T: Send, U: Send>(
+    rows: &mut [T],
+    others: &mut [U],
+    body: impl Fn(usize, &mut [T], &mut [U]) + Sync,
+) {
+    if rows.len() <= CHUNK {
+        return body(0, rows, others);
+    }
+    let chunks = rows.par_chunks_mut(CHUNK).zip(others.par_chunks_mut(CHUNK)).enumerate();
+    chunks.for_each(|(chunk, (rows, others))| body(chunk * CHUNK, rows, others));
+}
+
 /// Calls `body(number, item)` for each item, of which each is worth a thread's while.
 pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sync) {
     items.par_iter_mut().enumerate().for_each(|(number, item)| body(number, item));
@@ -124,6 +137,29 @@ pub fn sums_over_rows<const N: usize, T: Send>(
     let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
     let partials: Vec<[f64; N]> =
         chunks.map(|(number, rows)| chunk(number * CHUNK, rows)).collect();
+    add_up(&partials)
+}
+
+/// As [`sums_over_rows`], over rows of two arrays beside each other, of `lengths` numbers each:
+/// `body(number, row, other, sums)`.
+pub fn sums_over_pairs_of_rows<const N: usize>(
+    [rows, others]: [&mut [f64]; 2],
+    lengths: [usize; 2],
+    body: impl Fn(usize, &mut [f64], &mut [f64], &mut [f64; N]) + Sync,
+) -> [f64; N] {
+    let chunk = |first: usize, rows: &mut [f64], others: &mut [f64]| {
+        let mut sums = [0.0; N];
+        let pairs = rows.chunks_exact_mut(lengths[0]).zip(others.chunks_exact_mut(lengths[1]));
+        pairs.enumerate().for_each(|(k, (row, other))| body(first + k, row, other, &mut sums));
+        sums
+    };
+    if rows.len() <= CHUNK * lengths[0] {
+        return chunk(0, rows, others);
+    }
+    let pairs = rows.par_chunks_mut(CHUNK * lengths[0]);
+    let pairs = pairs.zip(others.par_chunks_mut(CHUNK * lengths[1])).enumerate();
+    let partials: Vec<[f64; N]> =
+        pairs.map(|(number, (rows, others))| chunk(number * CHUNK, rows, others)).collect();
     add_up(&partials)
 }
 

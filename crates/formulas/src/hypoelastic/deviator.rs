@@ -1,6 +1,6 @@
 //! The deviatoric stress and its objective rate.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::Scalar;
 
@@ -38,6 +38,7 @@ pub fn jaumann_rate<T: Scalar>(
 /// CTVF (58) adds the rate at the start of the step times its length, by which the size of a
 /// stress grows in pure rotation. Here half of the strain is added before and half after an exact
 /// rotation: of second order, and the invariants of the stress stay in rotation.
+#[inline]
 pub fn advance(
     shear_modulus: f64,
     deviator: &Matrix3<f64>,
@@ -46,16 +47,36 @@ pub fn advance(
 ) -> Matrix3<f64> {
     let half = deviatoric_rate(gradient) * (shear_modulus * step);
     let a = spin(gradient) * (0.5 * step);
-    // Cayley: (I - A)^-1 (I + A) = I + 2 (A + A A)/(1 + |a|^2), with the axial vector a of A.
-    let square = 0.5 * a.norm_squared();
-    let rotation = Matrix3::identity() + (a + a * a) * (2.0 / (1.0 + square));
-    rotation * (deviator + half) * rotation.transpose() + half
+    // Cayley: (I - A)^-1 (I + A) = I + 2 (A + A A)/(1 + |a|^2), with the axial vector a of A, of
+    // which A A = a a^T - |a|^2 I.
+    let axis = Vector3::new(a[(2, 1)], a[(0, 2)], a[(1, 0)]);
+    let square = axis.norm_squared();
+    let factor = 2.0 / (1.0 + square);
+    let rotation = Matrix3::from_fn(|i, j| {
+        let unit = if i == j { 1.0 - factor * square } else { 0.0 };
+        unit + factor * (a[(i, j)] + axis[i] * axis[j])
+    });
+    rotated(&rotation, &(deviator + half)) + half
+}
+
+/// `R s R^T` of a symmetric tensor. Written out: products of small matrices are calls of the library.
+#[inline]
+fn rotated(rotation: &Matrix3<f64>, tensor: &Matrix3<f64>) -> Matrix3<f64> {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let row = |matrix: &Matrix3<f64>, i: usize| [matrix[(i, 0)], matrix[(i, 1)], matrix[(i, 2)]];
+    let turned = Matrix3::from_fn(|i, j| dot(row(rotation, i), row(tensor, j)));
+    Matrix3::from_fn(|i, j| dot(row(&turned, i), row(rotation, j)))
 }
 
 /// Equivalent stress of von Mises `sqrt(3/2 s : s)` in Pa, all three normal components included.
 /// CTVF (68) is that of plane stress.
 #[inline]
 pub fn von_mises<T: Scalar>(deviator: &Matrix3<T>) -> T {
-    let square = deviator.iter().fold(T::zero(), |sum, s| sum + *s * *s);
-    (square * 1.5).sqrt()
+    von_mises_squared(deviator).sqrt()
+}
+
+/// The square of [`von_mises`] in Pa^2, `6 G` times the energy of shear in J/m^3.
+#[inline]
+pub fn von_mises_squared<T: Scalar>(deviator: &Matrix3<T>) -> T {
+    deviator.iter().fold(T::zero(), |sum, s| sum + *s * *s) * 1.5
 }

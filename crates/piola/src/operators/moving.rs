@@ -158,6 +158,14 @@ impl<const D: usize> MovingSupport<D> {
         Remaining { place, row, then }
     }
 
+    /// The places of the neighbours of the particle at `place`: those that are not passive, and the
+    /// passive ones.
+    #[inline]
+    pub fn places_of(&self, place: usize) -> [&[u32]; 2] {
+        [self.inside.active(place), self.inside.passive(place)]
+            .map(|(places, count)| &places[..count])
+    }
+
     /// Fills `block` with the next neighbours of a particle; false when there is none left.
     #[inline]
     pub fn fill(

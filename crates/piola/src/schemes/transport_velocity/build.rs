@@ -172,6 +172,7 @@ impl<const D: usize> TransportVelocity<D> {
             wall_values: vec![WallValues::default(); walls.len()],
             openings: vec![Opening::default(); if settings.free_surface { count } else { 0 }],
             found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
+            marks: vec![false; if settings.free_surface { count } else { 0 }],
             iteration: Iteration::default(),
             chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
             continuum: vec![0; if solids.is_some() { count } else { 0 }],

@@ -23,8 +23,12 @@ pub(super) struct Tail {
 /// Sums over particles that a kick needs.
 type Kick = [f64; 2 * ACCELERATING + ENTERING * MOST_COMPONENTS];
 
-/// Sums over particles that a drift needs: energies, then impulses.
-type Drift = [f64; 3 + MOST_COMPONENTS];
+/// Sums over particles that a drift needs: what pressure, transport, diffusion and plasticity do to
+/// energies in J, then impulses.
+pub(super) type Drift = [f64; DRIFTING + MOST_COMPONENTS];
+
+/// The mechanisms of a drift.
+const DRIFTING: usize = 4;
 
 impl Tail {
     pub fn new(dimension: usize) -> Self {
@@ -178,7 +182,7 @@ impl<const D: usize> TransportVelocity<D> {
         let momentum = Row::<D>::velocity(row) * (step * mass);
         let (moments, count) = momentum::moments(&Row::<D>::deviation(row), &momentum);
         for component in D..count {
-            sums[3 + component] += moments[component];
+            sums[DRIFTING + component] += moments[component];
         }
     }
 
@@ -188,10 +192,11 @@ impl<const D: usize> TransportVelocity<D> {
         tail[PRESSURE] += sums[0];
         tail[TRANSPORT] += sums[1];
         tail[PRESSURE_DIFFUSION] += sums[2];
+        tail[PLASTICITY] += sums[3];
         let layout = Tail::new(D);
         // The corrections are the last of the ways in of accelerations.
         let last = (ENTERING - 1) * layout.components;
-        for (kept, sum) in tail[layout.impulses()][last..].iter_mut().zip(&sums[3..]) {
+        for (kept, sum) in tail[layout.impulses()][last..].iter_mut().zip(&sums[DRIFTING..]) {
             *kept += sum;
         }
     }
@@ -199,11 +204,6 @@ impl<const D: usize> TransportVelocity<D> {
     /// Books a change of the energy of compression that belongs to the law of state.
     pub(super) fn book_pressure(gained: f64, tail: &mut [f64]) {
         tail[PRESSURE] += gained;
-    }
-
-    /// Books what plastic work takes, in J.
-    pub(super) fn book_plasticity(gained: f64, tail: &mut [f64]) {
-        tail[PLASTICITY] += gained;
     }
 
     /// Sets what has been booked so far to nothing.

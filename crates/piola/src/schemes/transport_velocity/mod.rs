@@ -97,6 +97,7 @@ pub struct TransportVelocity<const D: usize> {
     /// Where free surfaces are, if they are looked for, and scratch of the search.
     openings: Vec<Opening<D>>,
     found: Vec<(Vector<D>, bool)>,
+    marks: Vec<bool>,
     iteration: Iteration<D>,
     chunk_figures: Vec<ChunkFigures>,
     /// Who looks for particles that escape, with the width of everything at the start in m.

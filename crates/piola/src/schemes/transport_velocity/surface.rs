@@ -1,5 +1,7 @@
 //! Free surfaces: normals, the particles on them, and how far they are, CTVF section 3.4.
 
+use std::f64::consts::PI;
+
 use super::TransportVelocity;
 use crate::operators::{Needs, NeighborBlock};
 use crate::{Vector, parallel};
@@ -74,47 +76,97 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Finds free surfaces from the sums of CTVF (42) in `forces`.
+    ///
+    /// Most particles are far from them. Their neighbours are looked through for marks only: first for
+    /// those of a sharp normal, then for those of a surface.
     pub(super) fn find_surfaces(&mut self) {
         let mut openings = std::mem::take(&mut self.openings);
+        let mut marks = std::mem::take(&mut self.marks);
+        let mut found = std::mem::take(&mut self.found);
         let h = self.support.smoothing_length();
+        let even_count = self.even_count();
         let (forces, list) = (&self.forces, self.support.list());
-        parallel::for_each_chunk(&mut openings, |first, rows| {
-            for (offset, row) in rows.iter_mut().enumerate() {
+        parallel::for_each_pair_of_chunks(&mut openings, &mut marks, |first, rows, marks| {
+            for (offset, (row, mark)) in rows.iter_mut().zip(marks).enumerate() {
                 let place = first + offset;
                 *row = Opening { reach: h, ..Opening::default() };
                 let sum = forces[place].opening;
-                let is_open = sum.norm() >= 0.25 / h;
-                if is_open && !list.is_passive(place) {
+                *mark = sum.norm() >= 0.25 / h && !list.is_passive(place);
+                if *mark {
                     row.sharp = sum.normalize();
                 }
             }
         });
-        let sharp: &[Opening<D>] = &openings;
-        let mut found = std::mem::take(&mut self.found);
+        let (sharp, sharp_marks): (&[Opening<D>], &[bool]) = (&openings, &marks);
         parallel::for_each_chunk(&mut found, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
-                if !list.is_passive(first + offset) {
-                    *row = self.surface_at(first + offset, sharp, &mut block);
+                let place = first + offset;
+                *row = (Vector::zeros(), false);
+                if !list.is_passive(place) {
+                    let marked = sharp_marks[place] || self.sees_mark(place, sharp_marks);
+                    if marked || self.has_few_neighbors(place, even_count) {
+                        *row = self.surface_at(place, sharp, &mut block);
+                    }
                 }
             }
         });
-        for (opening, (normal, is_surface)) in openings.iter_mut().zip(&found) {
-            (opening.normal, opening.is_surface) = (*normal, *is_surface);
-        }
-        let mut reaches = std::mem::take(&mut self.densities);
-        parallel::for_each_chunk(&mut reaches, |first, rows| {
+        parallel::for_each_pair_of_chunks(&mut marks, &mut openings, |first, marks, rows| {
+            for (offset, (mark, row)) in marks.iter_mut().zip(rows).enumerate() {
+                (row.normal, row.is_surface) = found[first + offset];
+                *mark = row.is_surface;
+            }
+        });
+        let surfaces: &[bool] = &marks;
+        parallel::for_each_chunk(&mut openings, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
-                if !list.is_passive(first + offset) {
-                    *row = self.reach_at(first + offset, &found, &mut block);
+                let place = first + offset;
+                if surfaces[place] {
+                    row.reach = 0.0;
+                } else if !list.is_passive(place) && self.sees_mark(place, surfaces) {
+                    row.reach = self.reach_at(place, surfaces, &mut block);
                 }
             }
         });
-        for (opening, reach) in openings.iter_mut().zip(&reaches) {
-            opening.reach = *reach;
-        }
-        (self.openings, self.found, self.densities) = (openings, found, reaches);
+        (self.openings, self.found, self.marks) = (openings, found, marks);
+    }
+
+    /// Whether a neighbour of the same continuum is marked.
+    #[inline]
+    fn sees_mark(&self, place: usize, marks: &[bool]) -> bool {
+        let is_marked = |other: &u32| marks[*other as usize];
+        let is_own = |other: &u32| self.is_own(place, *other as usize);
+        self.support
+            .places_of(place)
+            .iter()
+            .any(|places| places.iter().any(|other| is_marked(other) && is_own(other)))
+    }
+
+    /// Neighbours of a particle among others that are evenly spread: the volume of the support over
+    /// that of a particle.
+    fn even_count(&self) -> usize {
+        let support = self.support.kernel().support_radius(self.support.smoothing_length());
+        let unit_ball = match D {
+            1 => 2.0,
+            2 => PI,
+            _ => 4.0 / 3.0 * PI,
+        };
+        (unit_ball * (support / self.particles.spacing[0]).powi(D as i32)) as usize
+    }
+
+    /// Whether a particle has less than half of the neighbours of its continuum that an even spread
+    /// gives it. One that has more is not alone.
+    fn has_few_neighbors(&self, place: usize, even_count: usize) -> bool {
+        let others = self.support.places_of(place);
+        let count: usize = match self.is_one_continuum() {
+            true => others.iter().map(|places| places.len()).sum(),
+            false => {
+                let is_own = |other: &&u32| self.is_own(place, **other as usize);
+                others.iter().map(|places| places.iter().filter(is_own).count()).sum()
+            }
+        };
+        2 * count < even_count
     }
 
     /// The smoothed normal, CTVF (43), and whether the particle is on a surface: it has no
@@ -154,19 +206,11 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// `h_b` of CTVF algorithm 1, with the kernel's own support for the paper's 3.
-    fn reach_at(
-        &self,
-        place: usize,
-        found: &[(Vector<D>, bool)],
-        block: &mut NeighborBlock<D>,
-    ) -> f64 {
-        if found[place].1 {
-            return 0.0;
-        }
+    fn reach_at(&self, place: usize, surfaces: &[bool], block: &mut NeighborBlock<D>) -> f64 {
         let mut nearest = f64::INFINITY;
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, Needs::Nothing, block) {
-            let near = block.iter().filter(|b| found[b.place].1 && self.is_own(place, b.place));
+            let near = block.iter().filter(|b| surfaces[b.place] && self.is_own(place, b.place));
             for neighbor in near {
                 nearest = nearest.min(neighbor.square);
             }

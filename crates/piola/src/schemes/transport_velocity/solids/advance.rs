@@ -1,11 +1,11 @@
 //! A drift of solids: density, stress, plastic strain, temperature and places.
 
-use piola_formulas::hypoelastic::{advance, von_mises};
+use piola_formulas::hypoelastic::{Strength, advance, von_mises, von_mises_squared};
 
 use super::{ENERGY, MATTER, PLASTIC, Solid, SolidRates, TEMPERATURE, full, store};
 use crate::Tensor;
 use crate::parallel;
-use crate::schemes::transport_velocity::ledger::Tail;
+use crate::schemes::transport_velocity::ledger::Drift;
 use crate::schemes::transport_velocity::{PressureRule, Row, TransportVelocity};
 
 /// What a step brings to the matter of a particle besides its own rates.
@@ -20,13 +20,13 @@ struct Surroundings {
 impl<const D: usize> TransportVelocity<D> {
     /// The drift of solids, CTVF (56) to (59), with the rates of the last pass: theory (33), (69) to (71).
     pub(in super::super) fn drift_solids(&mut self, step: f64, middle: f64, state: &mut [f64]) {
-        let before = self.elastic_energy(state);
-        let start = self.matter_start();
-        let (front, matter) = state.split_at_mut(start);
+        let (front, matter) = state.split_at_mut(self.matter_start());
+        let (rows, tail) = front.split_at_mut(self.particles.len() * Row::<D>::LENGTH);
         let scheme = &*self;
         let Some(solids) = &scheme.solids else { return };
         let (places, rates) = (scheme.support.list().places(), &solids.rates);
-        let [work] = parallel::sums_over_rows(matter, MATTER, |number, row, [work]| {
+        let evolves = matches!(scheme.settings.pressure, PressureRule::Edac { .. });
+        let drift = |number: usize, row: &mut [f64], matter: &mut [f64], sums: &mut Drift| {
             if scheme.is_wall[number] {
                 return;
             }
@@ -39,40 +39,35 @@ impl<const D: usize> TransportVelocity<D> {
                 divergence: scheme.rates[place].divergence,
                 step,
             };
-            *work += side.volume * material.advance(&rates[place], &around, row);
-        });
-        let evolves = matches!(scheme.settings.pressure, PressureRule::Edac { .. });
-        let (rows, tail) = front.split_at_mut(scheme.particles.len() * Row::<D>::LENGTH);
-        let sums = parallel::sums_over_rows(rows, Row::<D>::LENGTH, |number, row, sums| {
-            if scheme.is_wall[number] {
-                return;
-            }
-            let place = places[number] as usize;
+            let energy = |row: &[f64], matter: &[f64]| {
+                let [compression, shear] = material.energies(row[Row::<D>::DENSITY], matter);
+                scheme.mass[number] * (compression + shear)
+            };
+            let before = energy(row, matter);
+            let work = side.volume * material.advance(&rates[place], &around, matter);
             scheme.add_drift((number, place), (step, false), row, sums);
             row[Row::<D>::DENSITY] += step * scheme.density_rate(place);
             if evolves {
                 row[Row::<D>::PRESSURE] += step * scheme.pressure_rates(place).iter().sum::<f64>();
             }
             scheme.move_row(step, row);
-        });
+            sums[0] += energy(row, matter) - before + work;
+            sums[3] -= work;
+        };
+        let lengths = [Row::<D>::LENGTH, MATTER];
+        let sums = parallel::sums_over_pairs_of_rows([rows, matter], lengths, drift);
         Self::book_drift(&sums, tail);
         self.move_walls(step, middle, front);
-        let gained = self.elastic_energy(state) - before;
-        let tail = &mut state[start - Tail::new(D).length()..start];
-        Self::book_pressure(gained + work, tail);
-        Self::book_plasticity(-work, tail);
-    }
-
-    /// Elastic energy of all solids in J.
-    pub(in super::super) fn elastic_energy(&self, state: &[f64]) -> f64 {
-        self.energies_of_solids(state).iter().sum()
     }
 
     /// Energies of compression and shear in J.
     pub(in super::super) fn energies_of_solids(&self, state: &[f64]) -> [f64; 2] {
         parallel::sums(self.particles.len(), |number, sums: &mut [f64; 2]| {
             if !self.is_wall[number] {
-                for (sum, energy) in sums.iter_mut().zip(self.specific_energies(number, state)) {
+                let Some(solid) = self.solid(number) else { return };
+                let density = Row::<D>::of(state, number)[Row::<D>::DENSITY];
+                let energies = solid.energies(density, self.matter_of(number, state));
+                for (sum, energy) in sums.iter_mut().zip(energies) {
                     *sum += self.mass[number] * energy;
                 }
             }
@@ -81,6 +76,12 @@ impl<const D: usize> TransportVelocity<D> {
 }
 
 impl Solid {
+    /// The specific energies of compression and shear in J/kg at a density in kg/m^3.
+    fn energies(&self, density: f64, matter: &[f64]) -> [f64; 2] {
+        let shear = von_mises_squared(&full(matter)) / (6.0 * self.shear_modulus * density);
+        [self.state.compression_energy(density, matter[ENERGY]), shear]
+    }
+
     /// Advances the matter of a particle, and returns the plastic work in J/m^3.
     fn advance<const D: usize>(
         &self,
@@ -101,6 +102,10 @@ impl Solid {
             let shear = old.dot(&gradient);
             let power = shear - around.pressure * around.divergence;
             matter[ENERGY] += step * (power / around.density + rates.heating);
+        }
+        if self.strength == Strength::Elastic {
+            store(&stress, matter);
+            return 0.0;
         }
         let returned = self.strength.return_to_surface(
             von_mises(&stress),

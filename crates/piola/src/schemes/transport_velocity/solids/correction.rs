@@ -1,8 +1,10 @@
 //! Corrections that make velocity gradients exact for linear fields.
 
+use multiversion::multiversion;
 use piola_formulas::tensor;
 
-use crate::operators::{Needs, NeighborBlock};
+use super::WALL;
+use crate::operators::{LANES, Lanes, Needs, NeighborBlock, all_of, total};
 use crate::schemes::transport_velocity::TransportVelocity;
 use crate::{Tensor, parallel};
 
@@ -16,29 +18,59 @@ impl<const D: usize> TransportVelocity<D> {
     pub(in super::super) fn correct_gradients(&mut self) {
         let Some(solids) = &mut self.solids else { return };
         let mut corrections = std::mem::take(&mut solids.corrections);
-        let (support, list, sides) = (&self.support, self.support.list(), &self.sides);
-        parallel::for_each_chunk(&mut corrections, |first, rows| {
-            let mut block = NeighborBlock::default();
-            for (offset, row) in rows.iter_mut().enumerate() {
-                let place = first + offset;
-                *row = Tensor::identity();
-                if list.is_passive(place) {
-                    continue;
-                }
-                let (mut sum, mut rest) = (Tensor::<D>::zeros(), support.all(place));
-                while support.fill(&mut rest, Needs::Slope, &mut block) {
-                    for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
-                        let r = &neighbor.separation;
-                        sum -= r * r.transpose() * (sides[neighbor.place].volume * neighbor.slope);
-                    }
-                }
-                if tensor::smallest_eigenvalue(&sum) > LEAST {
-                    *row = tensor::inverse(&sum).unwrap_or_else(Tensor::identity);
-                }
-            }
-        });
+        parallel::for_each_chunk(&mut corrections, |first, rows| fill(self, first, rows));
         if let Some(solids) = &mut self.solids {
             solids.corrections = corrections;
         }
+    }
+
+    /// The sums of the particle at `place`, of which those with `i <= j` are filled.
+    #[inline(always)]
+    fn gather_moments(&self, place: usize, block: &mut NeighborBlock<D>) -> [[Lanes; D]; D] {
+        let mut sums = [[[0.0; LANES]; D]; D];
+        let continuum = self.continuum[place];
+        let mut rest = self.support.all(place);
+        while self.support.fill(&mut rest, Needs::Slope, block) {
+            for group in block.groups() {
+                let sides = all_of(&self.sides, group.places);
+                let continua = all_of(&self.continuum, group.places);
+                for lane in 0..LANES {
+                    let is_own = *continua[lane] == continuum || *continua[lane] == WALL;
+                    let own = if is_own { sides[lane].volume } else { 0.0 };
+                    let neighbor = group.neighbor(lane);
+                    let area = own * neighbor.slope;
+                    for i in 0..D {
+                        let arm = neighbor.separation[i] * area;
+                        for j in i..D {
+                            sums[i][j][lane] -= arm * neighbor.separation[j];
+                        }
+                    }
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// The correction with these sums.
+#[inline(never)]
+fn correction<const D: usize>(sums: &[[Lanes; D]; D]) -> Tensor<D> {
+    let sum = Tensor::<D>::from_fn(|i, j| total(sums[i.min(j)][i.max(j)]));
+    match tensor::smallest_eigenvalue(&sum) > LEAST {
+        true => tensor::inverse(&sum).unwrap_or_else(Tensor::identity),
+        false => Tensor::identity(),
+    }
+}
+
+/// Fills some rows.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn fill<const D: usize>(scheme: &TransportVelocity<D>, first: usize, rows: &mut [Tensor<D>]) {
+    let mut block = NeighborBlock::default();
+    for (offset, row) in rows.iter_mut().enumerate() {
+        let place = first + offset;
+        *row = match scheme.support.list().is_passive(place) {
+            true => Tensor::identity(),
+            false => correction(&scheme.gather_moments(place, &mut block)),
+        };
     }
 }

@@ -9,6 +9,13 @@ use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, all_of, tot
 use crate::parallel;
 use crate::schemes::transport_velocity::{Forces, Shifting, Side, TransportVelocity};
 
+/// What a loop is made for: bodies that see each other as one, or one alone;
+const ONE: u8 = 0;
+/// bodies that push each other by their pressures;
+const PUSH: u8 = 1;
+/// or by springs.
+const SPRINGS: u8 = 2;
+
 /// Constants of one pass.
 struct Constants {
     softening: f64,
@@ -16,8 +23,6 @@ struct Constants {
     artificial: f64,
     /// What of it there is between bodies.
     artificial_apart: f64,
-    /// 1 where bodies push each other by their pressures.
-    repulsive: f64,
     /// Stiffness of the springs between bodies in units of their bulk moduli, and how long they are in m.
     penalty: f64,
     spacing: f64,
@@ -61,7 +66,6 @@ impl<const D: usize> TransportVelocity<D> {
                 Contact::Penalty { .. } => 0.0,
                 _ => artificial,
             },
-            repulsive: if solids.contact == Contact::Repulsive { 1.0 } else { 0.0 },
             penalty: match solids.contact {
                 Contact::Penalty { stiffness } => stiffness * spacing.powi(D as i32 - 2),
                 _ => 0.0,
@@ -69,7 +73,20 @@ impl<const D: usize> TransportVelocity<D> {
             spacing,
             crowding,
         };
-        let fill = if solids.several { fill::<D, true> } else { fill::<D, false> };
+        let contact = match (solids.several, solids.contact) {
+            (false, _) | (_, Contact::Full) => ONE,
+            (true, Contact::Repulsive) => PUSH,
+            (true, Contact::Penalty { .. }) => SPRINGS,
+        };
+        let is_plain = solids.corrections.is_empty() && solids.is_uniform();
+        let fill = match (is_plain, contact) {
+            (true, ONE) => fill::<D, true, ONE>,
+            (true, PUSH) => fill::<D, true, PUSH>,
+            (true, _) => fill::<D, true, SPRINGS>,
+            (false, ONE) => fill::<D, false, ONE>,
+            (false, PUSH) => fill::<D, false, PUSH>,
+            (false, _) => fill::<D, false, SPRINGS>,
+        };
         let mut forces = std::mem::take(&mut self.forces);
         parallel::for_each_chunk(&mut forces, |first, rows| fill(self, &constants, first, rows));
         self.forces = forces;
@@ -81,7 +98,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The sums of the particle at `place`.
     #[inline(always)]
-    fn gather_stresses<const SEVERAL: bool>(
+    fn gather_stresses<const PLAIN: bool, const CONTACT: u8>(
         &self,
         solids: &Solids<D>,
         place: usize,
@@ -106,16 +123,15 @@ impl<const D: usize> TransportVelocity<D> {
                 let tensions = all_of(&solids.tensions, group.places);
                 let continua = all_of(&self.continuum, group.places);
                 for lane in 0..LANES {
-                    let own = match SEVERAL {
-                        true if *continua[lane] != continuum => 0.0,
-                        _ => 1.0,
-                    };
+                    let is_own = CONTACT == ONE || *continua[lane] == continuum;
+                    let own = if is_own { 1.0 } else { 0.0 };
                     let other = End { side: sides[lane], tension: tensions[lane] };
                     let neighbor = group.neighbor(lane);
-                    sums.add_stress(lane, me, other, own, &neighbor);
-                    sums.add_artificial(lane, me, other, own, &neighbor, constants);
-                    if SEVERAL {
-                        sums.add_contact(lane, me, other, 1.0 - own, &neighbor, constants);
+                    sums.add_stress::<PLAIN>(lane, me, other, own, &neighbor);
+                    sums.add_artificial::<PLAIN>(lane, me, other, own, &neighbor, constants);
+                    if CONTACT != ONE {
+                        let apart = 1.0 - own;
+                        sums.add_contact::<CONTACT>(lane, me, other, apart, &neighbor, constants);
                     }
                     sums.crowd(lane, other.side.volume * own, &neighbor, constants);
                 }
@@ -129,7 +145,7 @@ impl<const D: usize> TransportVelocity<D> {
                 for lane in 0..LANES {
                     let other = End { side: sides[lane], tension: tensions[lane] };
                     let neighbor = group.neighbor(lane);
-                    let force = pull(me, other, &neighbor);
+                    let force = pull::<D, PLAIN>(me, other, &neighbor);
                     for (sum, force) in sums.walls.iter_mut().zip(force) {
                         sum[lane] += force;
                     }
@@ -152,7 +168,7 @@ impl<const D: usize> TransportVelocity<D> {
         while self.support.fill(&mut rest, Needs::Slope, block) {
             for neighbor in block.iter() {
                 let other = self.end(solids, neighbor.place);
-                sum += Vector::from(pull(me, other, &neighbor));
+                sum += Vector::from(pull::<D, false>(me, other, &neighbor));
             }
         }
         Forces { walls: sum * me.tension.share, ..Forces::default() }
@@ -161,24 +177,32 @@ impl<const D: usize> TransportVelocity<D> {
 
 /// `m_b (sigma_a/rho_a^2 + sigma_b/rho_b^2) . grad W_ab`, with corrected gradients
 /// `V_b (sigma_a L_a + sigma_b L_b) . grad W_ab`.
+///
+/// What is `PLAIN` has no corrections and is symmetric: each number less to collect from neighbours
+/// counts.
 #[inline(always)]
-fn pull<const D: usize>(me: End<'_, D>, other: End<'_, D>, neighbor: &Neighbor<D>) -> [f64; D] {
-    let weight = other.tension.weight * neighbor.slope;
+fn pull<const D: usize, const PLAIN: bool>(
+    me: End<'_, D>,
+    other: End<'_, D>,
+    neighbor: &Neighbor<D>,
+) -> [f64; D] {
+    let weight = if PLAIN { other.side.mass() } else { other.tension.weight };
     let mut force = [0.0; D];
     for (i, force) in force.iter_mut().enumerate() {
         let mut sum = 0.0;
         for j in 0..D {
-            let tensor = me.tension.tensor[i][j] + other.tension.tensor[i][j];
+            let (row, column) = if PLAIN { (i.min(j), i.max(j)) } else { (i, j) };
+            let tensor = me.tension.tensor[row][column] + other.tension.tensor[row][column];
             sum += tensor * neighbor.separation[j];
         }
-        *force = sum * weight;
+        *force = sum * (weight * neighbor.slope);
     }
     force
 }
 
 impl<const D: usize> Sums<Lanes, D> {
     #[inline(always)]
-    fn add_stress(
+    fn add_stress<const PLAIN: bool>(
         &mut self,
         lane: usize,
         me: End<'_, D>,
@@ -186,15 +210,16 @@ impl<const D: usize> Sums<Lanes, D> {
         own: f64,
         neighbor: &Neighbor<D>,
     ) {
-        let force = pull(me, other, neighbor);
+        let force = pull::<D, PLAIN>(me, other, neighbor);
         for (sum, force) in self.stress.iter_mut().zip(force) {
             sum[lane] += force * own;
         }
     }
 
-    /// Adds the artificial viscosity, CTVF (28), which pushes.
+    /// Adds the artificial viscosity, CTVF (28), which pushes. In what is `PLAIN` waves are as fast
+    /// everywhere.
     #[inline(always)]
-    fn add_artificial(
+    fn add_artificial<const PLAIN: bool>(
         &mut self,
         lane: usize,
         me: End<'_, D>,
@@ -208,7 +233,10 @@ impl<const D: usize> Sums<Lanes, D> {
         let densities = me.side.density + other.side.density;
         let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
         let alpha = own * constants.artificial + (1.0 - own) * constants.artificial_apart;
-        let speed = 0.5 * (me.tension.wave_speed + other.tension.wave_speed);
+        let speed = match PLAIN {
+            true => me.tension.wave_speed,
+            false => 0.5 * (me.tension.wave_speed + other.tension.wave_speed),
+        };
         let artificial = fluid::artificial_viscosity(alpha * speed, approach, scale);
         let push = artificial * other.side.mass() * neighbor.slope;
         for i in 0..D {
@@ -218,7 +246,7 @@ impl<const D: usize> Sums<Lanes, D> {
 
     /// Adds what bodies that are apart do to each other.
     #[inline(always)]
-    fn add_contact(
+    fn add_contact<const CONTACT: u8>(
         &mut self,
         lane: usize,
         me: End<'_, D>,
@@ -227,13 +255,19 @@ impl<const D: usize> Sums<Lanes, D> {
         neighbor: &Neighbor<D>,
         constants: &Constants,
     ) {
-        let load = (me.side.load + other.side.load).max(0.0) * constants.repulsive;
-        let (one, two) = (me.tension.stiffness, other.tension.stiffness);
-        let distance = neighbor.square.sqrt();
-        let overlap = (constants.spacing - distance).max(0.0);
-        let spring = constants.penalty * (2.0 * one * two / (one + two)) * overlap;
-        let push =
-            spring / distance.max(f64::MIN_POSITIVE) - load * other.side.mass() * neighbor.slope;
+        let push = match CONTACT {
+            SPRINGS => {
+                let (one, two) = (me.tension.stiffness, other.tension.stiffness);
+                let distance = neighbor.square.sqrt();
+                let overlap = (constants.spacing - distance).max(0.0);
+                let spring = constants.penalty * (2.0 * one * two / (one + two)) * overlap;
+                spring / distance.max(f64::MIN_POSITIVE)
+            }
+            _ => {
+                let load = (me.side.load + other.side.load).max(0.0);
+                -load * other.side.mass() * neighbor.slope
+            }
+        };
         for i in 0..D {
             self.contact[i][lane] += neighbor.separation[i] * (push * apart);
         }
@@ -267,7 +301,7 @@ impl<const D: usize> Sums<Lanes, D> {
 
 /// Fills some rows.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn fill<const D: usize, const SEVERAL: bool>(
+fn fill<const D: usize, const PLAIN: bool, const CONTACT: u8>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
     first: usize,
@@ -281,7 +315,8 @@ fn fill<const D: usize, const SEVERAL: bool>(
             *row = scheme.reaction_of_solids(solids, place, &mut block);
             continue;
         }
-        let sums = scheme.gather_stresses::<SEVERAL>(solids, place, constants, &mut block).total();
+        let sums = scheme.gather_stresses::<PLAIN, CONTACT>(solids, place, constants, &mut block);
+        let sums = sums.total();
         let (side, share) = (&scheme.sides[place], solids.tensions[place].share);
         let contact = if constants.penalty > 0.0 { 1.0 / side.mass() } else { 1.0 };
         *row = Forces {

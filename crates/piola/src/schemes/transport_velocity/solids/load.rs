@@ -2,7 +2,7 @@
 
 use piola_formulas::hypoelastic::von_mises;
 
-use super::{ENERGY, MATTER, TEMPERATURE, Tension, WALL, entry, full};
+use super::{ENERGY, MATTER, TEMPERATURE, WALL, entry, full};
 use crate::parallel;
 use crate::schemes::transport_velocity::{PressureRule, Row, Side, TransportVelocity};
 use crate::{Tensor, Vector};
@@ -16,6 +16,14 @@ impl<const D: usize> TransportVelocity<D> {
         parallel::for_each_chunk(&mut solids.matter, |first, places| {
             for (matter, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
                 matter.copy_from_slice(&rows[number as usize * MATTER..][..MATTER]);
+            }
+        });
+        let (materials, bodies) = (&solids.materials, &self.particles.body);
+        parallel::for_each_chunk(&mut solids.tensions, |first, places| {
+            for (tension, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
+                let material = &materials[bodies[number as usize] as usize];
+                tension.wave_speed = material.state.wave_speed;
+                tension.stiffness = material.bulk_modulus();
             }
         });
         let several = solids.several;
@@ -72,14 +80,12 @@ impl<const D: usize> TransportVelocity<D> {
     /// Fills the stresses that forces gather, of solids and walls.
     pub(in super::super) fn tension_pass(&mut self) {
         let Some(solids) = &mut self.solids else { return };
-        let (list, sides, bodies) = (self.support.list(), &self.sides, &self.particles.body);
-        let (matter, materials) = (&solids.matter, &solids.materials);
+        let (sides, matter) = (&self.sides, &solids.matter);
         let corrections = &solids.corrections;
         parallel::for_each_chunk(&mut solids.tensions, |first, rows| {
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 let (side, matter) = (&sides[place], &matter[place]);
-                let material = &materials[bodies[list.numbers()[place] as usize] as usize];
                 let stress = Tensor::<D>::from_fn(|i, j| {
                     matter[entry(i, j)] - if i == j { side.pressure } else { 0.0 }
                 });
@@ -87,13 +93,8 @@ impl<const D: usize> TransportVelocity<D> {
                     Some(correction) => (stress * correction, side.volume, 1.0 / side.density),
                     None => (stress / (side.density * side.density), side.mass(), 1.0),
                 };
-                *row = Tension {
-                    tensor: std::array::from_fn(|i| std::array::from_fn(|j| tensor[(i, j)])),
-                    weight,
-                    share,
-                    wave_speed: material.state.wave_speed,
-                    stiffness: material.bulk_modulus(),
-                };
+                row.tensor = std::array::from_fn(|i| std::array::from_fn(|j| tensor[(i, j)]));
+                (row.weight, row.share) = (weight, share);
             }
         });
     }
@@ -126,15 +127,6 @@ impl<const D: usize> TransportVelocity<D> {
                 super::store(&(mirror * full(deviator) * mirror), stored);
             }
         }
-    }
-
-    /// The specific energies of compression and shear of a solid (number) in J/kg.
-    pub(in super::super) fn specific_energies(&self, number: usize, state: &[f64]) -> [f64; 2] {
-        let Some(solid) = self.solid(number) else { return [0.0; 2] };
-        let density = Row::<D>::of(state, number)[Row::<D>::DENSITY];
-        let matter = self.matter_of(number, state);
-        let shear = von_mises(&full(matter)).powi(2) / (6.0 * solid.shear_modulus * density);
-        [solid.state.compression_energy(density, matter[ENERGY]), shear]
     }
 
     /// The matter of a particle (number) in a state of solids.

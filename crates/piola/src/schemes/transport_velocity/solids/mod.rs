@@ -105,6 +105,9 @@ pub(super) type Matter = [f64; MATTER];
 
 /// Numbers of [`Matter`].
 pub(super) const MATTER: usize = 9;
+const ZZ: usize = 2;
+const YZ: usize = 3;
+const XZ: usize = 4;
 const PLASTIC: usize = 6;
 const TEMPERATURE: usize = 7;
 const ENERGY: usize = 8;
@@ -181,6 +184,20 @@ impl<const D: usize> Solids<D> {
         })
     }
 
+    /// Whether bulk waves are as fast in all solids.
+    fn is_uniform(&self) -> bool {
+        let speeds = || self.materials.iter().map(|solid| solid.state.wave_speed);
+        speeds().all(|speed| speeds().next() == Some(speed))
+    }
+
+    /// Whether no solid flows or heats up.
+    fn is_elastic(&self) -> bool {
+        let is_elastic = |solid: &Solid| {
+            solid.strength == Strength::Elastic && !solid.state.is_caloric()
+        };
+        self.materials.iter().all(is_elastic)
+    }
+
     /// Density at the start of a body in kg/m^3: without pressure.
     pub fn density(&self, body: u32) -> f64 {
         self.materials[body as usize].state.density
@@ -206,6 +223,11 @@ impl<const D: usize> TransportVelocity<D> {
             return true;
         }
         self.continuum[other] == self.continuum[place] || self.continuum[other] == WALL
+    }
+
+    /// Whether all particles belong to the same continuum.
+    pub(super) fn is_one_continuum(&self) -> bool {
+        self.solids.as_ref().is_none_or(|solids| !solids.several)
     }
 
     /// The solid that a particle (number) is of, if it is one.

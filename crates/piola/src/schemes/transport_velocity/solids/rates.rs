@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 use piola_formulas::fluid;
 
-use super::{Contact, MATTER, Matter, Solids, Tension, WALL};
+use super::{Contact, MATTER, Matter, PLASTIC, Solids, Tension, WALL, XZ, YZ, ZZ};
 use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, all_of, total};
 use crate::schemes::transport_velocity::{
     Divergence, PressureRule, Rates, Side, TransportVelocity,
@@ -25,6 +25,24 @@ pub struct SolidRates<const D: usize> {
 impl<const D: usize> Default for SolidRates<D> {
     fn default() -> Self {
         Self { gradient: Tensor::zeros(), transport: [0.0; MATTER], heating: 0.0 }
+    }
+}
+
+/// What a loop is made for: one elastic body whose pressure follows its density,
+const ALONE: u8 = 0;
+/// several of them,
+const ELASTIC: u8 = 1;
+/// or any solids, with what flows, heats and diffuses.
+const ANY: u8 = 2;
+
+/// Whether a loop carries an entry of [`Matter`]: in 1D and 2D there is no shear across, what is
+/// elastic carries nothing but its stress, and zz is what makes the trace of that zero.
+const fn is_carried(dimension: usize, kind: u8, entry: usize) -> bool {
+    match entry {
+        PLASTIC.. => kind == ANY,
+        ZZ => false,
+        YZ | XZ => dimension == 3,
+        _ => true,
     }
 }
 
@@ -67,9 +85,10 @@ struct Other<'a, const D: usize> {
 impl<const D: usize> TransportVelocity<D> {
     /// Fills the rates of solids from what has been loaded.
     pub(in super::super) fn solid_rate_pass(&mut self) {
-        self.tension_pass();
         let Some(solids) = &mut self.solids else { return };
-        let (mut rates, couples) = (std::mem::take(&mut solids.rates), solids.contact);
+        let mut rates = std::mem::take(&mut solids.rates);
+        let (couples, is_elastic) = (solids.contact, solids.is_elastic());
+        let several = solids.several;
         let mut common = std::mem::take(&mut self.rates);
         let (h, corrections) = (self.support.smoothing_length(), self.settings.corrections);
         let one_if = |is_on: bool| f64::from(u8::from(is_on));
@@ -86,10 +105,17 @@ impl<const D: usize> TransportVelocity<D> {
             pressure: one_if(corrections.pressure),
         };
         let carries = corrections.density || corrections.pressure;
-        let fill = if carries { fill::<D, true> } else { fill::<D, false> };
-        parallel::maximum_of_chunks(&mut rates, &mut common, 0.0, |first, rates, common| {
+        let is_plain = is_elastic && self.settings.pressure == PressureRule::StateEquation;
+        let fill = match (is_plain, several, carries) {
+            (true, false, false) => fill::<D, ALONE, false>,
+            (true, false, true) => fill::<D, ALONE, true>,
+            (true, true, false) => fill::<D, ELASTIC, false>,
+            (true, true, true) => fill::<D, ELASTIC, true>,
+            (false, _, false) => fill::<D, ANY, false>,
+            (false, _, true) => fill::<D, ANY, true>,
+        };
+        parallel::for_each_pair_of_chunks(&mut rates, &mut common, |first, rates, common| {
             fill(self, &constants, first, rates, common);
-            0.0
         });
         self.rates = common;
         if let Some(solids) = &mut self.solids {
@@ -99,7 +125,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The sums of the particle at `place`.
     #[inline(always)]
-    fn gather_gradients<const CARRIES: bool>(
+    fn gather_gradients<const KIND: u8, const CARRIES: bool>(
         &self,
         solids: &Solids<D>,
         place: usize,
@@ -127,15 +153,20 @@ impl<const D: usize> TransportVelocity<D> {
                 let tensions: [&Tension<D>; LANES] = all_of(&solids.tensions, group.places);
                 let continua = all_of(&self.continuum, group.places);
                 for lane in 0..LANES {
-                    let is_own = *continua[lane] == continuum || *continua[lane] == WALL;
+                    let is_own = KIND == ALONE
+                        || *continua[lane] == continuum
+                        || *continua[lane] == WALL;
                     let other = Other {
                         side: sides[lane],
                         matter: matters[lane],
-                        wave_speed: 0.5 * (speed + tensions[lane].wave_speed),
+                        wave_speed: match KIND {
+                            ANY => 0.5 * (speed + tensions[lane].wave_speed),
+                            _ => 0.0,
+                        },
                         own: if is_own { 1.0 } else { 0.0 },
                     };
                     let neighbor = group.neighbor(lane);
-                    sums.add::<CARRIES>(lane, (me, matter), &other, &neighbor, constants);
+                    sums.add::<KIND, CARRIES>(lane, (me, matter), &other, &neighbor, constants);
                 }
             }
         }
@@ -144,7 +175,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The rates of a particle with these sums.
     #[inline(never)]
-    fn solid_rates_of(
+    fn solid_rates_of<const KIND: u8, const CARRIES: bool>(
         &self,
         solids: &Solids<D>,
         place: usize,
@@ -156,16 +187,29 @@ impl<const D: usize> TransportVelocity<D> {
             Some(correction) => raw * correction,
             None => raw,
         };
+        let mut transport = [0.0; MATTER];
+        for (k, transport) in transport.iter_mut().enumerate() {
+            if CARRIES && is_carried(D, KIND, k) {
+                *transport = total(sums.carried[k]);
+            }
+        }
+        transport[ZZ] = -transport[0] - transport[1];
         let rates = SolidRates {
             gradient,
-            transport: sums.carried.map(total),
-            heating: total(sums.heating),
+            transport,
+            heating: if KIND == ANY { total(sums.heating) } else { 0.0 },
         };
         let common = Rates {
-            divergence: gradient.trace() + constants.couples * total(sums.contact),
+            divergence: match KIND {
+                ALONE => gradient.trace(),
+                _ => gradient.trace() + constants.couples * total(sums.contact),
+            },
             density_transport: constants.density * total(sums.density),
-            pressure_transport: constants.pressure * total(sums.pressure),
-            pressure_diffusion: total(sums.diffusion),
+            pressure_transport: match KIND {
+                ANY => constants.pressure * total(sums.pressure),
+                _ => 0.0,
+            },
+            pressure_diffusion: if KIND == ANY { total(sums.diffusion) } else { 0.0 },
         };
         (rates, common)
     }
@@ -174,7 +218,7 @@ impl<const D: usize> TransportVelocity<D> {
 impl<const D: usize> Sums<D> {
     /// Adds the terms of one neighbour to those of its lane.
     #[inline(always)]
-    fn add<const CARRIES: bool>(
+    fn add<const KIND: u8, const CARRIES: bool>(
         &mut self,
         lane: usize,
         (me, matter): (&Side<D>, &Matter),
@@ -186,29 +230,37 @@ impl<const D: usize> Sums<D> {
         let area = side.volume * neighbor.slope;
         let own = area * other.own;
         let jump = me.velocity - side.velocity;
-        let approach = jump.dot(&neighbor.separation);
         let flow = jump + (me.deviation - side.deviation) * constants.moves;
         for i in 0..D {
             for j in 0..D {
                 self.gradient[i][j][lane] -= flow[i] * neighbor.separation[j] * own;
             }
         }
-        self.contact[lane] -= approach * (area - own);
-        let scale =
-            fluid::exchange_scale(me.density + side.density, neighbor.square, constants.softening);
-        let slope = side.mass() * neighbor.slope;
-        let strength = constants.artificial * other.wave_speed;
-        let artificial = fluid::artificial_viscosity(strength, approach, scale);
-        self.heating[lane] += 0.5 * artificial * approach * slope;
-        let diffusivity = constants.diffusion * other.wave_speed * other.own;
-        let exchange = fluid::diffusion(1.0, neighbor.square, slope, scale) * diffusivity;
-        self.diffusion[lane] -= exchange * (side.pressure - me.pressure);
+        let approach = jump.dot(&neighbor.separation);
+        if KIND != ALONE {
+            self.contact[lane] -= approach * (area - own);
+        }
+        if KIND == ANY {
+            let densities = me.density + side.density;
+            let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
+            let slope = side.mass() * neighbor.slope;
+            let strength = constants.artificial * other.wave_speed;
+            let artificial = fluid::artificial_viscosity(strength, approach, scale);
+            self.heating[lane] += 0.5 * artificial * approach * slope;
+            let diffusivity = constants.diffusion * other.wave_speed * other.own;
+            let exchange = fluid::diffusion(1.0, neighbor.square, slope, scale) * diffusivity;
+            self.diffusion[lane] -= exchange * (side.pressure - me.pressure);
+        }
         if CARRIES {
             let carried = side.deviation.dot(&neighbor.separation) * own;
             self.density[lane] += carried * (side.density - me.density);
-            self.pressure[lane] += carried * (side.pressure - me.pressure);
+            if KIND == ANY {
+                self.pressure[lane] += carried * (side.pressure - me.pressure);
+            }
             for (k, sum) in self.carried.iter_mut().enumerate() {
-                sum[lane] += carried * (other.matter[k] - matter[k]);
+                if is_carried(D, KIND, k) {
+                    sum[lane] += carried * (other.matter[k] - matter[k]);
+                }
             }
         }
     }
@@ -216,7 +268,7 @@ impl<const D: usize> Sums<D> {
 
 /// Fills some rows, with or without the transport terms.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn fill<const D: usize, const CARRIES: bool>(
+fn fill<const D: usize, const KIND: u8, const CARRIES: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
     first: usize,
@@ -228,8 +280,10 @@ fn fill<const D: usize, const CARRIES: bool>(
     for (offset, (rates, common)) in rates.iter_mut().zip(common).enumerate() {
         let place = first + offset;
         if !scheme.support.list().is_passive(place) {
-            let sums = scheme.gather_gradients::<CARRIES>(solids, place, constants, &mut block);
-            (*rates, *common) = scheme.solid_rates_of(solids, place, constants, &sums);
+            let sums =
+                scheme.gather_gradients::<KIND, CARRIES>(solids, place, constants, &mut block);
+            (*rates, *common) =
+                scheme.solid_rates_of::<KIND, CARRIES>(solids, place, constants, &sums);
         }
     }
 }
