@@ -165,7 +165,9 @@ fn main() {
         .map(|size| size as usize)
         .collect();
     let sizes = if given.is_empty() { vec![10_000, 100_000] } else { given };
-    println!("| D | threads | particles | neighbours | kernel | setting | M steps/s | ns/particle |");
+    println!(
+        "| D | threads | particles | neighbours | kernel | setting | M steps/s | ns/particle |"
+    );
     println!("|--:|--:|--:|--:|:--|:--|--:|--:|");
     let names = SETTINGS.iter().any(|setting| has(setting.name));
     let threads: &[usize] = if has("serial") { &[1] } else { &[1, 2] };

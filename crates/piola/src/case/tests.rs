@@ -140,8 +140,10 @@ fn reads_observers() {
         fields.iter().map(|field| field.name).collect::<Vec<_>>(),
         ["displacement", "pressure"]
     );
-    let ProbeKind::Extremum { field, of, region } = &toe.kind else { panic!("an extremum") };
-    assert_eq!((field.name(2).as_str(), *of), ("position.x", Extremum::Largest));
+    let ProbeKind::Extremum { field, of, region, inside } = &toe.kind else {
+        panic!("an extremum")
+    };
+    assert_eq!((field.name(2).as_str(), *of, inside), ("position.x", Extremum::Largest, &None));
     assert_eq!((field.value.value(&[4.0, 9.0]), region.value.clone()), (4.0, Region::All));
     assert_eq!((case.output.every.value, case.output.table_every.value), (0.1, 0.01));
     assert_eq!(case.output.fields.len(), 2);

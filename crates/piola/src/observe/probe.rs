@@ -1,5 +1,7 @@
 //! Numbers of chosen particles against time.
 
+use std::borrow::Cow;
+
 use super::comparison::Deviation;
 use super::interpolation::Interpolated;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
@@ -33,6 +35,9 @@ pub enum ProbeKind {
         largest: bool,
         /// Their indices in memory, at least one.
         particles: Vec<u32>,
+        /// Lower and upper corner in m of a box outside of which they do not count, where they are
+        /// at the time.
+        inside: Option<[Vec<f64>; 2]>,
     },
     /// The sum of a field over a set of particles, with all its components.
     Sum {
@@ -106,16 +111,18 @@ impl Probe {
                     scheme.sample(time, state, field.name, &[*particle], row);
                 }
             }
-            ProbeKind::Extremum { field, largest, particles } => {
+            ProbeKind::Extremum { field, largest, particles, inside } => {
+                let counted = match inside {
+                    None => Cow::Borrowed(particles),
+                    Some(corners) => Cow::Owned(within(corners, particles, scheme, time, state)),
+                };
                 scratch.clear();
-                scheme.sample(time, state, field.field.name, particles, scratch);
+                scheme.sample(time, state, field.field.name, &counted, scratch);
                 let components = field.field.kind.components(scheme.dimension());
                 let values = scratch.chunks_exact(components).map(|value| field.value(value));
-                row.push(if *largest {
-                    values.fold(f64::NEG_INFINITY, f64::max)
-                } else {
-                    values.fold(f64::INFINITY, f64::min)
-                });
+                let extremum =
+                    if *largest { values.reduce(f64::max) } else { values.reduce(f64::min) };
+                row.push(extremum.unwrap_or(f64::NAN));
             }
             ProbeKind::Sum { field, particles } => {
                 scratch.clear();
@@ -140,6 +147,23 @@ impl Probe {
             }
         }
     }
+}
+
+/// Those of some particles that are in a box at a time.
+fn within(
+    [lower, upper]: &[Vec<f64>; 2],
+    particles: &[u32],
+    scheme: &mut dyn Scheme,
+    time: f64,
+    state: &[f64],
+) -> Vec<u32> {
+    let mut places = Vec::new();
+    scheme.sample(time, state, "position", particles, &mut places);
+    let is_inside = |place: &[f64]| {
+        place.iter().zip(lower.iter().zip(upper)).all(|(x, (low, high))| low <= x && x <= high)
+    };
+    let of_particles = places.chunks_exact(scheme.dimension()).zip(particles);
+    of_particles.filter(|(place, _)| is_inside(place)).map(|(_, particle)| *particle).collect()
 }
 
 /// A column for each component of each field, with names that start with that of a probe.

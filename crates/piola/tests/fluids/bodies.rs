@@ -101,6 +101,25 @@ fn bodies_that_collide_part_again_and_keep_momentum_and_the_balance_of_energy() 
     }
 }
 
+#[test]
+fn an_extremum_in_a_box_counts_what_is_in_it_at_the_time() {
+    let probe = |name: &str, min: [f64; 2], max: [f64; 2]| {
+        format!(
+            "[[probe]]\nname = \"{name}\"\nkind = \"extremum\"\nof = \"largest\"\n\
+             field = \"position.x\"\nbody = \"left\"\nmin = {min:?}\nmax = {max:?}\n\n[output]"
+        )
+    };
+    let text = DISCS.replace("[output]", &probe("front", [-1.2, -0.5], [-0.5, 0.5]));
+    let text = text.replace("[output]", &probe("nothing", [3.0, -0.5], [4.0, 0.5]));
+    let finished = run(&text, &["time.end=0.05"]);
+    let [all, front] = ["left", "front"].map(|name| values(&finished, &format!("{name}.position.x")));
+    // The disc moves by a spacing, through the face of the box: others become the first inside.
+    assert!(all[all.len() - 1] - all[0] > 0.05, "{all:?}");
+    assert!(front.iter().all(|x| (-0.6..=-0.5).contains(x)), "{front:?}");
+    assert!(front.windows(2).any(|pair| pair[1] < pair[0] - 0.05), "{front:?}");
+    assert!(values(&finished, "nothing.position.x").iter().all(|x| x.is_nan()));
+}
+
 fn bits(state: &[f64]) -> Vec<u64> {
     state.iter().map(|value| value.to_bits()).collect()
 }

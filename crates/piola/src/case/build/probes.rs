@@ -60,10 +60,11 @@ pub(super) fn probes<const D: usize>(
                     particles: select(case, particles, region, body, problems),
                 })
             }
-            model::ProbeKind::Extremum { field, of, region } => ProbeKind::Extremum {
+            model::ProbeKind::Extremum { field, of, region, inside } => ProbeKind::Extremum {
                 field: field.value,
                 largest: *of == model::Extremum::Largest,
                 particles: select(case, particles, region, body, problems),
+                inside: inside.clone(),
             },
         };
         probes.push(Probe { name: probe.name.value.clone(), kind });

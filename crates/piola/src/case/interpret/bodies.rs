@@ -124,7 +124,7 @@ impl Reader<'_, '_> {
         shapes.into_iter().collect()
     }
 
-    fn corners(&mut self, record: &Record) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub(super) fn corners(&mut self, record: &Record) -> Option<(Vec<f64>, Vec<f64>)> {
         let (min, max) = (record.numbers("min")?, record.numbers("max")?);
         let axis = min.iter().zip(max.iter()).position(|(min, max)| min >= max);
         if let Some(axis) = axis {

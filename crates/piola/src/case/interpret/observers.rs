@@ -51,11 +51,26 @@ impl Reader<'_, '_> {
                     "smallest" => Extremum::Smallest,
                     _ => Extremum::Largest,
                 };
-                ProbeKind::Extremum { field: field?, of, region: region? }
+                let inside = self.box_of(record);
+                ProbeKind::Extremum { field: field?, of, region: region?, inside: inside? }
             }
             _ => return None,
         };
         Some(Probe { name: record.text("name")?, body, kind })
+    }
+
+    /// The box that a probe may have.
+    fn box_of(&mut self, record: &Record) -> Option<Option<[Vec<f64>; 2]>> {
+        match (record.has("min"), record.has("max")) {
+            (false, false) => Some(None),
+            (true, true) => self.corners(record).map(|(min, max)| Some([min, max])),
+            (has_lower, _) => {
+                let (given, missing) = if has_lower { ("min", "max") } else { ("max", "min") };
+                let message = format!("a box has two corners, and `{missing}` is not given");
+                let problem = Problem::new(record.value_place(given), message, "one corner only");
+                self.refuse(problem.help(format!("give `{missing}`, or leave both away")))
+            }
+        }
     }
 
     /// Reports tests of tangents where no step has one.

@@ -34,6 +34,8 @@ pub enum ProbeKind {
         of: Extremum,
         /// The particles.
         region: Located<Region>,
+        /// Corners in m of a box outside of which they do not count, where they are at the time.
+        inside: Option<[Vec<f64>; 2]>,
     },
     /// The sum over a selection.
     Sum {

@@ -51,6 +51,21 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Default("{ kind = \"all\" }"),
                     "the particles, selected in the reference state",
                 ),
+                key(
+                    "min",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Optional,
+                    "lower corner of a box: of these particles only those that are in it at the time \
+                     count, and where none is there is no value",
+                ),
+                key(
+                    "max",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Optional,
+                    "upper corner of that box",
+                ),
             ],
         },
         KindSpec {

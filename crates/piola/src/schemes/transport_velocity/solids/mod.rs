@@ -192,9 +192,8 @@ impl<const D: usize> Solids<D> {
 
     /// Whether no solid flows or heats up.
     fn is_elastic(&self) -> bool {
-        let is_elastic = |solid: &Solid| {
-            solid.strength == Strength::Elastic && !solid.state.is_caloric()
-        };
+        let is_elastic =
+            |solid: &Solid| solid.strength == Strength::Elastic && !solid.state.is_caloric();
         self.materials.iter().all(is_elastic)
     }
 

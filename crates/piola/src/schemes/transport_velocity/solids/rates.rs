@@ -153,9 +153,8 @@ impl<const D: usize> TransportVelocity<D> {
                 let tensions: [&Tension<D>; LANES] = all_of(&solids.tensions, group.places);
                 let continua = all_of(&self.continuum, group.places);
                 for lane in 0..LANES {
-                    let is_own = KIND == ALONE
-                        || *continua[lane] == continuum
-                        || *continua[lane] == WALL;
+                    let is_own =
+                        KIND == ALONE || *continua[lane] == continuum || *continua[lane] == WALL;
                     let other = Other {
                         side: sides[lane],
                         matter: matters[lane],
