@@ -129,7 +129,8 @@ fn advanced(set: &[&str], steps: usize, every: usize) -> Vec<u64> {
 #[test]
 fn states_of_solids_are_all_that_steps_depend_on() {
     let corrected = "scheme.corrected_gradients=true";
-    for set in [&[][..], &[corrected], &["scheme.shifting='ipst'", corrected]] {
+    let gtvf = ["scheme.shifting='background'", "scheme.corrections='gtvf'"];
+    for set in [&[][..], &[corrected], &["scheme.shifting='ipst'", corrected], &gtvf] {
         assert!(advanced(set, 40, 7) == advanced(set, 40, 40), "{set:?}");
     }
 }

@@ -16,7 +16,7 @@ use super::support::{periodic, unit_box};
 
 const K: f64 = 2.0 * PI;
 
-const SETTINGS: Settings = Settings {
+pub const SETTINGS: Settings = Settings {
     density: DensityRule::Continuity,
     pressure: PressureRule::StateEquation,
     corrections: Corrections::FULL,
@@ -27,7 +27,7 @@ const SETTINGS: Settings = Settings {
     density_drift: 0.02,
 };
 
-const SOLID: Solid = Solid {
+pub const SOLID: Solid = Solid {
     state: EquationOfState { density: 2.0, wave_speed: 10.0, law: PressureLaw::Linear },
     shear_modulus: 60.0,
     strength: Strength::Elastic,
@@ -223,6 +223,16 @@ fn two_blocks<const D: usize>(
     corrected: bool,
     artificial_viscosity: f64,
 ) -> (TransportVelocity<D>, Vec<f64>, usize) {
+    let settings =
+        Settings { artificial_viscosity, free_surface: true, shifting: Shifting::None, ..SETTINGS };
+    two_blocks_with(contact, corrected, settings)
+}
+
+pub fn two_blocks_with<const D: usize>(
+    contact: Contact,
+    corrected: bool,
+    settings: Settings,
+) -> (TransportVelocity<D>, Vec<f64>, usize) {
     let mut particles = unit_box::<D>(if D == 3 { 8 } else { 16 }, 0.1, 7);
     for position in &mut particles.position {
         *position *= 0.5;
@@ -233,8 +243,6 @@ fn two_blocks<const D: usize>(
         particles.body[a] = u32::from(particles.position[a][0] > 0.25);
     }
     let count = particles.len();
-    let settings =
-        Settings { artificial_viscosity, free_surface: true, shifting: Shifting::None, ..SETTINGS };
     let scheme = build(particles, settings, contact, corrected);
     let mut state = scheme.initial_state();
     let start = state.len() - 9 * count;
