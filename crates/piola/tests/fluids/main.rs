@@ -1,7 +1,11 @@
 //! The transport-velocity formulation.
 
+mod background;
 mod bodies;
+mod clamps;
+mod edac;
 mod escapes;
+mod held;
 mod operators;
 mod runs;
 mod solids;

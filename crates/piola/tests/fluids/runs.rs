@@ -34,10 +34,11 @@ fn scheme(settings: Settings) -> TransportVelocity<2> {
 }
 
 const ITERATIVE: Shifting = Shifting::Iterative { tolerance: 1e-3, most_passes: 3 };
+const BACKGROUND: Shifting = Shifting::Background { most: 1.0 };
 
 #[test]
 fn results_do_not_depend_on_when_lists_were_made() {
-    for shifting in [SETTINGS.shifting, ITERATIVE] {
+    for shifting in [SETTINGS.shifting, ITERATIVE, BACKGROUND] {
         let settings = Settings { shifting, ..SETTINGS };
         let mut whole = scheme(settings);
         let start = whole.initial_state();
@@ -55,15 +56,17 @@ fn results_do_not_depend_on_when_lists_were_made() {
 
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
-    let with = |threads: usize| {
+    let with = |threads: usize, shifting: Shifting| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads can be started").install(|| {
-            let mut scheme = scheme(SETTINGS);
+            let mut scheme = scheme(Settings { shifting, ..SETTINGS });
             let start = scheme.initial_state();
             bits(&advance(&mut scheme, start, 0, 20))
         })
     };
-    assert_eq!(with(1), with(3));
+    for shifting in [SETTINGS.shifting, BACKGROUND] {
+        assert_eq!(with(1, shifting), with(3, shifting), "{shifting:?}");
+    }
 }
 
 #[test]
@@ -72,6 +75,7 @@ fn the_ledger_closes_for_every_choice() {
         SETTINGS,
         Settings { density: DensityRule::Continuity, artificial_viscosity: 0.2, ..SETTINGS },
         Settings { pressure: PressureRule::StateEquation, ..SETTINGS },
+        Settings { corrections: Corrections::GENERALISED, shifting: BACKGROUND, ..SETTINGS },
         Settings {
             density: DensityRule::Continuity,
             pressure: PressureRule::StateEquation,

@@ -5,8 +5,8 @@ use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
-    AtSurface, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting,
-    TransportVelocity, TransportVelocityInput,
+    AtSurface, Contact, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, Solid,
+    SolidsInput, TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::kernels::Kernel;
 use rand::{RngExt, SeedableRng};
@@ -75,4 +75,33 @@ pub fn fluid_in_box<const D: usize>(
         body_forces: Vec::new(),
     })
     .expect("the fluid can be built")
+}
+
+/// Solids at rest in the periodic unit box, a material a body, `h` of one spacing.
+pub fn solids_in_box<const D: usize>(
+    particles: Particles<D>,
+    settings: Settings,
+    materials: Vec<Solid>,
+) -> TransportVelocityInput<D> {
+    let count = particles.len();
+    TransportVelocityInput {
+        smoothing_length: particles.spacing[0],
+        faces: vec![Faces::default(); count],
+        particles,
+        domain: periodic(),
+        kernel: Kernel::QuinticSpline,
+        settings,
+        fluid: Fluid::of_solids(&materials),
+        solids: Some(SolidsInput {
+            materials,
+            contact: Contact::Repulsive,
+            corrected: false,
+            held: Vec::new(),
+        }),
+        initial: Initial { velocity: vec![Vector::zeros(); count], pressure: vec![0.0; count] },
+        walls: Vec::new(),
+        motion: Vec::new(),
+        sliding: Vec::new(),
+        body_forces: Vec::new(),
+    }
 }

@@ -42,14 +42,19 @@ impl Reader<'_, '_> {
         if !matches!(contact, Contact::Penalty { .. }) {
             self.meaningless(record, "contact_stiffness", "without `contact = \"penalty\"`");
         }
+        let most = record.number("background_pressure").map_or(1.0, |it| it.value);
         let shifting = match record.text("shifting")?.as_str() {
             "none" => Shifting::None,
+            "background" => Shifting::Background { most },
             "ipst" => Shifting::Iterative {
                 tolerance: record.number("shifting_tolerance")?.value,
                 most_passes: record.whole::<u32>("shifting_passes")?.value,
             },
             _ => Shifting::Sun { factor: record.number("shifting_factor")?.value },
         };
+        if !matches!(shifting, Shifting::Background { .. }) {
+            self.meaningless(record, "background_pressure", "without `shifting = \"background\"`");
+        }
         Some(TransportVelocity {
             kernel: record.text("kernel")?,
             smoothing_length: record.number("smoothing_length")?,

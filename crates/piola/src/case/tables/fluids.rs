@@ -85,6 +85,13 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "most passes of `ipst` a step",
         ),
         key(
+            "background_pressure",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Derived("1.0; for `background`"),
+            "largest background pressure of `background` in units of rho_0 c^2",
+        ),
+        key(
             "artificial_viscosity",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
@@ -150,10 +157,12 @@ const CORRECTIONS: Choices = choices(&[
     choice("none", "no term, the divergence is that of the velocity"),
     choice("transport_divergence", "no term, the divergence is that of the transport velocity"),
     choice("stress", "the stress of the momentum equation alone"),
+    choice("gtvf", "the stress, the divergence is that of the transport velocity"),
 ]);
 const SHIFTINGS: Choices = choices(&[
     choice("spst", "by a velocity deviation, CTVF (35)"),
     choice("ipst", "by an iterated displacement, CTVF (37) to (41)"),
+    choice("background", "by the push of a background pressure that goes with the pressure, GTVF"),
     choice("none", "not at all"),
 ]);
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::{
     ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PLASTICITY, PRESSURE, PRESSURE_DIFFUSION,
-    REMOVED, Row, TRANSPORT, TransportVelocity,
+    REMOVED, Row, TRANSPORT, TransportVelocity, WALLS,
 };
 use crate::schemes::momentum::{self, MOST_COMPONENTS};
 use crate::schemes::momentum_components;
@@ -71,6 +71,19 @@ impl Tail {
         let last = (IMPULSES.len() - 1) * self.components;
         momentum::add_moments(position, &-momentum, &mut tail[self.impulses()][last..]);
     }
+
+    /// Books the `energy` in J and the momentum `momentum` at `position` that it takes to set a velocity:
+    /// walls bring them.
+    pub fn book_setting<const D: usize>(
+        &self,
+        energy: f64,
+        position: &Vector<D>,
+        momentum: &Vector<D>,
+        tail: &mut [f64],
+    ) {
+        tail[WALLS] += energy;
+        momentum::add_moments(position, momentum, &mut tail[self.impulses()][..self.components]);
+    }
 }
 
 impl<const D: usize> TransportVelocity<D> {
@@ -116,7 +129,8 @@ impl<const D: usize> TransportVelocity<D> {
     /// Books a kick of `duration` s in the tail of a state.
     pub(super) fn book_kick(duration: f64, tail: &mut [f64]) {
         let layout = Tail::new(D);
-        let (booked, kick) = tail.split_at_mut(layout.kick().start);
+        // What stands behind, passes and the matter of solids, is no force.
+        let (booked, kick) = tail[..layout.kick().end].split_at_mut(layout.kick().start);
         let (powers, rest) = kick.split_at_mut(ACCELERATING);
         let (squares, forces) = rest.split_at_mut(ACCELERATING);
         for ((power, square), work) in powers.iter_mut().zip(squares).zip(&mut *booked) {

@@ -139,6 +139,7 @@ const IMPULSES: [&str; 5] = ["walls", "body_force", "viscosity", "corrections", 
 
 const PRESSURE: usize = 0;
 const TRANSPORT: usize = 3;
+const WALLS: usize = 4;
 const PRESSURE_DIFFUSION: usize = 6;
 const REMOVED: usize = 7;
 const PLASTICITY: usize = 8;

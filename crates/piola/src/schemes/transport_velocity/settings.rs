@@ -23,7 +23,7 @@ pub enum PressureRule {
     StateEquation,
 }
 
-/// The velocity in the divergences of continuity and pressure.
+/// The velocity in the divergences of continuity and pressure, and in the velocity gradients of solids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Divergence {
     /// The momentum velocity u.
@@ -83,16 +83,19 @@ impl Corrections {
     };
     /// No term, uhat in the divergences: the baseline against which the paper's gain shows.
     pub const TRANSPORT_DIVERGENCE: Self = Self { divergence: Divergence::Transport, ..Self::NONE };
+    /// The velocity uhat in the divergences, and the stress: GTVF. Solids have no such stress.
+    pub const GENERALISED: Self = Self { stress: true, ..Self::TRANSPORT_DIVERGENCE };
     /// The stress alone, which is what earlier transport-velocity formulations have.
     pub const STRESS: Self = Self { stress: true, ..Self::NONE };
 
     /// The sets of corrections by their names in a case file.
-    pub const ALL: [(&'static str, Self); 5] = [
+    pub const ALL: [(&'static str, Self); 6] = [
         ("full", Self::FULL),
         ("paper", Self::PAPER),
         ("none", Self::NONE),
         ("transport_divergence", Self::TRANSPORT_DIVERGENCE),
         ("stress", Self::STRESS),
+        ("gtvf", Self::GENERALISED),
     ];
 
     /// The corrections of a name.
@@ -117,6 +120,12 @@ pub enum Shifting {
         tolerance: f64,
         /// Most passes a step.
         most_passes: u32,
+    },
+    /// GTVF: the push of a background pressure that goes with the size of a particle's own,
+    /// theory (78).
+    Background {
+        /// The largest one, in units of `rho_0 c^2`.
+        most: f64,
     },
 }
 

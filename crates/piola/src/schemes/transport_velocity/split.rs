@@ -26,6 +26,7 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
             self.iterate_positions(step, state);
         }
         self.load(state);
+        self.push_apart(step, state);
         self.correct_gradients();
         self.wall_pass(middle);
         if self.solids.is_some() {

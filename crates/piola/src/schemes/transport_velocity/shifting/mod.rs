@@ -1,5 +1,7 @@
-//! How particles are kept evenly spread: a velocity deviation, or an iterated displacement.
+//! How particles are kept evenly spread: a velocity deviation, an iterated displacement, or the push of
+//! a background pressure.
 
+mod background;
 mod iterative;
 mod sun;
 

@@ -1,14 +1,27 @@
 //! Particles of solids that move as prescribed.
 
 use super::Solids;
+use crate::Vector;
+use crate::schemes::transport_velocity::ledger::Tail;
 use crate::schemes::transport_velocity::{Row, TransportVelocity};
 
 impl<const D: usize> TransportVelocity<D> {
-    /// Sets prescribed velocities of solids in rows of a state at a time in s.
-    pub(in super::super) fn hold_velocities(&self, time: f64, rows: &mut [f64]) {
-        for entry in self.solids.iter().flat_map(|solids| solids.held.iter()) {
-            rows[entry.particle * Row::<D>::LENGTH + entry.component] =
-                entry.value.value(entry.place, time);
+    /// Sets prescribed velocities of solids in a state at a time in s. What that takes, of energy and of
+    /// momentum, is booked as from walls, so that the ledger is exact for velocities that change.
+    pub(in super::super) fn hold_velocities(&self, time: f64, state: &mut [f64]) {
+        let Some(Solids { held, .. }) = self.solids.as_deref() else { return };
+        let (layout, (rows, tail)) = (Tail::new(D), self.parts(state));
+        for entry in held.iter() {
+            let row = &mut rows[entry.particle * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+            let (mass, old) = (self.mass[entry.particle], row[entry.component]);
+            let new = entry.value.value(entry.place, time);
+            if new != old {
+                row[entry.component] = new;
+                let energy = 0.5 * mass * (new - old) * (new + old);
+                let mut momentum = Vector::zeros();
+                momentum[entry.component] = mass * (new - old);
+                layout.book_setting(energy, &Row::<D>::position(row), &momentum, tail);
+            }
         }
     }
 

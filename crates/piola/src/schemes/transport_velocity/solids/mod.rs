@@ -9,7 +9,8 @@
 //! ```
 //!
 //! with `sigma = s - p` and the pressure of an equation of state: theory (68) to (75), which say
-//! where the paper departs. L is made of the momentum velocity, not of the transport velocity.
+//! where the paper departs. L is made of the momentum velocity; with [`Divergence::Transport`] of the transport
+//! velocity, as GTVF has it.
 //! Gradients, surfaces and shifting see only the particle's own body and walls; what other bodies
 //! do is [`Contact`]. Beside its row, each particle has [`Matter`] at the end of the state.
 

@@ -13,7 +13,8 @@ use crate::{Tensor, parallel};
 /// Rates of a particle of a solid that are not in [`Rates`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidRates<const D: usize> {
-    /// Velocity gradient `d u_i / d x_j` in 1/s, CTVF (31), corrected or not.
+    /// Velocity gradient `d u_i / d x_j` in 1/s, CTVF (31), corrected or not; of uhat with
+    /// [`Divergence::Transport`].
     pub gradient: Tensor<D>,
     /// What the deviation carries of deviatoric stress (xx, yy, zz, yz, xz, xy, in Pa/s), plastic
     /// strain, temperature and specific energy, a second each: `d . grad` of them, theory (68).
@@ -237,7 +238,7 @@ impl<const D: usize> Sums<D> {
         }
         let approach = jump.dot(&neighbor.separation);
         if KIND != ALONE {
-            self.contact[lane] -= approach * (area - own);
+            self.contact[lane] -= flow.dot(&neighbor.separation) * (area - own);
         }
         if KIND == ANY {
             let densities = me.density + side.density;

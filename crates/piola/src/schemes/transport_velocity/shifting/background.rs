@@ -1,0 +1,61 @@
+//! GTVF: a velocity deviation by a background pressure that each particle has of its own.
+
+use crate::operators::{Needs, NeighborBlock};
+use crate::schemes::transport_velocity::{Row, Shifting, TransportVelocity};
+use crate::{Vector, parallel};
+
+/// Smoothing length of the push in units of that of the forces: it sees the nearest neighbours alone.
+const NARROW: f64 = 0.5;
+
+/// Background pressure in units of the size of a particle's own.
+const SHARE: f64 = 10.0;
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Puts the deviations of GTVF into the sides, which have been loaded, and into the `state` that they
+    /// were loaded from: what a background pressure does in half of a step of `step` s,
+    /// `d_a = dt/2 (du_a/dt)_c`, `(du_a/dt)_c = -p0_a sum_b m_b / rho_a^2 grad W(r_ab, h/2)`,
+    /// `p0_a = min(10 |p_a|, f rho_0 c^2)`, theory (78).
+    ///
+    /// A free surface is not looked for: there the pressure vanishes, and the push with it. Sums run over
+    /// the own body and walls. What moves as prescribed is not pushed.
+    pub(in super::super) fn push_apart(&mut self, step: f64, state: &mut [f64]) {
+        let Shifting::Background { most } = self.settings.shifting else { return };
+        let (rows, _) = self.parts(state);
+        let scheme = &*self;
+        parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
+            let deviation = scheme.background_push(number, most) * (0.5 * step);
+            row[Row::<D>::DEVIATION..][..D].copy_from_slice(deviation.as_slice());
+        });
+        let (list, rows) = (self.support.list(), &*rows);
+        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+            for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
+                side.deviation = Row::<D>::deviation(Row::<D>::of(rows, number as usize));
+            }
+        });
+    }
+
+    /// The acceleration by the background pressure of a particle (number), in m/s^2, which is at most
+    /// `most` times `rho_0 c^2`.
+    fn background_push(&self, number: usize, most: f64) -> Vector<D> {
+        let (support, list) = (&self.support, self.support.list());
+        let place = list.places()[number] as usize;
+        let me = &self.sides[place];
+        if list.is_passive(place) || me.pressure == 0.0 || self.is_held(number) {
+            return Vector::zeros();
+        }
+        let (kernel, h) = (support.kernel(), NARROW * support.smoothing_length());
+        let reach = kernel.support_radius(h).powi(2);
+        let (mut sum, mut rest) = (Vector::zeros(), support.all(place));
+        let mut block = NeighborBlock::default();
+        while support.fill(&mut rest, Needs::Nothing, &mut block) {
+            let near = block.iter().filter(|b| b.square < reach && self.is_own(place, b.place));
+            for neighbor in near {
+                let slope = kernel.derivative_over_r(D, neighbor.square.sqrt(), h);
+                sum += neighbor.separation * (self.sides[neighbor.place].mass() * slope);
+            }
+        }
+        let stiffness = self.reference_density(number) * self.reference_wave_speed(number).powi(2);
+        let background = (SHARE * me.pressure.abs()).min(most * stiffness);
+        sum * (-background / (me.density * me.density))
+    }
+}
