@@ -166,7 +166,7 @@ impl Sums {
 
 /// Fills some rows, with or without the transport terms, the deviation in the divergence, and body
 /// forces.
-#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn fill<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,

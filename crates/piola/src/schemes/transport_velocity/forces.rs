@@ -138,7 +138,7 @@ impl<const D: usize> TransportVelocity<D> {
 
 /// Fills some rows, with or without the terms of the corrections, the artificial viscosity and
 /// the shifting.
-#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn fill<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,

@@ -63,7 +63,7 @@ fn correction<const D: usize>(sums: &[[Lanes; D]; D]) -> Tensor<D> {
 }
 
 /// Fills some rows.
-#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn fill<const D: usize>(scheme: &TransportVelocity<D>, first: usize, rows: &mut [Tensor<D>]) {
     let mut block = NeighborBlock::default();
     for (offset, row) in rows.iter_mut().enumerate() {

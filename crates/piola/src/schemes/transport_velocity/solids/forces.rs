@@ -300,7 +300,7 @@ impl<const D: usize> Sums<Lanes, D> {
 }
 
 /// Fills some rows.
-#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn fill<const D: usize, const PLAIN: bool, const CONTACT: u8>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,

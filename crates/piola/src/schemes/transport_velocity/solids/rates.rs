@@ -267,7 +267,7 @@ impl<const D: usize> Sums<D> {
 }
 
 /// Fills some rows, with or without the transport terms.
-#[multiversion(targets("x86_64+avx2+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn fill<const D: usize, const KIND: u8, const CARRIES: bool>(
     scheme: &TransportVelocity<D>,
     constants: &Constants,
