@@ -39,10 +39,10 @@ impl<const D: usize> TransportVelocity<D> {
                     let own = if is_own { sides[lane].volume } else { 0.0 };
                     let neighbor = group.neighbor(lane);
                     let area = own * neighbor.slope;
-                    for i in 0..D {
+                    for (i, row) in sums.iter_mut().enumerate() {
                         let arm = neighbor.separation[i] * area;
-                        for j in i..D {
-                            sums[i][j][lane] -= arm * neighbor.separation[j];
+                        for (j, sum) in row.iter_mut().enumerate().skip(i) {
+                            sum[lane] -= arm * neighbor.separation[j];
                         }
                     }
                 }
