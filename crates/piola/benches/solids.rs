@@ -10,15 +10,17 @@
 #[path = "upwind/clock.rs"]
 mod clock;
 
+#[path = "shared/steps.rs"]
+mod steps;
+
 use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
+use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Fluid, Heat, PressureRule, Settings, Shifting,
     Solid, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
-use piola::schemes::{Initial, Scheme};
-use piola::time::IntegratorKind;
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 use piola_formulas::kernels::Kernel;
 
@@ -47,24 +49,6 @@ const SETTINGS: [Setting; 4] = [
 
 const DENSITY: f64 = 1000.0;
 const WAVE_SPEED: f64 = 60.0;
-
-/// About `count` particles in the unit box.
-fn particles<const D: usize>(count: usize) -> Particles<D> {
-    let side = (count as f64).powf(1.0 / D as f64).round() as usize;
-    let spacing = 1.0 / side as f64;
-    let mut particles = Particles::default();
-    for number in 0..side.pow(D as u32) {
-        particles.position.push(Vector::from_fn(|axis, _| {
-            (number / side.pow(axis as u32) % side) as f64 * spacing + 0.5 * spacing
-        }));
-        particles.volume.push(spacing.powi(D as i32));
-        particles.weight.push(spacing.powi(D as i32));
-        particles.spacing.push(spacing);
-        particles.body.push(0);
-        particles.id.push(number as u32);
-    }
-    particles
-}
 
 fn block<const D: usize>(
     particles: Particles<D>,
@@ -120,70 +104,21 @@ fn block<const D: usize>(
     .expect("the block can be built")
 }
 
-/// Steps a stretch.
-const STEPS: u32 = 30;
-
 fn measure<const D: usize>(count: usize, setting: &Setting, kernel: Kernel, h: f64) {
-    let particles = particles::<D>(count);
+    let particles = steps::lattice::<D>(count, || 0.0);
     let step = 0.25 * h * particles.spacing[0] / (1.2 * WAVE_SPEED);
-    let mut scheme = block(particles, setting, kernel, h);
-    let mut state = scheme.initial_state();
-    let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
-    let mut limits = Vec::new();
-    let least = clock::best_time(|| {
-        for _ in 0..STEPS {
-            scheme.inspect(&state, &mut limits);
-            integrator
-                .step(&mut scheme, 0.0, step, &state, &mut new)
-                .expect("explicit methods always find a state");
-            std::mem::swap(&mut state, &mut new);
-        }
-    }) / f64::from(STEPS);
-    let particles = scheme.particle_count();
-    let mut neighbors = Vec::new();
-    let all: Vec<u32> = (0..particles as u32).collect();
-    scheme.sample(0.0, &state, "neighbors", &all, &mut neighbors);
-    let speed = particles as f64 / least;
-    println!(
-        "| {D} | {threads} | {particles} | {mean:.1} | {kernel} | {name} | {millions:.2} | {ns:.0} |",
-        threads = rayon::current_num_threads(),
-        mean = neighbors.iter().sum::<f64>() / particles as f64,
-        kernel = kernel.name(),
-        name = setting.name,
-        millions = speed / 1e6,
-        ns = 1e9 / speed,
-    );
+    steps::measure(block(particles, setting, kernel, h), step, kernel, setting.name);
 }
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let has = |word: &str| arguments.iter().any(|argument| argument == word);
-    let given: Vec<usize> = arguments
-        .iter()
-        .filter_map(|argument| argument.parse::<f64>().ok())
-        .map(|size| size as usize)
-        .collect();
-    let sizes = if given.is_empty() { vec![10_000, 100_000] } else { given };
-    println!(
-        "| D | threads | particles | neighbours | kernel | setting | M steps/s | ns/particle |"
-    );
-    println!("|--:|--:|--:|--:|:--|:--|--:|--:|");
-    let names = SETTINGS.iter().any(|setting| has(setting.name));
-    let threads: &[usize] = if has("serial") { &[1] } else { &[1, 2] };
-    for &threads in threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads can be started").install(|| {
-            for &size in &sizes {
-                for setting in SETTINGS.iter().filter(|setting| !names || has(setting.name)) {
-                    if !has("3d") {
-                        measure::<2>(size, setting, Kernel::QuinticSpline, 1.0);
-                    }
-                    if !has("2d") {
-                        measure::<3>(size, setting, Kernel::WendlandC2, 1.25);
-                    }
-                }
+    let arguments = steps::Arguments::new();
+    let sizes = arguments.sizes(&[10_000, 100_000]);
+    arguments.for_each(&sizes, &SETTINGS.map(|setting| setting.name), |dimension, size, name| {
+        for setting in SETTINGS.iter().filter(|setting| setting.name == name) {
+            match dimension {
+                2 => measure::<2>(size, setting, Kernel::QuinticSpline, 1.0),
+                _ => measure::<3>(size, setting, Kernel::WendlandC2, 1.25),
             }
-        });
-    }
+        }
+    });
 }

@@ -28,7 +28,7 @@ pub use mesh::{Cell, CellKind, Mesh, MeshError, MeshFault, MeshSet};
 pub use particles::Particles;
 pub use points::{PointsError, PointsFault, from_points};
 pub use region::Region;
-pub use shape::Shape;
+pub use shape::{Shape, ball_volume};
 pub use surface::Surface;
 pub use surroundings::surroundings;
 

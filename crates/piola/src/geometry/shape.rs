@@ -36,6 +36,15 @@ enum Kind<const D: usize> {
     },
 }
 
+/// The volume in m^D of a ball with a radius in m.
+pub fn ball_volume(dimension: usize, radius: f64) -> f64 {
+    match dimension {
+        1 => 2.0 * radius,
+        2 => PI * radius * radius,
+        _ => 4.0 / 3.0 * PI * radius.powi(3),
+    }
+}
+
 impl<const D: usize> Shape<D> {
     /// The box between two corners in m.
     ///
@@ -192,12 +201,7 @@ impl<const D: usize> Shape<D> {
         match &self.0 {
             Kind::Box { min, max } => Some((max - min).product()),
             Kind::Ball { inner, outer, .. } => {
-                let ball = |radius: f64| match D {
-                    1 => 2.0 * radius,
-                    2 => PI * radius * radius,
-                    _ => 4.0 / 3.0 * PI * radius.powi(3),
-                };
-                Some(ball(*outer) - ball(*inner))
+                Some(ball_volume(D, *outer) - ball_volume(D, *inner))
             }
             Kind::Cylinder { length, radius, .. } => Some(PI * radius * radius * length),
             Kind::Union(shapes) | Kind::Intersection(shapes) => match shapes.as_slice() {

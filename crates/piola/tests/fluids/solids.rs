@@ -2,17 +2,16 @@
 
 use std::f64::consts::PI;
 
-use piola::geometry::{Faces, Particles};
+use piola::geometry::Particles;
+use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, Fluid, Forces, Heat, PressureRule, Rates,
-    Settings, Shifting, Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
+    AtSurface, Contact, Corrections, DensityRule, Forces, Heat, PressureRule, Rates, Settings,
+    Shifting, Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
-use piola::schemes::{Initial, Scheme};
 use piola::{Tensor, Vector};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
-use piola_formulas::kernels::Kernel;
 
-use super::support::{periodic, unit_box};
+use super::support::{solids_in_box, unit_box};
 
 const K: f64 = 2.0 * PI;
 
@@ -45,25 +44,12 @@ fn build<const D: usize>(
     contact: Contact,
     corrected: bool,
 ) -> TransportVelocity<D> {
-    let count = particles.len();
     let bodies = 1 + particles.body.iter().copied().max().unwrap_or(0) as usize;
-    let materials = vec![solid; bodies];
-    TransportVelocity::new(TransportVelocityInput {
-        smoothing_length: 1.3 * particles.spacing[0],
-        faces: vec![Faces::default(); count],
-        particles,
-        domain: periodic(),
-        kernel: Kernel::QuinticSpline,
-        settings,
-        fluid: Fluid::of_solids(&materials),
-        solids: Some(SolidsInput { materials, contact, corrected, held: Vec::new() }),
-        initial: Initial { velocity: vec![Vector::zeros(); count], pressure: vec![0.0; count] },
-        walls: Vec::new(),
-        motion: Vec::new(),
-        sliding: Vec::new(),
-        body_forces: Vec::new(),
-    })
-    .expect("the solids can be built")
+    let input = solids_in_box(particles, settings, vec![solid; bodies]);
+    let solids = input.solids.map(|solids| SolidsInput { contact, corrected, ..solids });
+    let smoothing_length = 1.3 * input.smoothing_length;
+    TransportVelocity::new(TransportVelocityInput { smoothing_length, solids, ..input })
+        .expect("the solids can be built")
 }
 
 /// A field `mean + amplitude sin(k x + phase) cos(k y) cos(k z)` with its gradient.

@@ -1,7 +1,7 @@
 //! Particles of the fluid that leave it: through a wall, or out of the box around everything.
 
 use super::ledger::Tail;
-use super::{Row, TransportVelocity};
+use super::{BY_REMOVAL, Row, TransportVelocity};
 use crate::Vector;
 use crate::operators::{Needs, NeighborBlock};
 use crate::parallel;
@@ -166,13 +166,9 @@ impl<const D: usize> TransportVelocity<D> {
             let row = &mut rows[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
             let (velocity, pressure) = (Row::<D>::velocity(row), row[Row::<D>::PRESSURE]);
             let energy = velocity.norm_squared() + compliance * pressure * pressure;
-            layout.book_removal(
-                0.5 * mass * energy,
-                &Row::<D>::position(row),
-                &(velocity * mass),
-                tail,
-            );
             let position = Row::<D>::position(row);
+            let taken = (super::REMOVED, -0.5 * mass * energy);
+            layout.book(taken, BY_REMOVAL, &position, &(velocity * -mass), tail);
             row.fill(0.0);
             row[Row::<D>::POSITION..][..D].copy_from_slice(position.as_slice());
             row[Row::<D>::DENSITY] = REMOVED;

@@ -7,8 +7,8 @@
 use std::ops::Range;
 
 use super::{
-    ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PLASTICITY, PRESSURE, PRESSURE_DIFFUSION,
-    REMOVED, Row, TRANSPORT, TransportVelocity, WALLS,
+    ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PLASTICITY, PRESSURE, PRESSURE_DIFFUSION, Row,
+    TRANSPORT, TransportVelocity,
 };
 use crate::schemes::momentum::{self, MOST_COMPONENTS};
 use crate::schemes::momentum_components;
@@ -59,30 +59,19 @@ impl Tail {
         self.passes() + 1
     }
 
-    /// Books that `energy` in J and the momentum `momentum` at `position` are taken away.
-    pub fn book_removal<const D: usize>(
+    /// Books the `energy` in J of a mechanism and the momentum `momentum` that came in by a `way`, at
+    /// `position`.
+    pub fn book<const D: usize>(
         &self,
-        energy: f64,
+        (mechanism, energy): (usize, f64),
+        way: usize,
         position: &Vector<D>,
         momentum: &Vector<D>,
         tail: &mut [f64],
     ) {
-        tail[REMOVED] -= energy;
-        let last = (IMPULSES.len() - 1) * self.components;
-        momentum::add_moments(position, &-momentum, &mut tail[self.impulses()][last..]);
-    }
-
-    /// Books the `energy` in J and the momentum `momentum` at `position` that it takes to set a velocity:
-    /// walls bring them.
-    pub fn book_setting<const D: usize>(
-        &self,
-        energy: f64,
-        position: &Vector<D>,
-        momentum: &Vector<D>,
-        tail: &mut [f64],
-    ) {
-        tail[WALLS] += energy;
-        momentum::add_moments(position, momentum, &mut tail[self.impulses()][..self.components]);
+        tail[mechanism] += energy;
+        let kept = &mut tail[self.impulses()][way * self.components..][..self.components];
+        momentum::add_moments(position, momentum, kept);
     }
 }
 

@@ -143,6 +143,9 @@ const WALLS: usize = 4;
 const PRESSURE_DIFFUSION: usize = 6;
 const REMOVED: usize = 7;
 const PLASTICITY: usize = 8;
+/// Ways in that are booked one particle at a time.
+const BY_WALLS: usize = 0;
+const BY_REMOVAL: usize = 4;
 /// The mechanisms that accelerate, which stand first.
 const ACCELERATING: usize = 6;
 /// The ways in of accelerations, which stand first.

@@ -1,8 +1,7 @@
 //! Free surfaces: normals, the particles on them, and how far they are, CTVF section 3.4.
 
-use std::f64::consts::PI;
-
 use super::TransportVelocity;
+use crate::geometry::ball_volume;
 use crate::operators::{Needs, NeighborBlock};
 use crate::{Vector, parallel};
 
@@ -147,12 +146,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// that of a particle.
     fn even_count(&self) -> usize {
         let support = self.support.kernel().support_radius(self.support.smoothing_length());
-        let unit_ball = match D {
-            1 => 2.0,
-            2 => PI,
-            _ => 4.0 / 3.0 * PI,
-        };
-        (unit_ball * (support / self.particles.spacing[0]).powi(D as i32)) as usize
+        ball_volume(D, support / self.particles.spacing[0]) as usize
     }
 
     /// Whether a particle has less than half of the neighbours of its continuum that an even spread

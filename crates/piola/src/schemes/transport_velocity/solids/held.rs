@@ -3,7 +3,7 @@
 use super::Solids;
 use crate::Vector;
 use crate::schemes::transport_velocity::ledger::Tail;
-use crate::schemes::transport_velocity::{Row, TransportVelocity};
+use crate::schemes::transport_velocity::{BY_WALLS, Row, TransportVelocity, WALLS};
 
 impl<const D: usize> TransportVelocity<D> {
     /// Sets prescribed velocities of solids in a state at a time in s. What that takes, of energy and of
@@ -20,7 +20,8 @@ impl<const D: usize> TransportVelocity<D> {
                 let energy = 0.5 * mass * (new - old) * (new + old);
                 let mut momentum = Vector::zeros();
                 momentum[entry.component] = mass * (new - old);
-                layout.book_setting(energy, &Row::<D>::position(row), &momentum, tail);
+                let position = Row::<D>::position(row);
+                layout.book((WALLS, energy), BY_WALLS, &position, &momentum, tail);
             }
         }
     }
