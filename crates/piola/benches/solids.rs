@@ -91,6 +91,7 @@ fn block<const D: usize>(
         solids: Some(SolidsInput {
             materials: vec![material],
             contact: Contact::Repulsive,
+            self_contact: None,
             corrected: setting.corrected_gradients,
             held: Vec::new(),
         }),

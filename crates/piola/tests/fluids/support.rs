@@ -95,6 +95,7 @@ pub fn solids_in_box<const D: usize>(
         solids: Some(SolidsInput {
             materials,
             contact: Contact::Repulsive,
+            self_contact: None,
             corrected: false,
             held: Vec::new(),
         }),

@@ -75,6 +75,7 @@ pub(super) fn build<const D: usize>(
         solids: solids.map(|materials| SolidsInput {
             materials,
             contact: settings.contact,
+            self_contact: settings.self_contact.as_ref().map(|distance| **distance * spacing),
             corrected: settings.corrected_gradients,
             held,
         }),
@@ -90,6 +91,9 @@ pub(super) fn build<const D: usize>(
         let (place, label) = match &error {
             TransportVelocityError::Start { .. } => {
                 (case.bodies[0].name.place, "initial values of a body")
+            }
+            TransportVelocityError::SelfContact { .. } => {
+                (settings.self_contact.as_ref().map_or(place, |it| it.place), "make it larger")
             }
             TransportVelocityError::Spacing { .. } => (case.bodies[0].spacing.place, "spacing"),
             _ => (place, "with this smoothing length"),

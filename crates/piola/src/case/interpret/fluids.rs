@@ -13,7 +13,8 @@ use crate::schemes::transport_velocity::{
 const DIFFUSION: [f64; 2] = [0.5, 0.001];
 
 /// Keys of the scheme that say what solids do.
-const OF_SOLIDS: [&str; 3] = ["corrected_gradients", "contact", "contact_stiffness"];
+const OF_SOLIDS: [&str; 4] =
+    ["corrected_gradients", "contact", "contact_stiffness", "self_contact"];
 
 impl Reader<'_, '_> {
     /// Settings of the scheme `transport_velocity`.
@@ -41,6 +42,9 @@ impl Reader<'_, '_> {
         };
         if !matches!(contact, Contact::Penalty { .. }) {
             self.meaningless(record, "contact_stiffness", "without `contact = \"penalty\"`");
+        }
+        if contact == Contact::Full {
+            self.meaningless(record, "self_contact", "with `contact = \"full\"`");
         }
         let most = record.number("background_pressure").map_or(1.0, |it| it.value);
         let shifting = match record.text("shifting")?.as_str() {
@@ -79,6 +83,7 @@ impl Reader<'_, '_> {
                 density_drift: record.number("density_drift")?.value,
             },
             contact,
+            self_contact: record.number("self_contact"),
             corrected_gradients: record.boolean("corrected_gradients").unwrap_or(false),
             removes_escaped: record.text("escaped")?.as_str() == "remove",
         })

@@ -206,6 +206,8 @@ pub struct TransportVelocity {
     pub settings: transport_velocity::Settings,
     /// What bodies of solids do to each other.
     pub contact: transport_velocity::Contact,
+    /// How far apart particles of one body must have begun to touch, in particle spacings.
+    pub self_contact: Option<Located<f64>>,
     /// Whether velocity gradients of solids are corrected.
     pub corrected_gradients: bool,
     /// Whether particles that escape are removed; otherwise the run ends.

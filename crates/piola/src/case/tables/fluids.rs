@@ -134,6 +134,13 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "stiffness of the springs of `penalty` in units of the bulk modulus times dx^(D-2)",
         ),
         key(
+            "self_contact",
+            Kind::Number(Interval::POSITIVE),
+            "spacings",
+            Derived("none; no meaning for fluids"),
+            "how far apart particles of one body must have begun to touch as those of two bodies do; without it a body that closes up grows together",
+        ),
+        key(
             "escaped",
             Kind::Name(ESCAPES),
             "",

@@ -3,8 +3,8 @@
 //!
 //! Nothing moves. The sums are those of the matrices W and X of theory (58) over the particles of a
 //! body and ghosts around it, `<f> = W f`, `<grad f> = X f` and, as a formulation of second order in
-//! space takes it, the gradient of that, `<grad grad f> = X <grad f>`, theory (76). How far these are
-//! off on a lattice is theory (77).
+//! space takes it, the gradient of that, `<grad grad f> = X <grad f>`, theory (77). How far these are
+//! off on a lattice is theory (78).
 
 mod boundary;
 mod scheme;

@@ -7,8 +7,8 @@ use thiserror::Error;
 use super::inspect::ChunkFigures;
 use super::shifting::Iteration;
 use super::{
-    DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip, Solids,
-    SolidsInput, TransportVelocity, WallParticle, WallValues,
+    Continua, DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip,
+    Solids, SolidsInput, TransportVelocity, WallParticle, WallValues,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
@@ -94,6 +94,17 @@ pub enum TransportVelocityError {
         /// Its value.
         got: f64,
     },
+    /// Bodies that would touch themselves where they are whole.
+    #[error(
+        "particles that began {distance:.3e} m apart are to touch, but the kernel reaches {support:.3e} m: \
+         particles that are neighbours at the start would be taken for two bodies"
+    )]
+    SelfContact {
+        /// How far apart particles must have begun to touch, in m.
+        distance: f64,
+        /// Radius of the support in m.
+        support: f64,
+    },
     /// A velocity prescribed for the fluid.
     #[error(
         "`{name}` prescribes the velocity of particle {particle}, which is fluid; only walls move as \
@@ -149,6 +160,10 @@ impl<const D: usize> TransportVelocity<D> {
             input.smoothing_length,
             input.domain,
         )?;
+        let continua = match &input.solids {
+            Some(solids) => Continua::new(count, solids.self_contact, input.domain),
+            None => Continua::new(0, None, input.domain),
+        };
         let solids = match input.solids {
             Some(solids) => {
                 Some(Box::new(Solids::new(solids, &particles, &is_wall, &input.domain)?))
@@ -175,7 +190,7 @@ impl<const D: usize> TransportVelocity<D> {
             marks: vec![false; if settings.free_surface { count } else { 0 }],
             iteration: Iteration::default(),
             chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
-            continuum: vec![0; if solids.is_some() { count } else { 0 }],
+            continua,
             solids,
             guard: None,
             removed: Vec::new(),
@@ -262,6 +277,10 @@ fn check<const D: usize>(input: &TransportVelocityInput<D>) -> Result<(), Transp
     }
     if let Some(solids) = &input.solids {
         check_materials(particles, solids.materials.len())?;
+        let support = input.kernel.support_radius(input.smoothing_length);
+        if let Some(distance) = solids.self_contact.filter(|&distance| !(distance > support)) {
+            return Err(TransportVelocityError::SelfContact { distance, support });
+        }
         for condition in &solids.held {
             check_selected(&condition.name, &condition.particles, particles.len())?;
             let what = || format!("`{}`: velocity component", condition.name);

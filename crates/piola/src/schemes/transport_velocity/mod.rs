@@ -65,7 +65,7 @@ pub use solids::{Contact, Heat, Solid, SolidRates, SolidsInput};
 use inspect::ChunkFigures;
 use shifting::Iteration;
 use sides::Side;
-use solids::Solids;
+use solids::{Continua, Solids};
 use surface::Opening;
 use walls::{WallParticle, WallValues};
 
@@ -104,8 +104,8 @@ pub struct TransportVelocity<const D: usize> {
     guard: Option<(Guard, f64)>,
     /// What there is besides where particles are of solids.
     solids: Option<Box<Solids<D>>>,
-    /// To which continuum a particle belongs, by place; empty for fluids, where all is one.
-    continuum: Vec<u32>,
+    /// To which continuum a particle belongs, by place.
+    continua: Continua<D>,
     /// The particles that have been removed, by number; empty where none ever is. They are passive,
     /// as walls are.
     removed: Vec<bool>,

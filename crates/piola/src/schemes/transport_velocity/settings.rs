@@ -122,7 +122,7 @@ pub enum Shifting {
         most_passes: u32,
     },
     /// GTVF: the push of a background pressure that goes with the size of a particle's own,
-    /// theory (78).
+    /// theory (79).
     Background {
         /// The largest one, in units of `rho_0 c^2`.
         most: f64,

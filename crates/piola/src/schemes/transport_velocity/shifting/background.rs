@@ -14,7 +14,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// Puts the deviations of GTVF into the sides, which have been loaded, and into the `state` that they
     /// were loaded from: what a background pressure does in half of a step of `step` s,
     /// `d_a = dt/2 (du_a/dt)_c`, `(du_a/dt)_c = -p0_a sum_b m_b / rho_a^2 grad W(r_ab, h/2)`,
-    /// `p0_a = min(10 |p_a|, f rho_0 c^2)`, theory (78).
+    /// `p0_a = min(10 |p_a|, f rho_0 c^2)`, theory (79).
     ///
     /// A free surface is not looked for: there the pressure vanishes, and the push with it. Sums run over
     /// the own body and walls. What moves as prescribed is not pushed.

@@ -82,13 +82,13 @@ impl<const D: usize> TransportVelocity<D> {
         self.iteration = iteration;
     }
 
-    /// Largest speed of the fluid in m/s.
+    /// Largest speed in m/s, of solids by theory (76).
     fn largest_speed(&self) -> f64 {
         let list = self.support.list();
         let square =
             parallel::maximum(self.sides.len(), 0.0, |place| match list.is_passive(place) {
                 true => 0.0,
-                false => self.sides[place].velocity.norm_squared(),
+                false => self.shifting_speed_squared(place),
             });
         square.sqrt()
     }

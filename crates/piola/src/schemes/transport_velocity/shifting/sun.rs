@@ -13,9 +13,9 @@ const MOST_MACH: f64 = 0.25;
 impl<const D: usize> TransportVelocity<D> {
     /// Replaces the deviations of the sides by those of the current places,
     /// `d_a = -f Ma 2h c sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab`, CTVF (35), where the Mach
-    /// number is that of the largest speed now: `Ma c = max |u|`, `fastest` in m/s. Near free surfaces the sum has
-    /// the smaller support of CTVF algorithm 1, and (44) holds: theory (27), (30). As in the method's source, no
-    /// deviation is larger than half of the largest speed.
+    /// number is that of the largest speed now, of solids by theory (76): `Ma c = max |u|`, `fastest` in m/s. Near
+    /// free surfaces the sum has the smaller support of CTVF algorithm 1, and (44) holds: theory (27), (30). As
+    /// in the method's source, no deviation is larger than half of the largest speed.
     pub(in super::super) fn shift(&mut self, fastest: f64) {
         let Shifting::Sun { factor } = self.settings.shifting else { return };
         let speed = fastest.min(MOST_MACH * self.fluid.wave_speed);

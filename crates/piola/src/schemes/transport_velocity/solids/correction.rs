@@ -3,7 +3,6 @@
 use multiversion::multiversion;
 use piola_formulas::tensor;
 
-use super::WALL;
 use crate::operators::{LANES, Lanes, Needs, NeighborBlock, all_of, total};
 use crate::schemes::transport_velocity::TransportVelocity;
 use crate::{Tensor, parallel};
@@ -28,17 +27,14 @@ impl<const D: usize> TransportVelocity<D> {
     #[inline(always)]
     fn gather_moments(&self, place: usize, block: &mut NeighborBlock<D>) -> [[Lanes; D]; D] {
         let mut sums = [[[0.0; LANES]; D]; D];
-        let continuum = self.continuum[place];
         let mut rest = self.support.all(place);
         while self.support.fill(&mut rest, Needs::Slope, block) {
             for group in block.groups() {
                 let sides = all_of(&self.sides, group.places);
-                let continua = all_of(&self.continuum, group.places);
+                let own = self.continua.own(place, group.places);
                 for lane in 0..LANES {
-                    let is_own = *continua[lane] == continuum || *continua[lane] == WALL;
-                    let own = if is_own { sides[lane].volume } else { 0.0 };
                     let neighbor = group.neighbor(lane);
-                    let area = own * neighbor.slope;
+                    let area = own[lane] * sides[lane].volume * neighbor.slope;
                     for (i, row) in sums.iter_mut().enumerate() {
                         let arm = neighbor.separation[i] * area;
                         for (j, sum) in row.iter_mut().enumerate().skip(i) {

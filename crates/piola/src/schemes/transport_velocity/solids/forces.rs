@@ -114,17 +114,19 @@ impl<const D: usize> TransportVelocity<D> {
             volume: [zero; D],
             crowding: [zero; D],
         };
-        let (me, continuum) = (self.end(solids, place), self.continuum[place]);
+        let me = self.end(solids, place);
         let needs = Needs::Both;
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, needs, block) {
             for group in block.groups() {
                 let sides = all_of(&self.sides, group.places);
                 let tensions = all_of(&solids.tensions, group.places);
-                let continua = all_of(&self.continuum, group.places);
+                let all_own = match CONTACT {
+                    ONE => [1.0; LANES],
+                    _ => self.continua.own(place, group.places),
+                };
                 for lane in 0..LANES {
-                    let is_own = CONTACT == ONE || *continua[lane] == continuum;
-                    let own = if is_own { 1.0 } else { 0.0 };
+                    let own = all_own[lane];
                     let other = End { side: sides[lane], tension: tensions[lane] };
                     let neighbor = group.neighbor(lane);
                     sums.add_stress::<PLAIN>(lane, me, other, own, &neighbor);

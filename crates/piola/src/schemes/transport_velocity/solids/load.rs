@@ -1,8 +1,8 @@
 //! What solids take from a state and put into it: matter by place, pressures, stresses.
 
-use piola_formulas::hypoelastic::von_mises;
+use piola_formulas::hypoelastic::{von_mises, von_mises_squared};
 
-use super::{ENERGY, MATTER, TEMPERATURE, WALL, entry, full};
+use super::{ENERGY, MATTER, Matter, Solid, TEMPERATURE, WALL, entry, full};
 use crate::parallel;
 use crate::schemes::transport_velocity::{PressureRule, Row, Side, TransportVelocity};
 use crate::{Tensor, Vector};
@@ -28,14 +28,20 @@ impl<const D: usize> TransportVelocity<D> {
         });
         let several = solids.several;
         let (bodies, is_wall) = (&self.particles.body, &self.is_wall);
-        parallel::for_each_chunk(&mut self.continuum, |first, places| {
-            for (continuum, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
+        parallel::for_each_chunk(&mut self.continua.labels, |first, places| {
+            for (label, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
                 let number = number as usize;
-                *continuum = match (is_wall[number], several) {
+                *label = match (is_wall[number], several) {
                     (true, _) => WALL,
                     (false, true) => bodies[number],
                     (false, false) => 0,
                 };
+            }
+        });
+        let positions = &self.particles.position;
+        parallel::for_each_chunk(&mut self.continua.starts, |first, places| {
+            for (start, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
+                *start = positions[number as usize];
             }
         });
     }
@@ -51,26 +57,25 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Gives solids the pressure of their density, if it is not integrated. Returns the largest
-    /// speed in m/s.
+    /// speed of [`Solid::speed_squared`] in m/s.
     pub(in super::super) fn update_pressure_of_solids(&mut self) -> f64 {
         let Some(solids) = &mut self.solids else { return 0.0 };
         let algebraic = self.settings.pressure == PressureRule::StateEquation;
         let (list, bodies, materials) =
             (self.support.list(), &self.particles.body, &solids.materials);
-        let update = |first: usize, sides: &mut [Side<D>], matter: &mut [super::Matter]| {
+        let update = |first: usize, sides: &mut [Side<D>], matter: &mut [Matter]| {
             let mut fastest = 0.0;
             for (offset, (side, matter)) in sides.iter_mut().zip(matter).enumerate() {
                 let place = first + offset;
                 if list.is_passive(place) {
                     continue;
                 }
+                let solid = &materials[bodies[list.numbers()[place] as usize] as usize];
                 if algebraic {
-                    let body = bodies[list.numbers()[place] as usize];
-                    let state = &materials[body as usize].state;
-                    let pressure = state.pressure(side.density, matter[ENERGY]);
+                    let pressure = solid.state.pressure(side.density, matter[ENERGY]);
                     side.set(side.mass(), side.density, pressure);
                 }
-                fastest = parallel::larger(fastest, side.velocity.norm_squared());
+                fastest = parallel::larger(fastest, solid.speed_squared(side, matter));
             }
             fastest
         };
@@ -168,5 +173,30 @@ impl<const D: usize> TransportVelocity<D> {
             "plastic_strain" => values.push(matter[super::PLASTIC]),
             _ => values.push(matter[TEMPERATURE]),
         }
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Square of the speed in m^2/s^2 that shifting takes for that of a particle, at a place: of a
+    /// solid [`Solid::speed_squared`], of a fluid `|u|^2`.
+    pub(in super::super) fn shifting_speed_squared(&self, place: usize) -> f64 {
+        let (side, number) = (&self.sides[place], self.support.list().numbers()[place]);
+        match (&self.solids, self.solid(number as usize)) {
+            (Some(solids), Some(solid)) => solid.speed_squared(side, &solids.matter[place]),
+            _ => side.velocity.norm_squared(),
+        }
+    }
+}
+
+impl Solid {
+    /// Square of the speed in m^2/s^2 that a particle would have if all of its elastic energy were
+    /// kinetic: `|u|^2 + (p / (rho0 c))^2 + s : s / (2 G rho0)`, theory (76). CTVF (35) has `|u|^2`, which
+    /// vanishes where a body turns round and is pulled most.
+    #[inline]
+    fn speed_squared<const D: usize>(&self, side: &Side<D>, matter: &Matter) -> f64 {
+        let (density, wave_speed) = (self.state.density, self.state.wave_speed);
+        let compression = side.pressure / (density * wave_speed);
+        let shear = von_mises_squared(&full(matter)) / (3.0 * self.shear_modulus * density);
+        side.velocity.norm_squared() + compression * compression + shear
     }
 }

@@ -15,6 +15,7 @@
 //! do is [`Contact`]. Beside its row, each particle has [`Matter`] at the end of the state.
 
 mod advance;
+mod continua;
 mod correction;
 mod forces;
 mod fracture;
@@ -32,6 +33,7 @@ use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError};
 use crate::{Tensor, Vector};
 
+pub(super) use continua::Continua;
 pub use rates::SolidRates;
 
 use fracture::Bonds;
@@ -93,6 +95,9 @@ pub struct SolidsInput {
     pub materials: Vec<Solid>,
     /// What bodies do to each other.
     pub contact: Contact,
+    /// How far apart in m particles of one body must have begun to touch as those of two bodies do; without
+    /// it bodies do not touch themselves.
+    pub self_contact: Option<f64>,
     /// Whether velocity gradients are corrected to be exact for linear fields, with the momentum
     /// equation that is conjugate to that, theory (74).
     pub corrected: bool,
@@ -141,7 +146,7 @@ impl<const D: usize> Default for Tension<D> {
 pub(super) struct Solids<const D: usize> {
     materials: Vec<Solid>,
     contact: Contact,
-    /// Whether there are several bodies that are apart from each other.
+    /// Whether there are several bodies, or parts of one, that are apart from each other.
     several: bool,
     held: PrescribedComponents,
     is_held: Vec<bool>,
@@ -172,7 +177,8 @@ impl<const D: usize> Solids<D> {
         held.iter().for_each(|entry| is_held[entry.particle] = true);
         let gradients = if input.corrected { count } else { 0 };
         Ok(Self {
-            several: bodies.len() > 1 && input.contact != Contact::Full,
+            several: (bodies.len() > 1 || input.self_contact.is_some())
+                && input.contact != Contact::Full,
             materials: input.materials,
             contact: input.contact,
             held,
@@ -215,14 +221,10 @@ impl<const D: usize> TransportVelocity<D> {
         if self.solids.is_some() { MATTER * self.particles.len() } else { 0 }
     }
 
-    /// Whether two particles (places) belong to the same continuum: always in fluids; of solids one
-    /// body and walls.
+    /// Whether two particles (places) belong to the same continuum.
     #[inline]
     pub(super) fn is_own(&self, place: usize, other: usize) -> bool {
-        if self.continuum.is_empty() {
-            return true;
-        }
-        self.continuum[other] == self.continuum[place] || self.continuum[other] == WALL
+        self.continua.is_own(place, other)
     }
 
     /// Whether all particles belong to the same continuum.

@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 use piola_formulas::fluid;
 
-use super::{Contact, MATTER, Matter, PLASTIC, Solids, Tension, WALL, XZ, YZ, ZZ};
+use super::{Contact, MATTER, Matter, PLASTIC, Solids, Tension, XZ, YZ, ZZ};
 use crate::operators::{LANES, Lanes, Needs, Neighbor, NeighborBlock, all_of, total};
 use crate::schemes::transport_velocity::{
     Divergence, PressureRule, Rates, Side, TransportVelocity,
@@ -143,7 +143,6 @@ impl<const D: usize> TransportVelocity<D> {
             heating: zero,
             carried: [zero; MATTER],
         };
-        let continuum = self.continuum[place];
         let (me, matter) = (&self.sides[place], &solids.matter[place]);
         let speed = solids.tensions[place].wave_speed;
         let mut rest = self.support.all(place);
@@ -152,10 +151,11 @@ impl<const D: usize> TransportVelocity<D> {
                 let sides = all_of(&self.sides, group.places);
                 let matters = all_of(&solids.matter, group.places);
                 let tensions: [&Tension<D>; LANES] = all_of(&solids.tensions, group.places);
-                let continua = all_of(&self.continuum, group.places);
+                let own = match KIND {
+                    ALONE => [1.0; LANES],
+                    _ => self.continua.own(place, group.places),
+                };
                 for lane in 0..LANES {
-                    let is_own =
-                        KIND == ALONE || *continua[lane] == continuum || *continua[lane] == WALL;
                     let other = Other {
                         side: sides[lane],
                         matter: matters[lane],
@@ -163,7 +163,7 @@ impl<const D: usize> TransportVelocity<D> {
                             ANY => 0.5 * (speed + tensions[lane].wave_speed),
                             _ => 0.0,
                         },
-                        own: if is_own { 1.0 } else { 0.0 },
+                        own: own[lane],
                     };
                     let neighbor = group.neighbor(lane);
                     sums.add::<KIND, CARRIES>(lane, (me, matter), &other, &neighbor, constants);
