@@ -18,6 +18,16 @@ impl<const D: usize> TransportVelocity<D> {
                 matter.copy_from_slice(&rows[number as usize * MATTER..][..MATTER]);
             }
         });
+        if solids.builds != Some(list.builds()) {
+            solids.builds = Some(list.builds());
+            self.load_constants();
+        }
+    }
+
+    /// Fills what does not change but with the places: constants of the materials and continua.
+    fn load_constants(&mut self) {
+        let Some(solids) = &mut self.solids else { return };
+        let list = self.support.list();
         let (materials, bodies) = (&solids.materials, &self.particles.body);
         parallel::for_each_chunk(&mut solids.tensions, |first, places| {
             for (tension, &number) in places.iter_mut().zip(&list.numbers()[first..]) {

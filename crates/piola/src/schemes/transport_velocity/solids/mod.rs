@@ -152,6 +152,8 @@ pub(super) struct Solids<const D: usize> {
     is_held: Vec<bool>,
     bonds: Bonds,
     matter: Vec<Matter>,
+    /// For which places, counted by lists of neighbours, constants stand in `tensions`.
+    builds: Option<u64>,
     tensions: Vec<Tension<D>>,
     rates: Vec<SolidRates<D>>,
     /// Corrections of gradients, if they are corrected.
@@ -185,6 +187,7 @@ impl<const D: usize> Solids<D> {
             is_held,
             bonds: Bonds::new(particles, is_wall, domain)?,
             matter: vec![[0.0; MATTER]; count],
+            builds: None,
             tensions: vec![Tension::default(); count],
             rates: vec![SolidRates::default(); count],
             corrections: vec![Tensor::identity(); gradients],
