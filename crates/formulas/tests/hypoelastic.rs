@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use num_dual::Dual64;
 use piola_formulas::hypoelastic::{
-    EquationOfState, JohnsonCook, PressureLaw, Strength, advance, jaumann_rate, von_mises,
+    EquationOfState, JohnsonCook, PressureLaw, Strength, advance, jaumann_rate, shear_energy,
+    von_mises,
 };
 
 const G: f64 = 3.0;
@@ -203,4 +204,15 @@ fn the_energy_of_compression_is_the_work_of_the_pressure() {
         }
         assert_eq!(state.compression_energy(2785.0, 0.0), 0.0);
     }
+}
+
+/// In simple shear the energy is `tau gamma / 2`, and it is that of all nine components.
+#[test]
+fn the_energy_of_shear_is_half_of_stress_times_strain() {
+    let (strain, density) = (0.01, 3.0);
+    let one_side = simple_shear(G * strain);
+    let stress = one_side + one_side.transpose();
+    assert!(
+        (shear_energy(&stress, G, density) - 0.5 * G * strain * strain / density).abs() < 1e-15
+    );
 }

@@ -24,14 +24,6 @@ use piola::schemes::transport_velocity::{
     TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::kernels::Kernel;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
-
-/// Particles displaced by up to a tenth of the spacing.
-fn particles<const D: usize>(count: usize) -> Particles<D> {
-    let mut source = Pcg64::seed_from_u64(1);
-    steps::lattice(count, || source.random_range(-0.1..0.1))
-}
 
 fn vortices<const D: usize>(
     particles: Particles<D>,
@@ -76,7 +68,7 @@ fn vortices<const D: usize>(
 
 fn measure<const D: usize>(count: usize, name: &str, kernel: Kernel, h: f64) {
     let corrections = Corrections::from_name(name).expect("a name from the list");
-    let scheme = vortices(particles::<D>(count), corrections, kernel, h);
+    let scheme = vortices(steps::lattice::<D>(count, 0.1), corrections, kernel, h);
     let step = 0.25 * h / (count as f64).powf(1.0 / D as f64) / 11.0;
     steps::measure(scheme, step, kernel, name);
 }

@@ -106,7 +106,7 @@ fn block<const D: usize>(
 }
 
 fn measure<const D: usize>(count: usize, setting: &Setting, kernel: Kernel, h: f64) {
-    let particles = steps::lattice::<D>(count, || 0.0);
+    let particles = steps::lattice::<D>(count, 0.0);
     let step = 0.25 * h * particles.spacing[0] / (1.2 * WAVE_SPEED);
     steps::measure(block(particles, setting, kernel, h), step, kernel, setting.name);
 }

@@ -75,8 +75,14 @@ pub fn von_mises<T: Scalar>(deviator: &Matrix3<T>) -> T {
     von_mises_squared(deviator).sqrt()
 }
 
-/// The square of [`von_mises`] in Pa^2, `6 G` times the energy of shear in J/m^3.
+/// The square of [`von_mises`] in Pa^2.
 #[inline]
-pub fn von_mises_squared<T: Scalar>(deviator: &Matrix3<T>) -> T {
+fn von_mises_squared<T: Scalar>(deviator: &Matrix3<T>) -> T {
     deviator.iter().fold(T::zero(), |sum, s| sum + *s * *s) * 1.5
+}
+
+/// Specific energy of shear `s : s / (4 G rho)` in J/kg, of a shear modulus in Pa and a density in kg/m^3.
+#[inline]
+pub fn shear_energy<T: Scalar>(deviator: &Matrix3<T>, shear_modulus: T, density: T) -> T {
+    von_mises_squared(deviator) / (shear_modulus * density * 6.0)
 }

@@ -8,6 +8,6 @@ mod deviator;
 mod pressure;
 mod strength;
 
-pub use deviator::{advance, jaumann_rate, von_mises, von_mises_squared};
+pub use deviator::{advance, jaumann_rate, shear_energy, von_mises};
 pub use pressure::{EquationOfState, PressureLaw};
 pub use strength::{JohnsonCook, Returned, Strength};

@@ -1,7 +1,7 @@
 //! Whole steps of the transport-velocity formulation: what the benches of fluids and solids share.
 
 use piola::Vector;
-use piola::geometry::Particles;
+use piola::geometry::{LatticeSpec, Particles, Placement, Shape, fill};
 use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::TransportVelocity;
 use piola::time::IntegratorKind;
@@ -63,23 +63,18 @@ impl Arguments {
     }
 }
 
-/// About `count` particles in the unit box, each coordinate displaced by a share of the spacing.
-pub fn lattice<const D: usize>(count: usize, mut share: impl FnMut() -> f64) -> Particles<D> {
-    let side = (count as f64).powf(1.0 / D as f64).round() as usize;
-    let spacing = 1.0 / side as f64;
-    let mut particles = Particles::default();
-    for number in 0..side.pow(D as u32) {
-        particles.position.push(Vector::from_fn(|axis, _| {
-            let index = number / side.pow(axis as u32) % side;
-            (index as f64 + 0.5 + share()) * spacing
-        }));
-        particles.volume.push(spacing.powi(D as i32));
-        particles.weight.push(spacing.powi(D as i32));
-        particles.spacing.push(spacing);
-        particles.body.push(0);
-        particles.id.push(number as u32);
-    }
-    particles
+/// About `count` particles in the unit box, each displaced along each axis by up to `jitter` spacings.
+pub fn lattice<const D: usize>(count: usize, jitter: f64) -> Particles<D> {
+    let side = (count as f64).powf(1.0 / D as f64).round();
+    let unit_box = Shape::cuboid(Vector::zeros(), Vector::repeat(1.0));
+    let spec = LatticeSpec {
+        placement: Placement::Cells,
+        jitter,
+        seed: 1,
+        ..LatticeSpec::square([1.0 / side; D])
+    };
+    let filled = unit_box.and_then(|unit_box| fill(&unit_box, &spec));
+    filled.expect("the box can be filled").particles
 }
 
 /// Prints the row of a scheme whose steps take `step` s.

@@ -1,7 +1,7 @@
 //! Fluids that several tests build.
 
 use piola::Vector;
-use piola::geometry::{Faces, Particles};
+use piola::geometry::{Faces, LatticeSpec, Particles, Placement, Shape, fill};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
@@ -9,8 +9,6 @@ use piola::schemes::transport_velocity::{
     SolidsInput, TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::kernels::Kernel;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
 
 /// The settings of CTVF section 4.1.
 pub const SETTINGS: Settings = Settings {
@@ -26,22 +24,11 @@ pub const SETTINGS: Settings = Settings {
 
 /// `side^D` particles in the unit box, each coordinate displaced by up to `jitter` spacings.
 pub fn unit_box<const D: usize>(side: usize, jitter: f64, seed: u64) -> Particles<D> {
-    let spacing = 1.0 / side as f64;
-    let mut source = Pcg64::seed_from_u64(seed);
-    let mut particles = Particles::default();
-    for number in 0..side.pow(D as u32) {
-        particles.position.push(Vector::from_fn(|axis, _| {
-            let index = number / side.pow(axis as u32) % side;
-            let shift = if jitter > 0.0 { source.random_range(-jitter..jitter) } else { 0.0 };
-            (index as f64 + 0.5 + shift) * spacing
-        }));
-        particles.volume.push(spacing.powi(D as i32));
-        particles.weight.push(spacing.powi(D as i32));
-        particles.spacing.push(spacing);
-        particles.body.push(0);
-        particles.id.push(number as u32);
-    }
-    particles
+    let shape = Shape::cuboid(Vector::zeros(), Vector::repeat(1.0));
+    let square = LatticeSpec::square([1.0 / side as f64; D]);
+    let spec = LatticeSpec { placement: Placement::Cells, jitter, seed, ..square };
+    let filled = shape.and_then(|shape| fill(&shape, &spec));
+    filled.expect("the box can be filled").particles
 }
 
 /// The box that is periodic between 0 and 1 along each axis.

@@ -97,6 +97,9 @@ fn parts_that_began_apart_touch_as_bodies_do() {
         assert!(whole != forces);
         let (always, _) = together(&Choice { begins_away: false, ..parts });
         assert!(always == whole);
+        let full = Choice { contact: Contact::Full, ..parts };
+        let (full_and_whole, _) = together(&Choice { self_contact: None, ..full });
+        assert!(together(&full).0 == full_and_whole);
     }
 }
 

@@ -121,6 +121,18 @@ fn a_kernel_that_is_too_narrow() {
     }
 }
 
+/// Bodies that would touch themselves where they are whole are noticed, with the place of the key.
+#[test]
+fn a_self_contact_within_the_support() {
+    let case = load_of("ctvf", "rings", &["scheme.self_contact=2.9"]);
+    let problems = case::build(&case).err().unwrap().to_string();
+    for part in
+        ["began 2.900e-3 m apart", "reaches 3.000e-3 m", "self_contact=2.9", "make it larger"]
+    {
+        assert!(problems.contains(part), "{problems}");
+    }
+}
+
 /// The linear law costs finite energy to squeeze to nothing: at 8 m/s a column has it.
 #[test]
 fn the_linear_law_under_collapse() {

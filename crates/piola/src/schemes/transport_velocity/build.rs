@@ -160,10 +160,7 @@ impl<const D: usize> TransportVelocity<D> {
             input.smoothing_length,
             input.domain,
         )?;
-        let continua = match &input.solids {
-            Some(solids) => Continua::new(count, solids.self_contact, input.domain),
-            None => Continua::new(0, None, input.domain),
-        };
+        let continua = Continua::new(input.solids.as_ref(), &particles, &is_wall, input.domain);
         let solids = match input.solids {
             Some(solids) => {
                 Some(Box::new(Solids::new(solids, &particles, &is_wall, &input.domain)?))

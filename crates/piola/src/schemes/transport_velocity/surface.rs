@@ -63,7 +63,7 @@ impl<const D: usize> TransportVelocity<D> {
                 }
                 let (mut sum, mut rest) = (Vector::zeros(), support.all(place));
                 while support.fill(&mut rest, Needs::Slope, &mut block) {
-                    for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
+                    for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
                         let weight = sides[neighbor.place].volume * neighbor.slope;
                         sum -= neighbor.separation * weight;
                     }
@@ -135,7 +135,7 @@ impl<const D: usize> TransportVelocity<D> {
     #[inline]
     fn sees_mark(&self, place: usize, marks: &[bool]) -> bool {
         let is_marked = |other: &u32| marks[*other as usize];
-        let is_own = |other: &u32| self.is_own(place, *other as usize);
+        let is_own = |other: &u32| self.continua.is_own(place, *other as usize);
         self.support
             .places_of(place)
             .iter()
@@ -153,12 +153,12 @@ impl<const D: usize> TransportVelocity<D> {
     /// gives it. One that has more is not alone.
     fn has_few_neighbors(&self, place: usize, even_count: usize) -> bool {
         let others = self.support.places_of(place);
-        let count: usize = match self.is_one_continuum() {
-            true => others.iter().map(|places| places.len()).sum(),
-            false => {
-                let is_own = |other: &&u32| self.is_own(place, **other as usize);
+        let count: usize = match self.continua.are_several() {
+            true => {
+                let is_own = |other: &&u32| self.continua.is_own(place, **other as usize);
                 others.iter().map(|places| places.iter().filter(is_own).count()).sum()
             }
+            false => others.iter().map(|places| places.len()).sum(),
         };
         2 * count < even_count
     }
@@ -176,7 +176,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut normal = openings[place].sharp * (me.volume * support.centre());
         let mut rest = support.all(place);
         while support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
+            for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
                 let other = &self.sides[neighbor.place];
                 density += other.mass() * neighbor.value;
                 normal += openings[neighbor.place].sharp * (other.volume * neighbor.value);
@@ -193,7 +193,7 @@ impl<const D: usize> TransportVelocity<D> {
         while !covered && support.fill(&mut rest, Needs::Nothing, block) {
             covered = block
                 .iter()
-                .filter(|neighbor| self.is_own(place, neighbor.place))
+                .filter(|neighbor| self.continua.is_own(place, neighbor.place))
                 .any(|neighbor| -neighbor.separation.dot(&normal) > CONE * neighbor.square.sqrt());
         }
         (normal, alone || !covered)
@@ -204,7 +204,8 @@ impl<const D: usize> TransportVelocity<D> {
         let mut nearest = f64::INFINITY;
         let mut rest = self.support.active(place);
         while self.support.fill(&mut rest, Needs::Nothing, block) {
-            let near = block.iter().filter(|b| surfaces[b.place] && self.is_own(place, b.place));
+            let near =
+                block.iter().filter(|b| surfaces[b.place] && self.continua.is_own(place, b.place));
             for neighbor in near {
                 nearest = nearest.min(neighbor.square);
             }

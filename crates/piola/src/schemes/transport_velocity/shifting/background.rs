@@ -48,7 +48,8 @@ impl<const D: usize> TransportVelocity<D> {
         let (mut sum, mut rest) = (Vector::zeros(), support.all(place));
         let mut block = NeighborBlock::default();
         while support.fill(&mut rest, Needs::Nothing, &mut block) {
-            let near = block.iter().filter(|b| b.square < reach && self.is_own(place, b.place));
+            let near =
+                block.iter().filter(|b| b.square < reach && self.continua.is_own(place, b.place));
             for neighbor in near {
                 let slope = kernel.derivative_over_r(D, neighbor.square.sqrt(), h);
                 sum += neighbor.separation * (self.sides[neighbor.place].mass() * slope);

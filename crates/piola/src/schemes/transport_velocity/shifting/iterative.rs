@@ -136,7 +136,7 @@ impl<const D: usize> TransportVelocity<D> {
                     false => support.all(place),
                 };
                 while support.fill(&mut rest, Needs::Value, &mut block) {
-                    for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
+                    for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
                         sum += neighbor.value;
                         let distance = neighbor.square.sqrt();
                         let value = match support_of {

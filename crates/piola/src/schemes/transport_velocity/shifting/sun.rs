@@ -77,7 +77,7 @@ impl<const D: usize> TransportVelocity<D> {
         let size = (h / full).powi(D as i32 + 1);
         let (mut sum, mut rest) = (Vector::zeros(), self.support.all(place));
         while self.support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter().filter(|b| self.is_own(place, b.place)) {
+            for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
                 let distance = neighbor.square.sqrt();
                 let weight = fluid::repulsion(neighbor.value * inverse)
                     * (size * kernel.derivative_over_r(D, distance, h))

@@ -1,6 +1,6 @@
 //! A drift of solids: density, stress, plastic strain, temperature and places.
 
-use piola_formulas::hypoelastic::{Strength, advance, von_mises, von_mises_squared};
+use piola_formulas::hypoelastic::{Strength, advance, shear_energy, von_mises};
 
 use super::{ENERGY, MATTER, PLASTIC, Solid, SolidRates, TEMPERATURE, full, store};
 use crate::Tensor;
@@ -78,7 +78,7 @@ impl<const D: usize> TransportVelocity<D> {
 impl Solid {
     /// The specific energies of compression and shear in J/kg at a density in kg/m^3.
     fn energies(&self, density: f64, matter: &[f64]) -> [f64; 2] {
-        let shear = von_mises_squared(&full(matter)) / (6.0 * self.shear_modulus * density);
+        let shear = shear_energy(&full(matter), self.shear_modulus, density);
         [self.state.compression_energy(density, matter[ENERGY]), shear]
     }
 

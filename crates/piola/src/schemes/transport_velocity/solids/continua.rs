@@ -1,32 +1,73 @@
 //! Which particles are of one continuum, and which only touch.
 
-use super::WALL;
-use crate::Vector;
+use super::{Contact, SolidsInput};
+use crate::geometry::Particles;
 use crate::neighbors::Domain;
 use crate::operators::{LANES, Lanes, all_of};
+use crate::{Vector, parallel};
+
+/// The label of walls, which belong to every continuum.
+const WALL: u32 = u32::MAX;
 
 /// To which continuum particles belong, by place.
 #[derive(Clone, Debug)]
 pub(in super::super) struct Continua<const D: usize> {
-    /// Numbers of continua; [`WALL`] belongs to all of them. Empty for fluids, where all is one.
-    pub labels: Vec<u32>,
+    /// [`WALL`], or the body where bodies are apart; empty for fluids, where all is one.
+    labels: Vec<u32>,
     /// Where particles began, in m; empty unless bodies touch themselves.
-    pub starts: Vec<Vector<D>>,
+    starts: Vec<Vector<D>>,
     /// How far apart particles of one continuum may have begun, in m.
     farthest: f64,
     domain: Domain<D>,
+    /// Whether there are several bodies, or parts of one, that are apart from each other.
+    several: bool,
 }
 
 impl<const D: usize> Continua<D> {
-    /// Of `count` particles of solids, or of 0 for fluids. With `farthest` in m bodies touch themselves.
-    pub fn new(count: usize, farthest: Option<f64>, domain: Domain<D>) -> Self {
-        let starts = if farthest.is_some() { count } else { 0 };
+    /// Of the particles of solids, or of fluids.
+    pub fn new(
+        solids: Option<&SolidsInput>,
+        particles: &Particles<D>,
+        is_wall: &[bool],
+        domain: Domain<D>,
+    ) -> Self {
+        let apart = solids.filter(|solids| solids.contact != Contact::Full);
+        let farthest = apart.and_then(|solids| solids.self_contact);
+        let mut bodies = particles.body.iter().zip(is_wall).filter(|(_, is_wall)| !*is_wall);
+        let first = bodies.next().map(|(body, _)| *body);
+        let is_one = bodies.all(|(body, _)| Some(*body) == first);
+        let count = if solids.is_some() { particles.len() } else { 0 };
         Self {
             labels: vec![0; count],
-            starts: vec![Vector::zeros(); starts],
+            starts: vec![Vector::zeros(); if farthest.is_some() { count } else { 0 }],
             farthest: farthest.unwrap_or(f64::INFINITY),
             domain,
+            several: apart.is_some() && (!is_one || farthest.is_some()),
         }
+    }
+
+    /// Whether there are several bodies, or parts of one, that are apart from each other.
+    pub fn are_several(&self) -> bool {
+        self.several
+    }
+
+    /// Fills what belongs to the places of the particles with these `numbers`.
+    pub fn load(&mut self, numbers: &[u32], particles: &Particles<D>, is_wall: &[bool]) {
+        let several = self.several;
+        parallel::for_each_chunk(&mut self.labels, |first, labels| {
+            for (label, &number) in labels.iter_mut().zip(&numbers[first..]) {
+                *label = match (is_wall[number as usize], several) {
+                    (true, _) => WALL,
+                    (false, true) => particles.body[number as usize],
+                    (false, false) => 0,
+                };
+            }
+        });
+        parallel::for_each_chunk(&mut self.starts, |first, starts| {
+            for (start, &number) in starts.iter_mut().zip(&numbers[first..]) {
+                *start = particles.position[number as usize];
+            }
+        });
     }
 
     /// Whether two particles (places) belong to the same continuum: always in fluids; of solids one

@@ -73,10 +73,10 @@ impl<const D: usize> TransportVelocity<D> {
             spacing,
             crowding,
         };
-        let contact = match (solids.several, solids.contact) {
-            (false, _) | (_, Contact::Full) => ONE,
+        let contact = match (self.continua.are_several(), solids.contact) {
             (true, Contact::Repulsive) => PUSH,
             (true, Contact::Penalty { .. }) => SPRINGS,
+            _ => ONE,
         };
         let is_plain = solids.corrections.is_empty() && solids.is_uniform();
         let fill = match (is_plain, contact) {

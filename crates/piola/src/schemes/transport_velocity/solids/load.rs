@@ -1,8 +1,8 @@
 //! What solids take from a state and put into it: matter by place, pressures, stresses.
 
-use piola_formulas::hypoelastic::{von_mises, von_mises_squared};
+use piola_formulas::hypoelastic::{shear_energy, von_mises};
 
-use super::{ENERGY, MATTER, Matter, Solid, TEMPERATURE, WALL, entry, full};
+use super::{ENERGY, MATTER, Matter, Solid, TEMPERATURE, entry, full};
 use crate::parallel;
 use crate::schemes::transport_velocity::{PressureRule, Row, Side, TransportVelocity};
 use crate::{Tensor, Vector};
@@ -36,24 +36,7 @@ impl<const D: usize> TransportVelocity<D> {
                 tension.stiffness = material.bulk_modulus();
             }
         });
-        let several = solids.several;
-        let (bodies, is_wall) = (&self.particles.body, &self.is_wall);
-        parallel::for_each_chunk(&mut self.continua.labels, |first, places| {
-            for (label, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
-                let number = number as usize;
-                *label = match (is_wall[number], several) {
-                    (true, _) => WALL,
-                    (false, true) => bodies[number],
-                    (false, false) => 0,
-                };
-            }
-        });
-        let positions = &self.particles.position;
-        parallel::for_each_chunk(&mut self.continua.starts, |first, places| {
-            for (start, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
-                *start = positions[number as usize];
-            }
-        });
+        self.continua.load(list.numbers(), &self.particles, &self.is_wall);
     }
 
     /// Fills the matter of the start.
@@ -206,7 +189,7 @@ impl Solid {
     fn speed_squared<const D: usize>(&self, side: &Side<D>, matter: &Matter) -> f64 {
         let (density, wave_speed) = (self.state.density, self.state.wave_speed);
         let compression = side.pressure / (density * wave_speed);
-        let shear = von_mises_squared(&full(matter)) / (3.0 * self.shear_modulus * density);
-        side.velocity.norm_squared() + compression * compression + shear
+        let shear = shear_energy(&full(matter), self.shear_modulus, density);
+        side.velocity.norm_squared() + compression * compression + 2.0 * shear
     }
 }

@@ -96,7 +96,7 @@ pub struct SolidsInput {
     /// What bodies do to each other.
     pub contact: Contact,
     /// How far apart in m particles of one body must have begun to touch as those of two bodies do; without
-    /// it bodies do not touch themselves.
+    /// it, and with [`Contact::Full`], bodies do not touch themselves.
     pub self_contact: Option<f64>,
     /// Whether velocity gradients are corrected to be exact for linear fields, with the momentum
     /// equation that is conjugate to that, theory (74).
@@ -117,9 +117,6 @@ const XZ: usize = 4;
 const PLASTIC: usize = 6;
 const TEMPERATURE: usize = 7;
 const ENERGY: usize = 8;
-
-/// The continuum of walls, which belong to every body.
-const WALL: u32 = u32::MAX;
 
 /// What forces gather of a particle of a solid beside its side.
 #[derive(Clone, Copy, Debug)]
@@ -146,8 +143,6 @@ impl<const D: usize> Default for Tension<D> {
 pub(super) struct Solids<const D: usize> {
     materials: Vec<Solid>,
     contact: Contact,
-    /// Whether there are several bodies, or parts of one, that are apart from each other.
-    several: bool,
     held: PrescribedComponents,
     is_held: Vec<bool>,
     bonds: Bonds,
@@ -168,19 +163,11 @@ impl<const D: usize> Solids<D> {
         domain: &Domain<D>,
     ) -> Result<Self, NeighborError> {
         let count = particles.len();
-        let mut bodies: Vec<u32> = (0..count)
-            .filter(|&number| !is_wall[number])
-            .map(|number| particles.body[number])
-            .collect();
-        bodies.sort_unstable();
-        bodies.dedup();
         let held = PrescribedComponents::new(&input.held, &particles.position);
         let mut is_held = vec![false; count];
         held.iter().for_each(|entry| is_held[entry.particle] = true);
         let gradients = if input.corrected { count } else { 0 };
         Ok(Self {
-            several: (bodies.len() > 1 || input.self_contact.is_some())
-                && input.contact != Contact::Full,
             materials: input.materials,
             contact: input.contact,
             held,
@@ -222,17 +209,6 @@ impl<const D: usize> TransportVelocity<D> {
     /// Numbers of the matter of all particles.
     pub(super) fn matter_length(&self) -> usize {
         if self.solids.is_some() { MATTER * self.particles.len() } else { 0 }
-    }
-
-    /// Whether two particles (places) belong to the same continuum.
-    #[inline]
-    pub(super) fn is_own(&self, place: usize, other: usize) -> bool {
-        self.continua.is_own(place, other)
-    }
-
-    /// Whether all particles belong to the same continuum.
-    pub(super) fn is_one_continuum(&self) -> bool {
-        self.solids.as_ref().is_none_or(|solids| !solids.several)
     }
 
     /// The solid that a particle (number) is of, if it is one.

@@ -89,7 +89,7 @@ impl<const D: usize> TransportVelocity<D> {
         let Some(solids) = &mut self.solids else { return };
         let mut rates = std::mem::take(&mut solids.rates);
         let (couples, is_elastic) = (solids.contact, solids.is_elastic());
-        let several = solids.several;
+        let several = self.continua.are_several();
         let mut common = std::mem::take(&mut self.rates);
         let (h, corrections) = (self.support.smoothing_length(), self.settings.corrections);
         let one_if = |is_on: bool| f64::from(u8::from(is_on));
