@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use piola::case::build;
-use piola::case::{Case, LoadOptions, Problems, Simulation, load};
+use piola::case::{Case, Level, LoadOptions, Problems, Simulation, load};
 
 use crate::arguments::CaseArguments;
 use crate::exit::{Exit, Fault};
@@ -28,12 +28,12 @@ fn use_threads(threads: Option<u16>) {
     }
 }
 
-/// Reads the case at its full setting.
+/// Reads the case as it stands.
 fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
     let options = LoadOptions {
         overrides: arguments.set.clone(),
         variant: arguments.variant.clone(),
-        coarse: false,
+        level: Level::Case,
     };
     load(&arguments.case, &options).map_err(|problems| refusal(&arguments.case, &problems))
 }

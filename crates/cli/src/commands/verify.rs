@@ -8,7 +8,7 @@ use std::time::Instant;
 use piola::case::build;
 use piola::case::page::PageCase;
 use piola::case::verify::{CheckRow, VariantRun, needed_variants, verify as evaluate};
-use piola::case::{Case, Finished, LoadOptions, load};
+use piola::case::{Case, Finished, Level, LoadOptions, load};
 
 use super::{refusal, use_threads};
 use crate::arguments::VerifyArguments;
@@ -107,7 +107,7 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Option<Pa
         let options = LoadOptions {
             overrides: Vec::new(),
             variant: variant.map(str::to_owned),
-            coarse: !arguments.full,
+            level: if arguments.full { Level::Case } else { Level::Coarse },
         };
         load(path, &options).map_err(|problems| refusal(path, &problems))
     };

@@ -3,9 +3,12 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use self::sweeps::run_traits;
 use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
-use super::model::{Case, Checkpoint, Domain, Parameter, Scheme, StepControl, Time, Variant};
+use super::model::{
+    Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Scheme, StepControl, Time, Variant,
+};
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
 use super::suggest::suggestion;
@@ -30,8 +33,8 @@ mod waves;
 pub(super) struct Setting<'a> {
     /// Name of the variant or of the member of a sweep, `None` for the base case.
     pub variant: Option<&'a str>,
-    /// Whether the coarse overrides are applied.
-    pub coarse: bool,
+    /// The setting whose overrides are applied.
+    pub level: Level,
     /// Folder of the case file. `None` where the text is from elsewhere: files are not looked for.
     pub folder: Option<&'a Path>,
 }
@@ -85,6 +88,10 @@ pub(super) fn case(
     let known = checks::Known { probes: known_probes, sweeps: sweeps.as_deref(), end };
     let checks: Vec<_> = record.records("check").map(|check| reader.check(check, known)).collect();
     let coarse = record.record("coarse").map(|coarse| strings(coarse, "set")).unwrap_or_default();
+    let paper = record.record("paper").map(|paper| PaperSetting {
+        set: strings(paper, "set"),
+        is_long: paper.boolean("long").unwrap_or(false),
+    });
     let parameters = reader.context.parameters.iter();
     Some(Case {
         id: record.text("id").map(|id| id.value),
@@ -105,11 +112,12 @@ pub(super) fn case(
         pictures: pictures.into_iter().collect::<Option<_>>()?,
         plots: plots.into_iter().collect::<Option<_>>()?,
         coarse,
+        paper,
         variants: variants.into_iter().collect::<Option<_>>()?,
         sweeps: sweeps?,
         checks: checks.into_iter().collect::<Option<_>>()?,
         variant: setting.variant.map(str::to_owned),
-        is_coarse: setting.coarse,
+        level: setting.level,
         as_run: String::new(),
         sources: context.sources.into(),
     })
@@ -240,6 +248,7 @@ impl Reader<'_, '_> {
             title: record.text("title").map(|title| title.value),
             set: strings(record, "set"),
             coarse: strings(record, "coarse"),
+            traits: run_traits(record)?,
         })
     }
 

@@ -44,7 +44,7 @@ pub use diagnostics::{Problem, Problems};
 use document::{Node, Table, Value};
 pub use expression::Expression;
 use interpret::Setting;
-pub use model::Case;
+pub use model::{Case, Level};
 use overrides::Override;
 pub use plan::{Plan, PlannedLimit};
 pub use simulation::{Finished, RunError, Simulation};
@@ -61,16 +61,16 @@ pub struct LoadOptions {
     /// The variant, `None` or `base` for the case itself; `NAME.3` for the third member of the
     /// sweep `NAME`.
     pub variant: Option<String>,
-    /// Whether the coarse setting is read. Its overrides come first, those of a variant next, the
-    /// variant's own coarse ones after them.
-    pub coarse: bool,
+    /// The setting that is read. The overrides of `[coarse]` or `[paper]` come first, those of a
+    /// variant next, the variant's own coarse ones after them.
+    pub level: Level,
 }
 
 /// Reads the case file at `path`.
 ///
 /// # Errors
 /// All problems at once; [`Problems::is_io`] where the file cannot be read. The settings that the
-/// options do not ask for (variants, coarse) are checked too.
+/// options do not ask for (variants, coarse, paper) are checked too.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Case, Problems> {
     let source = document::read(path)?;
     // A bare file name has the empty path as its folder, to which names can be joined.
@@ -98,7 +98,7 @@ fn assemble(
     let sources: Arc<[SourceText]> = std::iter::once(file).chain(flags).collect();
     let tree = parsed.map_err(|problems| Problems::new(sources.clone(), problems))?;
     let variant = options.variant.as_deref().filter(|name| *name != "base");
-    let wanted = Setting { variant, coarse: options.coarse, folder };
+    let wanted = Setting { variant, level: options.level, folder };
     let case = read(&tree, &sources, options, wanted).and_then(|(case, changed)| {
         others(&tree, &sources, options, wanted, &case)?;
         Ok(Case { as_run: document::write(&changed), ..case })
@@ -127,7 +127,7 @@ fn read(
 fn recorded(text: &str, variant: Option<&str>) -> Result<Case, Problems> {
     let sources: Arc<[SourceText]> =
         Arc::new([SourceText { name: "the case as run".to_owned(), text: text.to_owned() }]);
-    let setting = Setting { variant, coarse: false, folder: None };
+    let setting = Setting { variant, level: Level::Case, folder: None };
     let tree = document::parse(text);
     let case = tree.and_then(|tree| check(&tree, &sources, setting, Vec::new()));
     let case = case.map_err(|problems| Problems::new(sources, problems))?;
@@ -170,12 +170,15 @@ fn others(
 ) -> Result<(), Vec<Problem>> {
     let mut problems: Vec<Problem> = Vec::new();
     for variant in case.settings() {
-        for coarse in [false, true] {
-            let setting = Setting { variant: variant.as_deref(), coarse, ..wanted };
-            if setting.variant.is_some_and(|name| !case.is_at(name, coarse)) {
+        for level in Level::ALL {
+            if level == Level::Paper && case.paper.is_none() {
                 continue;
             }
-            if setting.variant == wanted.variant && coarse == wanted.coarse {
+            let setting = Setting { variant: variant.as_deref(), level, ..wanted };
+            if setting.variant.is_some_and(|name| !case.is_at(name, level)) {
+                continue;
+            }
+            if setting.variant == wanted.variant && level == wanted.level {
                 continue;
             }
             let found = read(tree, sources, options, setting).err().unwrap_or_default();

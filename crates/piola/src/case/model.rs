@@ -17,7 +17,7 @@ mod observers;
 mod physics;
 mod sweeps;
 
-pub use checks::{Check, Expectation, Members, Quantity, Reduction, Trend, When};
+pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reduction, Trend, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
@@ -63,6 +63,8 @@ pub struct Case {
     pub plots: Vec<Plot>,
     /// Overrides of the coarse setting.
     pub coarse: Vec<String>,
+    /// What the publication has otherwise than the case as it stands.
+    pub paper: Option<PaperSetting>,
     /// The same case with other settings.
     pub variants: Vec<Variant>,
     /// The same case with every value of some keys.
@@ -71,8 +73,8 @@ pub struct Case {
     pub checks: Vec<Check>,
     /// The variant or member of a sweep that this is, `None` for the base case.
     pub variant: Option<String>,
-    /// Whether the coarse overrides are applied.
-    pub is_coarse: bool,
+    /// The setting whose overrides are applied.
+    pub level: Level,
     /// The case after all overrides, as TOML without comments, for the record of the run.
     pub as_run: String,
     /// The case file first, then one text for each override of the command line.
@@ -99,6 +101,26 @@ pub struct Variant {
     pub set: Vec<String>,
     /// Overrides that come on top in the coarse setting.
     pub coarse: Vec<String>,
+    /// What is known of the run in the case as it stands.
+    pub traits: RunTraits,
+}
+
+/// The overrides that give the publication's particle numbers, steps and parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaperSetting {
+    /// Overrides, each `path.to.key=value`; none where the case as it stands has them already.
+    pub set: Vec<String>,
+    /// Whether it runs with `--long` only.
+    pub is_long: bool,
+}
+
+/// What is known of the runs of a variant or a sweep in the case as it stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RunTraits {
+    /// They have the publication's particle numbers, steps and parameters.
+    pub is_paper: bool,
+    /// They run with `--long` only.
+    pub is_long: bool,
 }
 
 impl Case {
@@ -146,17 +168,17 @@ impl Case {
     pub fn settings(&self) -> Vec<Option<String>> {
         let variants = self.variants.iter().map(|variant| variant.name.value.clone());
         let members = self.sweeps.iter().flat_map(|sweep| {
-            let count = sweep.count(false).max(sweep.count(true));
+            let count = Level::ALL.map(|level| sweep.count(level)).into_iter().max().unwrap_or(0);
             (0..count).map(|index| sweep.member(index))
         });
         std::iter::once(None).chain(variants.chain(members).map(Some)).collect()
     }
 
-    /// Whether there is the member of a sweep called `name` at a setting. Variants are at both.
-    pub fn is_at(&self, name: &str, coarse: bool) -> bool {
+    /// Whether there is the member of a sweep called `name` at a setting. Variants are at all.
+    pub fn is_at(&self, name: &str, level: Level) -> bool {
         member_of(name).is_none_or(|(sweep, index)| {
             let sweep = self.sweeps.iter().find(|known| *known.name == sweep);
-            sweep.is_some_and(|sweep| index < sweep.count(coarse))
+            sweep.is_some_and(|sweep| index < sweep.count(level))
         })
     }
 
@@ -165,14 +187,44 @@ impl Case {
     pub fn member(&self, name: &str) -> Option<(&Sweep, usize)> {
         let (sweep, index) = member_of(name)?;
         let sweep = self.sweeps.iter().find(|known| *known.name == sweep)?;
-        (index < sweep.count(self.is_coarse)).then_some((sweep, index))
+        (index < sweep.count(self.level)).then_some((sweep, index))
     }
 
     /// What tells the member called `name` of a sweep apart: `time.cfl=0.1`. `None` for names of
     /// variants.
     pub fn member_label(&self, name: &str) -> Option<String> {
         let (sweep, index) = self.member(name)?;
-        Some(sweep.label(index, self.is_coarse))
+        Some(sweep.label(index, self.level))
+    }
+
+    /// What is known of the run of the case itself (`None`), or of the variant or member of this name,
+    /// at the setting that was read.
+    pub fn traits_of(&self, name: Option<&str>) -> RunTraits {
+        let of_case = match self.level {
+            Level::Coarse => return RunTraits::default(),
+            Level::Paper => {
+                let is_long = self.paper.as_ref().is_some_and(|paper| paper.is_long);
+                RunTraits { is_paper: true, is_long }
+            }
+            Level::Case => RunTraits::default(),
+        };
+        let own = match name {
+            None => {
+                let is_paper = self.paper.as_ref().is_some_and(|paper| paper.set.is_empty());
+                RunTraits { is_paper, is_long: false }
+            }
+            Some(name) => match self.member(name) {
+                Some((sweep, _)) => sweep.traits,
+                None => {
+                    let variant = self.variants.iter().find(|known| *known.name == name);
+                    variant.map_or(RunTraits::default(), |variant| variant.traits)
+                }
+            },
+        };
+        RunTraits {
+            is_paper: of_case.is_paper || own.is_paper,
+            is_long: of_case.is_long || own.is_long,
+        }
     }
 
     /// All files that the case reads besides itself: point clouds and reference curves.

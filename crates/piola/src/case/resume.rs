@@ -33,8 +33,8 @@ pub(super) struct Resumed {
 }
 
 /// Tables and keys that the course of a run does not depend on before it ends.
-const FREE: [&str; 8] =
-    ["id", "title", "checkpoint", "plot", "coarse", "variant", "sweep", "check"];
+const FREE: [&str; 9] =
+    ["id", "title", "checkpoint", "plot", "coarse", "paper", "variant", "sweep", "check"];
 /// Those of `[time]`.
 const FREE_TIME: [&str; 2] = ["end", "max_steps"];
 

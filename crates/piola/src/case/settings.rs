@@ -4,12 +4,12 @@
 use super::diagnostics::Problem;
 use super::document::{Node, Table, Value};
 use super::interpret::Setting;
-use super::model::{member_name, member_of};
+use super::model::{Level, member_name, member_of};
 use super::overrides::Override;
 use super::source::{Located, SourceText};
 use super::suggest::suggestion;
 
-/// Applies the overrides of the coarse setting, of the variant, and of the sweep and its member to
+/// Applies the overrides of the coarse or the paper's setting, of the variant, and of the sweep and its member to
 /// the tree, in this order.
 ///
 /// What is misshapen here is left out: checking the tree reports it.
@@ -21,26 +21,28 @@ pub(super) fn apply(
 ) {
     let mut lists = Vec::new();
     let mut values = Vec::new();
-    if setting.coarse
-        && let Some(Value::Table(coarse)) = tree.get("coarse").map(|node| &node.value)
-    {
-        lists.push(coarse.get("set").cloned());
+    let table = match setting.level {
+        Level::Case => None,
+        level => tree.get(level.name()),
+    };
+    if let Some(Value::Table(table)) = table.map(|node| &node.value) {
+        lists.push(table.get("set").cloned());
     }
     let mut variant = setting.variant;
     let sweep;
     if let Some((name, index)) = variant.and_then(member_of) {
-        match member(tree, name, index, setting.coarse) {
+        match member(tree, name, index, setting.level) {
             Ok(found) => {
                 sweep = found.sweep;
                 values = found.values;
                 variant = text(&sweep, "variant").filter(|name| *name != "base");
-                extend(&mut lists, tree, variant, setting.coarse, problems);
+                extend(&mut lists, tree, variant, setting.level, problems);
                 lists.push(sweep.get("set").cloned());
             }
             Err(problem) => problems.push(problem),
         }
     } else {
-        extend(&mut lists, tree, variant, setting.coarse, problems);
+        extend(&mut lists, tree, variant, setting.level, problems);
     }
     for list in lists.into_iter().flatten() {
         let Value::List(list) = list.value else { continue };
@@ -60,14 +62,14 @@ fn extend(
     lists: &mut Vec<Option<Node>>,
     tree: &Table,
     variant: Option<&str>,
-    coarse: bool,
+    level: Level,
     problems: &mut Vec<Problem>,
 ) {
     let Some(name) = variant else { return };
     match find(tree, name) {
         Ok(variant) => {
             lists.push(variant.get("set").cloned());
-            lists.extend(coarse.then(|| variant.get("coarse").cloned()));
+            lists.extend((level == Level::Coarse).then(|| variant.get("coarse").cloned()));
         }
         Err(problem) => problems.push(problem),
     }
@@ -79,7 +81,7 @@ struct Member {
     values: Vec<(Located<String>, Node)>,
 }
 
-fn member(tree: &Table, name: &str, index: usize, coarse: bool) -> Result<Member, Problem> {
+fn member(tree: &Table, name: &str, index: usize, level: Level) -> Result<Member, Problem> {
     let found = named(tree, "sweep").find(|(known, _)| *known == name);
     let Some((_, sweep)) = found else {
         let problem = Problem::whole(format!("the case has no sweep `{name}`"));
@@ -89,7 +91,7 @@ fn member(tree: &Table, name: &str, index: usize, coarse: bool) -> Result<Member
             false => problem.help(suggestion(name, names)),
         });
     };
-    let keys = keys_of(sweep, coarse);
+    let keys = keys_of(sweep, level);
     let count = keys.iter().fold(1, |count: usize, (_, list)| count.saturating_mul(list.len()));
     if index >= count {
         let message = format!("the sweep `{name}` has no member number {}", index + 1);
@@ -108,12 +110,12 @@ fn member(tree: &Table, name: &str, index: usize, coarse: bool) -> Result<Member
 }
 
 /// The keys of a sweep with their values at a setting. What is no list is left out.
-fn keys_of(sweep: &Table, coarse: bool) -> Vec<(Located<String>, Vec<Node>)> {
+fn keys_of(sweep: &Table, level: Level) -> Vec<(Located<String>, Vec<Node>)> {
     let table = |key: &str| match sweep.get(key).map(|node| &node.value) {
         Some(Value::Table(table)) => keys_with_values(table),
         _ => Vec::new(),
     };
-    let instead = if coarse { table("coarse") } else { Vec::new() };
+    let instead = if level == Level::Coarse { table("coarse") } else { Vec::new() };
     let each = table("over").into_iter().filter_map(|(path, node)| {
         let other = instead.iter().find(|(other, _)| other.value == path.value);
         match &other.map_or(node, |(_, other)| other).value {
@@ -167,7 +169,7 @@ fn find<'t>(tree: &'t Table, name: &str) -> Result<&'t Table, Problem> {
         let problem = Problem::whole(format!("the case has no variant `{name}`"));
         let names: Vec<&str> = named(tree, "variant").map(|(name, _)| name).collect();
         if let Some((_, sweep)) = named(tree, "sweep").find(|(known, _)| *known == name) {
-            let keys = keys_of(sweep, false);
+            let keys = keys_of(sweep, Level::Case);
             let count = keys.iter().fold(1, |count: usize, key| count.saturating_mul(key.1.len()));
             let (first, last) = (member_name(name, 0), member_name(name, count.saturating_sub(1)));
             return problem.help(format!("it is a sweep, with members `{first}` to `{last}`"));
@@ -182,14 +184,16 @@ fn find<'t>(tree: &'t Table, name: &str) -> Result<&'t Table, Problem> {
 /// What is added to a problem that is found in a setting that was not asked for.
 pub(super) fn remark(setting: Setting<'_>) -> String {
     let variant = setting.variant;
+    let of = match setting.level {
+        Level::Case => String::new(),
+        level => format!("{} of ", level.words()),
+    };
     if let Some((sweep, index)) = variant.and_then(member_of) {
-        let coarse = if setting.coarse { "the coarse setting of " } else { "" };
-        return format!(" (in {coarse}member {} of the sweep `{sweep}`)", index + 1);
+        return format!(" (in {of}member {} of the sweep `{sweep}`)", index + 1);
     }
-    match (variant, setting.coarse) {
-        (None, false) => " (in the base case)".to_owned(),
-        (None, true) => " (in the coarse setting)".to_owned(),
-        (Some(name), false) => format!(" (in the variant `{name}`)"),
-        (Some(name), true) => format!(" (in the coarse setting of the variant `{name}`)"),
+    match (variant, setting.level) {
+        (None, Level::Case) => " (in the base case)".to_owned(),
+        (None, level) => format!(" (in {})", level.words()),
+        (Some(name), _) => format!(" (in {of}the variant `{name}`)"),
     }
 }

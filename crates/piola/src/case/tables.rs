@@ -115,7 +115,14 @@ pub static CASE: TableSpec = TableSpec {
             Kind::Table(&COARSE),
             "",
             Optional,
-            "the quick setting that `piola verify` uses without `--full`",
+            "the quick setting that `piola verify` runs",
+        ),
+        key(
+            "paper",
+            Kind::Table(&PAPER),
+            "",
+            Optional,
+            "particle numbers, steps and parameters of the publication, run with `piola verify --paper` and `--full`",
         ),
         key(
             "variant",
@@ -393,7 +400,7 @@ static ROLLER: TableSpec = TableSpec {
 
 static COARSE: TableSpec = TableSpec {
     title: "[coarse]",
-    meaning: "The quick setting that `piola verify` uses without `--full`.",
+    meaning: "The quick setting that `piola verify` runs, for tests.",
     keys: &[key(
         "set",
         Kind::List(&Kind::Text),
@@ -401,6 +408,21 @@ static COARSE: TableSpec = TableSpec {
         Required,
         "overrides, each `path.to.key=value`; applied before those of a variant",
     )],
+};
+
+static PAPER: TableSpec = TableSpec {
+    title: "[paper]",
+    meaning: "Particle numbers, steps and parameters of the publication, where the case as it stands has others.",
+    keys: &[
+        key(
+            "set",
+            Kind::List(&Kind::Text),
+            "",
+            Required,
+            "overrides, each `path.to.key=value`, applied before those of a variant; none, `[]`, where the case as it stands has the publication's setting",
+        ),
+        checks::LONG,
+    ],
 };
 
 static VARIANT: TableSpec = TableSpec {
@@ -423,6 +445,8 @@ static VARIANT: TableSpec = TableSpec {
             Default("[]"),
             "overrides that come on top in the coarse setting",
         ),
+        checks::PAPER,
+        checks::LONG,
     ],
 };
 

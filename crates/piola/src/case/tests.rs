@@ -27,12 +27,12 @@ fn full() -> Case {
 
 #[test]
 fn the_template_is_a_good_case() {
-    for coarse in [false, true] {
-        let options = LoadOptions { coarse, ..LoadOptions::default() };
+    for level in [Level::Case, Level::Coarse] {
+        let options = LoadOptions { level, ..LoadOptions::default() };
         let case = parse(&template::new_case("a \"new\" case"), "case.toml", &options)
             .unwrap_or_else(|problems| panic!("{problems}"));
         assert_eq!(case.title, "a new case");
-        assert_eq!(case.bodies[0].spacing.value[0], if coarse { 0.2 } else { 0.1 });
+        assert_eq!(case.bodies[0].spacing.value[0], if level == Level::Coarse { 0.2 } else { 0.1 });
     }
 }
 
@@ -46,8 +46,17 @@ fn reads_the_frame_of_a_case() {
     let periodic: Vec<_> =
         case.domain.periodic.iter().map(|axis| axis.as_ref().map(|ends| ends.value)).collect();
     assert_eq!(periodic, [Some([-10.0, 10.0]), None]);
-    assert_eq!((case.variant.as_deref(), case.is_coarse), (None, false));
+    assert_eq!((case.variant.as_deref(), case.level), (None, Level::Case));
     assert_eq!(case.coarse, ["body.column.spacing=0.5", "time.end=0.5"]);
+    let paper = case.paper.as_ref().unwrap();
+    assert_eq!(
+        (&paper.set[..], paper.is_long),
+        (&["body.column.spacing=0.05".to_owned()][..], true)
+    );
+    assert_eq!(case.variants[0].traits, RunTraits { is_paper: true, is_long: true });
+    assert_eq!(case.traits_of(None), RunTraits::default());
+    assert_eq!((case.checks[0].against, case.checks[1].against), (Some(Against::Exact), None));
+    assert_eq!(case.checks[0].reason.as_deref(), Some("second order: spacing^2"));
     let time = &case.time;
     assert_eq!((time.end.value, time.integrator.as_str()), (3.0, "tvd_rk2"));
     assert_eq!(time.step.value, StepControl::Cfl(0.3));
@@ -172,9 +181,9 @@ fn reads_variants_and_checks() {
     let bounds = |at_least, at_most| Expectation::Bounds { at_least, at_most };
     let expected = [
         (Reduction::Maximum, value(0.2, 0.01, false), When::Always),
-        (Reduction::At(0.25), value(0.0, 1e-3, true), When::Full),
+        (Reduction::At(0.25), value(0.0, 1e-3, true), When::At(Level::Case)),
         (Reduction::Extremum(2), bounds(Some(-1.0), Some(6.0)), When::Always),
-        (Reduction::Final, Expectation::Outcome("completed".to_owned()), When::Coarse),
+        (Reduction::Final, Expectation::Outcome("completed".to_owned()), When::At(Level::Coarse)),
         (Reduction::Final, Expectation::LessThan(None), When::Always),
     ];
     for (check, (reduce, expectation, when)) in case.checks.iter().zip(expected) {
@@ -227,7 +236,7 @@ fn the_case_as_run_is_the_same_case() {
     let options = LoadOptions {
         variant: Some("no-upwinding".to_owned()),
         overrides: vec!["time.end=2".to_owned()],
-        coarse: true,
+        level: Level::Coarse,
     };
     let case = parse(FULL, "case.toml", &options).unwrap();
     let again = read_with(&case.as_run, &[]).unwrap();

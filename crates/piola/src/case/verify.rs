@@ -180,7 +180,7 @@ fn own_runs(case: &Case, check: &Check) -> Vec<Option<String>> {
         None => vec![check.variant.as_ref().map(|name| name.value.clone())],
         Some(members) => {
             let sweep = &case.sweeps[*members.sweep];
-            let indices = members.indices(sweep, case.is_coarse).into_iter();
+            let indices = members.indices(sweep, case.level).into_iter();
             indices.map(|index| Some(sweep.member(index))).collect()
         }
     }
@@ -205,5 +205,5 @@ pub fn verify<Run: RunResults>(base: &Case, run: &mut RunVariant<'_, Run>) -> Ve
 
 /// The checks that apply in the setting of `case`, with their numbers.
 fn applicable(case: &Case) -> impl Iterator<Item = (usize, &Check)> {
-    case.checks.iter().enumerate().filter(|(_, check)| check.when.includes(case.is_coarse))
+    case.checks.iter().enumerate().filter(|(_, check)| check.when.includes(case.level))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use piola::case::verify::{self, CheckRow, Got, VariantRun};
-use piola::case::{self, Case, Finished, LoadOptions};
+use piola::case::{self, Case, Finished, Level, LoadOptions};
 use piola::observe::Series;
 use piola::output::Table;
 use piola::time::{Outcome, Progress};
@@ -219,7 +219,7 @@ fn a_run_that_goes_back_or_is_resumed_keeps_its_profiles() {
     // Too large a step: it fails, goes back and on with half of it.
     let set = ["body.water.spacing=0.1", "time.cfl=2", "time.on_failure='retry'"];
     let overrides = set.map(str::to_owned).to_vec();
-    let options = LoadOptions { overrides, coarse: true, ..LoadOptions::default() };
+    let options = LoadOptions { overrides, level: Level::Coarse, ..LoadOptions::default() };
     let case = case::load(&file, &options).unwrap_or_else(|problems| panic!("{problems}"));
     let out = folder.path().join("out");
     let whole = run(&case, Some(&out));

@@ -6,13 +6,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use piola::case::{self, Case, Finished, LoadOptions, RunError};
+use piola::case::{self, Case, Finished, Level, LoadOptions, RunError};
 use piola::output::checkpoint;
 use piola::time::{Outcome, Progress};
 
 fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
-    let options = LoadOptions { overrides, variant: variant.map(str::to_owned), coarse: true };
+    let options =
+        LoadOptions { overrides, variant: variant.map(str::to_owned), level: Level::Coarse };
     case::load(path, &options).unwrap_or_else(|problems| panic!("{problems}"))
 }
 

@@ -1,7 +1,7 @@
 //! The members of a sweep, from the command line or from the case file.
 
 use piola::case::sweep::{MemberResult, MemberValue, folder_names, split_values};
-use piola::case::{Case, LoadOptions, load};
+use piola::case::{Case, Level, LoadOptions, load};
 
 use crate::arguments::SweepArguments;
 use crate::commands::refusal;
@@ -50,19 +50,20 @@ fn read(arguments: &SweepArguments, options: &LoadOptions) -> Result<Case, Fault
 /// The members of the sweep called `name` of the case file.
 fn of_case(arguments: &SweepArguments, name: &str) -> Result<(Vec<String>, Vec<Member>), Fault> {
     let overrides = arguments.case.set.clone();
-    let options = |variant| LoadOptions { overrides: overrides.clone(), variant, coarse: false };
+    let options =
+        |variant| LoadOptions { overrides: overrides.clone(), variant, level: Level::Case };
     // The first member is there if the sweep is; a wrong name is explained by reading it.
     let first = read(arguments, &options(Some(format!("{name}.1"))))?;
     let Some(sweep) = first.sweeps.iter().find(|sweep| *sweep.name == name) else {
         return Err(Fault::new(Exit::BadCase, format!("the case has no sweep `{name}`")));
     };
-    let keys = sweep.keys(false);
+    let keys = sweep.keys(Level::Case);
     let values = |index: usize| -> Vec<(&str, &str)> {
         let numbers = piola::case::model::coordinates(keys, index);
         let each = keys.iter().zip(numbers);
         each.map(|(key, number)| (key.path.as_str(), key.values[number].text.as_str())).collect()
     };
-    let all: Vec<_> = (0..sweep.count(false)).map(values).collect();
+    let all: Vec<_> = (0..sweep.count(Level::Case)).map(values).collect();
     let mut members = Vec::new();
     for (index, (folder, values)) in folder_names(&all).into_iter().zip(&all).enumerate() {
         let case = read(arguments, &options(Some(sweep.member(index))))?;
@@ -70,7 +71,7 @@ fn of_case(arguments: &SweepArguments, name: &str) -> Result<(Vec<String>, Vec<M
         members.push(Member { name: folder, values, case });
     }
     if members.is_empty() {
-        let message = format!("the sweep `{name}` has no members at the full setting");
+        let message = format!("the sweep `{name}` has no members in the case as it stands");
         return Err(Fault::new(Exit::BadCase, message));
     }
     Ok((keys.iter().map(|key| key.path.value.clone()).collect(), members))
@@ -119,7 +120,7 @@ fn of_flags(arguments: &SweepArguments) -> Result<(Vec<String>, Vec<Member>), Fa
         let mut overrides = arguments.case.set.clone();
         overrides.extend(values.iter().map(|(key, value)| format!("{key}={value}")));
         let variant = arguments.case.variant.clone();
-        let case = read(arguments, &LoadOptions { overrides, variant, coarse: false })?;
+        let case = read(arguments, &LoadOptions { overrides, variant, level: Level::Case })?;
         let values = values.iter().map(|(_, text)| MemberValue::new(text, &case)).collect();
         members.push(Member { name, values, case });
     }

@@ -5,7 +5,7 @@ use super::observers::line_of;
 use super::sweeps::when;
 use super::*;
 use crate::case::model::{
-    Check, Expectation, Probe, Quantity, Reduction, Sweep, Trend, When, member_of,
+    Against, Check, Expectation, Level, Probe, Quantity, Reduction, Sweep, Trend, When, member_of,
 };
 use crate::case::suggest::one_of;
 
@@ -46,6 +46,11 @@ pub(super) struct Known<'a> {
     pub end: Option<f64>,
 }
 
+/// What an expected value is worth, by its name.
+fn against(name: &str) -> Option<Against> {
+    Against::ALL.into_iter().find(|known| known.name() == name)
+}
+
 impl Reader<'_, '_> {
     pub(super) fn check(&mut self, record: &Record, known: Known<'_>) -> Option<Check> {
         let variant = record.text("variant").map(|name| self.variant_called(name));
@@ -70,15 +75,15 @@ impl Reader<'_, '_> {
                 let own = self.setting.variant.and_then(member_of);
                 let sweep = &known.sweeps?[*members.sweep];
                 own.is_some_and(|(name, index)| {
-                    name == *sweep.name && members.includes(sweep, index, self.setting.coarse)
+                    name == *sweep.name && members.includes(sweep, index, self.setting.level)
                 })
             }
             (None, Some(Some(Some(name)))) => self.setting.variant == Some(name.as_str()),
             _ => self.setting.variant.is_none(),
         };
         let at_this_setting = match when {
-            When::Coarse => self.setting.coarse,
-            When::Always | When::Full => !self.setting.coarse,
+            When::Always => self.setting.level == Level::Case,
+            When::At(level) => self.setting.level == level,
         };
         // `at` is a place where the quantity is one of a line, which only the probes tell.
         let end = known.end.filter(|_| of_this_run && at_this_setting && known.probes.is_some());
@@ -91,7 +96,7 @@ impl Reader<'_, '_> {
         let is_outcome = quantity.as_deref() == Some(&Quantity::Run("outcome".to_owned()));
         let expectation = self.expectation(record, is_outcome);
         if let (Some(members), Some(reduce), Some(expectation)) = (&members, &reduce, &expectation)
-            && when.includes(self.setting.coarse)
+            && when.includes(self.setting.level)
         {
             let is_error = is_error(reduce, expectation);
             self.enough_members(record, members, known.sweeps?, trend, is_error)?;
@@ -102,7 +107,9 @@ impl Reader<'_, '_> {
             quantity: quantity?,
             reduce: reduce?,
             expectation: expectation?,
+            against: record.text("against").and_then(|name| against(&name)),
             source: record.text("source")?.value,
+            reason: record.text("reason").map(|reason| reason.value),
             when,
         })
     }

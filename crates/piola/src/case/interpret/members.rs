@@ -3,7 +3,7 @@
 use super::sweeps::text_of;
 use super::*;
 use crate::case::document::{Node, Value};
-use crate::case::model::{Expectation, Members, Reduction, Sweep, SweepValue, Trend, When};
+use crate::case::model::{Expectation, Level, Members, Reduction, Sweep, SweepValue, Trend, When};
 use crate::case::suggest::one_of;
 
 impl Reader<'_, '_> {
@@ -71,8 +71,8 @@ impl Reader<'_, '_> {
             let problem = Problem::new(place, message, "a second thing to run");
             self.report(problem.help("the sweep itself can start from a variant"));
         }
-        let coarse = self.setting.coarse;
-        let keys = sweeps[*sweep].keys(coarse);
+        let level = self.setting.level;
+        let keys = sweeps[*sweep].keys(level);
         let key_called = |path: &str| keys.iter().position(|key| *key.path == path);
         let unknown_key = |path: &Located<String>| {
             let message = format!("the sweep does not go over `{}`", path.value);
@@ -84,13 +84,13 @@ impl Reader<'_, '_> {
             let Some(key) = key_called(path) else { return self.refuse(unknown_key(path)) };
             let Some(node) = values.first() else { continue };
             fixed[key] = find(node, &keys[key].values);
-            if fixed[key].is_none() && when.includes(coarse) {
+            if fixed[key].is_none() && when.includes(level) {
                 let texts = keys[key].values.iter().map(|value| value.text.as_str());
                 let help = format!(
                     "its values are {}{}",
                     one_of(texts),
-                    if coarse {
-                        " in the coarse setting; `when = \"full\"` leaves it out"
+                    if level == Level::Coarse {
+                        " in the coarse setting; `when = \"case\"` leaves it out"
                     } else {
                         ""
                     }
@@ -154,7 +154,7 @@ impl Reader<'_, '_> {
     ) -> Option<()> {
         let (Some(trend), Some(along)) = (trend, members.along) else { return Some(()) };
         let place = record.key_place(trend).unwrap_or(record.place);
-        let key = &sweeps[*members.sweep].keys(self.setting.coarse)[along];
+        let key = &sweeps[*members.sweep].keys(self.setting.level)[along];
         let needed = if trend == "order" && !is_error { 3 } else { 2 };
         if key.values.len() < needed {
             let got = key.values.len();

@@ -185,8 +185,8 @@ impl Reader<'_, '_> {
 
     /// Whether the case is read as its file has it, without any overrides.
     fn is_plain(&self) -> bool {
-        let Setting { variant, coarse, .. } = self.setting;
-        variant.is_none() && !coarse && self.context.sources.len() == 1
+        let Setting { variant, level, .. } = self.setting;
+        variant.is_none() && level == Level::Case && self.context.sources.len() == 1
     }
 
     pub(super) fn plot(&mut self, record: &Record, probes: Option<&[Probe]>) -> Option<Plot> {

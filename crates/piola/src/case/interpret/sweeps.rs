@@ -3,14 +3,14 @@
 use super::*;
 use crate::case::document::{Node, Value, write_value};
 use crate::case::expression::{Expression, Scope};
-use crate::case::model::{Sweep, SweepKey, SweepValue, When};
+use crate::case::model::{Level, RunTraits, Sweep, SweepKey, SweepValue, When};
 
 /// Members that a sweep may have at most: each is checked when the case is read.
 const MAX_MEMBERS: usize = 256;
 /// Members that all sweeps of a case may have together.
 const MAX_ALL_MEMBERS: usize = 1000;
 /// Tables that a sweep cannot change, as they say what is run and checked.
-const FRAME: [&str; 5] = ["variant", "sweep", "check", "coarse", "version"];
+const FRAME: [&str; 6] = ["variant", "sweep", "check", "coarse", "paper", "version"];
 
 impl Reader<'_, '_> {
     pub(super) fn sweep(&mut self, record: &Record) -> Option<Sweep> {
@@ -44,9 +44,10 @@ impl Reader<'_, '_> {
             coarse: coarse.collect(),
             full,
             when: when(record)?,
+            traits: run_traits(record)?,
         };
-        for is_coarse in [false, true] {
-            let count = sweep.count(is_coarse);
+        for level in Level::ALL {
+            let count = sweep.count(level);
             if count > MAX_MEMBERS {
                 let message =
                     format!("the sweep has {count} members, at most {MAX_MEMBERS} are allowed");
@@ -104,10 +105,10 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn not_too_many_members(&mut self, sweeps: &[Sweep]) {
-        for coarse in [false, true] {
+        for level in Level::ALL {
             let mut count = 0;
             for sweep in sweeps {
-                count += sweep.count(coarse);
+                count += sweep.count(level);
                 if count > MAX_ALL_MEMBERS {
                     let message =
                         format!("the sweeps have more than {MAX_ALL_MEMBERS} members together");
@@ -122,10 +123,16 @@ impl Reader<'_, '_> {
 /// At which setting a check or a sweep is meant.
 pub(super) fn when(record: &Record) -> Option<When> {
     Some(match record.text("when")?.as_str() {
-        "coarse" => When::Coarse,
-        "full" => When::Full,
+        "coarse" => When::At(Level::Coarse),
+        "case" => When::At(Level::Case),
+        "paper" => When::At(Level::Paper),
         _ => When::Always,
     })
+}
+
+/// What a variant or a sweep says of its runs.
+pub(super) fn run_traits(record: &Record) -> Option<RunTraits> {
+    Some(RunTraits { is_paper: record.boolean("paper")?, is_long: record.boolean("long")? })
 }
 
 /// Whether two values of a key mean the same: 1 and 1.0 do.

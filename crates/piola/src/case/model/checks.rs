@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use crate::case::source::Located;
 
 /// One line of the table that `piola verify` prints.
@@ -17,10 +19,52 @@ pub struct Check {
     pub reduce: Reduction,
     /// What the number should be.
     pub expectation: Expectation,
+    /// What the expected value is worth as evidence.
+    pub against: Option<Against>,
     /// Where the expected value comes from.
     pub source: String,
+    /// Why the tolerance, or the bound, is what it is.
+    pub reason: Option<String>,
     /// At which setting it is evaluated.
     pub when: When,
+}
+
+/// What an expected value is worth as evidence that a result is right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Against {
+    /// A closed form or a series.
+    Exact,
+    /// Another method or another program.
+    Independent,
+    /// A number or a curve of the paper.
+    Paper,
+    /// Another run of piola: no evidence of correctness.
+    Own,
+    /// A balance, a symmetry, an outcome, a number of pieces.
+    Invariant,
+}
+
+impl Against {
+    /// All of them, the strongest first.
+    pub const ALL: [Self; 5] =
+        [Self::Exact, Self::Independent, Self::Paper, Self::Own, Self::Invariant];
+
+    /// Its name in case files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Independent => "independent",
+            Self::Paper => "paper",
+            Self::Own => "own",
+            Self::Invariant => "invariant",
+        }
+    }
+
+    /// Whether the expected value comes from outside the program.
+    pub fn is_outside(self) -> bool {
+        matches!(self, Self::Exact | Self::Independent | Self::Paper)
+    }
 }
 
 impl Check {
@@ -124,24 +168,59 @@ pub enum Trend {
     Ratio([f64; 2]),
 }
 
-/// At which setting a check is evaluated.
+/// How finely, and with which parameters, a case is run.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Level {
+    /// The overrides of `[coarse]`: seconds, for tests.
+    Coarse,
+    /// The case as it stands in its file.
+    #[default]
+    Case,
+    /// The overrides of `[paper]`: particle numbers, steps and parameters of the publication.
+    Paper,
+}
+
+impl Level {
+    /// All of them, the quickest first.
+    pub const ALL: [Self; 3] = [Self::Coarse, Self::Case, Self::Paper];
+
+    /// Its name in case files and on the validation page.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coarse => "coarse",
+            Self::Case => "case",
+            Self::Paper => "paper",
+        }
+    }
+
+    /// The setting in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Coarse => "the coarse setting",
+            Self::Case => "the case as it stands",
+            Self::Paper => "the paper's setting",
+        }
+    }
+}
+
+/// At which setting a check is evaluated, or a sweep is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
-    /// At both.
+    /// At the coarse setting and in the case as it stands.
     Always,
-    /// At the coarse setting only.
-    Coarse,
-    /// At the setting of the paper only.
-    Full,
+    /// At one only.
+    At(Level),
 }
 
 impl When {
-    /// Whether it includes the coarse setting, or the full one.
-    pub fn includes(self, coarse: bool) -> bool {
+    /// Whether it includes a setting.
+    pub fn includes(self, level: Level) -> bool {
         match self {
-            Self::Always => true,
-            Self::Coarse => coarse,
-            Self::Full => !coarse,
+            Self::Always => level != Level::Paper,
+            Self::At(one) => one == level,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Sweeps: the same case with every value of one or two keys.
 
-use super::{Members, When};
+use super::{Level, Members, RunTraits, When};
 use crate::case::source::Located;
 
 /// The same case with every value of one key, or every pair of values of two.
@@ -14,12 +14,14 @@ pub struct Sweep {
     pub variant: Option<Located<String>>,
     /// Overrides of all members, each `path.to.key=value`.
     pub set: Vec<String>,
-    /// One or two keys with their values at the full setting.
+    /// One or two keys with their values in the case as it stands.
     pub full: Vec<SweepKey>,
     /// The same keys at the coarse setting.
     pub coarse: Vec<SweepKey>,
     /// At which setting there is the sweep.
     pub when: When,
+    /// What is known of its runs in the case as it stands.
+    pub traits: RunTraits,
 }
 
 /// A key of a sweep.
@@ -43,21 +45,21 @@ pub struct SweepValue {
 
 impl Sweep {
     /// The keys with their values at a setting.
-    pub fn keys(&self, coarse: bool) -> &[SweepKey] {
-        if coarse { &self.coarse } else { &self.full }
+    pub fn keys(&self, level: Level) -> &[SweepKey] {
+        if level == Level::Coarse { &self.coarse } else { &self.full }
     }
 
     /// Whether there is the sweep at a setting.
-    pub fn exists(&self, coarse: bool) -> bool {
-        self.when.includes(coarse)
+    pub fn exists(&self, level: Level) -> bool {
+        self.when.includes(level)
     }
 
     /// Number of members at a setting, none where the sweep does not exist.
-    pub fn count(&self, coarse: bool) -> usize {
-        if !self.exists(coarse) {
+    pub fn count(&self, level: Level) -> usize {
+        if !self.exists(level) {
             return 0;
         }
-        let counts = self.keys(coarse).iter().map(|key| key.values.len());
+        let counts = self.keys(level).iter().map(|key| key.values.len());
         counts.fold(1, usize::saturating_mul)
     }
 
@@ -67,15 +69,15 @@ impl Sweep {
     }
 
     /// What tells member number `index` apart: `time.cfl=0.1, scheme.kernel=lucy`.
-    pub fn label(&self, index: usize, coarse: bool) -> String {
-        let each = self.values(index, coarse);
+    pub fn label(&self, index: usize, level: Level) -> String {
+        let each = self.values(index, level);
         let each = each.iter().map(|(key, value)| format!("{}={}", key.path.value, value.text));
         each.collect::<Vec<_>>().join(", ")
     }
 
     /// The keys with the values that member number `index` has.
-    pub fn values(&self, index: usize, coarse: bool) -> Vec<(&SweepKey, &SweepValue)> {
-        let keys = self.keys(coarse);
+    pub fn values(&self, index: usize, level: Level) -> Vec<(&SweepKey, &SweepValue)> {
+        let keys = self.keys(level);
         let each = keys.iter().zip(coordinates(keys, index));
         each.filter_map(|(key, number)| Some((key, &key.values.get(number)?.value))).collect()
     }
@@ -111,9 +113,9 @@ pub(in crate::case) fn member_of(name: &str) -> Option<(&str, usize)> {
 
 impl Members {
     /// Whether member number `index` of `sweep` is among them.
-    pub fn includes(&self, sweep: &Sweep, index: usize, coarse: bool) -> bool {
-        let numbers = coordinates(sweep.keys(coarse), index);
-        index < sweep.count(coarse)
+    pub fn includes(&self, sweep: &Sweep, index: usize, level: Level) -> bool {
+        let numbers = coordinates(sweep.keys(level), index);
+        index < sweep.count(level)
             && self
                 .fixed
                 .iter()
@@ -122,16 +124,16 @@ impl Members {
     }
 
     /// The numbers of the members, in order.
-    pub fn indices(&self, sweep: &Sweep, coarse: bool) -> Vec<usize> {
-        (0..sweep.count(coarse)).filter(|index| self.includes(sweep, *index, coarse)).collect()
+    pub fn indices(&self, sweep: &Sweep, level: Level) -> Vec<usize> {
+        (0..sweep.count(level)).filter(|index| self.includes(sweep, *index, level)).collect()
     }
 
     /// The members in lines along their key, one for each value of the other key; one line with a
     /// single member each where there is no such key.
-    pub fn lines(&self, sweep: &Sweep, coarse: bool) -> Vec<Vec<usize>> {
-        let keys = sweep.keys(coarse);
+    pub fn lines(&self, sweep: &Sweep, level: Level) -> Vec<Vec<usize>> {
+        let keys = sweep.keys(level);
         let mut lines: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
-        for index in self.indices(sweep, coarse) {
+        for index in self.indices(sweep, level) {
             let mut others = coordinates(keys, index);
             if let Some(along) = self.along {
                 others.remove(along);

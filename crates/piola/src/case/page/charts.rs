@@ -1,7 +1,7 @@
 //! Charts of the validation page: the plots of a case with their references, and trends of sweeps.
 
 use super::PageCase;
-use crate::case::model::{Case, Expectation, Reduction, Sweep};
+use crate::case::model::{Case, Expectation, Level, Reduction, Sweep};
 use crate::case::sweep::curve_series;
 use crate::case::verify::{CheckRow, TrendData};
 use crate::observe;
@@ -20,7 +20,7 @@ pub(super) fn charts(case: &Case, page: &PageCase) -> Vec<(String, Plot)> {
         let all = of_variants(case, page, &curves);
         charts.push((name.clone(), chart(&case.title, &abscissa, all)));
         for sweep in case.sweeps.iter().filter(|_| curves.len() == 1) {
-            let title = format!("{}: {}", case.title, keys(sweep, case.is_coarse));
+            let title = format!("{}: {}", case.title, keys(sweep, case.level));
             let members = of_members(case, page, sweep, &curves[0]);
             charts.push((format!("{name}-{}", *sweep.name), chart(&title, &abscissa, members)));
         }
@@ -44,8 +44,8 @@ fn abscissa(page: &PageCase, name: &str) -> Column {
 }
 
 /// The last parts of the paths of the keys of a sweep.
-fn keys(sweep: &Sweep, coarse: bool) -> String {
-    let keys = sweep.keys(coarse).iter().map(|key| last_part(&key.path).to_owned());
+fn keys(sweep: &Sweep, level: Level) -> String {
+    let keys = sweep.keys(level).iter().map(|key| last_part(&key.path).to_owned());
     keys.collect::<Vec<_>>().join(", ")
 }
 
@@ -78,7 +78,7 @@ fn of_variants(case: &Case, page: &PageCase, curves: &[String]) -> Vec<Series> {
 fn of_members(case: &Case, page: &PageCase, sweep: &Sweep, name: &str) -> Vec<Series> {
     let members = page.runs.iter().filter_map(|(run, finished)| {
         let (own, index) = case.member(run.as_ref()?)?;
-        let values = sweep.values(index, case.is_coarse).into_iter();
+        let values = sweep.values(index, case.level).into_iter();
         let values: Vec<&str> = values.map(|(_, value)| value.text.as_str()).collect();
         let label = format!("{}: {name}", values.join(", "));
         let curve = curve_series(&label, finished.quantity(name)?)?;
@@ -110,7 +110,7 @@ fn references(case: &Case, name: &str, found: &observe::Series) -> Vec<[f64; 2]>
     let mut points = Vec::new();
     for check in case.checks.iter().filter(|check| {
         let of_case = check.variant.is_none() && check.members.is_none();
-        of_case && check.when.includes(case.is_coarse) && check.quantity.name() == name
+        of_case && check.when.includes(case.level) && check.quantity.name() == name
     }) {
         if let Some(curve) = check.reduce.reference().and_then(|file| Curve::read_csv(file).ok()) {
             let all = curve.abscissa.iter().zip(&curve.ordinate);

@@ -43,6 +43,8 @@ pub(super) static SWEEP: TableSpec = TableSpec {
             Default("\"always\""),
             "at which setting there is the sweep, and what is checked of it",
         ),
+        PAPER,
+        LONG,
     ],
 };
 
@@ -166,7 +168,21 @@ pub(super) static CHECK: TableSpec = TableSpec {
             Optional,
             "bounds of the quantity, or with `expected` of its error, over that of the member before, for all members but the first",
         ),
+        key(
+            "against",
+            Kind::Name(AGAINST),
+            "",
+            Optional,
+            "what the expected value is worth as evidence; with `piola verify --page` every check needs it",
+        ),
         key("source", Kind::Text, "", Required, "where the expected value comes from"),
+        key(
+            "reason",
+            Kind::Text,
+            "",
+            Optional,
+            "why the tolerance or the bound is what it is: order of the method, digits printed, scatter of the experiment",
+        ),
         key(
             "when",
             Kind::Name(SETTINGS),
@@ -182,7 +198,31 @@ const DIRECTIONS: Choices = choices(&[
     choice("decreasing", "each is below the one before"),
 ]);
 const SETTINGS: Choices = choices(&[
-    choice("always", "at both settings"),
+    choice("always", "at the coarse setting and in the case as it stands"),
     choice("coarse", "at the coarse setting only"),
-    choice("full", "at the full setting only"),
+    choice("case", "in the case as it stands only"),
+    choice("paper", "at the paper's setting only, with the overrides of `[paper]`"),
 ]);
+const AGAINST: Choices = choices(&[
+    choice("exact", "a closed form or a series"),
+    choice("independent", "another method or program, with the script or the citation"),
+    choice("paper", "a number or a digitised curve of the paper"),
+    choice("own", "another run of piola: no evidence of correctness"),
+    choice("invariant", "a balance, a symmetry, an outcome, a number of pieces"),
+]);
+/// Whether a variant or a sweep is at the setting of the publication.
+pub(super) const PAPER: KeySpec = key(
+    "paper",
+    Kind::Boolean,
+    "",
+    Default("false"),
+    "whether it has the publication's particle numbers, steps and parameters as it stands",
+);
+/// Whether a run is left out without `--long`.
+pub(super) const LONG: KeySpec = key(
+    "long",
+    Kind::Boolean,
+    "",
+    Default("false"),
+    "whether `piola verify` runs it with `--long` only, as it takes more than some minutes",
+);

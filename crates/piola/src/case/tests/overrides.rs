@@ -50,16 +50,16 @@ fn settings_are_applied_in_order() {
         "set = [\"scheme.tau_velocity=0\"]",
         "set = [\"time.end=1\", \"scheme.kernel=lucy\"]\ncoarse = [\"body.0.spacing=1\"]",
     );
-    let read = |variant: Option<&str>, coarse| {
+    let read = |variant: Option<&str>, level| {
         let variant = variant.map(str::to_owned);
         let overrides = vec!["body.ring.spacing=0.75".to_owned()];
-        let case = parse(&text, "case.toml", &LoadOptions { overrides, variant, coarse }).unwrap();
+        let case = parse(&text, "case.toml", &LoadOptions { overrides, variant, level }).unwrap();
         (case.time.end.value, case.bodies[0].spacing[0], case.bodies[1].spacing[0])
     };
-    assert_eq!(read(None, false), (3.0, 0.25, 0.75));
-    assert_eq!(read(None, true), (0.5, 0.5, 0.75));
-    assert_eq!(read(Some("no-upwinding"), false), (1.0, 0.25, 0.75));
-    assert_eq!(read(Some("no-upwinding"), true), (1.0, 1.0, 0.75));
+    assert_eq!(read(None, Level::Case), (3.0, 0.25, 0.75));
+    assert_eq!(read(None, Level::Coarse), (0.5, 0.5, 0.75));
+    assert_eq!(read(Some("no-upwinding"), Level::Case), (1.0, 0.25, 0.75));
+    assert_eq!(read(Some("no-upwinding"), Level::Coarse), (1.0, 1.0, 0.75));
 }
 
 fn shown(overrides: &[&str]) -> String {

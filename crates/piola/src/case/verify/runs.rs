@@ -5,7 +5,7 @@ use super::{
     trends,
 };
 use crate::case::model::{
-    Case, Check, Expectation, Quantity, Reduction, Sweep, Trend, coordinates,
+    Case, Check, Expectation, Level, Quantity, Reduction, Sweep, Trend, coordinates,
 };
 use crate::observe::Series;
 use crate::output::Curve;
@@ -31,7 +31,7 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
         match (&check.members, &check.expectation) {
             (Some(members), Expectation::Trend { trend, .. }) => {
                 let sweep = &self.base.sweeps[*members.sweep];
-                let lines = members.lines(sweep, self.base.is_coarse);
+                let lines = members.lines(sweep, self.base.level);
                 let along = members.along.unwrap_or_default();
                 let rows = lines.iter().map(|line| {
                     let line = Line { sweep, along, members: line };
@@ -103,8 +103,8 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
     }
 
     fn trend_row(&self, index: usize, check: &Check, line: &Line, trend: Trend) -> CheckRow {
-        let mut row = self.blank(index, check, Some(line.label(self.base.is_coarse)));
-        let keys = line.sweep.keys(self.base.is_coarse);
+        let mut row = self.blank(index, check, Some(line.label(self.base.level)));
+        let keys = line.sweep.keys(self.base.level);
         row.expected = format!("{} along {}", row.expected, keys[line.along].path.value);
         let verdict = self.trend_data(index, line).and_then(|data| {
             let judged = trends::judge(trend, &data);
@@ -124,8 +124,8 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
 
     /// What the members of a line gave, each by the check with its own parameters.
     fn trend_data(&self, index: usize, line: &Line) -> Result<TrendData, String> {
-        let coarse = self.base.is_coarse;
-        let key = &line.sweep.keys(coarse)[line.along];
+        let level = self.base.level;
+        let key = &line.sweep.keys(level)[line.along];
         let mut data = TrendData {
             key: key.path.value.clone(),
             unit: String::new(),
@@ -135,7 +135,7 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
         for &member in line.members {
             let name = line.sweep.member(member);
             let explain =
-                |reason| format!("{name} ({}): {reason}", line.sweep.label(member, coarse));
+                |reason| format!("{name} ({}): {reason}", line.sweep.label(member, level));
             let run = self.find(Some(&name)).map_err(explain)?;
             let check = run.case.checks.get(index).ok_or_else(|| explain("no check".to_owned()))?;
             let (value, unit) = match measure(run, check).map_err(explain)? {
@@ -148,10 +148,10 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
             };
             let is_error = check.reduce.reference().is_some();
             let error = expected.map(|expected| (value - expected).abs());
-            let number = coordinates(line.sweep.keys(coarse), member)[line.along];
+            let number = coordinates(line.sweep.keys(level), member)[line.along];
             // The value of a key may depend on parameters, which are those of the member.
             let own = run.case.sweeps.iter().find(|sweep| *sweep.name == *line.sweep.name);
-            let own = own.and_then(|sweep| sweep.keys(coarse).get(line.along)?.values.get(number));
+            let own = own.and_then(|sweep| sweep.keys(level).get(line.along)?.values.get(number));
             data.unit = unit;
             data.of_error = expected.is_some() || is_error;
             data.points.push(TrendPoint {
@@ -249,8 +249,8 @@ struct Line<'a> {
 
 impl Line<'_> {
     /// The sweep, and the value of the other key if there is one.
-    fn label(&self, coarse: bool) -> String {
-        let keys = self.sweep.keys(coarse);
+    fn label(&self, level: Level) -> String {
+        let keys = self.sweep.keys(level);
         let numbers = coordinates(keys, self.members.first().copied().unwrap_or_default());
         let others = keys.iter().zip(numbers).enumerate();
         let others: Vec<String> = others

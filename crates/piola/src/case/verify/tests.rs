@@ -2,6 +2,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use super::*;
+use crate::case::Level;
 use crate::case::{LoadOptions, parse};
 use crate::output::Column;
 use crate::schemes::Particle;
@@ -94,13 +95,13 @@ fn completed(amplitude: f64) -> Fake {
 /// The case with `checks`, and its rows when each variant gives what `result` says.
 fn rows_of(
     checks: &str,
-    coarse: bool,
+    level: Level,
     result: impl Fn(Option<&str>, &Case) -> Result<Fake, String>,
 ) -> Vec<CheckRow> {
     let text = format!("{BASE}{checks}");
     let load = |variant: Option<&str>| {
         let options =
-            LoadOptions { variant: variant.map(str::to_owned), coarse, ..Default::default() };
+            LoadOptions { variant: variant.map(str::to_owned), level, ..Default::default() };
         parse(&text, "case.toml", &options).unwrap_or_else(|problems| panic!("{problems}"))
     };
     verify(&load(None), &mut |variant| {
@@ -109,9 +110,9 @@ fn rows_of(
     })
 }
 
-/// The rows at the full setting with a run whose amplitude is the parameter's.
+/// The rows in the case as it stands with a run whose amplitude is the parameter's.
 fn rows(checks: &str) -> Vec<CheckRow> {
-    rows_of(checks, false, |_, case| Ok(completed(case.parameter("amplitude").unwrap())))
+    rows_of(checks, Level::Case, |_, case| Ok(completed(case.parameter("amplitude").unwrap())))
 }
 
 /// The only row of one check, whose lines are given.
@@ -220,13 +221,13 @@ fn each_needed_variant_runs_once_and_no_other() {
          [[check]]\n{X}source = \"c\"\nvariant = \"broken\"\nwhen = \"full\"\nat_most = 9.0\n\
          [[check]]\n{X}source = \"d\"\nwhen = \"coarse\"\nat_most = 9.0\n"
     );
-    for (coarse, sources, variants) in [
-        (true, ["a", "b", "d"], vec![Some("double"), None]),
-        (false, ["a", "b", "c"], vec![Some("double"), None, Some("broken")]),
+    for (level, sources, variants) in [
+        (Level::Coarse, ["a", "b", "d"], vec![Some("double"), None]),
+        (Level::Case, ["a", "b", "c"], vec![Some("double"), None, Some("broken")]),
     ] {
         let ran = std::cell::RefCell::new(Vec::new());
-        let rows = rows_of(&checks, coarse, |variant, case| {
-            assert_eq!(case.is_coarse, coarse);
+        let rows = rows_of(&checks, level, |variant, case| {
+            assert_eq!(case.level, level);
             ran.borrow_mut().push(variant.map(str::to_owned));
             Ok(completed(1.0))
         });
@@ -247,8 +248,8 @@ fn outcomes_are_compared_as_text() {
     };
     assert!(rows(&check("completed"))[0].pass);
     let fails = |_: Option<&str>, _: &Case| Ok(Fake { outcome: inverted(), ..completed(1.0) });
-    assert!(rows_of(&check("failed: inverted"), false, fails)[0].pass);
-    let other = &rows_of(&check("completed"), false, fails)[0];
+    assert!(rows_of(&check("failed: inverted"), Level::Case, fails)[0].pass);
+    let other = &rows_of(&check("completed"), Level::Case, fails)[0];
     assert!(!other.pass);
     assert_eq!(other.got, Some(Got::Text("failed: inverted".into())));
     // The failure itself says more than its kind.
@@ -259,7 +260,7 @@ fn outcomes_are_compared_as_text() {
 fn a_failed_run_passes_no_check_unless_the_failure_is_expected() {
     let number = format!("[[check]]\n{X}source = \"s\"\nreduce = \"maximum\"\nat_most = 9.0\n");
     let fails = |_: Option<&str>, _: &Case| Ok(Fake { outcome: inverted(), ..completed(1.0) });
-    let failed = &rows_of(&number, false, fails)[0];
+    let failed = &rows_of(&number, Level::Case, fails)[0];
     assert!(!failed.pass && failed.got.is_none());
     assert!(failed.reason.as_ref().unwrap().starts_with("the run failed: particle 7"));
 
@@ -275,14 +276,14 @@ fn a_failed_run_passes_no_check_unless_the_failure_is_expected() {
         (outcome("base", "completed"), false),
         (outcome("broken", "failed: inverted"), false),
     ] {
-        let rows = rows_of(&format!("{number}{announced}"), false, fails);
+        let rows = rows_of(&format!("{number}{announced}"), Level::Case, fails);
         assert_eq!(rows[0].pass, pass, "{announced}");
     }
     // An interruption is no result, whatever is expected.
     let stops =
         |_: Option<&str>, _: &Case| Ok(Fake { outcome: Outcome::Interrupted, ..completed(1.0) });
     let announced = outcome("base", "interrupted");
-    let rows = rows_of(&format!("{number}{announced}"), false, stops);
+    let rows = rows_of(&format!("{number}{announced}"), Level::Case, stops);
     assert!(!rows[0].pass);
 }
 
@@ -301,11 +302,11 @@ fn what_cannot_be_evaluated_fails_with_a_reason() {
 
     let any = format!("[[check]]\n{X}source = \"s\"\nreduce = \"maximum\"\nat_most = 9.0\n");
     let cannot = |_: Option<&str>, _: &Case| Err("the disk is full".to_owned());
-    let row5 = &rows_of(&any, false, cannot)[0];
+    let row5 = &rows_of(&any, Level::Case, cannot)[0];
     assert!(!row5.pass && row5.reason.as_deref() == Some("the disk is full"));
     for bad_row in [0, 100, 400] {
         let nan = |_: Option<&str>, _: &Case| Ok(Fake { bad_row: Some(bad_row), ..completed(1.0) });
-        let row = &rows_of(&any, false, nan)[0];
+        let row = &rows_of(&any, Level::Case, nan)[0];
         assert!(!row.pass && row.reason.as_ref().unwrap().contains("NaN"), "{row:?}");
     }
     // The other variant of a comparison cannot be had.
@@ -314,7 +315,7 @@ fn what_cannot_be_evaluated_fails_with_a_reason() {
         None => Ok(completed(1.0)),
         Some(_) => Ok(Fake { outcome: inverted(), ..completed(9.0) }),
     };
-    let row6 = &rows_of(&compare, false, half)[0];
+    let row6 = &rows_of(&compare, Level::Case, half)[0];
     assert!(!row6.pass && row6.reason.as_ref().unwrap().starts_with("the variant `double`"));
 }
 
@@ -367,7 +368,7 @@ coarse = { "parameters.amplitude" = [1, 2, 4], "scheme.kernel" = ["lucy"] }
 [[sweep]]
 name = "small"
 over = { "parameters.amplitude" = [1, "1 / 2"] }
-when = "full"
+when = "case"
 "#;
 
 /// A check of the largest value with these lines.
@@ -445,9 +446,9 @@ fn each_member_runs_once_and_only_where_it_is_needed() {
         of_sweep("sweep = \"size\"\nmember = { scheme.kernel = \"lucy\" }\nat_most = 9"),
     ];
     let checks = format!("{SWEEP}{}", checks.concat());
-    for (coarse, count) in [(true, 3), (false, 8)] {
+    for (level, count) in [(Level::Coarse, 3), (Level::Case, 8)] {
         let ran = std::cell::RefCell::new(Vec::new());
-        let rows = rows_of(&checks, coarse, |variant, case| {
+        let rows = rows_of(&checks, level, |variant, case| {
             ran.borrow_mut().push(variant.unwrap().to_owned());
             Ok(completed(case.parameter("amplitude").unwrap()))
         });
@@ -457,7 +458,7 @@ fn each_member_runs_once_and_only_where_it_is_needed() {
         ran.dedup();
         assert_eq!(ran.len(), count, "a member ran twice");
         assert!(rows.iter().all(|row| row.pass), "{rows:?}");
-        assert_eq!(rows.len(), if coarse { 3 } else { 1 + 3 + 3 });
+        assert_eq!(rows.len(), if level == Level::Coarse { 3 } else { 1 + 3 + 3 });
     }
 }
 
@@ -468,7 +469,7 @@ fn a_member_that_fails_fails_the_rows_that_need_it() {
         of_sweep("sweep = \"small\"\nmonotone = \"decreasing\""),
         of_sweep("sweep = \"small\"\nat_most = 9")
     );
-    let rows = rows_of(&checks, false, |variant, _| match variant {
+    let rows = rows_of(&checks, Level::Case, |variant, _| match variant {
         Some("small.2") => Ok(Fake { outcome: inverted(), ..completed(1.0) }),
         _ => Ok(completed(1.0)),
     });
@@ -479,7 +480,7 @@ fn a_member_that_fails_fails_the_rows_that_need_it() {
     // A failure that a check announces is a result.
     let announced = "[[check]]\nquantity = \"run.outcome\"\nsweep = \"small\"\nsource = \"s\"\n\
                      member = { parameters.amplitude = \"1 / 2\" }\nexpected = \"failed: inverted\"\n";
-    let rows = rows_of(&format!("{checks}{announced}"), false, |variant, _| match variant {
+    let rows = rows_of(&format!("{checks}{announced}"), Level::Case, |variant, _| match variant {
         Some("small.2") => Ok(Fake { outcome: inverted(), ..completed(0.5) }),
         _ => Ok(completed(1.0)),
     });
