@@ -130,10 +130,17 @@ pub struct VerifyArguments {
     /// Case files, or folders in which all files called case.toml are found
     #[arg(value_name = "PATH", default_value = "cases", value_hint = ValueHint::AnyPath)]
     pub paths: Vec<PathBuf>,
-    /// Run at the full setting instead of the coarse one; may take hours
+    /// Run at all settings: the coarse one, the case as it stands, the paper's
     #[arg(long)]
     pub full: bool,
-    /// Write a page with all checks and charts beside it, for example docs/validation.md
+    /// Run at the paper's setting only
+    #[arg(long, conflicts_with = "full")]
+    pub paper: bool,
+    /// Run what takes long, too; may take hours
+    #[arg(long)]
+    pub long: bool,
+    /// Write a page with all checks, charts and results beside it, for example docs/validation.md;
+    /// results of other cases that it has already stay
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub page: Option<PathBuf>,
     /// Only the case with this id, or in a folder of this name

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use piola::case::build;
-use piola::case::page::PageCase;
-use piola::case::verify::{CheckRow, VariantRun, needed_variants, verify as evaluate};
+use piola::case::page::{PageCase, Row, SettingRuns};
+use piola::case::verify::{VariantRun, needed_variants, verify as evaluate};
 use piola::case::{Case, Finished, Level, LoadOptions, load};
 
 use super::{refusal, use_threads};
@@ -19,42 +19,60 @@ use crate::{interrupt, table, terminal};
 
 mod page;
 
+/// The rows of a case for the table, with its id.
+type Rows = (String, Vec<Row>);
+
 /// Runs the cases and prints the table.
 pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     use_threads(arguments.threads);
     let start = Instant::now();
     let stop = interrupt::listen();
-    let mut rows = Vec::new();
-    let mut cases = Vec::new();
-    for path in discover(&arguments.paths)? {
+    let today = page::today();
+    let mut rows: Vec<Rows> = Vec::new();
+    let mut page = match &arguments.page {
+        Some(file) => Some(page::Writer::new(file)?),
+        None => None,
+    };
+    let paths = discover(&arguments.paths)?;
+    for path in &paths {
         if stop.load(Ordering::Relaxed) {
             break;
         }
-        let Some(mut found) = one(&path, arguments, &stop) else { continue };
-        rows.extend(found.rows.iter().cloned());
-        if arguments.page.is_none() {
-            found.runs.clear();
+        match one(path, arguments, &stop) {
+            Found::Nothing => {}
+            Found::Unreadable(row) => rows.push(*row),
+            Found::Case(case) => {
+                rows.push((case.id(), case.rows(&today)));
+                if let Some(page) = &mut page {
+                    page.add(*case, path, &today)?;
+                }
+            }
         }
-        cases.push(found);
     }
     let seconds = start.elapsed().as_secs_f64();
-    let failed = rows.iter().filter(|row| !row.pass).count();
-    let passed = rows.len() - failed;
-    let total = format!(
+    let all = || rows.iter().flat_map(|(_, rows)| rows);
+    let skipped = all().filter(|row| !row.was_run()).count();
+    let total = all().count() - skipped;
+    let failed = all().filter(|row| row.was_run() && !row.pass).count();
+    let passed = total - failed;
+    let mut text = format!(
         "{} of {}: {passed} passed, {failed} failed ({})\n",
-        count(rows.len() as u64, "check"),
-        count(cases.len() as u64, "case"),
+        count(total as u64, "check"),
+        count(rows.len() as u64, "case"),
         duration(seconds)
     );
-    terminal::print(&format!("{}\n{total}", render(&rows)))?;
+    if skipped > 0 {
+        text += &format!("{} more with `--long`\n", count(skipped as u64, "check"));
+    }
+    terminal::print(&format!("{}\n{text}", render(&rows)))?;
     if stop.load(Ordering::Relaxed) {
         terminal::report("interrupted: the other cases have not been run\n");
         return Ok(Exit::Interrupted);
     }
-    if let Some(file) = arguments.page.as_ref().filter(|_| !rows.is_empty()) {
-        page::write(file, cases, arguments.full)?;
+    if let Some(page) = page.filter(|_| !rows.is_empty()) {
+        page.write(&arguments.paths)?;
     }
-    match (rows.len(), failed) {
+    match (total + skipped, failed) {
         (0, _) => Err(Fault::new(Exit::FailedCheck, nothing_found(arguments))),
         (_, 0) => Ok(Exit::Success),
         _ => Ok(Exit::FailedCheck),
@@ -100,15 +118,30 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The rows of one case with its runs, `None` where it is not wanted or has no check. A case that
-/// cannot be read is one failed row.
-fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Option<PageCase> {
-    let read = |variant: Option<&str>| -> Result<Case, Fault> {
-        let options = LoadOptions {
-            overrides: Vec::new(),
-            variant: variant.map(str::to_owned),
-            level: if arguments.full { Level::Case } else { Level::Coarse },
-        };
+/// What is found at a path.
+enum Found {
+    /// Nothing that is wanted, or no check.
+    Nothing,
+    /// A case that cannot be read, which is one failed row.
+    Unreadable(Box<Rows>),
+    /// A case with its runs.
+    Case(Box<PageCase>),
+}
+
+/// The settings that are run. `--paper` also runs what has the publication's numbers as it stands.
+fn levels(arguments: &VerifyArguments) -> &'static [Level] {
+    match (arguments.full, arguments.paper) {
+        (true, _) => &Level::ALL,
+        (false, true) => &[Level::Case, Level::Paper],
+        (false, false) => &[Level::Coarse],
+    }
+}
+
+/// Runs what the checks of one case look at.
+fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
+    let read = |variant: Option<&str>, level: Level| -> Result<Case, Fault> {
+        let variant = variant.map(str::to_owned);
+        let options = LoadOptions { overrides: Vec::new(), variant, level };
         load(path, &options).map_err(|problems| refusal(path, &problems))
     };
     let folder = folder_name(path);
@@ -117,61 +150,72 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Option<Pa
         Some(only) => id.is_some_and(|id| id.eq_ignore_ascii_case(only)) || folder == *only,
     };
     let mut found = PageCase {
-        case: None,
         name: folder.clone(),
         link: path.display().to_string(),
-        rows: Vec::new(),
-        runs: Vec::new(),
         pictures: Vec::new(),
+        settings: Vec::new(),
     };
-    let base = match read(None) {
-        Ok(base) => base,
-        Err(_) if !is_wanted(None) => return None,
-        Err(fault) => {
-            terminal::report(&terminal::coloured(&fault.report));
-            found.rows.push(unreadable(folder));
-            return Some(found);
-        }
-    };
-    if !is_wanted(base.id.as_deref()) {
-        return None;
-    }
-    let name = base.id.clone().unwrap_or(folder);
-    let count = needed_variants(&base).len();
-    let mut number = 0;
     // Settings that are the same case in the end share one run.
     let mut known: Vec<(String, Rc<Finished>)> = Vec::new();
-    found.rows = evaluate(&base, &mut |variant| {
-        number += 1;
-        if stop.load(Ordering::Relaxed) {
-            return Err("interrupted before its run".to_owned());
-        }
-        let case = read(variant).map_err(|fault| fault.report.trim_end().to_owned())?;
-        let same = known.iter().find(|(as_run, _)| *as_run == case.as_run);
-        let run = match same {
-            Some((_, run)) => Rc::clone(run),
-            None => {
-                let label = match variant {
-                    Some(variant) => format!("{name} {variant} ({number} of {count})"),
-                    None => format!("{name} ({number} of {count})"),
-                };
-                let run = Rc::new(run_quietly(&case, &label, stop)?);
-                known.push((case.as_run.clone(), Rc::clone(&run)));
-                run
+    for level in levels(arguments) {
+        let base = match read(None, *level) {
+            Ok(base) => base,
+            Err(_) if !is_wanted(None) => return Found::Nothing,
+            Err(fault) => {
+                terminal::report(&terminal::coloured(&fault.report));
+                return Found::Unreadable(Box::new((folder, vec![unreadable()])));
             }
         };
-        found.runs.push((variant.map(str::to_owned), Rc::clone(&run)));
-        Ok(VariantRun { case, run })
-    });
-    if stop.load(Ordering::Relaxed) || found.rows.is_empty() {
-        // What was interrupted has neither passed nor failed.
-        return None;
+        if !is_wanted(base.id.as_deref()) {
+            return Found::Nothing;
+        }
+        let name = base.id.clone().unwrap_or_else(|| folder.clone());
+        let all = needed_variants(&base).len();
+        let only_paper = arguments.paper && !arguments.full && *level == Level::Case;
+        let mut runs = Vec::new();
+        let mut rows = evaluate(&base, &mut |variant| {
+            let number = runs.len() + 1;
+            if stop.load(Ordering::Relaxed) {
+                return Err("interrupted before its run".to_owned());
+            }
+            let case = read(variant, *level).map_err(|fault| fault.report.trim_end().to_owned())?;
+            let traits = base.traits_of(variant);
+            if traits.is_long && !arguments.long || only_paper && !traits.is_paper {
+                runs.push((variant.map(str::to_owned), case, None));
+                return Err("it takes long, and has not been run".to_owned());
+            }
+            let same = known.iter().find(|(as_run, _)| *as_run == case.as_run);
+            let run = match same {
+                Some((_, run)) => Rc::clone(run),
+                None => {
+                    let setting = level.name();
+                    let label = match variant {
+                        Some(variant) => format!("{name} {setting} {variant} ({number} of {all})"),
+                        None => format!("{name} {setting} ({number} of {all})"),
+                    };
+                    let run = Rc::new(run_quietly(&case, &label, stop)?);
+                    known.push((case.as_run.clone(), Rc::clone(&run)));
+                    run
+                }
+            };
+            runs.push((variant.map(str::to_owned), case.clone(), Some(Rc::clone(&run))));
+            Ok(VariantRun { case, run })
+        });
+        if stop.load(Ordering::Relaxed) {
+            // What was interrupted has neither passed nor failed.
+            return Found::Nothing;
+        }
+        if only_paper {
+            rows.retain(|row| row.level == Level::Paper);
+        }
+        if !rows.is_empty() {
+            found.settings.push(SettingRuns { case: base, rows, runs });
+        }
     }
-    for row in &mut found.rows {
-        row.id = Some(name.clone());
+    match found.settings.is_empty() {
+        true => Found::Nothing,
+        false => Found::Case(Box::new(found)),
     }
-    found.case = Some(base);
-    Some(found)
 }
 
 /// Runs a case without files.
@@ -189,48 +233,42 @@ fn folder_name(path: &Path) -> String {
     name.map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-fn unreadable(folder: String) -> CheckRow {
-    CheckRow {
-        check: 0,
-        id: Some(folder),
-        run: None,
+fn unreadable() -> Row {
+    Row {
         quantity: "the case file".to_owned(),
-        got: None,
+        got: "-".to_owned(),
         expected: "a good case".to_owned(),
-        tolerance: String::new(),
-        deviation: String::new(),
-        source: String::new(),
-        pass: false,
         reason: Some("the case cannot be read, see above".to_owned()),
-        trend: None,
+        ..Row::default()
     }
 }
 
 /// The table, with the reason under each check that could not be evaluated.
-fn render(rows: &[CheckRow]) -> String {
-    if rows.is_empty() {
+fn render(rows: &[Rows]) -> String {
+    let rows = || {
+        let all = rows.iter().flat_map(|(id, rows)| rows.iter().map(move |row| (id, row)));
+        all.filter(|(_, row)| row.was_run())
+    };
+    if rows().next().is_none() {
         return String::new();
     }
-    let header = ["id", "quantity", "got", "expected", "tolerance", "source", "pass"];
+    let header = ["id", "setting", "quantity", "got", "expected", "tolerance", "source", "pass"];
     let header = header.map(str::to_owned).to_vec();
-    let cells = |row: &CheckRow| {
-        let quantity = match &row.run {
-            Some(run) => format!("{run}: {}", row.quantity),
-            None => row.quantity.clone(),
-        };
+    let cells = |(id, row): (&String, &Row)| {
         vec![
-            row.id.clone().unwrap_or_default(),
-            quantity,
-            row.got.as_ref().map_or_else(|| "-".to_owned(), ToString::to_string),
+            id.clone(),
+            row.level.name().to_owned(),
+            row.name(),
+            row.got.clone(),
             row.expected.clone(),
             row.tolerance.clone(),
             row.source.clone(),
             terminal::verdict(if row.pass { "yes" } else { "NO" }, row.pass),
         ]
     };
-    let table: Vec<Vec<String>> = std::iter::once(header).chain(rows.iter().map(cells)).collect();
-    let lines = table::align(&table, terminal::stdout_width(), &[5, 1, 3, 0]);
-    let reasons = rows.iter().map(|row| row.reason.as_deref());
+    let table: Vec<Vec<String>> = std::iter::once(header).chain(rows().map(cells)).collect();
+    let lines = table::align(&table, terminal::stdout_width(), &[6, 2, 4, 0]);
+    let reasons = rows().map(|(_, row)| row.reason.as_deref());
     let mut text = String::new();
     for (line, reason) in lines.iter().zip(std::iter::once(None).chain(reasons)) {
         text.push_str(line);

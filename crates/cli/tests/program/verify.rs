@@ -37,7 +37,7 @@ fn a_failed_check_is_named_and_counted() {
 #[test]
 fn the_setting_chooses_runs_and_checks() {
     let place = Place::new();
-    place.write("bar/case.toml", BAR.to_owned() + &impossible("full"));
+    place.write("bar/case.toml", BAR.to_owned() + &impossible("case"));
     place.run("verify bar", 0);
     place.run("verify bar --full", 1);
     // The end of the run itself is another one.

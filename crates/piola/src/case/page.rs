@@ -1,39 +1,51 @@
-//! The validation page: every check of many cases with its result, and charts, as Markdown.
+//! The validation page: every check of many cases with its result, what it is worth, and charts, as
+//! Markdown.
 //!
-//! The same results give the same bytes: nothing in it tells time of day, wall time or machine.
+//! The same results give the same bytes: but for the day on which runs that take long were run,
+//! nothing in it tells time of day, wall time or machine.
 
 use std::fmt::Write;
 use std::rc::Rc;
 
-use super::model::Case;
+use super::model::{Against, Case, Level};
+use super::resume::fingerprint;
 use super::simulation::Finished;
-use super::verify::{CheckRow, significant};
+use super::verify::CheckRow;
 use crate::output::Plot;
+pub use reproduction::{Met, Reproduction};
+pub use results::{CaseResults, Results, Row};
 
 mod charts;
+mod reproduction;
+mod results;
 
 /// A case with its rows and runs.
 pub struct PageCase {
-    /// The case, `None` where it could not be read.
-    pub case: Option<Case>,
     /// Name of its folder, which names its charts and stands for its id where it has none.
     pub name: String,
     /// The link to its page or file, relative to the validation page.
     pub link: String,
-    /// The checks.
-    pub rows: Vec<CheckRow>,
-    /// What was run, `None` for the case itself.
-    pub runs: Vec<(Option<String>, Rc<Finished>)>,
     /// Pictures that its page shows: name, and link relative to the validation page.
     pub pictures: Vec<(String, String)>,
+    /// What was run, the quickest setting first.
+    pub settings: Vec<SettingRuns>,
 }
 
-/// A page and the charts that it shows.
-pub struct Page {
-    /// The text.
-    pub markdown: String,
-    /// Charts with their file names, in the folder that was asked for.
-    pub charts: Vec<(String, Plot)>,
+/// The runs of a case at one setting.
+pub struct SettingRuns {
+    /// The case at this setting.
+    pub case: Case,
+    /// The checks.
+    pub rows: Vec<CheckRow>,
+    /// What was run, `None` for the case itself, each with the case as it was run.
+    pub runs: Vec<(Option<String>, Case, Option<Rc<Finished>>)>,
+}
+
+impl SettingRuns {
+    /// The runs that there are, by name.
+    fn finished(&self) -> impl Iterator<Item = (&Option<String>, &Finished)> {
+        self.runs.iter().filter_map(|(name, _, run)| Some((name, run.as_deref()?)))
+    }
 }
 
 /// The papers by the letter of their ids in the list of reproductions.
@@ -45,27 +57,110 @@ const PAPERS: [(char, &str); 4] = [
 ];
 const NO_PAPER: &str = "Other cases";
 
-/// Makes the page of `cases`, run at the full setting or the coarse one, with its charts in the
-/// folder `charts` beside it.
-pub fn page(mut cases: Vec<PageCase>, full: bool, charts: &str) -> Page {
-    cases.sort_by_key(|case| (place(&case.id()), case.name.clone()));
-    let mut page = Page { markdown: String::new(), charts: Vec::new() };
-    head(&mut page.markdown, &cases, full);
-    let mut paper = None;
-    for case in &cases {
-        let own = title(&case.id());
-        if paper != Some(own) {
-            push(&mut page.markdown, &format!("\n## {own}\n"));
-            paper = Some(own);
+impl PageCase {
+    /// The results of its checks, and its charts with the names of their files. `today` dates what
+    /// takes long. `None` where nothing was run.
+    pub fn results(&self, today: &str) -> Option<(CaseResults, Vec<(String, Plot)>)> {
+        // Charts are of the case as it stands, where that was run.
+        let main = self.settings.iter().find(|setting| setting.case.level == Level::Case);
+        let main = main.or(self.settings.first())?;
+        let mut charts = Vec::new();
+        for setting in &self.settings {
+            let suffix = match setting.case.level {
+                Level::Paper => "-paper",
+                level if level == main.case.level => "",
+                _ => continue,
+            };
+            for (chart, plot) in charts::charts(setting) {
+                let name = format!("{chart}{suffix}");
+                let file = format!("{}-{}-{name}.png", self.id(), self.name);
+                charts.push((name, file, plot));
+            }
         }
-        section(&mut page, case, charts);
+        let finished = self.settings.iter().flat_map(|setting| &setting.runs);
+        let particles = finished.filter_map(|(.., run)| Some(run.as_ref()?.particles));
+        let results = CaseResults {
+            id: self.id(),
+            name: self.name.clone(),
+            title: main.case.title.clone(),
+            link: self.link.clone(),
+            runs: particles.clone().count(),
+            particles: [particles.clone().min(), particles.max()].map(Option::unwrap_or_default),
+            rows: self.rows(today),
+            charts: charts.iter().map(|(name, file, _)| (name.clone(), file.clone())).collect(),
+            pictures: self.pictures.clone(),
+        };
+        Some((results, charts.into_iter().map(|(_, file, plot)| (file, plot)).collect()))
     }
-    page
+
+    /// The rows of all settings, of which `today` dates what takes long. What is the same run at two settings stands there once, as that of
+    /// the case as it stands.
+    pub fn rows(&self, today: &str) -> Vec<Row> {
+        let mut rows: Vec<Row> = Vec::new();
+        for setting in &self.settings {
+            for row in &setting.rows {
+                let known = |name: &Option<String>| setting.runs.iter().find(|run| run.0 == *name);
+                let runs: Vec<_> = row.runs.iter().filter_map(known).collect();
+                let finished = runs.iter().filter_map(|(.., run)| run.as_ref());
+                let work = finished.clone().map(|run| run.summary.evaluations).sum();
+                let sums: Vec<String> = runs.iter().map(|(_, case, _)| fingerprint(case)).collect();
+                let mut new = Row::new(row, setting.case.level, work, sums.join(" "));
+                if row.is_long && finished.count() == row.runs.len() {
+                    new.date = Some(today.to_owned());
+                }
+                rows.retain(|other| {
+                    let is_same = other.check == new.check && other.name() == new.name();
+                    !(is_same && other.fingerprint == new.fingerprint)
+                });
+                rows.push(new);
+            }
+        }
+        rows.sort_by_key(|row| (row.check, row.read_at));
+        rows
+    }
+
+    /// Its id, or the name of its folder.
+    pub fn id(&self) -> String {
+        let id = self.settings.first().and_then(|setting| setting.case.id.clone());
+        id.unwrap_or_else(|| self.name.clone())
+    }
 }
 
-impl PageCase {
-    fn id(&self) -> String {
-        self.case.as_ref().and_then(|case| case.id.clone()).unwrap_or_else(|| self.name.clone())
+impl Results {
+    /// Puts the results of a case in the place of earlier ones, of which those of runs that take
+    /// long are kept where the case has not changed since.
+    pub fn put(&mut self, mut case: CaseResults) {
+        let is_same = |known: &CaseResults| known.name == case.name && known.id == case.id;
+        if let Some(index) = self.cases.iter().position(is_same) {
+            case.keep_long(&self.cases[index]);
+            self.cases.remove(index);
+        }
+        self.cases.push(case);
+        self.cases.sort_by_key(|case| (place(&case.id), case.name.clone()));
+    }
+
+    /// The page, with its charts in the folder `charts` beside it, and what is said of the rows of
+    /// the reproduction list.
+    pub fn page(&self, list: &[Reproduction], charts: &str) -> String {
+        let mut page = String::new();
+        head(&mut page, self);
+        reproduction::table(&mut page, list, self);
+        let mut paper = None;
+        for case in &self.cases {
+            let own = title(&case.id);
+            if paper != Some(own) {
+                push(&mut page, &format!("\n## {own}\n"));
+                paper = Some(own);
+            }
+            section(&mut page, case, charts);
+        }
+        page
+    }
+
+    /// Checks that passed, and all that were run, with one of these worths.
+    fn count(&self, worths: &[Option<Against>]) -> [usize; 2] {
+        let each = self.cases.iter().flat_map(|case| worths.iter().map(|worth| case.count(*worth)));
+        each.fold([0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
     }
 }
 
@@ -91,77 +186,96 @@ fn push(page: &mut String, text: &str) {
     page.push_str(text);
 }
 
-fn head(page: &mut String, cases: &[PageCase], full: bool) {
-    let rows = cases.iter().map(|case| case.rows.len()).sum::<usize>();
-    let passed = cases.iter().flat_map(|case| &case.rows).filter(|row| row.pass).count();
-    let (setting, flag) = if full { ("full", " --full") } else { ("coarse", "") };
-    let version = env!("CARGO_PKG_VERSION");
+fn head(page: &mut String, results: &Results) {
+    let of = |worths: &[Option<Against>]| {
+        let [met, all] = results.count(worths);
+        format!("{met} of {all}")
+    };
+    let outside = Against::ALL.into_iter().filter(|worth| worth.is_outside()).map(Some);
+    let outside: Vec<_> = outside.collect();
+    let unsaid = match results.count(&[None]) {
+        [_, 0] => String::new(),
+        [met, all] => format!("; {met} of {all} do not say what they are worth"),
+    };
+    let not_run = results.cases.iter().flat_map(|case| &case.rows).filter(|row| !row.was_run());
+    let not_run = match not_run.count() {
+        0 => String::new(),
+        count => format!(" {count} more take long and have not been run."),
+    };
     push(
         page,
         &format!(
             "# Validation\n\n\
-             Every check of every case with what came of it, as `piola verify{flag} --page` of \
-             version {version} wrote it, at the {setting} setting. A row that stands for a variant \
-             or a sweep says so in front; a sweep's own rows say how its members follow each other \
-             along a key. \"Off by\" is the result minus the expected value, in the terms of the \
-             tolerance.\n\n\
-             {passed} of {rows} results in {} cases are as expected.\n\n\
-             | id | case | results | as expected |\n|---|---|---|---|\n",
-            cases.len()
+             Every check of every case with what came of it, as `piola verify --page` of version {} \
+             wrote it. What a check is worth depends on where its expected value comes from.\n\n\
+             **{} checks against something outside the program are met**: {} against an exact \
+             solution, {} against another method or program, {} against the papers. Besides, {} \
+             balances, symmetries and outcomes are as they have to be, and {} comparisons with \
+             other runs of piola, which are no evidence of correctness{unsaid}.{not_run}\n\n\
+             Three settings: `coarse` for tests, `case` the case as its file has it, `paper` the \
+             particle numbers, steps and parameters of the publication. A row that stands for a \
+             variant or a sweep says so in front; a sweep's own rows say how its members follow \
+             each other along a key. \"Off by\" is the result minus the expected value, in the \
+             terms of the tolerance. What takes long was run on the day that stands beside its \
+             setting.\n",
+            results.version,
+            of(&outside),
+            of(&[Some(Against::Exact)]),
+            of(&[Some(Against::Independent)]),
+            of(&[Some(Against::Paper)]),
+            of(&[Some(Against::Invariant)]),
+            of(&[Some(Against::Own)]),
         ),
     );
-    for case in cases {
-        let good = case.rows.iter().filter(|row| row.pass).count();
-        let row = format!(
-            "| {} | {} | {} | {good} |\n",
-            cell(&case.id()),
-            cell(&case.name),
-            case.rows.len()
-        );
+    let names = Against::ALL.map(Against::name).join(" | ");
+    push(page, &format!("\n| id | case | {names} |\n|---|---|---|---|---|---|---|\n"));
+    for case in &results.cases {
+        let counts = Against::ALL.map(|worth| match case.count(Some(worth)) {
+            [_, 0] => String::new(),
+            [met, all] => format!("{met} of {all}"),
+        });
+        let row =
+            format!("| {} | {} | {} |\n", cell(&case.id), cell(&case.name), counts.join(" | "));
         push(page, &row);
     }
 }
 
-fn section(page: &mut Page, case: &PageCase, folder: &str) {
-    let text = &mut page.markdown;
-    let what = case.case.as_ref().map_or("", |case| case.title.as_str());
-    push(text, &format!("\n### {}: {}\n\n", case.id(), cell(what)));
+fn section(page: &mut String, case: &CaseResults, folder: &str) {
+    push(page, &format!("\n### {}: {}\n\n", case.id, cell(&case.title)));
     let mut line = format!("[{}]({})", cell(&case.name), case.link);
-    let particles = case.runs.iter().map(|(_, run)| run.particles);
-    if let (Some(least), Some(most)) = (particles.clone().min(), particles.max()) {
-        let runs = case.runs.len();
+    if case.runs > 0 {
+        let [least, most] = case.particles;
         let range = if least == most { most.to_string() } else { format!("{least} to {most}") };
-        let plural = if runs == 1 { "" } else { "s" };
+        let plural = if case.runs == 1 { "" } else { "s" };
         // Writing to a string does not fail.
-        let _ = write!(line, ", {runs} run{plural} of {range} particles");
+        let _ = write!(line, ", {} run{plural} of {range} particles", case.runs);
     }
-    push(text, &format!("{line}.\n\n"));
-    push(text, "| quantity | expected | tolerance | got | off by | source | |\n");
-    push(text, "|---|---|---|---|---|---|---|\n");
+    push(page, &format!("{line}.\n\n"));
+    push(
+        page,
+        "| setting | quantity | expected | tolerance | got | off by | against | source | met |\n",
+    );
+    push(page, "|---|---|---|---|---|---|---|---|---|\n");
     for row in &case.rows {
-        push(text, &format!("| {} |\n", cells(row).map(|text| cell(&text)).join(" | ")));
+        push(page, &format!("| {} |\n", cells(row).map(|text| cell(&text)).join(" | ")));
     }
-    let reasons = case.rows.iter().filter(|row| !row.pass).filter_map(|row| {
+    let reasons = case.rows.iter().filter(|row| !row.pass && row.was_run()).filter_map(|row| {
         let first = row.reason.as_ref()?.lines().next()?;
-        Some(format!("- {}: {}\n", cell(&name(row)), cell(first)))
+        Some(format!("- {}: {}\n", cell(&row.name()), cell(first)))
     });
     let reasons: Vec<String> = reasons.collect();
-    list(text, "Not as expected:", &reasons);
-    list(text, "Behind the orders:", &orders(&case.rows));
-    let Some(read) = &case.case else { return };
-    for (name, chart) in charts::charts(read, case) {
-        let mut file = format!("{}-{name}.png", case.name);
-        if page.charts.iter().any(|(known, _)| *known == file) {
-            file = format!("{}-{}-{name}.png", case.id(), case.name);
-        }
-        push(
-            &mut page.markdown,
-            &format!("\n![{}, {}]({folder}/{file})\n", case.name, cell(&name)),
-        );
-        page.charts.push((file, chart));
+    list(page, "Not as expected:", &reasons);
+    let orders = case.rows.iter().filter(|row| row.expected.starts_with("order "));
+    let orders = orders.filter_map(|row| {
+        let run = row.run.as_ref().map(|run| format!("{run}: ")).unwrap_or_default();
+        Some(format!("- {}{}\n", cell(&run), cell(row.members.as_ref()?)))
+    });
+    list(page, "Behind the orders:", &orders.collect::<Vec<_>>());
+    for (name, file) in &case.charts {
+        push(page, &format!("\n![{}, {}]({folder}/{file})\n", case.name, cell(name)));
     }
     for (name, link) in &case.pictures {
-        push(&mut page.markdown, &format!("\n![{}, {}]({link})\n", case.name, cell(name)));
+        push(page, &format!("\n![{}, {}]({link})\n", case.name, cell(name)));
     }
 }
 
@@ -171,40 +285,31 @@ fn list(page: &mut String, title: &str, lines: &[String]) {
     }
 }
 
-/// What the members gave from which orders of convergence were taken.
-fn orders(rows: &[CheckRow]) -> Vec<String> {
-    let orders = rows.iter().filter(|row| row.expected.starts_with("order "));
-    let lines = orders.filter_map(|row| {
-        let data = row.trend.as_ref()?;
-        let each = data.points.iter().map(|point| {
-            let number = point.error.filter(|_| data.of_error).unwrap_or(point.value);
-            format!("{} at {}", significant(number, 4), point.text)
-        });
-        let unit = if data.unit == "1" { String::new() } else { format!(", in {}", data.unit) };
-        let each = each.collect::<Vec<_>>().join("; ");
-        Some(format!("- {}{}: {}\n", cell(&name(row)), cell(&unit), cell(&each)))
-    });
-    lines.collect()
-}
-
-/// What a row is about: the quantity, with what was run in front.
-fn name(row: &CheckRow) -> String {
-    match &row.run {
-        Some(run) => format!("{run}: {}", row.quantity),
-        None => row.quantity.clone(),
-    }
-}
-
 /// The columns of a row.
-fn cells(row: &CheckRow) -> [String; 7] {
+fn cells(row: &Row) -> [String; 9] {
+    let setting = match &row.date {
+        Some(date) => format!("{}, {date}", row.level.name()),
+        None => row.level.name().to_owned(),
+    };
+    let source = match &row.bound {
+        Some(bound) => format!("{}. Bound: {bound}", row.source.trim_end_matches('.')),
+        None => row.source.clone(),
+    };
+    let met = match (row.was_run(), row.pass) {
+        (false, _) => "not run",
+        (_, true) => "yes",
+        (_, false) => "**no**",
+    };
     [
-        name(row),
+        setting,
+        row.name(),
         row.expected.clone(),
         row.tolerance.clone(),
-        row.got.as_ref().map_or_else(|| "-".to_owned(), ToString::to_string),
-        row.deviation.clone(),
-        row.source.clone(),
-        if row.pass { "yes" } else { "**no**" }.to_owned(),
+        row.got.clone(),
+        row.off_by.clone(),
+        row.against.map_or(String::new(), |against| against.name().to_owned()),
+        source,
+        met.to_owned(),
     ]
 }
 

@@ -53,10 +53,13 @@ fn reads_the_frame_of_a_case() {
         (&paper.set[..], paper.is_long),
         (&["body.column.spacing=0.05".to_owned()][..], true)
     );
-    assert_eq!(case.variants[0].traits, RunTraits { is_paper: true, is_long: true });
+    assert_eq!(case.variants[0].traits, RunTraits::default());
+    assert_eq!(case.sweeps[1].traits, RunTraits { is_paper: true, is_long: true });
+    assert_eq!(case.traits_of(Some("spacing.1")), case.sweeps[1].traits);
     assert_eq!(case.traits_of(None), RunTraits::default());
-    assert_eq!((case.checks[0].against, case.checks[1].against), (Some(Against::Exact), None));
-    assert_eq!(case.checks[0].reason.as_deref(), Some("second order: spacing^2"));
+    let last = case.checks.last().unwrap();
+    assert_eq!((case.checks[0].against, last.against), (None, Some(Against::Exact)));
+    assert_eq!(last.reason.as_deref(), Some("first order"));
     let time = &case.time;
     assert_eq!((time.end.value, time.integrator.as_str()), (3.0, "tvd_rk2"));
     assert_eq!(time.step.value, StepControl::Cfl(0.3));

@@ -6,7 +6,7 @@
 use std::fmt;
 use std::rc::Rc;
 
-use super::model::{Case, Check, Expectation};
+use super::model::{Against, Case, Check, Expectation, Level};
 use super::simulation::Finished;
 use crate::observe::Series;
 use crate::time::Outcome;
@@ -100,8 +100,19 @@ pub struct CheckRow {
     pub tolerance: String,
     /// How far off it is, in the terms of the tolerance; empty for bounds and comparisons.
     pub deviation: String,
+    /// What the expected value is worth as evidence.
+    pub against: Option<Against>,
     /// Where the expected value comes from.
     pub source: String,
+    /// Why the tolerance, or the bound, is what it is.
+    pub bound: Option<String>,
+    /// The setting that it was run at: the paper's where the run has the publication's numbers,
+    /// however it comes by them.
+    pub level: Level,
+    /// The runs that it looks at, `None` for the case itself.
+    pub runs: Vec<Option<String>>,
+    /// Whether one of them takes long.
+    pub is_long: bool,
     /// Whether the check passes.
     pub pass: bool,
     /// Why it could not be evaluated, or how the run failed; `None` if only the number is off.
@@ -160,18 +171,21 @@ impl fmt::Display for Got {
 /// order in which they are needed; `None` is the case itself.
 pub fn needed_variants(case: &Case) -> Vec<Option<String>> {
     let mut needed = Vec::new();
-    for check in applicable(case).map(|(_, check)| check) {
-        let mut names = own_runs(case, check);
-        if let Expectation::LessThan(other) | Expectation::MoreThan(other) = &check.expectation {
-            names.push(other.as_ref().map(|name| name.value.clone()));
-        }
-        for name in names {
-            if !needed.contains(&name) {
-                needed.push(name);
-            }
+    for name in applicable(case).flat_map(|(_, check)| all_runs(case, check)) {
+        if !needed.contains(&name) {
+            needed.push(name);
         }
     }
     needed
+}
+
+/// The runs that a check looks at, with those that it compares with.
+fn all_runs(case: &Case, check: &Check) -> Vec<Option<String>> {
+    let mut names = own_runs(case, check);
+    if let Expectation::LessThan(other) | Expectation::MoreThan(other) = &check.expectation {
+        names.push(other.as_ref().map(|name| name.value.clone()));
+    }
+    names
 }
 
 /// The runs that a check is about, without those that it compares with.

@@ -1,56 +1,119 @@
-//! Writing the validation page with its charts.
+//! Writing the validation page with its charts, and the results that it is made of.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
+use std::time::SystemTime;
 
-use piola::case::page::{PageCase, page};
-use piola::output::atomic;
+use piola::case::page::{PageCase, Reproduction, Results};
+use piola::output::{Plot, atomic};
 
 use crate::exit::{Exit, Fault};
 use crate::terminal;
 use crate::text::count;
 
-/// Writes the page to `file`, its charts into the folder of its name without ending, and removes
-/// charts that an earlier page of this name shows and this one does not.
-pub fn write(file: &Path, mut cases: Vec<PageCase>, full: bool) -> Result<(), Fault> {
-    let folder = file.with_extension("");
-    if folder == file {
-        let message = format!("the page {} needs an ending, for example `.md`", file.display());
-        return Err(Fault::new(Exit::BadCase, message));
-    }
-    let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
-    let above = file.parent().filter(|above| !above.as_os_str().is_empty());
-    let above = above.unwrap_or(Path::new("."));
-    let fault = |path: &Path, error: &std::io::Error| {
-        Fault::new(Exit::Io, format!("cannot write {}: {error}", path.display()))
-    };
-    fs::create_dir_all(above).map_err(|error| fault(above, &error))?;
-    for case in &mut cases {
-        let target = Path::new(&case.link).with_file_name("README.md");
-        if target.is_file() {
-            case.pictures = pictures(&target, above);
+/// The list of what the papers show, beside the cases.
+const LIST: &str = "reproduction.toml";
+
+/// The day, as 2026-11-22.
+pub fn today() -> String {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    now.split('T').next().unwrap_or_default().to_owned()
+}
+
+/// A page in the making: `NAME.md`, with its charts in the folder `NAME` and its results in
+/// `NAME.json`, where those of cases that are not run again stay as they are.
+pub struct Writer {
+    file: PathBuf,
+    above: PathBuf,
+    results: Results,
+    charts: Vec<(String, Plot)>,
+}
+
+impl Writer {
+    /// A page for `file`, with the results of an earlier one.
+    pub fn new(file: &Path) -> Result<Self, Fault> {
+        if file.with_extension("") == file {
+            let message = format!("the page {} needs an ending, for example `.md`", file.display());
+            return Err(Fault::new(Exit::BadCase, message));
         }
-        let target = if target.is_file() { target } else { PathBuf::from(&case.link) };
-        case.link = relative(above, &target);
+        let above = file.parent().filter(|above| !above.as_os_str().is_empty());
+        let above = above.unwrap_or(Path::new(".")).to_owned();
+        fs::create_dir_all(&above).map_err(|error| fault(&above, &error))?;
+        let known = file.with_extension("json");
+        let mut results: Results = match fs::read_to_string(&known) {
+            Err(_) => Results::default(),
+            Ok(text) => serde_json::from_str(&text).map_err(|error| {
+                let message = format!(
+                    "{} holds no results of an earlier page: {error}; remove it to start anew",
+                    known.display()
+                );
+                Fault::new(Exit::BadCase, message)
+            })?,
+        };
+        results.cases.retain(|case| above.join(&case.link).exists());
+        Ok(Self { file: file.to_owned(), above, results, charts: Vec::new() })
     }
-    let earlier = fs::read_to_string(file).unwrap_or_default();
-    let made = page(cases, full, &name);
-    if !made.charts.is_empty() {
-        fs::create_dir_all(&folder).map_err(|error| fault(&folder, &error))?;
+
+    /// Adds the case at `path`.
+    pub fn add(&mut self, mut case: PageCase, path: &Path, today: &str) -> Result<(), Fault> {
+        let target = path.with_file_name("README.md");
+        if target.is_file() {
+            case.pictures = pictures(&target, &self.above);
+        }
+        let target = if target.is_file() { target } else { path.to_owned() };
+        case.link = relative(&self.above, &target);
+        if let Some((results, charts)) = case.results(today) {
+            self.results.put(results);
+            self.charts.extend(charts);
+        }
+        Ok(())
     }
-    let io = |error| Fault::new(Exit::Io, error);
-    for (chart, plot) in &made.charts {
-        plot.write_png(&folder.join(chart)).map_err(io)?;
-    }
-    atomic::write_file(file, |out| out.write_all(made.markdown.as_bytes())).map_err(io)?;
-    for chart in shown(&earlier, &name) {
-        if made.charts.iter().all(|(known, _)| known != chart) {
+
+    /// Writes page, charts and results, and removes charts that no case has any more. The list of
+    /// what the papers show is looked for below `paths`.
+    pub fn write(mut self, paths: &[PathBuf]) -> Result<(), Fault> {
+        let io = |error| Fault::new(Exit::Io, error);
+        self.results.version = env!("CARGO_PKG_VERSION").to_owned();
+        let folder = self.file.with_extension("");
+        let name =
+            folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
+        let list = list(paths)?;
+        let page = self.results.page(&list, &name);
+        if !self.charts.is_empty() {
+            fs::create_dir_all(&folder).map_err(|error| fault(&folder, &error))?;
+        }
+        for (chart, plot) in &self.charts {
+            plot.write_png(&folder.join(chart)).map_err(io)?;
+        }
+        let json = serde_json::to_string_pretty(&self.results).unwrap_or_default() + "\n";
+        let earlier = fs::read_to_string(&self.file).unwrap_or_default();
+        atomic::write_file(&self.file.with_extension("json"), |out| out.write_all(json.as_bytes()))
+            .map_err(io)?;
+        atomic::write_file(&self.file, |out| out.write_all(page.as_bytes())).map_err(io)?;
+        let kept = shown(&page, &name);
+        for chart in shown(&earlier, &name).iter().filter(|chart| !kept.contains(chart)) {
             // It may be gone already.
             let _ = fs::remove_file(folder.join(chart));
         }
+        let charts = count(self.charts.len() as u64, "chart");
+        terminal::print(&format!("wrote {} with {charts}\n", self.file.display()))
     }
-    let charts = count(made.charts.len() as u64, "chart");
-    terminal::print(&format!("wrote {} with {charts}\n", file.display()))
+}
+
+fn fault(path: &Path, error: &std::io::Error) -> Fault {
+    Fault::new(Exit::Io, format!("cannot write {}: {error}", path.display()))
+}
+
+/// The list of what the papers show, empty where there is none.
+fn list(paths: &[PathBuf]) -> Result<Vec<Reproduction>, Fault> {
+    let above = paths.iter().flat_map(|path| path.ancestors());
+    let Some(file) = above.map(|path| path.join(LIST)).find(|file| file.is_file()) else {
+        return Ok(Vec::new());
+    };
+    let name = file.display();
+    let text = fs::read_to_string(&file)
+        .map_err(|error| Fault::new(Exit::Io, format!("cannot read {name}: {error}")))?;
+    Reproduction::read(&text).map_err(|why| Fault::new(Exit::BadCase, format!("{name}: {why}")))
 }
 
 /// The pictures beside the page of a case, by name, with their links from the folder `from`.

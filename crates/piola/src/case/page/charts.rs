@@ -1,6 +1,6 @@
 //! Charts of the validation page: the plots of a case with their references, and trends of sweeps.
 
-use super::PageCase;
+use super::SettingRuns;
 use crate::case::model::{Case, Expectation, Level, Reduction, Sweep};
 use crate::case::sweep::curve_series;
 use crate::case::verify::{CheckRow, TrendData};
@@ -11,7 +11,8 @@ use crate::output::{Column, Curve, Plot, Series, Style};
 const MARKS: usize = 60;
 
 /// The charts of a case with names for their files.
-pub(super) fn charts(case: &Case, page: &PageCase) -> Vec<(String, Plot)> {
+pub(super) fn charts(page: &SettingRuns) -> Vec<(String, Plot)> {
+    let case = &page.case;
     let mut charts = Vec::new();
     for plot in case.plots.iter().filter(|plot| !plot.over_time) {
         let curves: Vec<String> = plot.curves.iter().map(|curve| curve.name()).collect();
@@ -35,8 +36,8 @@ fn chart(title: &str, abscissa: &Column, series: Vec<Series>) -> Plot {
 }
 
 /// What the curve called `name` is against.
-fn abscissa(page: &PageCase, name: &str) -> Column {
-    let found = page.runs.iter().find_map(|(_, finished)| match finished.quantity(name) {
+fn abscissa(page: &SettingRuns, name: &str) -> Column {
+    let found = page.finished().find_map(|(_, finished)| match finished.quantity(name) {
         Some(observe::Series::Curve { against, .. }) => Some(against),
         _ => None,
     });
@@ -55,10 +56,10 @@ fn last_part(path: &str) -> &str {
 
 /// Curves of the case itself, of a single column those of its variants too, with dashes, and what is
 /// expected of them.
-fn of_variants(case: &Case, page: &PageCase, curves: &[String]) -> Vec<Series> {
+fn of_variants(case: &Case, page: &SettingRuns, curves: &[String]) -> Vec<Series> {
     let mut series = Vec::new();
     for name in curves {
-        for (run, finished) in &page.runs {
+        for (run, finished) in page.finished() {
             let (label, style) = match run {
                 None => (name.clone(), Style::Line),
                 Some(run) if curves.len() == 1 && case.member(run).is_none() => {
@@ -75,8 +76,8 @@ fn of_variants(case: &Case, page: &PageCase, curves: &[String]) -> Vec<Series> {
 }
 
 /// A column of the members of a sweep, and what is expected of it in the case itself.
-fn of_members(case: &Case, page: &PageCase, sweep: &Sweep, name: &str) -> Vec<Series> {
-    let members = page.runs.iter().filter_map(|(run, finished)| {
+fn of_members(case: &Case, page: &SettingRuns, sweep: &Sweep, name: &str) -> Vec<Series> {
+    let members = page.finished().filter_map(|(run, finished)| {
         let (own, index) = case.member(run.as_ref()?)?;
         let values = sweep.values(index, case.level).into_iter();
         let values: Vec<&str> = values.map(|(_, value)| value.text.as_str()).collect();
@@ -91,8 +92,8 @@ fn of_members(case: &Case, page: &PageCase, sweep: &Sweep, name: &str) -> Vec<Se
 }
 
 /// Marks at what is expected of a column of the case itself.
-fn expected(case: &Case, page: &PageCase, name: &str) -> Option<Series> {
-    let (_, finished) = page.runs.iter().find(|(run, _)| run.is_none())?;
+fn expected(case: &Case, page: &SettingRuns, name: &str) -> Option<Series> {
+    let (_, finished) = page.finished().find(|(run, _)| run.is_none())?;
     let found = finished.quantity(name)?;
     let points = references(case, name, &found);
     let observe::Series::Curve { unit, .. } = found else { return None };

@@ -54,8 +54,17 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
         }
     }
 
-    /// A row of which nothing is known yet.
-    fn blank(&self, index: usize, check: &Check, run: Option<String>) -> CheckRow {
+    /// A row of which nothing is known yet, of the runs `runs`.
+    fn blank(
+        &self,
+        index: usize,
+        check: &Check,
+        run: Option<String>,
+        runs: Vec<Option<String>>,
+    ) -> CheckRow {
+        let traits = runs.iter().map(|name| self.base.traits_of(name.as_deref()));
+        let is_paper = traits.clone().all(|traits| traits.is_paper);
+        let is_long = traits.clone().any(|traits| traits.is_long);
         let (expected, tolerance) = format::expectation(&check.expectation, "");
         CheckRow {
             check: index,
@@ -66,7 +75,12 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
             expected,
             tolerance,
             deviation: String::new(),
+            against: check.against,
             source: check.source.clone(),
+            bound: check.reason.clone(),
+            level: if is_paper { Level::Paper } else { self.base.level },
+            runs,
+            is_long,
             pass: false,
             reason: None,
             trend: None,
@@ -84,7 +98,11 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
             Some(values) => format!("{name} ({values})"),
             None => name.to_owned(),
         });
-        let mut row = self.blank(index, check, run);
+        let mut names = vec![variant.map(str::to_owned)];
+        if let Expectation::LessThan(other) | Expectation::MoreThan(other) = &check.expectation {
+            names.push(other.as_ref().map(|name| name.value.clone()));
+        }
+        let mut row = self.blank(index, check, run, names);
         let verdict = found.and_then(|run| {
             let got = measure(run, check)?;
             let unit = match &got {
@@ -103,7 +121,9 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
     }
 
     fn trend_row(&self, index: usize, check: &Check, line: &Line, trend: Trend) -> CheckRow {
-        let mut row = self.blank(index, check, Some(line.label(self.base.level)));
+        let names = line.members.iter().map(|member| Some(line.sweep.member(*member)));
+        let run = Some(line.label(self.base.level));
+        let mut row = self.blank(index, check, run, names.collect());
         let keys = line.sweep.keys(self.base.level);
         row.expected = format!("{} along {}", row.expected, keys[line.along].path.value);
         let verdict = self.trend_data(index, line).and_then(|data| {

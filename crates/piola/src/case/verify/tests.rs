@@ -138,7 +138,12 @@ fn a_row_says_what_was_compared() {
             expected: "2 m".into(),
             tolerance: "1 %".into(),
             deviation: "0 %".into(),
+            against: None,
             source: "none".into(),
+            bound: None,
+            level: Level::Case,
+            runs: vec![None],
+            is_long: false,
             pass: true,
             reason: None,
             trend: None,
@@ -218,7 +223,7 @@ fn each_needed_variant_runs_once_and_no_other() {
     let checks = format!(
         "[[check]]\n{X}source = \"a\"\nvariant = \"double\"\nat_most = 9.0\n\
          [[check]]\n{X}source = \"b\"\nless_than = \"double\"\n\
-         [[check]]\n{X}source = \"c\"\nvariant = \"broken\"\nwhen = \"full\"\nat_most = 9.0\n\
+         [[check]]\n{X}source = \"c\"\nvariant = \"broken\"\nwhen = \"case\"\nat_most = 9.0\n\
          [[check]]\n{X}source = \"d\"\nwhen = \"coarse\"\nat_most = 9.0\n"
     );
     for (level, sources, variants) in [
@@ -431,7 +436,7 @@ fn members_follow_each_other_along_a_key() {
     assert_eq!((points[2].key, points[2].value, points[2].error), (Some(4.0), 4.0, Some(1.0)));
     // The kernels are no numbers, but members still follow each other.
     let rows = sweep_rows(
-        "sweep = \"size\"\nalong = \"scheme.kernel\"\nratio = [0.99, 1.01]\nwhen = \"full\"",
+        "sweep = \"size\"\nalong = \"scheme.kernel\"\nratio = [0.99, 1.01]\nwhen = \"case\"",
     );
     assert_eq!((rows.len(), rows.iter().all(|row| row.pass)), (3, true));
 }
@@ -441,7 +446,7 @@ fn each_member_runs_once_and_only_where_it_is_needed() {
     let checks = [
         of_sweep("sweep = \"small\"\nmonotone = \"decreasing\""),
         of_sweep(
-            "sweep = \"size\"\nalong = \"scheme.kernel\"\nratio = [0.9, 1.1]\nwhen = \"full\"",
+            "sweep = \"size\"\nalong = \"scheme.kernel\"\nratio = [0.9, 1.1]\nwhen = \"case\"",
         ),
         of_sweep("sweep = \"size\"\nmember = { scheme.kernel = \"lucy\" }\nat_most = 9"),
     ];

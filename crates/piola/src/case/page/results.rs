@@ -1,0 +1,172 @@
+//! The results of checks as they are kept beside the validation page, as JSON: the page is made of
+//! nothing else, so that one case can be run again, and what takes long stays as it was.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::model::{Against, Level};
+use super::super::verify::{CheckRow, Got, significant};
+
+/// All of them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// Version of the program.
+    pub version: String,
+    /// The cases, in the order of the page.
+    pub cases: Vec<CaseResults>,
+}
+
+/// Those of one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CaseResults {
+    /// Its row of the reproduction list, or the name of its folder.
+    pub id: String,
+    /// Name of its folder.
+    pub name: String,
+    /// What it shows.
+    pub title: String,
+    /// The link to its page or file, relative to the validation page.
+    pub link: String,
+    /// Number of runs.
+    pub runs: usize,
+    /// Least and most particles of a run.
+    pub particles: [usize; 2],
+    /// The checks.
+    pub rows: Vec<Row>,
+    /// Its charts: name, and file in the folder of the page.
+    pub charts: Vec<(String, String)>,
+    /// Pictures that its page shows: name, and link relative to the validation page.
+    pub pictures: Vec<(String, String)>,
+}
+
+/// One check at one setting, of one run or of a line of members of a sweep.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Number of the check in the case, from 0.
+    pub check: usize,
+    /// The setting that was read.
+    pub read_at: Level,
+    /// The setting that it counts as: the paper's where the run has the publication's numbers.
+    pub level: Level,
+    /// What was run, as [`CheckRow::run`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
+    /// The runs that it looks at, `None` for the case itself.
+    pub runs: Vec<Option<String>>,
+    /// The quantity with its reduction.
+    pub quantity: String,
+    /// What was expected.
+    pub expected: String,
+    /// How far off it may be.
+    pub tolerance: String,
+    /// What came of it.
+    pub got: String,
+    /// How far off it is.
+    pub off_by: String,
+    /// What the expected value is worth.
+    pub against: Option<Against>,
+    /// Where it comes from.
+    pub source: String,
+    /// Why the tolerance, or the bound, is what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<String>,
+    /// Whether the check passes.
+    pub pass: bool,
+    /// Why it does not, where it is not the number that is off.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// What the members gave, where it says how they follow each other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub members: Option<String>,
+    /// Evaluations of the rates times particles, of all its runs.
+    pub work: u64,
+    /// What tells the cases apart that were run.
+    pub fingerprint: String,
+    /// Whether one of its runs takes long.
+    pub is_long: bool,
+    /// The day on which a long one was run, `None` for one that was not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+}
+
+impl Row {
+    /// The row of a check that was evaluated on the case as `read_at` has it, by runs that took
+    /// `work` and whose cases have the sum `fingerprint`.
+    pub fn new(row: &CheckRow, read_at: Level, work: u64, fingerprint: String) -> Self {
+        Self {
+            check: row.check,
+            read_at,
+            level: row.level,
+            run: row.run.clone(),
+            runs: row.runs.clone(),
+            quantity: row.quantity.clone(),
+            expected: row.expected.clone(),
+            tolerance: row.tolerance.clone(),
+            got: row.got.as_ref().map_or_else(|| "-".to_owned(), Got::to_string),
+            off_by: row.deviation.clone(),
+            against: row.against,
+            source: row.source.clone(),
+            bound: row.bound.clone(),
+            pass: row.pass,
+            reason: row.reason.as_ref().filter(|_| !row.pass).cloned(),
+            members: members(row),
+            work,
+            fingerprint,
+            is_long: row.is_long,
+            date: None,
+        }
+    }
+
+    /// What the row is about: the quantity, with what was run in front.
+    pub fn name(&self) -> String {
+        match &self.run {
+            Some(run) => format!("{run}: {}", self.quantity),
+            None => self.quantity.clone(),
+        }
+    }
+
+    /// Whether both are of the same check of the same runs of the same case.
+    fn is_same(&self, other: &Self) -> bool {
+        let key = |row: &Self| (row.read_at, row.name(), row.tolerance.clone(), row.source.clone());
+        key(self) == key(other) && self.fingerprint == other.fingerprint
+    }
+
+    /// Whether it was run at all.
+    pub fn was_run(&self) -> bool {
+        !self.is_long || self.date.is_some()
+    }
+}
+
+impl CaseResults {
+    /// Takes what `earlier` has of runs that take long and that were not run again, of the case as
+    /// it is now.
+    pub fn keep_long(&mut self, earlier: &Self) {
+        for row in self.rows.iter_mut().filter(|row| !row.was_run()) {
+            let known = earlier.rows.iter().find(|known| known.was_run() && known.is_same(row));
+            if let Some(known) = known {
+                // What the check says today of the value and its worth stays.
+                let (against, bound) = (row.against, row.bound.clone());
+                *row = Row { check: row.check, against, bound, ..known.clone() };
+            }
+        }
+        let kept = earlier.charts.iter().filter(|_| self.rows.iter().any(|row| row.is_long));
+        let new: Vec<_> = kept.filter(|chart| !self.charts.contains(chart)).cloned().collect();
+        self.charts.extend(new);
+    }
+
+    /// Checks that passed, and all that were run, with this worth.
+    pub fn count(&self, against: Option<Against>) -> [usize; 2] {
+        let own = self.rows.iter().filter(|row| row.against == against && row.was_run());
+        [own.clone().filter(|row| row.pass).count(), own.count()]
+    }
+}
+
+/// What the members of a sweep gave, from which its order, ratio or direction was taken.
+fn members(row: &CheckRow) -> Option<String> {
+    let data = row.trend.as_ref()?;
+    let each = data.points.iter().map(|point| {
+        let number = point.error.filter(|_| data.of_error).unwrap_or(point.value);
+        format!("{} at {}", significant(number, 4), point.text)
+    });
+    let unit = if data.unit == "1" { String::new() } else { format!(", in {}", data.unit) };
+    Some(format!("{}{unit}: {}", row.quantity, each.collect::<Vec<_>>().join("; ")))
+}
