@@ -66,11 +66,16 @@ pub(crate) struct Loaded<const D: usize> {
 impl<const D: usize> Loaded<D> {
     /// The force in N at a time in s.
     pub fn force(&self, time: f64) -> Vector<D> {
-        Vector::from_fn(|i, _| self.area * self.value[i].value(self.place, time))
+        self.traction(time) * self.area
     }
 
-    /// Its rate in N/s.
-    pub fn force_rate(&self, time: f64) -> Vector<D> {
-        Vector::from_fn(|i, _| self.area * self.value[i].rate(self.place, time))
+    /// The traction in Pa at a time in s.
+    pub fn traction(&self, time: f64) -> Vector<D> {
+        Vector::from_fn(|i, _| self.value[i].value(self.place, time))
+    }
+
+    /// Its rate in Pa/s.
+    pub fn traction_rate(&self, time: f64) -> Vector<D> {
+        Vector::from_fn(|i, _| self.value[i].rate(self.place, time))
     }
 }

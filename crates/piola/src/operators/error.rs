@@ -32,6 +32,17 @@ pub enum OperatorError {
         /// The correction that was asked for.
         correction: &'static str,
     },
+    /// Particles that are not those of an even lattice, with or without ghosts.
+    #[error(
+        "the neighbours of particle {id} at {position:?} do not surround it evenly: the strong form is \
+         for a box of one lattice, with particles on its edges and none left out"
+    )]
+    Gap {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+    },
     /// Two particles at one place: the direction between them does not exist.
     #[error(
         "particles {first} and {second} lie at the same place {position:?}; remove one of them"

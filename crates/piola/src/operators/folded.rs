@@ -18,7 +18,7 @@ pub type PlaneData<const D: usize> = [[f64; 2]; D];
 /// all share one set.
 #[derive(Clone, Debug)]
 pub struct FoldedGradient<const D: usize> {
-    forward: Block<D>,
+    pub(super) forward: Block<D>,
     adjoint: Block<D>,
     /// Which values belong to a component.
     class: [usize; D],
@@ -28,7 +28,7 @@ pub struct FoldedGradient<const D: usize> {
 
 /// One pattern with the values of each class of components.
 #[derive(Clone, Debug)]
-struct Block<const D: usize> {
+pub(super) struct Block<const D: usize> {
     offsets: Vec<usize>,
     columns: Vec<u32>,
     values: Vec<Vec<[f64; D]>>,
@@ -69,22 +69,27 @@ impl<const D: usize> FoldedGradient<D> {
         let (count, images) = (stencils.len(), cover.images);
         let class = if images.is_empty() { [0; D] } else { std::array::from_fn(|i| i) };
         let classes = class[D - 1] + 1;
-        let mut forward =
-            Block { offsets: vec![0], columns: Vec::new(), values: vec![Vec::new(); classes] };
+        let mut forward = Block::new(classes);
         let mut sources: Vec<Source<D>> = planes(images)
             .into_iter()
             .map(|(axis, side)| Source { axis, side, coefficients: vec![[0.0; D]; count] })
             .collect();
-        let mut row: Vec<(u32, [f64; D], Vector<D>)> = Vec::new();
+        let mut row: Vec<(u32, Tensor<D>)> = Vec::new();
+        // The coefficients of component i stand in row i.
+        let signed = |sign: &[f64; D], gradient: &Vector<D>| {
+            Tensor::from_fn(|i, j| sign[i] * gradient[j])
+        };
         for (a, stencil) in stencils.iter().enumerate() {
             row.clear();
-            row.push((a as u32, [1.0; D], stencil.diagonal));
+            row.push((a as u32, signed(&[1.0; D], &stencil.diagonal)));
             for entry in &stencil.entries {
                 match entry.neighbor.checked_sub(count) {
-                    None => row.push((entry.neighbor as u32, [1.0; D], entry.gradient)),
+                    None => {
+                        row.push((entry.neighbor as u32, signed(&[1.0; D], &entry.gradient)));
+                    }
                     Some(number) => {
                         let image = &images[number];
-                        row.push((image.source, image.sign, entry.gradient));
+                        row.push((image.source, signed(&image.sign, &entry.gradient)));
                         for source in &mut sources {
                             let share = image.data[source.axis][source.side];
                             for j in 0..D {
@@ -94,21 +99,7 @@ impl<const D: usize> FoldedGradient<D> {
                     }
                 }
             }
-            // Stable, so that sums are taken in one order.
-            row.sort_by_key(|(column, ..)| *column);
-            for (column, sign, gradient) in &row {
-                let first = forward.offsets[a];
-                if forward.columns.len() == first || forward.columns.last() != Some(column) {
-                    forward.columns.push(*column);
-                    forward.values.iter_mut().for_each(|values| values.push([0.0; D]));
-                }
-                for (i, values) in forward.values.iter_mut().enumerate() {
-                    if let Some(sum) = values.last_mut() {
-                        (0..D).for_each(|j| sum[j] += sign[i] * gradient[j]);
-                    }
-                }
-            }
-            forward.offsets.push(forward.columns.len());
+            forward.push(&mut row);
         }
         let adjoint = forward.transposed();
         let shape = stencils.iter().map(|stencil| stencil.shape).collect();
@@ -125,9 +116,18 @@ impl<const D: usize> FoldedGradient<D> {
         self.shape.is_empty()
     }
 
+    /// The matrices of particles that are continued by ghosts, each of which is particles and data with
+    /// coefficients: the datum d is column `count + d`, where a field must be known as a function.
+    pub(super) fn of_rows(forward: Block<D>, shape: Vec<Tensor<D>>) -> Self {
+        // Nothing takes its adjoint.
+        let adjoint = Block::new(0);
+        Self { forward, adjoint, class: std::array::from_fn(|i| i), sources: Vec::new(), shape }
+    }
+
     /// The particles that have a part in the gradient of particle `a`, itself among them.
     pub fn row(&self, a: usize) -> &[u32] {
-        &self.forward.columns[self.forward.offsets[a]..self.forward.offsets[a + 1]]
+        let row = &self.forward.columns[self.forward.offsets[a]..self.forward.offsets[a + 1]];
+        &row[..row.partition_point(|&column| (column as usize) < self.len())]
     }
 
     /// `L_a/tr L_a` of theory (44), which the hourglass force needs.
@@ -168,6 +168,32 @@ impl<const D: usize> FoldedGradient<D> {
             }
         }
         gradient
+    }
+
+    /// The divergence `sum_j dT_ij/dx_j` at particle `a` of a tensor field that is known as a function
+    /// of the particle.
+    #[inline]
+    pub fn divergence_of(&self, field: impl Fn(usize) -> Tensor<D>, a: usize) -> Vector<D> {
+        let block = &self.forward;
+        let mut sum = Vector::zeros();
+        for entry in block.offsets[a]..block.offsets[a + 1] {
+            let own = field(block.columns[entry] as usize);
+            for i in 0..D {
+                let values = &block.values[self.class[i]][entry];
+                for j in 0..D {
+                    sum[i] += values[j] * own[(i, j)];
+                }
+            }
+        }
+        sum
+    }
+
+    /// The part of data in the gradient at particle `a`, whose numbers are counted from 0.
+    #[inline]
+    pub fn gradient_of_data(&self, datum: impl Fn(usize) -> Vector<D>, a: usize) -> Tensor<D> {
+        let count = self.len();
+        let of = |q: usize| q.checked_sub(count).map_or_else(Vector::zeros, &datum);
+        self.forward.gather(&self.class, a, of)
     }
 
     /// The gradient of a field at all particles: the first product of a step.
@@ -229,6 +255,29 @@ impl<const D: usize> FoldedGradient<D> {
 }
 
 impl<const D: usize> Block<D> {
+    pub(super) fn new(classes: usize) -> Self {
+        Self { offsets: vec![0], columns: Vec::new(), values: vec![Vec::new(); classes] }
+    }
+
+    /// Appends a row of columns with the coefficients of component i in row i, which it sorts.
+    pub(super) fn push(&mut self, row: &mut [(u32, Tensor<D>)]) {
+        // Stable, so that sums are taken in one order.
+        row.sort_by_key(|(column, _)| *column);
+        let first = self.columns.len();
+        for (column, coefficients) in row {
+            if self.columns.len() == first || self.columns.last() != Some(column) {
+                self.columns.push(*column);
+                self.values.iter_mut().for_each(|values| values.push([0.0; D]));
+            }
+            for (i, values) in self.values.iter_mut().enumerate() {
+                if let Some(sum) = values.last_mut() {
+                    (0..D).for_each(|j| sum[j] += coefficients[(i, j)]);
+                }
+            }
+        }
+        self.offsets.push(self.columns.len());
+    }
+
     /// `sum_q value_q^(i)_j f_i(q)` of a row.
     #[inline]
     fn gather(&self, class: &[usize; D], a: usize, f: impl Fn(usize) -> Vector<D>) -> Tensor<D> {

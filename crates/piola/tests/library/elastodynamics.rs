@@ -319,8 +319,20 @@ fn what_cannot_be_built_says_why() {
     let refused = |made: ElastodynamicsInput<2>| {
         Elastodynamics::new(made).err().map(|error| error.to_string()).unwrap_or_default()
     };
-    let plane = input([4, 4], law, cover, strong());
-    assert!(refused(plane).contains("strong form is for one row"));
+    let mut two = input([4, 4], law, cover, strong());
+    two.group[24] = 1;
+    assert!(refused(two).contains("strong form is for one row or box"));
+    let mut gap = input([8, 8], law, cover, strong());
+    gap.particles.position[40] += Vector::from([0.1, 0.0]);
+    assert!(refused(gap).contains("surround it evenly"));
+    let mut part = input([4, 4], law, cover, strong());
+    part.prescribed = vec![PrescribedVelocity {
+        name: "held".into(),
+        particles: vec![0, 1, 2],
+        component: 0,
+        value: Arc::new(0.0),
+    }];
+    assert!(refused(part).contains("on a part of an edge"));
     let updated = Settings { configuration: Configuration::Updated, ..PLAIN };
     assert!(refused(input([4, 4], law, cover, updated)).contains("updated"));
     let negative = Settings { viscosity: -1.0, ..PLAIN };

@@ -16,6 +16,7 @@ mod operators;
 mod pair_pass;
 mod profiles;
 mod resume;
+mod strong_form;
 #[path = "../support/mod.rs"]
 mod support;
 mod upwind;

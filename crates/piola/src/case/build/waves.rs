@@ -224,7 +224,10 @@ fn mirrors<const D: usize>(
             problems.push(case.problem_at(mirror.place, message, "this mirror", help));
         };
         if settings.settings.form == Form::Strong {
-            refuse("the strong form makes its ghosts by itself", "remove `mirror`");
+            if D == 1 {
+                refuse("the strong form makes its ghosts by itself", "remove `mirror`");
+            }
+            // What is prescribed on an edge makes it a mirror there.
             continue;
         }
         let model::Region::Plane { point, normal } = &boundary.region.value else {

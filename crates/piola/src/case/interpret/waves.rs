@@ -15,10 +15,9 @@ impl Reader<'_, '_> {
             None => Form::Adjoint,
         };
         if form == Form::Strong {
-            if self.dimension > 1 {
+            if self.dimension > 2 {
                 let place = record.key_place("form").unwrap_or(record.place);
-                let message = "the strong form is for one dimension: on free edges in two and three \
-                               it is unstable";
+                let message = "the strong form is for one and two dimensions";
                 let problem = Problem::new(place, message, "not in this dimension");
                 return self.refuse(problem.help("use `form = \"adjoint\"`"));
             }
@@ -34,6 +33,12 @@ impl Reader<'_, '_> {
             let problem = Problem::new(place, message, "not with `form = \"adjoint\"`");
             return self.refuse(problem.help("use `configuration = \"total\"`"));
         }
+        if configuration == Configuration::Updated && self.dimension > 1 {
+            let place = record.key_place("configuration").unwrap_or(record.place);
+            let message = "matrices of the moment are for one dimension";
+            let problem = Problem::new(place, message, "not in this dimension");
+            return self.refuse(problem.help("use `configuration = \"total\"`"));
+        }
         let artificial = match record.numbers("artificial_viscosity") {
             None => [0.0; 2],
             Some(given) => match given.value[..] {
@@ -46,7 +51,8 @@ impl Reader<'_, '_> {
             },
         };
         let (support, hourglass) = match form {
-            Form::Strong => (5.5, 0.0),
+            Form::Strong if self.dimension == 1 => (5.5, 0.0),
+            Form::Strong => (2.5, 0.0),
             Form::Adjoint => (2.5, 0.05),
         };
         let settings = Settings {

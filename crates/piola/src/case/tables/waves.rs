@@ -18,7 +18,7 @@ pub(super) const ELASTODYNAMICS: KindSpec = KindSpec {
             "support",
             Kind::Number(Interval::POSITIVE),
             "spacings",
-            Derived("5.5 with `form = \"strong\"`, 2.5 otherwise"),
+            Derived("5.5 with `form = \"strong\"` in 1D, 2.5 otherwise"),
             "radius of the cover in units of the particle spacing",
         ),
         key(
@@ -74,7 +74,10 @@ pub(super) const ELASTODYNAMICS: KindSpec = KindSpec {
 };
 
 const FORMS: Choices = choices(&[
-    choice("strong", "by the matrices of the gradient, with ghosts beyond both ends; in 1D"),
+    choice(
+        "strong",
+        "by the matrices of the gradient, with ghosts beyond the edges that carry the load as a slope, theory (64): the paper's way; for one row in 1D, and in 2D for one box of a lattice with particles on its edges",
+    ),
     choice("adjoint", "by their transposes, with tractions as forces on particles"),
 ]);
 

@@ -3,7 +3,7 @@
 use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
-use super::ends::{self, End, Ends};
+use super::edges::{self, Edges};
 use super::{Configuration, Elastodynamics, Form, Mixture, Settings, stable_step::Bound};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
@@ -60,18 +60,41 @@ pub enum ElastodynamicsError {
     /// Parts that do not fit together.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// The strong form elsewhere than in one row of particles.
+    /// The strong form elsewhere than in one row or box of particles.
     #[error(
-        "the strong form is for one row of particles in one dimension: there are {dimension} \
-         dimensions and {rows} rows; use `form = \"adjoint\"`"
+        "the strong form is for one row or box of particles in one or two dimensions: there are \
+         {dimension} dimensions and {bodies} separate bodies; use `form = \"adjoint\"`"
     )]
     Strong {
         /// Dimensions of space.
         dimension: usize,
         /// Groups of particles.
-        rows: usize,
+        bodies: usize,
     },
-    /// Matrices of the moment in the adjoint form.
+    /// An edge in the strong form of which only a part is held.
+    #[error(
+        "the velocity along axis {component} is prescribed on a part of an edge only, and not of particle \
+         {id} at {position:?}: in the strong form a component is held on all of an edge or nowhere on \
+         it; use `form = \"adjoint\"`"
+    )]
+    PartOfEdge {
+        /// The component, from 0.
+        component: usize,
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+    },
+    /// A traction in the strong form that belongs to no edge.
+    #[error(
+        "the load `{name}` does not lie on one edge: in the strong form a traction acts on an edge of the \
+         box; use `form = \"adjoint\"`"
+    )]
+    NoEdge {
+        /// Name of the load.
+        name: String,
+    },
+    /// Matrices of the moment in the adjoint form, or in two dimensions.
     #[error(
         "`configuration = \"updated\"` is for the strong form, in one dimension, to show the tensile \
          instability; use `configuration = \"total\"`"
@@ -125,7 +148,8 @@ impl<const D: usize> Elastodynamics<D> {
             check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
         }
         let planes = input.mirrors.iter().map(|(mirror, _)| mirror.axis);
-        let mut ended = planes.chain((settings.form == Form::Strong).then_some(0));
+        let edges = if settings.form == Form::Strong { 0..D } else { 0..0 };
+        let mut ended = planes.chain(edges);
         if let Some(axis) = ended.find(|&axis| domain.periodic()[axis].is_some()) {
             return Err(ElastodynamicsError::Periodic { axis });
         }
@@ -152,14 +176,23 @@ impl<const D: usize> Elastodynamics<D> {
             radius: &radius,
             domain,
         };
-        let (matrix, hourglass, ends) = match settings.form {
-            Form::Strong => {
-                let known = ends_of(&particles, &group, &prescribed)?;
-                let [matrix, divergence] = ends::matrices(&cover, &known)?;
-                (matrix, None, Some(Ends { ends: known, divergence }))
-            }
-            Form::Adjoint if settings.configuration == Configuration::Updated => {
+        let (mut loaded, mut found) = (Vec::new(), None);
+        if settings.form == Form::Adjoint {
+            loaded = input.tractions.iter().flat_map(|load| load.loaded(positions)).collect();
+        }
+        let (matrix, hourglass) = match settings.form {
+            _ if settings.configuration == Configuration::Updated
+                && (D > 1 || settings.form == Form::Adjoint) =>
+            {
                 return Err(ElastodynamicsError::Updated);
+            }
+            Form::Strong => {
+                let known = edges::find(&particles, &group, &prescribed)?;
+                let [matrix, divergence] = edges::matrices(&cover, &known)?;
+                let (own, elsewhere) =
+                    Edges::new(known, divergence, &input.tractions, positions)?;
+                (loaded, found) = (elsewhere, Some(own));
+                (matrix, None)
             }
             Form::Adjoint if settings.hourglass > 0.0 => {
                 let coefficient = |a: usize| {
@@ -170,34 +203,34 @@ impl<const D: usize> Elastodynamics<D> {
                 let form = GradientForm::Corrected;
                 let (matrix, hourglass) =
                     FoldedGradient::with_hourglass(&cover, form, &coefficients)?;
-                (matrix, Some(hourglass), None)
+                (matrix, Some(hourglass))
             }
-            Form::Adjoint => (FoldedGradient::new(&cover, GradientForm::Corrected)?, None, None),
+            Form::Adjoint => (FoldedGradient::new(&cover, GradientForm::Corrected)?, None),
         };
+        let data = found.as_ref().map_or(0, |edges| edges.slots.len());
         let at_rest = |mixture: &Mixture<D>| mixture.wave_moduli(&Tensor::zeros());
         let moduli: Vec<[f64; 2]> = input.mixtures.iter().map(at_rest).collect();
         let rate_length = if settings.is_viscous() { count } else { 0 };
         let mut scheme = Self {
             mirrors: input.mirrors.iter().map(|&(mirror, on)| (mirror, on as usize)).collect(),
-            loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
+            loaded,
             prescribed,
             matrix,
             hourglass,
-            ends,
+            edges: found,
             stable: Bound::default(),
             moduli_at_rest: moduli,
             not_convex: None,
             body_forces: input.body_forces,
-            displacement: vec![Vector::zeros(); count],
-            velocity: vec![Vector::zeros(); count],
-            acceleration: vec![Vector::zeros(); count],
+            displacement: vec![Vector::zeros(); count + data],
+            velocity: vec![Vector::zeros(); count + data],
+            acceleration: vec![Vector::zeros(); count + data],
             gradient: vec![Tensor::zeros(); count],
             gradient_rate: vec![Tensor::zeros(); rate_length],
             stress: vec![Tensor::zeros(); count],
             tension: vec![Tensor::zeros(); count],
             force: vec![Vector::zeros(); count],
-            slopes: [0.0; 2],
-            rate: vec![0.0; count * Row::<D>::LENGTH + Self::tail_length()],
+            rate: vec![0.0; count * Row::<D>::LENGTH + Self::slopes_at() + D * data],
             initial: Vec::new(),
             mixtures: input.mixtures,
             mixture: input.mixture,
@@ -239,28 +272,4 @@ fn check_settings(settings: &Settings) -> Result<(), ElastodynamicsError> {
     ];
     let wrong = all.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite()));
     wrong.map_or(Ok(()), |(what, value)| Err(ElastodynamicsError::Coefficient { what, value }))
-}
-
-/// The ends of the one row that the strong form is for.
-fn ends_of<const D: usize>(
-    particles: &Particles<D>,
-    group: &[u32],
-    prescribed: &PrescribedComponents,
-) -> Result<Vec<End>, ElastodynamicsError> {
-    let mut rows: Vec<u32> = group.to_vec();
-    rows.sort_unstable();
-    rows.dedup();
-    if D != 1 || rows.len() != 1 {
-        return Err(ElastodynamicsError::Strong { dimension: D, rows: rows.len() });
-    }
-    let place = |a: &usize| particles.position[*a][0];
-    let by_place = |a: &usize, b: &usize| place(a).total_cmp(&place(b));
-    let all = || 0..particles.len();
-    let found = [(all().min_by(by_place), false), (all().max_by(by_place), true)];
-    let end = |(particle, is_upper): (Option<usize>, bool)| {
-        let particle = particle?;
-        let is_held = prescribed.iter().any(|entry| entry.particle == particle);
-        Some(End { particle, is_upper, is_held })
-    };
-    Ok(found.into_iter().filter_map(end).collect())
 }

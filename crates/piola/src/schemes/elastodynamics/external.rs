@@ -19,13 +19,8 @@ impl<const D: usize> Elastodynamics<D> {
         MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len()
     }
 
-    /// Numbers behind the rows: the ledger, its rates, how fast its powers grow in a kick, and the
-    /// slopes of the displacement at loaded ends.
-    pub(super) fn tail_length() -> usize {
-        Self::slopes_at() + 2
-    }
-
-    /// Where the slopes stand behind the rows.
+    /// Where the data of edges stand behind the rows, D numbers each: after the ledger, its rates, and
+    /// how fast its powers grow in a kick.
     pub(super) fn slopes_at() -> usize {
         2 * Self::ledger_length() + MECHANISMS.len()
     }
@@ -34,12 +29,6 @@ impl<const D: usize> Elastodynamics<D> {
     #[inline]
     pub(super) fn position(&self, a: usize) -> Vector<D> {
         self.particles.position[a] + self.displacement[a]
-    }
-
-    /// Whether a load at a particle is the stress of a loaded end, which the ghosts make.
-    fn is_of_end(&self, particle: usize) -> bool {
-        let mut loaded = self.ends.iter().flat_map(super::Ends::loaded);
-        loaded.any(|end| end.particle == particle)
     }
 
     #[inline]
@@ -84,7 +73,7 @@ impl<const D: usize> Elastodynamics<D> {
             let drag = |a: usize| self.velocity[a] * (-damping * self.mass[a]);
             powers[DAMPING] = enters(DAMPING_IMPULSE, over_all(&drag));
         }
-        if self.ends.is_some() || !self.mirrors.is_empty() {
+        if self.edges.is_some() || !self.mirrors.is_empty() {
             // What bodies beyond planes and ends do on this one.
             enters(BOUNDARY_MOTION, over_all(&|a: usize| self.force[a]));
         }
@@ -93,11 +82,11 @@ impl<const D: usize> Elastodynamics<D> {
                 self.viscous_stress(a).dot(&self.gradient_rate[a]) * self.particles.volume[a]
             });
         }
-        let rates = self.data_rates(time);
-        let ghosts = self.ghost_powers(time, &self.velocity, &rates);
+        let rates = self.plane_data(&self.velocity);
+        let ghosts = self.ghost_powers(&self.velocity, &rates);
         powers[TRACTION] = ghosts.traction;
         powers[BOUNDARY_MOTION] = ghosts.motion;
-        for load in self.loaded.iter().filter(|load| !self.is_of_end(load.particle)) {
+        for load in &self.loaded {
             let (a, force) = (load.particle, load.force(time));
             for (component, force) in force.iter().enumerate() {
                 rows[a * length + component] += force / self.mass[a];
@@ -140,7 +129,10 @@ impl<const D: usize> Elastodynamics<D> {
         }
         let ledger = Self::ledger_length();
         tail[ledger..2 * ledger].copy_from_slice(&rate[rows.len()..][..ledger]);
-        tail[Self::slopes_at()..].copy_from_slice(&self.slopes);
+        let data = self.displacement[self.mass.len()..].iter();
+        for (kept, datum) in tail[Self::slopes_at()..].chunks_exact_mut(D).zip(data) {
+            kept.copy_from_slice(datum.as_slice());
+        }
         let growths = &mut tail[2 * ledger..][..MECHANISMS.len()];
         growths.fill(0.0);
         growths[BODY_FORCE] = parallel::sum(self.mass.len(), |a| {
@@ -151,11 +143,11 @@ impl<const D: usize> Elastodynamics<D> {
             * parallel::sum(self.mass.len(), |a| {
                 self.mass[a] * self.velocity[a].dot(&acceleration[a])
             });
-        let own = self.loaded.iter().filter(|load| !self.is_of_end(load.particle));
+        let own = self.loaded.iter();
         growths[TRACTION] =
             own.map(|load| load.force(time).dot(&acceleration[load.particle])).sum();
-        if self.ends.is_some() {
-            growths[TRACTION] += self.ghost_powers(time, &acceleration, &[[0.0; 2]; D]).traction;
+        if self.edges.is_some() {
+            growths[TRACTION] += self.ghost_powers(&acceleration, &[[0.0; 2]; D]).traction;
         }
         self.acceleration = acceleration;
     }

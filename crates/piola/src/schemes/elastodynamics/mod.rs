@@ -8,19 +8,21 @@
 //! A = X u,   P = P(I + A),   m dv/dt = -X^T (V P) + H u + loads,   du/dt = v
 //! ```
 //!
-//! the *adjoint* form, for any cloud and dimension, or in one dimension the *strong* form of the
-//! paper, `rho dv/dt = X P`, with ghosts that carry displacements and stresses on beyond both ends,
-//! theory (64). Both are stepped by central differences, Elastodynamics (4.4), as kicks and drifts.
+//! the *adjoint* form, for any cloud and dimension, or on a row or a box of particles the *strong* form
+//! of the paper, `rho dv/dt = X P`, with ghosts that carry displacements and stresses on beyond the
+//! edges, theory (64). Both are stepped by central differences, Elastodynamics (4.4), as kicks and drifts.
 
 mod build;
 mod dissipation;
-mod ends;
+mod edges;
 mod evaluate;
 mod external;
+mod ghosts;
 mod inspect;
 mod sample;
 mod scheme;
 mod settings;
+mod slopes;
 mod split;
 mod stable_step;
 
@@ -37,7 +39,7 @@ use crate::neighbors::Domain;
 use crate::operators::{FoldedGradient, FoldedHourglass, Mirror};
 use crate::{Tensor, Vector};
 
-use ends::Ends;
+use edges::Edges;
 
 /// The elastodynamics formulation bound to its particles.
 pub struct Elastodynamics<const D: usize> {
@@ -55,8 +57,9 @@ pub struct Elastodynamics<const D: usize> {
     hourglass: Option<FoldedHourglass<D>>,
     /// Symmetry planes and rollers, each with a particle that lies on it.
     mirrors: Vec<(Mirror, usize)>,
-    /// The ends of a row, in the strong form.
-    ends: Option<Ends<D>>,
+    /// The edges, in the strong form, whose data stand behind those of particles in displacements,
+    /// velocities and accelerations.
+    edges: Option<Edges<D>>,
     stable: stable_step::Bound,
     /// Moduli of the slowest and the fastest wave at rest of each mixture, Pa.
     moduli_at_rest: Vec<[f64; 2]>,
@@ -75,8 +78,6 @@ pub struct Elastodynamics<const D: usize> {
     stress: Vec<Tensor<D>>,
     tension: Vec<Tensor<D>>,
     force: Vec<Vector<D>>,
-    /// Slopes of the displacement at the lower and the upper end, where it is loaded.
-    slopes: [f64; 2],
     /// Scratch of the length of a state.
     rate: Vec<f64>,
     /// The state at the start.

@@ -63,8 +63,10 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-        let displacement: Vec<_> =
+        let mut displacement: Vec<_> =
             (0..self.mass.len()).map(|a| Row::<D>::displacement(row(a))).collect();
+        displacement.resize(self.displacement.len(), crate::Vector::zeros());
+        self.append_kept(&mut displacement, state);
         let data = self.data_of(&displacement, state);
         let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
             sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
@@ -140,7 +142,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
 
     fn memory(&self) -> usize {
         self.matrix.memory()
-            + self.ends.as_ref().map_or(0, |ends| ends.divergence.memory())
+            + self.edges.as_ref().map_or(0, |edges| edges.divergence.memory())
             + self.hourglass.as_ref().map_or(0, |hourglass| hourglass.memory())
             + size_of_val(self.particles.position.as_slice())
             + 2 * size_of_val(self.displacement.as_slice())

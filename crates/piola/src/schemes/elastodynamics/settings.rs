@@ -8,7 +8,7 @@ use crate::schemes::solid::{Material, wave_moduli};
 pub enum Form {
     /// By the transpose of the matrices of the gradient.
     Adjoint,
-    /// By the matrices themselves, with ghosts beyond the ends: in one dimension.
+    /// By the matrices themselves, with ghosts beyond the edges: of a row or of a box.
     Strong,
 }
 
@@ -84,6 +84,18 @@ impl<const D: usize> Mixture<D> {
             sums.iter_mut().zip(moduli).for_each(|(sum, modulus)| *sum += share * modulus);
         }
         sums
+    }
+
+    /// `dP/dF_kl` at a displacement gradient, Pa.
+    pub(super) fn tangent(&self, gradient: &Tensor<D>) -> [[Tensor<D>; D]; D] {
+        let mut sum = [[Tensor::zeros(); D]; D];
+        for (material, share) in &self.0 {
+            let own = material.law.tangent(gradient);
+            for (sum, own) in sum.iter_mut().flatten().zip(own.iter().flatten()) {
+                *sum += own * *share;
+            }
+        }
+        sum
     }
 
     /// `dP/dF : direction` at rest, Pa.

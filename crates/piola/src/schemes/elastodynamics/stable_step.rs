@@ -62,14 +62,24 @@ impl<const D: usize> Elastodynamics<D> {
         let mut is_free = vec![true; count * D];
         self.prescribed.iter().for_each(|it| is_free[it.particle * D + it.component] = false);
         let still = [[0.0; 2]; D];
-        let mut field = vec![Vector::<D>::zeros(); count];
+        // Where no load grows: stresses at edges stay zero, and slopes follow the deformation.
+        let mut edges = self.edges.take();
+        let data = edges.as_ref().map_or(0, |edges| edges.slots.len());
+        let no_load = vec![Vector::<D>::zeros(); data];
+        let tangents: Vec<_> =
+            self.mixtures.iter().map(|mixture| mixture.tangent(&Tensor::zeros())).collect();
+        let mut field = vec![Vector::<D>::zeros(); count + data];
         let mut force = vec![Vector::<D>::zeros(); count];
         let mut tension = vec![Tensor::<D>::zeros(); count];
         let mode = largest_mode(count * D, |direction, product| {
-            for (a, field) in field.iter_mut().enumerate() {
+            for (a, field) in field[..count].iter_mut().enumerate() {
                 *field = Vector::from_fn(|i, _| {
                     if is_free[a * D + i] { direction[a * D + i] / root[a] } else { 0.0 }
                 });
+            }
+            if let Some(edges) = &mut edges {
+                let of = |a: usize| tangents[self.mixture[a] as usize];
+                edges.continue_rates(&self.matrix, &mut field, of, |_| Vector::zeros());
             }
             self.matrix.gradient(&field, &still, &mut tension);
             for (a, tension) in tension.iter_mut().enumerate() {
@@ -80,16 +90,11 @@ impl<const D: usize> Elastodynamics<D> {
                     *tension -= gradient * shape * (2.0 * hourglass.coefficient(a));
                 }
             }
-            match &self.ends {
-                Some(ends) => {
-                    ends.loaded().for_each(|end| tension[end.particle] = Tensor::zeros());
-                    let volume = &self.particles.volume;
-                    for (a, force) in force.iter_mut().enumerate() {
-                        let field =
-                            |b: usize| Vector::<D>::from_fn(|i, _| tension[b][(i, 0)] / volume[b]);
-                        let slope = ends.divergence.gradient_of(field, &still, a);
-                        *force = Vector::from_fn(|i, _| slope[(i, 0)] * volume[a]);
-                    }
+            match &mut edges {
+                Some(edges) => {
+                    edges.stress.fill(Vector::zeros());
+                    edges.overwrite(&mut tension, |_| 1.0);
+                    edges.forces(&tension, &no_load, &self.particles.volume, &mut force);
                 }
                 None => self.matrix.forces(&tension, &mut force),
             }
@@ -101,6 +106,7 @@ impl<const D: usize> Elastodynamics<D> {
                 *product = if is_free[entry] { -force[a][entry % D] / root[a] } else { 0.0 };
             }
         });
+        self.edges = edges;
         let speed = |a: usize| {
             mode.vector[a * D..][..D].iter().map(|entry| entry * entry).sum::<f64>() / self.mass[a]
         };

@@ -1,0 +1,290 @@
+//! The edges of a row or a box of particles in the strong form: what is held there, what is loaded, and
+//! the data with which ghosts carry fields on beyond them.
+
+use std::collections::BTreeMap;
+
+use super::ElastodynamicsError;
+use super::ghosts::ghosts;
+use super::slopes::Sought;
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::boundaries::{Traction, traction::Loaded};
+use crate::geometry::Particles;
+use crate::operators::{Cover, FoldedGradient, GradientForm, OperatorError};
+use crate::{Tensor, Vector, parallel};
+
+/// Particles nearer to an edge than this share of their spacing lie on it.
+const ON_EDGE: f64 = 1e-6;
+
+/// One straight edge, across an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Edge<const D: usize> {
+    /// The axis that it lies across.
+    pub axis: usize,
+    /// Whether the body lies below it on the axis.
+    pub is_upper: bool,
+    /// Whether the velocity of a component is prescribed on it; otherwise its traction is, if only as
+    /// zero.
+    pub is_held: [bool; D],
+    /// The particle on it that has all other coordinates in common with each particle.
+    pub feet: Vec<u32>,
+    /// The number of the slot of each of its particles.
+    pub slots: BTreeMap<u32, u32>,
+}
+
+/// What is known of an edge at one of its particles: displacements of held components, the slope of
+/// others along the axis of the edge, and the stress that belongs to it.
+pub(super) struct Slot<const D: usize> {
+    pub particle: usize,
+    pub axis: usize,
+    pub is_held: [bool; D],
+    /// The edge through the same particle across each other axis, by its slot.
+    pub across: [Option<usize>; D],
+    /// What is sought of the gradient.
+    pub sought: Sought<D>,
+    /// 0 for entries of the gradient that are zero, 1 for others.
+    pub not_zero: Tensor<D>,
+    /// 1 for an upper edge, -1 for a lower one.
+    pub normal: f64,
+    pub loads: Vec<Loaded<D>>,
+}
+
+impl<const D: usize> Slot<D> {
+    /// The components that are loaded.
+    pub fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..D).filter(|&i| !self.is_held[i])
+    }
+
+    /// Column `axis` of the first Piola-Kirchhoff stress on the edge, Pa.
+    pub fn stress(&self, time: f64) -> Vector<D> {
+        self.loads.iter().map(|load| load.traction(time) * self.normal).sum()
+    }
+
+    /// Its rate, Pa/s.
+    pub fn stress_rate(&self, time: f64) -> Vector<D> {
+        self.loads.iter().map(|load| load.traction_rate(time) * self.normal).sum()
+    }
+}
+
+/// The edges of a body, with the matrix that takes the divergence of the stress, theory (64).
+pub(super) struct Edges<const D: usize> {
+    pub edges: Vec<Edge<D>>,
+    pub slots: Vec<Slot<D>>,
+    pub divergence: FoldedGradient<D>,
+    /// Stress of loaded components in each slot at the last evaluation, Pa.
+    pub stress: Vec<Vector<D>>,
+    /// Slopes to start the search for slopes from.
+    pub known: Vec<Vector<D>>,
+    /// Slopes while they are searched for.
+    pub found: Vec<Vector<D>>,
+}
+
+/// The edges of the box that particles fill.
+pub(super) fn find<const D: usize>(
+    particles: &Particles<D>,
+    group: &[u32],
+    prescribed: &PrescribedComponents,
+) -> Result<Vec<Edge<D>>, ElastodynamicsError> {
+    let mut bodies: Vec<u32> = group.to_vec();
+    bodies.sort_unstable();
+    bodies.dedup();
+    if D > 2 || bodies.len() > 1 {
+        return Err(ElastodynamicsError::Strong { dimension: D, bodies: bodies.len() });
+    }
+    let positions = &particles.position;
+    let mut edges: Vec<Edge<D>> = Vec::new();
+    for axis in 0..D {
+        for is_upper in [false, true] {
+            let side = if is_upper { 1.0 } else { -1.0 };
+            let farthest = positions.iter().map(|x| side * x[axis]).fold(f64::NEG_INFINITY, f64::max);
+            let is_on = |a: &usize| {
+                farthest - side * positions[*a][axis] < ON_EDGE * particles.spacing[*a]
+            };
+            let on: Vec<usize> = (0..positions.len()).filter(is_on).collect();
+            let feet = feet(particles, &on, axis)?;
+            let slots = on.iter().map(|&a| (a as u32, 0)).collect();
+            edges.push(Edge { axis, is_upper, is_held: [false; D], feet, slots });
+        }
+    }
+    hold(&mut edges, prescribed, particles)?;
+    let mut number = 0;
+    for slot in edges.iter_mut().flat_map(|edge| edge.slots.values_mut()) {
+        *slot = number;
+        number += 1;
+    }
+    Ok(edges)
+}
+
+/// The particle of an edge across `axis` in line with each particle.
+fn feet<const D: usize>(
+    particles: &Particles<D>,
+    on: &[usize],
+    axis: usize,
+) -> Result<Vec<u32>, ElastodynamicsError> {
+    let along = |a: usize| if D == 1 { 0.0 } else { particles.position[a][1 - axis] };
+    let mut sorted: Vec<(f64, usize)> = on.iter().map(|&a| (along(a), a)).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut feet = Vec::with_capacity(particles.len());
+    for a in 0..particles.len() {
+        let slack = ON_EDGE * particles.spacing[a];
+        let next = sorted.partition_point(|(place, _)| *place < along(a) - slack);
+        match sorted.get(next).filter(|(place, _)| (place - along(a)).abs() <= slack) {
+            Some((_, foot)) => feet.push(*foot as u32),
+            None => return Err(gap(particles, a).into()),
+        }
+    }
+    Ok(feet)
+}
+
+fn gap<const D: usize>(particles: &Particles<D>, a: usize) -> OperatorError {
+    let position = particles.position[a].iter().copied().collect();
+    OperatorError::Gap { id: particles.id[a], position }
+}
+
+/// Finds what is held. A component of a velocity that is prescribed on an edge is so between its
+/// corners, which belong to two edges.
+fn hold<const D: usize>(
+    edges: &mut [Edge<D>],
+    prescribed: &PrescribedComponents,
+    particles: &Particles<D>,
+) -> Result<(), ElastodynamicsError> {
+    let mut is_prescribed = vec![[false; D]; particles.len()];
+    prescribed.iter().for_each(|it| is_prescribed[it.particle][it.component] = true);
+    for number in 0..edges.len() {
+        let edge = &edges[number];
+        let is_corner = |a: &u32| {
+            edges.iter().any(|other| other.axis != edge.axis && other.slots.contains_key(a))
+        };
+        let between: Vec<u32> = edge.slots.keys().copied().filter(|a| !is_corner(a)).collect();
+        if between.is_empty() {
+            let corner = edge.slots.keys().next().map_or(0, |&a| a as usize);
+            return Err(gap(particles, corner).into());
+        }
+        let mut is_held = [false; D];
+        for (component, is_held) in is_held.iter_mut().enumerate() {
+            let held = between.iter().filter(|&&a| is_prescribed[a as usize][component]).count();
+            if held != 0 && held != between.len() {
+                let missing = between.iter().find(|&&a| !is_prescribed[a as usize][component]);
+                let a = missing.map_or(0, |&a| a as usize);
+                return Err(ElastodynamicsError::PartOfEdge {
+                    component,
+                    id: particles.id[a],
+                    position: particles.position[a].iter().copied().collect(),
+                });
+            }
+            *is_held = held > 0;
+        }
+        edges[number].is_held = is_held;
+    }
+    Ok(())
+}
+
+/// Matrices of displacements and of stresses of particles with their edges at `cover.particles`, whose
+/// own images are not used.
+pub(super) fn matrices<const D: usize>(
+    cover: &Cover<'_, D>,
+    edges: &[Edge<D>],
+) -> Result<[FoldedGradient<D>; 2], OperatorError> {
+    let reach = cover.radius.iter().copied().fold(0.0, f64::max);
+    let made = ghosts(cover.particles, edges, reach);
+    // On an even lattice the matrix of moments is a factor an axis, by which the plain sums miss the
+    // gradient of a linear field. In a row they are taken as they are, as the paper does.
+    let form = if D == 1 { GradientForm::Plain } else { GradientForm::Corrected };
+    let [of_displacement, of_stress] = made;
+    Ok([
+        FoldedGradient::continued(cover, form, &of_displacement)?,
+        FoldedGradient::continued(cover, form, &of_stress)?,
+    ])
+}
+
+impl<const D: usize> Edges<D> {
+    /// The edges with their loads, and the loads that act elsewhere.
+    pub fn new(
+        edges: Vec<Edge<D>>,
+        divergence: FoldedGradient<D>,
+        tractions: &[Traction<D>],
+        positions: &[Vector<D>],
+    ) -> Result<(Self, Vec<Loaded<D>>), ElastodynamicsError> {
+        let mut slots = Vec::new();
+        for edge in &edges {
+            for &particle in edge.slots.keys() {
+                let mut across = [None; D];
+                for other in edges.iter().filter(|other| other.axis != edge.axis) {
+                    if let Some(&slot) = other.slots.get(&particle) {
+                        across[other.axis] = Some(slot as usize);
+                    }
+                }
+                slots.push(Slot {
+                    particle: particle as usize,
+                    axis: edge.axis,
+                    is_held: edge.is_held,
+                    across,
+                    sought: [None; D],
+                    not_zero: Tensor::zeros(),
+                    normal: if edge.is_upper { 1.0 } else { -1.0 },
+                    loads: Vec::new(),
+                });
+            }
+        }
+        for number in 0..slots.len() {
+            let (sought, not_zero) = Slot::search(&slots, number);
+            (slots[number].sought, slots[number].not_zero) = (sought, not_zero);
+        }
+        let mut elsewhere = Vec::new();
+        for traction in tractions {
+            let is_whole =
+                |edge: &&Edge<D>| traction.particles.iter().all(|a| edge.slots.contains_key(a));
+            let whole = edges.iter().find(is_whole);
+            for load in traction.loaded(positions) {
+                let a = load.particle as u32;
+                let mut of = edges.iter().filter(|edge| edge.slots.contains_key(&a));
+                let own = whole.or_else(|| of.next().filter(|_| of.next().is_none()));
+                match own.and_then(|edge| edge.slots.get(&a)) {
+                    Some(&slot) => slots[slot as usize].loads.push(load),
+                    None if D == 1 => elsewhere.push(load),
+                    None => {
+                        return Err(ElastodynamicsError::NoEdge { name: traction.name.clone() });
+                    }
+                }
+            }
+        }
+        let none = vec![Vector::zeros(); slots.len()];
+        let (stress, known) = (none.clone(), none.clone());
+        Ok((Self { edges, slots, divergence, stress, known, found: none }, elsewhere))
+    }
+
+    /// What of `stress` edges say, in place: shear along edges that are held is zero, and the load is
+    /// all of the stress across.
+    pub fn overwrite(&self, stress: &mut [Tensor<D>], scale: impl Fn(usize) -> f64) {
+        for slot in &self.slots {
+            for i in (0..D).filter(|&i| slot.is_held[i]) {
+                (0..D).filter(|&t| t != slot.axis).for_each(|t| stress[slot.particle][(i, t)] = 0.0);
+            }
+        }
+        for (slot, load) in self.slots.iter().zip(&self.stress) {
+            for i in slot.loaded() {
+                stress[slot.particle][(i, slot.axis)] = load[i] * scale(slot.particle);
+            }
+        }
+    }
+
+    /// Forces in N of tensions in J, and of the stresses in Pa of loads: `V div P`.
+    pub fn forces(
+        &self,
+        tension: &[Tensor<D>],
+        load: &[Vector<D>],
+        volume: &[f64],
+        force: &mut [Vector<D>],
+    ) {
+        let count = volume.len();
+        let field = |b: usize| match b.checked_sub(count) {
+            None => tension[b] / volume[b],
+            Some(slot) => Tensor::from_fn(|i, _| load[slot][i]),
+        };
+        parallel::for_each_chunk(force, |first, force| {
+            for (offset, force) in force.iter_mut().enumerate() {
+                let a = first + offset;
+                *force = self.divergence.divergence_of(field, a) * volume[a];
+            }
+        });
+    }
+}
