@@ -76,9 +76,8 @@ impl<const D: usize> FoldedGradient<D> {
             .collect();
         let mut row: Vec<(u32, Tensor<D>)> = Vec::new();
         // The coefficients of component i stand in row i.
-        let signed = |sign: &[f64; D], gradient: &Vector<D>| {
-            Tensor::from_fn(|i, j| sign[i] * gradient[j])
-        };
+        let signed =
+            |sign: &[f64; D], gradient: &Vector<D>| Tensor::from_fn(|i, j| sign[i] * gradient[j]);
         for (a, stencil) in stencils.iter().enumerate() {
             row.clear();
             row.push((a as u32, signed(&[1.0; D], &stencil.diagonal)));

@@ -85,12 +85,18 @@ impl Sheet {
 
     fn held(&self, axis: usize, is_upper: bool, speed: f64) -> PrescribedVelocity {
         let particles = self.edge(axis, is_upper);
-        PrescribedVelocity { name: "held".into(), particles, component: axis, value: Arc::new(speed) }
+        PrescribedVelocity {
+            name: "held".into(),
+            particles,
+            component: axis,
+            value: Arc::new(speed),
+        }
     }
 
     /// The first Piola-Kirchhoff stress of principal stretches.
     fn stress(&self, stretches: [f64; 2]) -> Tensor<2> {
-        let law = Reduced::<2>::new((self.law)(self.constants()), StressState::PlaneStrain).unwrap();
+        let law =
+            Reduced::<2>::new((self.law)(self.constants()), StressState::PlaneStrain).unwrap();
         law.stress(&(Tensor::from_diagonal(&stretches.into()) - Tensor::identity()))
     }
 
@@ -176,12 +182,8 @@ fn modes_of_a_free_sheet_do_not_grow() {
 /// finite elements, within twice the second-order error of five particles across.
 #[test]
 fn a_free_bar_has_the_frequencies_of_finite_elements() {
-    let sheet = Sheet {
-        intervals: [30, 5],
-        ratio: 0.3,
-        law: HyperelasticLaw::linear_elastic,
-        cover: 2.5,
-    };
+    let sheet =
+        Sheet { intervals: [30, 5], ratio: 0.3, law: HyperelasticLaw::linear_elastic, cover: 2.5 };
     let made = sheet.input();
     let positions = made.particles.position.clone();
     let mut scheme = Elastodynamics::new(made).unwrap();
@@ -196,10 +198,14 @@ fn a_free_bar_has_the_frequencies_of_finite_elements() {
         [deflection, slope]
     };
     let shapes: [(f64, f64, Box<dyn Fn(&Vector<2>) -> [f64; 2]>); 2] = [
-        (0.029613, 0.02, Box::new(move |x| {
-            let [deflection, slope] = bending(x[0]);
-            [-(x[1] - 2.5) * slope, deflection]
-        })),
+        (
+            0.029613,
+            0.02,
+            Box::new(move |x| {
+                let [deflection, slope] = bending(x[0]);
+                [-(x[1] - 2.5) * slope, deflection]
+            }),
+        ),
         (0.094412, 0.01, Box::new(move |x| [(std::f64::consts::PI * x[0] / length).cos(), 0.0])),
     ];
     for (expected, tolerance, shape) in shapes {
@@ -212,7 +218,10 @@ fn a_free_bar_has_the_frequencies_of_finite_elements() {
             mode = shifted.solve(&mode).unwrap().normalize();
         }
         let frequency = (-mode.dot(&(&matrix * &mode))).sqrt();
-        println!("frequency {frequency:.6}, finite elements {expected}: {:+.4}", frequency / expected - 1.0);
+        println!(
+            "frequency {frequency:.6}, finite elements {expected}: {:+.4}",
+            frequency / expected - 1.0
+        );
         assert!((frequency / expected - 1.0).abs() < tolerance, "{frequency}, not {expected}");
     }
 }
@@ -224,7 +233,11 @@ fn energy(scheme: &dyn Scheme, state: &[f64]) -> f64 {
 }
 
 /// Steps at a share of the stable step until an end, with a look at each state.
-fn march(scheme: &mut Elastodynamics<2>, end: f64, mut show: impl FnMut(&dyn Scheme, f64, &[f64])) -> Vec<f64> {
+fn march(
+    scheme: &mut Elastodynamics<2>,
+    end: f64,
+    mut show: impl FnMut(&dyn Scheme, f64, &[f64]),
+) -> Vec<f64> {
     let mut integrator = IntegratorKind::KickDriftKick.build(0);
     let (mut state, mut limits, mut time) = (scheme.initial_state(), Vec::new(), 0.0);
     let mut new = state.clone();
@@ -305,7 +318,10 @@ fn a_sheet_with_free_sides_is_pulled_to_six_times_its_length() {
         scheme.sample(end, &state, "stress", &[middle], &mut stress);
         let across = sheet.across(6.0);
         let expected = sheet.stress([6.0, across])[(0, 0)];
-        println!("nu {ratio}: F {gradient:?}, F22 exact {across:.5}, P11 {} of {expected}", stress[0]);
+        println!(
+            "nu {ratio}: F {gradient:?}, F22 exact {across:.5}, P11 {} of {expected}",
+            stress[0]
+        );
         assert!((gradient[3] / across - 1.0).abs() < 0.005, "{gradient:?}, not {across}");
         assert!((stress[0] / expected - 1.0).abs() < 0.005, "{stress:?}, not {expected}");
     }

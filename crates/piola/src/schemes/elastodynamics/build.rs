@@ -189,8 +189,7 @@ impl<const D: usize> Elastodynamics<D> {
             Form::Strong => {
                 let known = edges::find(&particles, &group, &prescribed)?;
                 let [matrix, divergence] = edges::matrices(&cover, &known)?;
-                let (own, elsewhere) =
-                    Edges::new(known, divergence, &input.tractions, positions)?;
+                let (own, elsewhere) = Edges::new(known, divergence, &input.tractions, positions)?;
                 (loaded, found) = (elsewhere, Some(own));
                 (matrix, None)
             }

@@ -13,7 +13,7 @@ use crate::operators::{Cover, FoldedGradient, GradientForm, OperatorError};
 use crate::{Tensor, Vector, parallel};
 
 /// Particles nearer to an edge than this share of their spacing lie on it.
-const ON_EDGE: f64 = 1e-6;
+pub(super) const ON_EDGE: f64 = 1e-6;
 
 /// One straight edge, across an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,10 +95,10 @@ pub(super) fn find<const D: usize>(
     for axis in 0..D {
         for is_upper in [false, true] {
             let side = if is_upper { 1.0 } else { -1.0 };
-            let farthest = positions.iter().map(|x| side * x[axis]).fold(f64::NEG_INFINITY, f64::max);
-            let is_on = |a: &usize| {
-                farthest - side * positions[*a][axis] < ON_EDGE * particles.spacing[*a]
-            };
+            let farthest =
+                positions.iter().map(|x| side * x[axis]).fold(f64::NEG_INFINITY, f64::max);
+            let is_on =
+                |a: &usize| farthest - side * positions[*a][axis] < ON_EDGE * particles.spacing[*a];
             let on: Vec<usize> = (0..positions.len()).filter(is_on).collect();
             let feet = feet(particles, &on, axis)?;
             let slots = on.iter().map(|&a| (a as u32, 0)).collect();
@@ -106,11 +106,8 @@ pub(super) fn find<const D: usize>(
         }
     }
     hold(&mut edges, prescribed, particles)?;
-    let mut number = 0;
-    for slot in edges.iter_mut().flat_map(|edge| edge.slots.values_mut()) {
-        *slot = number;
-        number += 1;
-    }
+    let slots = edges.iter_mut().flat_map(|edge| edge.slots.values_mut());
+    (0u32..).zip(slots).for_each(|(number, slot)| *slot = number);
     Ok(edges)
 }
 
@@ -257,7 +254,9 @@ impl<const D: usize> Edges<D> {
     pub fn overwrite(&self, stress: &mut [Tensor<D>], scale: impl Fn(usize) -> f64) {
         for slot in &self.slots {
             for i in (0..D).filter(|&i| slot.is_held[i]) {
-                (0..D).filter(|&t| t != slot.axis).for_each(|t| stress[slot.particle][(i, t)] = 0.0);
+                (0..D)
+                    .filter(|&t| t != slot.axis)
+                    .for_each(|t| stress[slot.particle][(i, t)] = 0.0);
             }
         }
         for (slot, load) in self.slots.iter().zip(&self.stress) {

@@ -92,7 +92,9 @@ impl<const D: usize> Elastodynamics<D> {
         self.tension = tension;
         let mut force = std::mem::take(&mut self.force);
         match &self.edges {
-            Some(edges) => edges.forces(&self.tension, &edges.stress, &self.particles.volume, &mut force),
+            Some(edges) => {
+                edges.forces(&self.tension, &edges.stress, &self.particles.volume, &mut force)
+            }
             None => self.matrix.forces(&self.tension, &mut force),
         }
         if let Some(hourglass) = &self.hourglass {
@@ -166,11 +168,7 @@ impl<const D: usize> Elastodynamics<D> {
 
     /// The powers of boundaries through ghosts at the evaluated state: `speed` are velocities, or what
     /// stands for them, with the rates of the data that go with them.
-    pub(super) fn ghost_powers(
-        &self,
-        speed: &[Vector<D>],
-        rates: &PlaneData<D>,
-    ) -> GhostPowers {
+    pub(super) fn ghost_powers(&self, speed: &[Vector<D>], rates: &PlaneData<D>) -> GhostPowers {
         let Some(edges) = &self.edges else {
             let hourglass = self.hourglass.as_ref().map_or(0.0, |hourglass| {
                 let data = self.plane_data(&self.displacement);

@@ -1,12 +1,9 @@
 //! Ghosts beyond the edges of the strong form, as particles and data of the edges.
 
-use super::edges::Edge;
+use super::edges::{Edge, ON_EDGE};
 use crate::geometry::Particles;
 use crate::operators::Ghost;
 use crate::{Tensor, Vector};
-
-/// Particles nearer to an edge than this share of their spacing are their own images there.
-const ON_EDGE: f64 = 1e-6;
 
 /// A particle reflected across some edges.
 struct Reflected<const D: usize> {
@@ -130,12 +127,10 @@ fn reflected<const D: usize>(
 
     // Across the edge stresses are even where it is held and odd about the load elsewhere; along it the
     // other way round.
-    let parity =
-        Tensor::<D>::from_fn(|i, j| if is_held[i] == (j == axis) { 1.0 } else { -1.0 });
+    let parity = Tensor::<D>::from_fn(|i, j| if is_held[i] == (j == axis) { 1.0 } else { -1.0 });
     made.stress_data.iter_mut().for_each(|(_, share)| share.component_mul_assign(&parity));
-    let load = Tensor::from_fn(|i, j| {
-        if !is_held[i] && j == axis { 2.0 * at.sign[i] } else { 0.0 }
-    });
+    let load =
+        Tensor::from_fn(|i, j| if !is_held[i] && j == axis { 2.0 * at.sign[i] } else { 0.0 });
     made.stress_data.push((slot, load));
     made.stress_sign.component_mul_assign(&parity);
     made
