@@ -2,17 +2,17 @@
 //!
 //! Paper: CTVF. Pairs are named as there: `r_ab = r_a - r_b`, `u_ab = u_a - u_b`.
 
-use crate::Scalar;
+use crate::Number;
 
 /// Pressure in Pa of the isothermal law `K (rho / rho0 - 1)`, `K = rho0 c^2`, CTVF (8), theory (25).
 #[inline]
-pub fn pressure<T: Scalar>(density: T, reference_density: f64, wave_speed: f64) -> T {
+pub fn pressure<T: Number>(density: T, reference_density: f64, wave_speed: f64) -> T {
     (density - reference_density) * (wave_speed * wave_speed)
 }
 
 /// Density in kg/m^3 at which the law of [`pressure`] gives a pressure in Pa.
 #[inline]
-pub fn density<T: Scalar>(pressure: T, reference_density: f64, wave_speed: f64) -> T {
+pub fn density<T: Number>(pressure: T, reference_density: f64, wave_speed: f64) -> T {
     pressure / (wave_speed * wave_speed) + reference_density
 }
 
@@ -30,7 +30,7 @@ pub fn softening(smoothing_length: f64) -> f64 {
 
 /// `1 / ((rho_a + rho_b) (r_ab^2 + 0.01 h^2))`, which the exchanges below share.
 #[inline]
-pub fn exchange_scale<T: Scalar>(densities: T, square: T, softening: f64) -> T {
+pub fn exchange_scale<T: Number>(densities: T, square: T, softening: f64) -> T {
     ((square + softening) * densities).recip()
 }
 
@@ -38,7 +38,7 @@ pub fn exchange_scale<T: Scalar>(densities: T, square: T, softening: f64) -> T {
 /// CTVF (26), (27), theory (23). Times `m_b` and the difference of a field between a and b it is the rate at
 /// a of `nu lap`. Negative: what is larger at a than around it falls.
 #[inline]
-pub fn diffusion<T: Scalar>(diffusivity: f64, square: T, slope: T, scale: T) -> T {
+pub fn diffusion<T: Number>(diffusivity: f64, square: T, slope: T, scale: T) -> T {
     square * slope * scale * (4.0 * diffusivity)
 }
 
@@ -47,14 +47,14 @@ pub fn diffusion<T: Scalar>(diffusivity: f64, square: T, slope: T, scale: T) -> 
 ///
 /// It adds to the pressure: `- sum_b m_b Pi_ab grad W_ab`.
 #[inline]
-pub fn artificial_viscosity<T: Scalar>(strength: f64, approach: T, scale: T) -> T {
+pub fn artificial_viscosity<T: Number>(strength: f64, approach: T, scale: T) -> T {
     // Pi = -alpha h c phi / mean density, phi = approach / (r^2 + 0.01 h^2).
-    if approach.re() < 0.0 { approach * scale * (-2.0 * strength) } else { T::zero() }
+    T::select(approach.below(0.0), approach * scale * (-2.0 * strength), T::zero())
 }
 
 /// The factor `1 + R (W_ab / W(dx))^4` of CTVF (35), `ratio = W_ab / W(dx)`, with R = 0.2.
 #[inline]
-pub fn repulsion<T: Scalar>(ratio: T) -> T {
+pub fn repulsion<T: Number>(ratio: T) -> T {
     let square = ratio * ratio;
     square * square * 0.2 + 1.0
 }

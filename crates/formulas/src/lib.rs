@@ -1,17 +1,19 @@
 //! Formulas of smoothed particle hydrodynamics: kernels, materials, small tensors.
 //!
 //! Everything here is a pure function of numbers, generic over the number type
-//! ([`Scalar`]), so that dual numbers give exact derivatives through the same body.
+//! ([`Number`]), so that dual numbers give exact derivatives through the same body, and numbers that
+//! record what is done to them its text for other machines.
 //! There are no loops over particles, no threads and no files in this crate.
 
 pub mod fluid;
+mod frame;
 pub mod hyperelastic;
 pub mod hypoelastic;
 pub mod kernels;
+mod number;
 mod power;
 pub mod riemann;
-mod scalar;
 pub mod tensor;
 pub mod volumetric;
 
-pub use scalar::Scalar;
+pub use number::{Number, Scalar};

@@ -1,11 +1,11 @@
 //! Integer powers by repeated squaring.
 
-use crate::Scalar;
+use crate::Number;
 
 /// `base^exponent`, the same to the bit on every machine and free of loops where the exponent is
 /// a constant; `powi` promises neither.
 #[inline]
-pub(crate) fn integer_power<T: Scalar>(base: T, exponent: u32) -> T {
+pub(crate) fn integer_power<T: Number>(base: T, exponent: u32) -> T {
     let mut remaining = exponent;
     let mut square = base;
     let mut product = T::one();

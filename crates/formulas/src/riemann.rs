@@ -9,7 +9,7 @@ use std::ops::Mul;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::Scalar;
+use crate::Number;
 
 /// The interface between particles a and b.
 ///
@@ -28,7 +28,7 @@ pub struct Interface<T, const D: usize> {
     scale: T,
 }
 
-impl<T: Scalar, const D: usize> Interface<T, D> {
+impl<T: Number, const D: usize> Interface<T, D> {
     /// The interface of a pair with current separation `x_b - x_a` and reference separation
     /// `X_b - X_a`, both in m, and impedance `z = rho0 c` in kg/(m^2 s).
     #[inline]
@@ -76,7 +76,7 @@ impl<T: Scalar, const D: usize> Interface<T, D> {
 /// Reference speed of the shock for the dissipation, `c / sqrt(lambda_min)`, Upwind (3.57), from
 /// the smallest eigenvalue of the right Cauchy-Green tensor.
 #[inline]
-pub fn stretched_wave_speed<T: Scalar>(speed: f64, smallest_eigenvalue: T) -> T {
+pub fn stretched_wave_speed<T: Number>(speed: f64, smallest_eigenvalue: T) -> T {
     smallest_eigenvalue.sqrt().recip() * T::from(speed)
 }
 
@@ -85,12 +85,12 @@ pub fn stretched_wave_speed<T: Scalar>(speed: f64, smallest_eigenvalue: T) -> T 
 /// `sqrt(psi'' / rho0) J / sqrt(lambda_min)`: the wave along the direction that is compressed
 /// most, theory (16). Upwind (3.57) lacks the factor J. `acoustic` is `sqrt(psi''(J) / rho0)`.
 #[inline]
-pub fn referential_wave_speed<T: Scalar>(acoustic: T, determinant: T, smallest_eigenvalue: T) -> T {
+pub fn referential_wave_speed<T: Number>(acoustic: T, determinant: T, smallest_eigenvalue: T) -> T {
     acoustic * determinant / smallest_eigenvalue.sqrt()
 }
 
 #[inline]
-fn dot<T: Scalar + Mul<U, Output = T>, U: nalgebra::Scalar + Copy, const D: usize>(
+fn dot<T: Number + Mul<U, Output = T>, U: nalgebra::Scalar + Copy, const D: usize>(
     a: &SVector<T, D>,
     b: &SVector<U, D>,
 ) -> T {
@@ -103,7 +103,7 @@ fn dot<T: Scalar + Mul<U, Output = T>, U: nalgebra::Scalar + Copy, const D: usiz
 
 /// `H^T x`.
 #[inline]
-fn transposed_product<T: Scalar, const D: usize>(
+fn transposed_product<T: Number, const D: usize>(
     matrix: &SMatrix<T, D, D>,
     vector: &SVector<T, D>,
 ) -> SVector<T, D> {

@@ -4,7 +4,7 @@
 
 use nalgebra::SMatrix;
 
-use crate::Scalar;
+use crate::{Number, Scalar};
 
 /// Determinant of `a`.
 ///
@@ -13,7 +13,7 @@ use crate::Scalar;
 /// assert_eq!(piola_formulas::tensor::determinant(&Matrix2::new(2.0, 1.0, 4.0, 3.0)), 2.0);
 /// ```
 #[inline]
-pub fn determinant<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> T {
+pub fn determinant<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> T {
     const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
     match D {
         1 => a[(0, 0)],
@@ -31,7 +31,7 @@ pub fn determinant<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> T {
 /// It is a polynomial of the entries and so defined for singular matrices too. Of a deformation
 /// gradient it is `H` of Upwind (3.2), which maps reference to current areas.
 #[inline]
-pub fn cofactor<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
+pub fn cofactor<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
     const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
     SMatrix::from_fn(|i, j| match D {
         1 => T::one(),
@@ -67,7 +67,7 @@ fn inverse_of_scaled<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> Option<
 
 /// Right Cauchy-Green tensor `C = F^T F`, Upwind (3.55).
 #[inline]
-pub fn right_cauchy_green<T: Scalar, const D: usize>(
+pub fn right_cauchy_green<T: Number, const D: usize>(
     deformation_gradient: &SMatrix<T, D, D>,
 ) -> SMatrix<T, D, D> {
     deformation_gradient.tr_mul(deformation_gradient)
@@ -80,19 +80,19 @@ pub fn right_cauchy_green<T: Scalar, const D: usize>(
 /// Dual numbers carry the exact derivative of a simple eigenvalue; where eigenvalues coincide,
 /// and so have none, they carry the derivative of the mean of those that coincide.
 #[inline]
-pub fn smallest_eigenvalue<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> T {
+pub fn smallest_eigenvalue<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> T {
     extreme_eigenvalue(a, Extreme::Smallest)
 }
 
 /// Largest eigenvalue of the symmetric matrix `a`; the remarks on [`smallest_eigenvalue`] hold.
 #[inline]
-pub fn largest_eigenvalue<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> T {
+pub fn largest_eigenvalue<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> T {
     extreme_eigenvalue(a, Extreme::Largest)
 }
 
 /// Determinant of the 2 x 2 block of rows `i`, `k` and columns `j`, `l`.
 #[inline]
-fn minor<T: Scalar, const D: usize>(
+fn minor<T: Number, const D: usize>(
     a: &SMatrix<T, D, D>,
     i: usize,
     k: usize,
@@ -108,109 +108,121 @@ enum Extreme {
     Largest,
 }
 
-#[inline]
-fn extreme_eigenvalue<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
-    const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
-    match D {
-        1 => a[(0, 0)],
-        2 => extreme_in_2d(a, extreme),
-        _ => extreme_in_3d(a, extreme),
-    }
-}
-
-/// Squares in these bounds are the sum of squares that have not overflowed or lost digits.
-const SAFE_SQUARES: std::ops::RangeInclusive<f64> = 1e-240..=1e240;
-
-/// The eigenvalue of a matrix whose entries are too large or small to be squared, and `None` where
-/// they are not, or not finite. Scaling by a power of two is exact.
-#[cold]
-fn rescaled<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> Option<T> {
-    let two_to_700 = f64::from_bits((1023 + 700) << 52);
-    let mut largest = 0.0_f64;
-    for column in 0..D {
-        for row in 0..=column {
-            largest = largest.max(a[(row, column)].re().abs());
-        }
-    }
-    if largest > 1e120 && largest.is_finite() {
-        Some(extreme_eigenvalue(&a.map(|entry| entry / two_to_700), extreme) * two_to_700)
-    } else if largest < 1e-120 && largest > 0.0 {
-        Some(extreme_eigenvalue(&a.map(|entry| entry * two_to_700), extreme) / two_to_700)
-    } else {
-        None
-    }
-}
-
-/// Mean of the eigenvalues, less or plus half their difference.
-#[inline]
-fn extreme_in_2d<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
-    let mean = (a[(0, 0)] + a[(1, 1)]) * 0.5;
-    let half_difference = (a[(0, 0)] - a[(1, 1)]) * 0.5;
-    let radius_squared = half_difference * half_difference + a[(0, 1)] * a[(0, 1)];
-    if !SAFE_SQUARES.contains(&radius_squared.re()) {
-        if let Some(eigenvalue) = rescaled(a, extreme) {
-            return eigenvalue;
-        }
-        if radius_squared.re() == 0.0 {
-            return mean;
-        }
-    }
-    match extreme {
-        Extreme::Smallest => mean - radius_squared.sqrt(),
-        Extreme::Largest => mean + radius_squared.sqrt(),
-    }
-}
-
 /// Below this, the sine of three times the angle is rounding: two eigenvalues coincide.
 const COINCIDENT: f64 = 16.0 * f64::EPSILON;
 
-/// The trigonometric form: `mean + 2 p cos phi` is the largest eigenvalue and
-/// `mean - 2 p cos(pi/3 - phi)` the smallest, with `0 <= phi <= pi/3`.
-///
-/// With `B = (a - mean I) / p` scaled to `B : B = 6`, and `Q = B^2 - 2 I` its deviatoric square,
-/// `cos 3 phi = B : Q / 6` and `sin 3 phi = |Q - cos(3 phi) B| / sqrt 6`. Taking the angle from
-/// both keeps full accuracy where eigenvalues meet; the arc cosine alone loses half the digits.
 #[inline]
-fn extreme_in_3d<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
-    let mean = (a[(0, 0)] + a[(1, 1)] + a[(2, 2)]) * (1.0 / 3.0);
-    let deviator =
-        [a[(0, 0)] - mean, a[(1, 1)] - mean, a[(2, 2)] - mean, a[(1, 2)], a[(0, 2)], a[(0, 1)]];
-    let p_squared = contract(&deviator, &deviator) * (1.0 / 6.0);
-    if !SAFE_SQUARES.contains(&p_squared.re()) {
-        if let Some(eigenvalue) = rescaled(a, extreme) {
-            return eigenvalue;
-        }
-        if p_squared.re() == 0.0 {
-            return mean;
+fn extreme_eigenvalue<T: Number, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
+    const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
+    if D == 1 {
+        return a[(0, 0)];
+    }
+    let parts = Parts::of(a);
+    T::choose(parts.is_safe(), || parts.eigenvalue(extreme), || of_scaled(a, extreme))
+}
+
+/// The eigenvalue of a matrix whose deviator is too large or small to be squared, or zero. Scaling by
+/// a power of two is exact.
+#[cold]
+fn of_scaled<T: Number, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
+    let two_to_700 = f64::from_bits((1023 + 700) << 52);
+    let mut largest = T::zero();
+    for column in 0..D {
+        for row in 0..=column {
+            let size = a[(row, column)].abs();
+            largest = T::select(largest.less(size), size, largest);
         }
     }
-    let p = p_squared.sqrt();
-    let p_inverse = p.recip();
-    let b = deviator.map(|entry| entry * p_inverse);
-    let [xx, yy, zz, yz, xz, xy] = b;
-    let q = [
-        xx * xx + xy * xy + xz * xz - 2.0,
-        xy * xy + yy * yy + yz * yz - 2.0,
-        xz * xz + yz * yz + zz * zz - 2.0,
-        xy * xz + yy * yz + yz * zz,
-        xx * xz + xy * yz + xz * zz,
-        xx * xy + xy * yy + xz * yz,
-    ];
-    let cosine = contract(&b, &q) * (1.0 / 6.0);
-    let normal: [T; 6] = std::array::from_fn(|k| q[k] - cosine * b[k]);
-    let sine_squared = contract(&normal, &normal) * (1.0 / 6.0);
-    let sine =
-        if sine_squared.re() > COINCIDENT * COINCIDENT { sine_squared.sqrt() } else { T::zero() };
-    let phi = sine.atan2(cosine) * (1.0 / 3.0);
-    let cosine_of_extreme = match extreme {
-        Extreme::Smallest => -(-phi + std::f64::consts::FRAC_PI_3).cos(),
-        Extreme::Largest => phi.cos(),
+    let small = largest.below(1e-120) & largest.above(0.0);
+    let large = largest.above(1e120) & largest.at_most(T::from(f64::MAX));
+    let of = |small_factor: f64, large_factor: f64| {
+        let other = T::select(large, T::from(large_factor), T::one());
+        T::select(small, T::from(small_factor), other)
     };
-    mean + p * cosine_of_extreme * 2.0
+    let (to, back) = (of(two_to_700, 1.0 / two_to_700), of(1.0 / two_to_700, two_to_700));
+    let parts = Parts::of(&a.map(|entry| entry * to));
+    let coincide = parts.square.abs().at_most(T::zero());
+    T::choose(coincide, || parts.mean, || parts.eigenvalue(extreme)) * back
+}
+
+/// A symmetric matrix by its mean and its deviator.
+struct Parts<T, const D: usize> {
+    /// Mean of the eigenvalues.
+    mean: T,
+    /// (xx, yy, zz, yz, xz, xy) in 3D, (xx, xy) in 2D.
+    deviator: [T; 6],
+    /// The square of half the difference of eigenvalues in 2D, of p in 3D.
+    square: T,
+}
+
+impl<T: Number, const D: usize> Parts<T, D> {
+    #[inline]
+    fn of(a: &SMatrix<T, D, D>) -> Self {
+        let zero = T::zero();
+        if D == 2 {
+            let mean = (a[(0, 0)] + a[(1, 1)]) * 0.5;
+            let half_difference = (a[(0, 0)] - a[(1, 1)]) * 0.5;
+            let square = half_difference * half_difference + a[(0, 1)] * a[(0, 1)];
+            return Self { mean, deviator: [zero; 6], square };
+        }
+        let mean = (a[(0, 0)] + a[(1, 1)] + a[(2, 2)]) * (1.0 / 3.0);
+        let deviator =
+            [a[(0, 0)] - mean, a[(1, 1)] - mean, a[(2, 2)] - mean, a[(1, 2)], a[(0, 2)], a[(0, 1)]];
+        Self { mean, deviator, square: contract(&deviator, &deviator) * (1.0 / 6.0) }
+    }
+
+    /// Whether the square is the sum of squares that have not overflowed or lost digits.
+    #[inline]
+    fn is_safe(&self) -> T::Mask {
+        T::from(1e-240).at_most(self.square) & self.square.at_most(T::from(1e240))
+    }
+
+    /// The eigenvalue where the square is not zero.
+    #[inline]
+    fn eigenvalue(&self, extreme: Extreme) -> T {
+        match (D, extreme) {
+            (2, Extreme::Smallest) => self.mean - self.square.sqrt(),
+            (2, Extreme::Largest) => self.mean + self.square.sqrt(),
+            _ => self.by_angle(extreme),
+        }
+    }
+
+    /// The trigonometric form: `mean + 2 p cos phi` is the largest eigenvalue and
+    /// `mean - 2 p cos(pi/3 - phi)` the smallest, with `0 <= phi <= pi/3`.
+    ///
+    /// With `B = (a - mean I) / p` scaled to `B : B = 6`, and `Q = B^2 - 2 I` its deviatoric square,
+    /// `cos 3 phi = B : Q / 6` and `sin 3 phi = |Q - cos(3 phi) B| / sqrt 6`. Taking the angle from
+    /// both keeps full accuracy where eigenvalues meet; the arc cosine alone loses half the digits.
+    #[inline]
+    fn by_angle(&self, extreme: Extreme) -> T {
+        let p = self.square.sqrt();
+        let p_inverse = p.recip();
+        let b = self.deviator.map(|entry| entry * p_inverse);
+        let [xx, yy, zz, yz, xz, xy] = b;
+        let q = [
+            xx * xx + xy * xy + xz * xz - 2.0,
+            xy * xy + yy * yy + yz * yz - 2.0,
+            xz * xz + yz * yz + zz * zz - 2.0,
+            xy * xz + yy * yz + yz * zz,
+            xx * xz + xy * yz + xz * zz,
+            xx * xy + xy * yy + xz * yz,
+        ];
+        let cosine = contract(&b, &q) * (1.0 / 6.0);
+        let normal: [T; 6] = std::array::from_fn(|k| q[k] - cosine * b[k]);
+        let sine_squared = contract(&normal, &normal) * (1.0 / 6.0);
+        let distinct = sine_squared.above(COINCIDENT * COINCIDENT);
+        let sine = T::choose(distinct, || sine_squared.sqrt(), T::zero);
+        let phi = sine.atan2(cosine) * (1.0 / 3.0);
+        let cosine_of_extreme = match extreme {
+            Extreme::Smallest => -(-phi + std::f64::consts::FRAC_PI_3).cos(),
+            Extreme::Largest => phi.cos(),
+        };
+        self.mean + p * cosine_of_extreme * 2.0
+    }
 }
 
 /// Double contraction of symmetric tensors stored as (xx, yy, zz, yz, xz, xy).
 #[inline]
-fn contract<T: Scalar>(a: &[T; 6], b: &[T; 6]) -> T {
+fn contract<T: Number>(a: &[T; 6], b: &[T; 6]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]) * 2.0
 }

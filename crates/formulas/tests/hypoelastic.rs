@@ -37,7 +37,7 @@ fn simple_shear_oscillates_under_the_rate_of_jaumann() {
 
 #[test]
 fn the_rate_is_that_of_the_steps() {
-    let gradient = Matrix3::new(0.1, 0.7, -0.3, 0.2, -0.4, 0.5, 0.9, 0.6, 0.25);
+    let gradient = Matrix3::new(0.1_f64, 0.7, -0.3, 0.2, -0.4, 0.5, 0.9, 0.6, 0.25);
     let deviator = Matrix3::new(1.0, 0.4, 0.2, 0.4, -0.3, 0.6, 0.2, 0.6, -0.7);
     let rate = jaumann_rate(G, &deviator, &gradient);
     let step = 1e-6;
@@ -51,7 +51,7 @@ fn the_rate_is_that_of_the_steps() {
 
 #[test]
 fn the_rate_turns_with_the_observer() {
-    let gradient = Matrix3::new(0.1, 0.7, -0.3, 0.2, -0.4, 0.5, 0.9, 0.6, 0.25);
+    let gradient = Matrix3::new(0.1_f64, 0.7, -0.3, 0.2, -0.4, 0.5, 0.9, 0.6, 0.25);
     let deviator = Matrix3::new(1.0, 0.4, 0.2, 0.4, -0.3, 0.6, 0.2, 0.6, -0.7);
     let turn = *Rotation3::from_scaled_axis(Vector3::new(0.3, -1.1, 0.8)).matrix();
     // An observer who turns with the spin W sees L' = Q L Q^T + W.
@@ -66,7 +66,7 @@ fn the_rate_turns_with_the_observer() {
 #[test]
 fn a_stress_that_turns_keeps_its_invariants() {
     let spin = Vector3::new(5.0, 2.0, -9.0).cross_matrix();
-    let mut deviator = Matrix3::new(1.0, 0.4, 0.2, 0.4, -0.3, 0.6, 0.2, 0.6, -0.7);
+    let mut deviator = Matrix3::new(1.0_f64, 0.4, 0.2, 0.4, -0.3, 0.6, 0.2, 0.6, -0.7);
     let (before, determinant) = (von_mises(&deviator), deviator.determinant());
     for _ in 0..1000 {
         deviator = advance(G, &deviator, &spin, 0.01);

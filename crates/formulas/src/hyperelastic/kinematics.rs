@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::{Scalar, tensor};
+use crate::{Number, tensor};
 
 /// Measures of a deformation `F = I + A` that keep the digits of small strains.
 pub(super) struct Kinematics<T> {
@@ -17,7 +17,7 @@ pub(super) struct Kinematics<T> {
     pub log_volume: T,
 }
 
-impl<T: Scalar> Kinematics<T> {
+impl<T: Number> Kinematics<T> {
     #[inline]
     pub fn new(a: &Matrix3<T>) -> Self {
         let strain = (a + a.transpose() + a.tr_mul(a)).map(|entry| entry * 0.5);
@@ -52,17 +52,17 @@ impl<T: Scalar> Kinematics<T> {
 }
 
 #[inline]
-pub(super) fn trace<T: Scalar>(a: &Matrix3<T>) -> T {
+pub(super) fn trace<T: Number>(a: &Matrix3<T>) -> T {
     a[(0, 0)] + a[(1, 1)] + a[(2, 2)]
 }
 
 /// `a : a`.
 #[inline]
-pub(super) fn square<T: Scalar>(a: &Matrix3<T>) -> T {
+pub(super) fn square<T: Number>(a: &Matrix3<T>) -> T {
     a.iter().fold(T::zero(), |sum, &entry| sum + entry * entry)
 }
 
 #[inline]
-pub(super) fn scaled<T: Scalar>(a: &Matrix3<T>, factor: T) -> Matrix3<T> {
+pub(super) fn scaled<T: Number>(a: &Matrix3<T>, factor: T) -> Matrix3<T> {
     a.map(|entry| entry * factor)
 }

@@ -7,7 +7,7 @@ use super::{
     HyperelasticResponse, LameConstants, LinearElastic, MooneyRivlin, NeoHookean,
     NeoHookeanLogarithmic, Ogden, OgdenTerm, SaintVenantKirchhoff,
 };
-use crate::Scalar;
+use crate::Number;
 use crate::volumetric::MaterialError;
 
 /// An elastic solid by name.
@@ -136,7 +136,7 @@ impl HyperelasticLaw {
 
 impl HyperelasticResponse for HyperelasticLaw {
     #[inline]
-    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+    fn energy<T: Number>(&self, a: &Matrix3<T>) -> T {
         match self {
             Self::LinearElastic(law) => law.energy(a),
             Self::SaintVenantKirchhoff(law) => law.energy(a),
@@ -148,7 +148,7 @@ impl HyperelasticResponse for HyperelasticLaw {
     }
 
     #[inline]
-    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+    fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         match self {
             Self::LinearElastic(law) => law.stress(a),
             Self::SaintVenantKirchhoff(law) => law.stress(a),

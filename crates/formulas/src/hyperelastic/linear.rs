@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::kinematics::{Kinematics, scaled, square, trace};
 use super::{HyperelasticResponse, LameConstants};
-use crate::Scalar;
+use crate::Number;
 
 /// Hooke's law, `psi = lambda/2 (tr eps)^2 + mu eps : eps` with the small strain
 /// `eps = (F + F^T)/2 - I`: theory (37), Dual-support (44), Elastodynamics (3.54).
@@ -23,43 +23,43 @@ pub struct LinearElastic(pub LameConstants);
 pub struct SaintVenantKirchhoff(pub LameConstants);
 
 #[inline]
-fn quadratic<T: Scalar>(constants: &LameConstants, strain: &Matrix3<T>) -> T {
+fn quadratic<T: Number>(constants: &LameConstants, strain: &Matrix3<T>) -> T {
     let trace = trace(strain);
     trace * trace * (0.5 * constants.lambda) + square(strain) * constants.mu
 }
 
 /// `lambda (tr strain) I + 2 mu strain`.
 #[inline]
-fn derivative<T: Scalar>(constants: &LameConstants, strain: &Matrix3<T>) -> Matrix3<T> {
+fn derivative<T: Number>(constants: &LameConstants, strain: &Matrix3<T>) -> Matrix3<T> {
     let pressure = scaled(&Matrix3::identity(), trace(strain) * constants.lambda);
     pressure + strain.map(|entry| entry * (2.0 * constants.mu))
 }
 
 #[inline]
-fn small_strain<T: Scalar>(a: &Matrix3<T>) -> Matrix3<T> {
+fn small_strain<T: Number>(a: &Matrix3<T>) -> Matrix3<T> {
     (a + a.transpose()).map(|entry| entry * 0.5)
 }
 
 impl HyperelasticResponse for LinearElastic {
     #[inline]
-    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+    fn energy<T: Number>(&self, a: &Matrix3<T>) -> T {
         quadratic(&self.0, &small_strain(a))
     }
 
     #[inline]
-    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+    fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         derivative(&self.0, &small_strain(a))
     }
 }
 
 impl HyperelasticResponse for SaintVenantKirchhoff {
     #[inline]
-    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+    fn energy<T: Number>(&self, a: &Matrix3<T>) -> T {
         quadratic(&self.0, &Kinematics::new(a).strain)
     }
 
     #[inline]
-    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+    fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         let Kinematics { gradient, strain, .. } = Kinematics::new(a);
         gradient * derivative(&self.0, &strain)
     }

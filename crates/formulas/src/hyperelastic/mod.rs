@@ -31,7 +31,7 @@ pub use reduced::{Reduced, ReducedError, Tangent};
 
 use nalgebra::Matrix3;
 
-use crate::Scalar;
+use crate::Number;
 
 /// What an isotropic elastic solid answers to a displacement gradient `A = F - I`.
 ///
@@ -40,8 +40,8 @@ use crate::Scalar;
 /// by dual numbers; higher ones need not be.
 pub trait HyperelasticResponse {
     /// Strain energy `psi` per reference volume, J/m^3.
-    fn energy<T: Scalar>(&self, displacement_gradient: &Matrix3<T>) -> T;
+    fn energy<T: Number>(&self, displacement_gradient: &Matrix3<T>) -> T;
 
     /// First Piola-Kirchhoff stress `P = d psi/dF`, Pa: theory (36).
-    fn stress<T: Scalar>(&self, displacement_gradient: &Matrix3<T>) -> Matrix3<T>;
+    fn stress<T: Number>(&self, displacement_gradient: &Matrix3<T>) -> Matrix3<T>;
 }

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::HyperelasticResponse;
 use super::kinematics::{Kinematics, scaled, square, trace};
-use crate::{Scalar, tensor};
+use crate::{Number, tensor};
 
 /// `psi = c10 (J^(-2/3) I1 - 3) + c01 (J^(-4/3) I2 - 3) + kappa/2 (J - 1)^2` with the invariants
 /// of `C = F^T F`: theory (41).
@@ -22,7 +22,7 @@ pub struct MooneyRivlin {
 
 impl HyperelasticResponse for MooneyRivlin {
     #[inline]
-    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+    fn energy<T: Number>(&self, a: &Matrix3<T>) -> T {
         let kinematics = Kinematics::new(a);
         let (strain, volume) = (&kinematics.strain, kinematics.volume_strain);
         // I1 = 3 + 2 tr E and I2 = 3 + 4 tr E + 2 (tr E)^2 - 2 E : E, so that nothing of order
@@ -38,7 +38,7 @@ impl HyperelasticResponse for MooneyRivlin {
     }
 
     #[inline]
-    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+    fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         let kinematics = Kinematics::new(a);
         let gradient = &kinematics.gradient;
         let inverse = kinematics.inverse_transpose();

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::kinematics::{Kinematics, scaled, trace};
 use super::{HyperelasticResponse, LameConstants, MooneyRivlin};
-use crate::Scalar;
+use crate::Number;
 
 /// `psi = kappa/2 (J - 1)^2 + mu/2 (J^(-2/3) F : F - 3)`: theory (39), Dual-support (46) and (47).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,12 +20,12 @@ impl NeoHookean {
 
 impl HyperelasticResponse for NeoHookean {
     #[inline]
-    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+    fn energy<T: Number>(&self, a: &Matrix3<T>) -> T {
         self.as_mooney_rivlin().energy(a)
     }
 
     #[inline]
-    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+    fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         self.as_mooney_rivlin().stress(a)
     }
 }
@@ -40,7 +40,7 @@ pub struct NeoHookeanLogarithmic(pub LameConstants);
 
 impl HyperelasticResponse for NeoHookeanLogarithmic {
     #[inline]
-    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+    fn energy<T: Number>(&self, a: &Matrix3<T>) -> T {
         let LameConstants { lambda, mu } = self.0;
         let kinematics = Kinematics::new(a);
         let log = kinematics.log_volume;
@@ -49,7 +49,7 @@ impl HyperelasticResponse for NeoHookeanLogarithmic {
     }
 
     #[inline]
-    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+    fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         let LameConstants { lambda, mu } = self.0;
         let kinematics = Kinematics::new(a);
         let volume = kinematics.log_volume * lambda - mu;

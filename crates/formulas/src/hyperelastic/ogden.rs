@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::HyperelasticResponse;
 use super::kinematics::{Kinematics, scaled};
 use super::spectral::Spectral;
-use crate::{Scalar, tensor};
+use crate::{Number, tensor};
 
 /// One term of Ogden's law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl Ogden {
 }
 
 impl HyperelasticResponse for Ogden {
-    fn energy<T: Scalar>(&self, a: &Matrix3<T>) -> T {
+    fn energy<T: Number>(&self, a: &Matrix3<T>) -> T {
         let kinematics = Kinematics::new(a);
         let spectral = Spectral::new(&kinematics.strain);
         let volume = kinematics.volume_strain;
@@ -50,7 +50,7 @@ impl HyperelasticResponse for Ogden {
         energy
     }
 
-    fn stress<T: Scalar>(&self, a: &Matrix3<T>) -> Matrix3<T> {
+    fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         let kinematics = Kinematics::new(a);
         let spectral = Spectral::new(&kinematics.strain);
         let inverse = kinematics.inverse_transpose();

@@ -105,7 +105,7 @@ impl<const D: usize> Reduced<D> {
 
     /// The displacement gradient in all three dimensions.
     pub fn in_three<T: Scalar>(&self, resolved: &SMatrix<T, D, D>) -> Matrix3<T> {
-        let real = self.embedded(&resolved.map(|entry| entry.re()), 0.0);
+        let real = self.embedded(&resolved.map(T::re), 0.0);
         let embedded = self.embedded(resolved, T::zero());
         if !self.state.is_free_across() || D == 3 {
             return embedded;

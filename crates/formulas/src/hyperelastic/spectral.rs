@@ -1,8 +1,8 @@
 //! Powers of the right Cauchy-Green tensor that stay differentiable where stretches coincide.
 
-use nalgebra::{Matrix3, SymmetricEigen};
+use nalgebra::Matrix3;
 
-use crate::Scalar;
+use crate::Number;
 
 /// `C = I + 2 E` in the principal frame of its real part.
 ///
@@ -15,13 +15,9 @@ pub(super) struct Spectral<T> {
     excess: Matrix3<T>,
 }
 
-impl<T: Scalar> Spectral<T> {
+impl<T: Number> Spectral<T> {
     pub fn new(strain: &Matrix3<T>) -> Self {
-        let real = strain.map(|entry| entry.re());
-        // A strain that is not finite has no frame; any will carry the NaN on.
-        let rotation = SymmetricEigen::try_new(real, f64::EPSILON, 1000)
-            .map_or_else(Matrix3::identity, |eigen| eigen.eigenvectors)
-            .map(T::from);
+        let rotation = T::Real::principal_frame(&strain.map(T::re)).map(T::lift);
         let excess = rotation.tr_mul(&(strain * rotation)).map(|entry| entry * 2.0);
         Self { rotation, excess }
     }
@@ -36,8 +32,8 @@ impl<T: Scalar> Spectral<T> {
         let diagonal = |k: usize| (self.logarithm(k) * exponent).exp_m1();
         let mut sum = diagonal(0) + diagonal(1) + diagonal(2);
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            let slope = exponent * self.divided_difference(i, j, exponent - 1.0);
-            sum += self.excess[(i, j)] * self.excess[(i, j)] * slope;
+            let slope = self.divided_difference(i, j, exponent - 1.0) * exponent;
+            sum += self.excess[(i, j)] * self.excess[(i, j)] * T::lift(slope);
         }
         sum
     }
@@ -46,18 +42,20 @@ impl<T: Scalar> Spectral<T> {
     pub fn power(&self, exponent: f64) -> Matrix3<T> {
         let rotated = Matrix3::from_fn(|i, j| match i == j {
             true => (self.logarithm(i) * exponent).exp(),
-            false => self.excess[(i, j)] * self.divided_difference(i, j, exponent),
+            false => self.excess[(i, j)] * T::lift(self.divided_difference(i, j, exponent)),
         });
         self.rotation * rotated * self.rotation.transpose()
     }
 
     /// `(a^q - b^q)/(a - b)` of two eigenvalues, `q a^(q-1)` where they are equal.
-    fn divided_difference(&self, i: usize, j: usize, q: f64) -> f64 {
-        let (a, b) = (1.0 + self.excess[(i, i)].re(), 1.0 + self.excess[(j, j)].re());
-        let relative = (self.excess[(i, i)].re() - self.excess[(j, j)].re()) / b;
-        if relative == 0.0 {
-            return q * a.powf(q - 1.0);
-        }
-        b.powf(q - 1.0) * (q * relative.ln_1p()).exp_m1() / relative
+    fn divided_difference(&self, i: usize, j: usize, q: f64) -> T::Real {
+        let (first, second) = (self.excess[(i, i)].re(), self.excess[(j, j)].re());
+        let (a, b) = (first + 1.0, second + 1.0);
+        let relative = (first - second) / b;
+        T::Real::choose(
+            relative.abs().at_most(T::Real::from(0.0)),
+            || a.powf(q - 1.0) * q,
+            || b.powf(q - 1.0) * (relative.ln_1p() * q).exp_m1() / relative,
+        )
     }
 }

@@ -1,6 +1,6 @@
 //! Equations of state of solids: the pressure as a function of density and energy.
 
-use crate::Scalar;
+use crate::Number;
 
 /// How the pressure of a solid follows its density.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ impl EquationOfState {
     /// Pressure in Pa at a density in kg/m^3 and a specific internal energy in J/kg, which only the
     /// law of Mie and Grueneisen looks at.
     #[inline]
-    pub fn pressure<T: Scalar>(&self, density: T, energy: T) -> T {
+    pub fn pressure<T: Number>(&self, density: T, energy: T) -> T {
         let square = self.wave_speed * self.wave_speed;
         let linear = (density - self.density) * square;
         match self.law {
@@ -54,27 +54,22 @@ impl EquationOfState {
             }
             PressureLaw::MieGrueneisen { slope, gruneisen } => {
                 let thermal = energy * (gruneisen * self.density);
-                match self.compression(density, slope) {
-                    None => linear + thermal,
-                    Some(eta) => {
-                        let rest = -eta * slope + 1.0;
-                        let hugoniot = eta * (self.density * square) / (rest * rest);
-                        hugoniot * (-eta * (0.5 * gruneisen) + 1.0) + thermal
-                    }
-                }
+                let eta = self.compression(density, slope);
+                let compressed = || {
+                    let rest = -eta * slope + 1.0;
+                    let hugoniot = eta * (self.density * square) / (rest * rest);
+                    hugoniot * (-eta * (0.5 * gruneisen) + 1.0) + thermal
+                };
+                T::choose(eta.at_most(T::zero()), || linear + thermal, compressed)
             }
         }
     }
 
-    /// `eta`, where a solid is compressed.
-    fn compression<T: Scalar>(&self, density: T, slope: f64) -> Option<T> {
+    /// `eta`, positive where a solid is compressed.
+    fn compression<T: Number>(&self, density: T, slope: f64) -> T {
         let eta = -(density.recip() * self.density) + 1.0;
         let most = if slope > 0.0 { MOST_COMPRESSION / slope } else { MOST_COMPRESSION };
-        match eta.re() {
-            eta if eta <= 0.0 => None,
-            large if large > most => Some(T::from(most)),
-            _ => Some(eta),
-        }
+        T::select(eta.above(most), T::from(most), eta)
     }
 
     /// Square of the bulk wave speed in m^2/s^2, `dp/drho` at constant entropy; not below a
@@ -90,8 +85,8 @@ impl EquationOfState {
                 let pressure = self.pressure(density, energy);
                 let thermal = gruneisen * self.density * pressure / (density * density);
                 let cold = match self.compression(density, slope) {
-                    None => at_rest,
-                    Some(eta) => {
+                    eta if eta <= 0.0 => at_rest,
+                    eta => {
                         let rest = 1.0 - slope * eta;
                         let hugoniot = self.density * at_rest * eta / (rest * rest);
                         let growth = self.density * at_rest * (1.0 + slope * eta) / rest.powi(3);

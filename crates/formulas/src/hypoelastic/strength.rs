@@ -1,5 +1,7 @@
 //! Yield and the return to the yield surface.
 
+use crate::Number;
+
 /// The flow stress of Johnson and Cook,
 /// `(A + B ep^n) (1 + C ln(ep' / ep0')) (1 - T*^m)`, `T* = (T - T_r) / (T_m - T_r)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +26,16 @@ pub struct JohnsonCook {
 
 impl JohnsonCook {
     /// Flow stress in Pa at a plastic strain, its rate in 1/s, and a temperature in K.
-    pub fn flow_stress(&self, plastic_strain: f64, rate: f64, temperature: f64) -> f64 {
-        let hardened = self.yield_stress + self.hardening * plastic_strain.powf(self.exponent);
-        let rate = 1.0 + self.rate_factor * (rate / self.reference_rate).max(1.0).ln();
+    pub fn flow_stress<T: Number>(&self, plastic_strain: T, rate: T, temperature: T) -> T {
+        let hardened = plastic_strain.powf(self.exponent) * self.hardening + self.yield_stress;
+        let ratio = rate / self.reference_rate;
+        let ratio = T::select(ratio.above(1.0), ratio, T::one());
+        let rate = ratio.ln() * self.rate_factor + 1.0;
         let span = self.melting_temperature - self.reference_temperature;
-        let heat = ((temperature - self.reference_temperature) / span).clamp(0.0, 1.0);
-        hardened * rate * (1.0 - heat.powf(self.softening))
+        let heat = (temperature - self.reference_temperature) / span;
+        let heat = T::select(heat.below(0.0), T::zero(), heat);
+        let heat = T::select(heat.above(1.0), T::one(), heat);
+        hardened * rate * (-heat.powf(self.softening) + 1.0)
     }
 }
 
@@ -51,13 +57,13 @@ pub enum Strength {
 
 /// What the return to the yield surface does to a trial stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Returned {
+pub struct Returned<T = f64> {
     /// Factor of the deviatoric stress, 1 where it was within.
-    pub scale: f64,
+    pub scale: T,
     /// Growth of the equivalent plastic strain.
-    pub increment: f64,
+    pub increment: T,
     /// Equivalent stress in Pa with which it grew.
-    pub stress: f64,
+    pub stress: T,
 }
 
 impl Strength {
@@ -65,64 +71,71 @@ impl Strength {
     /// `von_mises` in Pa to where `von_mises - 3 G increment` is the flow stress, at the plastic
     /// strain before, a temperature in K and a step in s. CTVF section 4.7 has it for H = 0 as the
     /// factor `Y / von_mises`; its `Y^2 / (3 J2)` is the square of that.
-    pub fn return_to_surface(
+    #[inline]
+    pub fn return_to_surface<T: Number>(
         &self,
-        von_mises: f64,
+        von_mises: T,
         shear_modulus: f64,
-        plastic_strain: f64,
-        temperature: f64,
-        step: f64,
-    ) -> Returned {
-        let within = Returned { scale: 1.0, increment: 0.0, stress: von_mises };
+        plastic_strain: T,
+        temperature: T,
+        step: T,
+    ) -> Returned<T> {
         let three_g = 3.0 * shear_modulus;
         let increment = match *self {
-            Self::Elastic => return within,
+            Self::Elastic => {
+                return Returned { scale: T::one(), increment: T::zero(), stress: von_mises };
+            }
             Self::Linear { yield_stress, hardening } => {
-                let excess = von_mises - yield_stress - hardening * plastic_strain;
+                let excess = von_mises - yield_stress - plastic_strain * hardening;
                 excess / (three_g + hardening)
             }
             Self::JohnsonCook(law) => {
-                let excess = |increment: f64| {
+                let excess = |increment: T| {
                     let strain = plastic_strain + increment;
                     let flow = law.flow_stress(strain, increment / step, temperature);
-                    von_mises - three_g * increment - flow
+                    von_mises - increment * three_g - flow
                 };
                 zero_of(excess, von_mises / three_g)
             }
         };
-        // A stress that is no number is none of ours to hide.
-        if increment <= 0.0 || increment.is_nan() || !(von_mises > 0.0) {
-            return within;
+        // False for what is no number: none of ours to hide.
+        let flows = increment.above(0.0) & von_mises.above(0.0);
+        let stress = T::select(flows, von_mises - increment * three_g, von_mises);
+        Returned {
+            scale: T::choose(flows, || stress / von_mises, T::one),
+            increment: T::select(flows, increment, T::zero()),
+            stress,
         }
-        let stress = von_mises - three_g * increment;
-        Returned { scale: stress / von_mises, increment, stress }
     }
 }
 
 /// The zero between 0 and `most` of a function that falls from a positive value to one that is not;
 /// 0 where it is not positive there. False position with Illinois' halving, which needs no slope: that
 /// of a power of the plastic strain is infinite at the start.
-fn zero_of(function: impl Fn(f64) -> f64, most: f64) -> f64 {
-    let (mut low, mut high) = ((0.0, function(0.0)), (most, function(most)));
-    if !(low.1 > 0.0) {
-        return 0.0;
-    }
-    let mut last_rose = None;
-    for _ in 0..200 {
-        if high.0 - low.0 <= 1e-14 * most || high.1 == 0.0 {
-            break;
-        }
-        let middle = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+#[inline(never)]
+fn zero_of<T: Number>(function: impl Fn(T) -> T, most: T) -> T {
+    let start = function(T::zero());
+    let positive = start.above(0.0);
+    // The two ends with their values, and whether the last of the points between had a positive value:
+    // 1 if so, -1 if not, 0 before the first.
+    let ends = [T::zero(), start, most, function(most), T::zero()];
+    let until = |[low, _, high, at_high, _]: &[T; 5]| {
+        let vanishes = at_high.at_most(T::zero()) & T::zero().at_most(*at_high);
+        !positive | (*high - *low).at_most(most * 1e-14) | vanishes
+    };
+    let [_, _, high, _, _] = T::repeat(200, ends, until, |[low, at_low, high, at_high, last]| {
+        let middle = (low * at_high - high * at_low) / (at_high - at_low);
         let value = function(middle);
-        let rises = value > 0.0;
+        let rises = value.above(0.0);
         // The end that stays a second time counts half.
-        let factor = if last_rose == Some(rises) { 0.5 } else { 1.0 };
-        if rises {
-            (low, high.1) = ((middle, value), high.1 * factor);
-        } else {
-            (high, low.1) = ((middle, value), low.1 * factor);
-        }
-        last_rose = Some(rises);
-    }
-    high.0
+        let again = |sign: f64, end: T| T::select((last * sign).above(0.0), end * 0.5, end);
+        [
+            T::select(rises, middle, low),
+            T::select(rises, value, again(-1.0, at_low)),
+            T::select(rises, high, middle),
+            T::select(rises, again(1.0, at_high), value),
+            T::select(rises, T::one(), -T::one()),
+        ]
+    });
+    T::select(positive, high, T::zero())
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::KernelShape;
-use crate::Scalar;
+use crate::Number;
 
 /// Gaussian `f = exp(-q^2)`, cut off at `q = 3`: Upwind (2.12), Elastodynamics (2.15).
 ///
@@ -34,21 +34,18 @@ impl KernelShape for Gaussian {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < Self::SUPPORT { (-q * q).exp() } else { T::zero() }
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
+        T::choose(q.below(Self::SUPPORT), || (-q * q).exp(), T::zero)
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T {
+    fn derivative_over_q<T: Number>(dimension: usize, q: T) -> T {
         Self::value(dimension, q) * -2.0
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(dimension: usize, q: T) -> T {
-        if q.re() < Self::SUPPORT {
-            Self::value(dimension, q) * (q * q * 4.0 - 2.0)
-        } else {
-            T::zero()
-        }
+    fn second_derivative<T: Number>(dimension: usize, q: T) -> T {
+        let inside = || Self::value(dimension, q) * (q * q * 4.0 - 2.0);
+        T::choose(q.below(Self::SUPPORT), inside, T::zero)
     }
 }

@@ -30,7 +30,7 @@ pub use scaled::ScaledKernel;
 pub use splines::{CubicSpline, QuinticSpline};
 pub use wendland::{WendlandC2, WendlandC4, WendlandC6};
 
-use crate::Scalar;
+use crate::Number;
 
 /// Below this `q` a particle counts as at the kernel's centre: `1 / q` must not overflow.
 const COINCIDENT: f64 = 1e-100;
@@ -53,20 +53,20 @@ pub trait KernelShape: Copy + Default + Send + Sync + 'static {
     fn normalisation(dimension: usize) -> f64;
 
     /// Shape `f(q)`.
-    fn value<T: Scalar>(dimension: usize, q: T) -> T;
+    fn value<T: Number>(dimension: usize, q: T) -> T;
 
     /// `f'(q) / q`, finite at `q = 0`.
     ///
     /// Where a kernel has a cusp and the limit is infinite it is zero at `q = 0`, so that the
     /// gradient of a particle's own kernel vanishes there by symmetry.
-    fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T;
+    fn derivative_over_q<T: Number>(dimension: usize, q: T) -> T;
 
     /// `f'(q)`; at the tip of a cusp the limit from above.
     #[inline]
-    fn derivative<T: Scalar>(dimension: usize, q: T) -> T {
+    fn derivative<T: Number>(dimension: usize, q: T) -> T {
         Self::derivative_over_q(dimension, q) * q
     }
 
     /// `f''(q)`; where it jumps, the limit from above.
-    fn second_derivative<T: Scalar>(dimension: usize, q: T) -> T;
+    fn second_derivative<T: Number>(dimension: usize, q: T) -> T;
 }

@@ -8,15 +8,15 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use super::KernelShape;
-use crate::{Scalar, power::integer_power};
+use crate::{Number, power::integer_power};
 
-/// `exp(-1 / u)` at `u = 1 - q^2`, and `u` itself; `None` at and beyond the support.
+/// A function of `exp(-1 / u)` and `u = 1 - q^2`, zero at and beyond the support.
 ///
 /// Inside the support `u` is at least one rounding, so that `1 / u` and its powers are finite.
 #[inline]
-fn bump<T: Scalar>(q: T) -> Option<(T, T)> {
+fn of_bump<T: Number>(q: T, function: impl FnOnce(T, T) -> T) -> T {
     let u = (-q + 1.0) * (q + 1.0);
-    (u.re() > 0.0).then(|| ((-u.recip()).exp(), u))
+    T::choose(u.above(0.0), || function((-u.recip()).exp(), u), T::zero)
 }
 
 /// Classical mollifier `f = exp(-1 / (1 - q^2))`, support `h`: Elastodynamics (2.17) corrected.
@@ -34,22 +34,22 @@ impl KernelShape for Mollifier {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        bump(q).map_or_else(T::zero, |(exponential, _)| exponential)
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
+        of_bump(q, |exponential, _| exponential)
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(_dimension: usize, q: T) -> T {
-        let Some((exponential, u)) = bump(q) else { return T::zero() };
-        exponential / (u * u) * -2.0
+    fn derivative_over_q<T: Number>(_dimension: usize, q: T) -> T {
+        of_bump(q, |exponential, u| exponential / (u * u) * -2.0)
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        let Some((exponential, u)) = bump(q) else { return T::zero() };
-        let inverse = u.recip();
-        let inner = q * q * inverse * (inverse - 2.0) * 4.0 - 2.0;
-        exponential * inverse * inverse * inner
+    fn second_derivative<T: Number>(_dimension: usize, q: T) -> T {
+        of_bump(q, |exponential, u| {
+            let inverse = u.recip();
+            let inner = q * q * inverse * (inverse - 2.0) * 4.0 - 2.0;
+            exponential * inverse * inverse * inner
+        })
     }
 }
 
@@ -69,22 +69,22 @@ impl KernelShape for ModifiedMollifier {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        bump(q).map_or_else(T::zero, |(exponential, u)| exponential * integer_power(u, 8))
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
+        of_bump(q, |exponential, u| exponential * integer_power(u, 8))
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(_dimension: usize, q: T) -> T {
-        let Some((exponential, u)) = bump(q) else { return T::zero() };
-        exponential * integer_power(u, 6) * (u * 8.0 + 1.0) * -2.0
+    fn derivative_over_q<T: Number>(_dimension: usize, q: T) -> T {
+        of_bump(q, |exponential, u| exponential * integer_power(u, 6) * (u * 8.0 + 1.0) * -2.0)
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        let Some((exponential, u)) = bump(q) else { return T::zero() };
-        let slope = u * u * (u * 8.0 + 1.0) * -2.0;
-        let curvature = q * q * (u * (u * 56.0 + 14.0) + 1.0) * 4.0;
-        exponential * integer_power(u, 4) * (slope + curvature)
+    fn second_derivative<T: Number>(_dimension: usize, q: T) -> T {
+        of_bump(q, |exponential, u| {
+            let slope = u * u * (u * 8.0 + 1.0) * -2.0;
+            let curvature = q * q * (u * (u * 56.0 + 14.0) + 1.0) * 4.0;
+            exponential * integer_power(u, 4) * (slope + curvature)
+        })
     }
 }
 

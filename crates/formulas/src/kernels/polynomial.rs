@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{COINCIDENT, KernelShape};
-use crate::Scalar;
+use crate::Number;
 
 /// Lucy's kernel `f = (1 + 3 q) (1 - q)^3`, support `h`: Elastodynamics (2.13).
 ///
@@ -26,21 +26,18 @@ impl KernelShape for Lucy {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        let Some(rest) = rest_to(Self::SUPPORT, q) else { return T::zero() };
-        (q * 3.0 + 1.0) * rest * rest * rest
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
+        of_rest(Self::SUPPORT, q, |rest| (q * 3.0 + 1.0) * rest * rest * rest)
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(_dimension: usize, q: T) -> T {
-        let Some(rest) = rest_to(Self::SUPPORT, q) else { return T::zero() };
-        rest * rest * -12.0
+    fn derivative_over_q<T: Number>(_dimension: usize, q: T) -> T {
+        of_rest(Self::SUPPORT, q, |rest| rest * rest * -12.0)
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        let Some(rest) = rest_to(Self::SUPPORT, q) else { return T::zero() };
-        rest * (q * 3.0 - 1.0) * 12.0
+    fn second_derivative<T: Number>(_dimension: usize, q: T) -> T {
+        of_rest(Self::SUPPORT, q, |rest| rest * (q * 3.0 - 1.0) * 12.0)
     }
 }
 
@@ -67,22 +64,22 @@ impl KernelShape for Linear {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        rest_to(Self::SUPPORT, q).map_or_else(T::zero, |rest| rest * 0.5)
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
+        of_rest(Self::SUPPORT, q, |rest| rest * 0.5)
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T {
+    fn derivative_over_q<T: Number>(dimension: usize, q: T) -> T {
         over_q(Self::derivative(dimension, q), q)
     }
 
     #[inline]
-    fn derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < Self::SUPPORT { T::from(-0.5) } else { T::zero() }
+    fn derivative<T: Number>(_dimension: usize, q: T) -> T {
+        T::select(q.below(Self::SUPPORT), T::from(-0.5), T::zero())
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(_dimension: usize, _q: T) -> T {
+    fn second_derivative<T: Number>(_dimension: usize, _q: T) -> T {
         T::zero()
     }
 }
@@ -110,34 +107,34 @@ impl KernelShape for Quadratic {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        rest_to(Self::SUPPORT, q).map_or_else(T::zero, |rest| rest * rest * (3.0 / 16.0))
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
+        of_rest(Self::SUPPORT, q, |rest| rest * rest * (3.0 / 16.0))
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T {
+    fn derivative_over_q<T: Number>(dimension: usize, q: T) -> T {
         over_q(Self::derivative(dimension, q), q)
     }
 
     #[inline]
-    fn derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        rest_to(Self::SUPPORT, q).map_or_else(T::zero, |rest| rest * (-3.0 / 8.0))
+    fn derivative<T: Number>(_dimension: usize, q: T) -> T {
+        of_rest(Self::SUPPORT, q, |rest| rest * (-3.0 / 8.0))
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < Self::SUPPORT { T::from(3.0 / 8.0) } else { T::zero() }
+    fn second_derivative<T: Number>(_dimension: usize, q: T) -> T {
+        T::select(q.below(Self::SUPPORT), T::from(3.0 / 8.0), T::zero())
     }
 }
 
-/// What remains from `q` to the support, or `None` at and beyond it.
+/// A function of what remains from `q` to the support, zero at and beyond it.
 #[inline]
-fn rest_to<T: Scalar>(support: f64, q: T) -> Option<T> {
-    (q.re() < support).then(|| -q + support)
+fn of_rest<T: Number>(support: f64, q: T, function: impl FnOnce(T) -> T) -> T {
+    T::select(q.below(support), function(-q + support), T::zero())
 }
 
 /// `derivative / q`, and zero at the tip of a cusp.
 #[inline]
-fn over_q<T: Scalar>(derivative: T, q: T) -> T {
-    if q.re() < COINCIDENT { T::zero() } else { derivative / q }
+fn over_q<T: Number>(derivative: T, q: T) -> T {
+    T::select(q.below(COINCIDENT), T::zero(), derivative / q)
 }

@@ -4,7 +4,7 @@ use super::{
     CubicSpline, Gaussian, KernelShape, Linear, Lucy, ModifiedMollifier, Mollifier, Quadratic,
     QuinticSpline, ScaledKernel, WendlandC2, WendlandC4, WendlandC6,
 };
-use crate::Scalar;
+use crate::Number;
 
 /// A computation that is generic over the kernel's shape, for [`Kernel::visit`].
 pub trait KernelVisitor {
@@ -91,26 +91,26 @@ impl Kernel {
     /// `W(r)` in m^-dimension, for a distance `r` and a smoothing length `h` in m.
     ///
     /// NaN for a dimension other than 1, 2 or 3, here and in the functions below.
-    pub fn value<T: Scalar>(self, dimension: usize, r: T, h: f64) -> T {
+    pub fn value<T: Number>(self, dimension: usize, r: T, h: f64) -> T {
         self.evaluate(dimension, Quantity::Value, r, h)
     }
 
     /// `W'(r) / r`, finite at `r = 0`; see [`KernelShape::derivative_over_q`].
-    pub fn derivative_over_r<T: Scalar>(self, dimension: usize, r: T, h: f64) -> T {
+    pub fn derivative_over_r<T: Number>(self, dimension: usize, r: T, h: f64) -> T {
         self.evaluate(dimension, Quantity::DerivativeOverR, r, h)
     }
 
     /// `W'(r)`; at the tip of a cusp the limit from above.
-    pub fn derivative<T: Scalar>(self, dimension: usize, r: T, h: f64) -> T {
+    pub fn derivative<T: Number>(self, dimension: usize, r: T, h: f64) -> T {
         self.evaluate(dimension, Quantity::Derivative, r, h)
     }
 
     /// `W''(r)`; where it jumps, the limit from above.
-    pub fn second_derivative<T: Scalar>(self, dimension: usize, r: T, h: f64) -> T {
+    pub fn second_derivative<T: Number>(self, dimension: usize, r: T, h: f64) -> T {
         self.evaluate(dimension, Quantity::SecondDerivative, r, h)
     }
 
-    fn evaluate<T: Scalar>(self, dimension: usize, quantity: Quantity, r: T, h: f64) -> T {
+    fn evaluate<T: Number>(self, dimension: usize, quantity: Quantity, r: T, h: f64) -> T {
         let evaluation = Evaluation { quantity, r, h };
         match dimension {
             1 => self.visit(InDimension::<T, 1>(evaluation)),
@@ -137,7 +137,7 @@ struct Evaluation<T> {
 
 struct InDimension<T, const D: usize>(Evaluation<T>);
 
-impl<T: Scalar, const D: usize> KernelVisitor for InDimension<T, D> {
+impl<T: Number, const D: usize> KernelVisitor for InDimension<T, D> {
     type Output = T;
 
     fn visit<K: KernelShape>(self, _shape: K) -> T {

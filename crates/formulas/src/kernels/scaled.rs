@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::KernelShape;
-use crate::{Scalar, power::integer_power};
+use crate::{Number, power::integer_power};
 
 /// Kernel `K` in `D` dimensions with a smoothing length, whose factors are computed once.
 ///
@@ -27,7 +27,7 @@ impl<K: KernelShape, const D: usize> ScaledKernel<K, D> {
 
     /// `W(r)`.
     #[inline]
-    pub fn value<T: Scalar>(&self, r: T) -> T {
+    pub fn value<T: Number>(&self, r: T) -> T {
         K::value(D, r * self.inverse_length) * self.value_factor
     }
 
@@ -35,21 +35,21 @@ impl<K: KernelShape, const D: usize> ScaledKernel<K, D> {
     ///
     /// Finite at `r = 0`; see [`KernelShape::derivative_over_q`].
     #[inline]
-    pub fn derivative_over_r<T: Scalar>(&self, r: T) -> T {
+    pub fn derivative_over_r<T: Number>(&self, r: T) -> T {
         let factor = self.value_factor * self.inverse_length * self.inverse_length;
         K::derivative_over_q(D, r * self.inverse_length) * factor
     }
 
     /// `W'(r)`.
     #[inline]
-    pub fn derivative<T: Scalar>(&self, r: T) -> T {
+    pub fn derivative<T: Number>(&self, r: T) -> T {
         let factor = self.value_factor * self.inverse_length;
         K::derivative(D, r * self.inverse_length) * factor
     }
 
     /// `W''(r)`.
     #[inline]
-    pub fn second_derivative<T: Scalar>(&self, r: T) -> T {
+    pub fn second_derivative<T: Number>(&self, r: T) -> T {
         let factor = self.value_factor * self.inverse_length * self.inverse_length;
         K::second_derivative(D, r * self.inverse_length) * factor
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::KernelShape;
-use crate::{Scalar, power::integer_power};
+use crate::{Number, power::integer_power};
 
 /// Cubic spline (Schoenberg's M4), support `2h`: Upwind (2.13), Elastodynamics (2.14).
 ///
@@ -27,39 +27,29 @@ impl KernelShape for CubicSpline {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < 1.0 {
-            q * q * (q * 0.5 - 1.0) + 2.0 / 3.0
-        } else if q.re() < 2.0 {
-            let rest = -q + 2.0;
-            rest * rest * rest * (1.0 / 6.0)
-        } else {
-            T::zero()
-        }
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
+        let rest = -q + 2.0;
+        let inner = q * q * (q * 0.5 - 1.0) + 2.0 / 3.0;
+        of_pieces(q, inner, rest * rest * rest * (1.0 / 6.0))
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < 1.0 {
-            q * 1.5 - 2.0
-        } else if q.re() < 2.0 {
-            let rest = -q + 2.0;
-            rest * rest * -0.5 / q
-        } else {
-            T::zero()
-        }
+    fn derivative_over_q<T: Number>(_dimension: usize, q: T) -> T {
+        let rest = -q + 2.0;
+        of_pieces(q, q * 1.5 - 2.0, rest * rest * -0.5 / q)
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
-        if q.re() < 1.0 {
-            q * 3.0 - 2.0
-        } else if q.re() < 2.0 {
-            -q + 2.0
-        } else {
-            T::zero()
-        }
+    fn second_derivative<T: Number>(_dimension: usize, q: T) -> T {
+        of_pieces(q, q * 3.0 - 2.0, -q + 2.0)
     }
+}
+
+/// The inner piece for `q < 1`, the outer one for `q < 2`. All are computed and one is chosen, here and
+/// below, so that loops over distances fill vector registers.
+#[inline]
+fn of_pieces<T: Number>(q: T, inner: T, outer: T) -> T {
+    T::select(q.below(1.0), inner, T::select(q.below(2.0), outer, T::zero()))
 }
 
 /// Quintic spline (Schoenberg's M6), support `3h`: CTVF, and Dual-support (19).
@@ -84,33 +74,32 @@ impl KernelShape for QuinticSpline {
     }
 
     #[inline]
-    fn value<T: Scalar>(_dimension: usize, q: T) -> T {
+    fn value<T: Number>(_dimension: usize, q: T) -> T {
         let square = q * q;
         let inner = square * (square * (-q + 3.0) * 10.0 - 60.0) + 66.0;
         let outer = outer_terms(q, 5);
-        if q.re() < 1.0 { inner } else { outer }
+        T::select(q.below(1.0), inner, outer)
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(_dimension: usize, q: T) -> T {
+    fn derivative_over_q<T: Number>(_dimension: usize, q: T) -> T {
         let inner = q * q * (q * -50.0 + 120.0) - 120.0;
         let outer = outer_terms(q, 4) * -5.0 / q;
-        if q.re() < 1.0 { inner } else { outer }
+        T::select(q.below(1.0), inner, outer)
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(_dimension: usize, q: T) -> T {
+    fn second_derivative<T: Number>(_dimension: usize, q: T) -> T {
         let inner = q * q * (q * -200.0 + 360.0) - 120.0;
         let outer = outer_terms(q, 3) * 20.0;
-        if q.re() < 1.0 { inner } else { outer }
+        T::select(q.below(1.0), inner, outer)
     }
 }
 
-/// `(3 - q)^n - 6 (2 - q)^n`, each term only where its base is positive. Both are computed and
-/// one is chosen, here and above, so that loops over distances fill vector registers.
+/// `(3 - q)^n - 6 (2 - q)^n`, each term only where its base is positive.
 #[inline]
-fn outer_terms<T: Scalar>(q: T, exponent: u32) -> T {
-    let positive = |base: T| if base.re() > 0.0 { base } else { T::zero() };
+fn outer_terms<T: Number>(q: T, exponent: u32) -> T {
+    let positive = |base: T| T::select(base.above(0.0), base, T::zero());
     let far = integer_power(positive(-q + 3.0), exponent);
     far - integer_power(positive(-q + 2.0), exponent) * 6.0
 }

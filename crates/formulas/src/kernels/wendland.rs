@@ -9,20 +9,20 @@
 use std::f64::consts::PI;
 
 use super::KernelShape;
-use crate::{Scalar, power::integer_power};
+use crate::{Number, power::integer_power};
 
 /// Support radius over smoothing length, for all three.
 const SUPPORT: f64 = 2.0;
 
 /// `(1 - s)^exponent` times the polynomial of these coefficients, lowest order first.
 #[inline]
-fn truncated<T: Scalar, const N: usize>(q: T, exponent: u32, coefficients: [f64; N]) -> T {
+fn truncated<T: Number, const N: usize>(q: T, exponent: u32, coefficients: [f64; N]) -> T {
     let s = q * (1.0 / SUPPORT);
     let polynomial =
         coefficients.iter().rev().fold(T::zero(), |sum, &coefficient| sum * s + coefficient);
     // A choice instead of an early return lets loops over distances fill vector registers.
     let inside = integer_power(-s + 1.0, exponent) * polynomial;
-    if q.re() < SUPPORT { inside } else { T::zero() }
+    T::select(q.below(SUPPORT), inside, T::zero())
 }
 
 /// Normalisation of a smoothing length from that of the support radius.
@@ -51,7 +51,7 @@ impl KernelShape for WendlandC2 {
     }
 
     #[inline]
-    fn value<T: Scalar>(dimension: usize, q: T) -> T {
+    fn value<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 3, [1.0, 3.0]),
             _ => truncated(q, 4, [1.0, 4.0]),
@@ -59,7 +59,7 @@ impl KernelShape for WendlandC2 {
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T {
+    fn derivative_over_q<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 2, [-3.0]),
             _ => truncated(q, 3, [-5.0]),
@@ -67,7 +67,7 @@ impl KernelShape for WendlandC2 {
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(dimension: usize, q: T) -> T {
+    fn second_derivative<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 1, [-3.0, 9.0]),
             _ => truncated(q, 2, [-5.0, 20.0]),
@@ -91,7 +91,7 @@ impl KernelShape for WendlandC4 {
     }
 
     #[inline]
-    fn value<T: Scalar>(dimension: usize, q: T) -> T {
+    fn value<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 5, [1.0, 5.0, 8.0]),
             _ => truncated(q, 6, [1.0, 6.0, 35.0 / 3.0]),
@@ -99,7 +99,7 @@ impl KernelShape for WendlandC4 {
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T {
+    fn derivative_over_q<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 4, [-3.5, -14.0]),
             _ => truncated(q, 5, [-14.0 / 3.0, -70.0 / 3.0]),
@@ -107,7 +107,7 @@ impl KernelShape for WendlandC4 {
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(dimension: usize, q: T) -> T {
+    fn second_derivative<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 3, [-3.5, -10.5, 84.0]),
             _ => truncated(q, 4, [-14.0 / 3.0, -56.0 / 3.0, 490.0 / 3.0]),
@@ -131,7 +131,7 @@ impl KernelShape for WendlandC6 {
     }
 
     #[inline]
-    fn value<T: Scalar>(dimension: usize, q: T) -> T {
+    fn value<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 7, [1.0, 7.0, 19.0, 21.0]),
             _ => truncated(q, 8, [1.0, 8.0, 25.0, 32.0]),
@@ -139,7 +139,7 @@ impl KernelShape for WendlandC6 {
     }
 
     #[inline]
-    fn derivative_over_q<T: Scalar>(dimension: usize, q: T) -> T {
+    fn derivative_over_q<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 6, [-4.5, -27.0, -52.5]),
             _ => truncated(q, 7, [-5.5, -38.5, -88.0]),
@@ -147,7 +147,7 @@ impl KernelShape for WendlandC6 {
     }
 
     #[inline]
-    fn second_derivative<T: Scalar>(dimension: usize, q: T) -> T {
+    fn second_derivative<T: Number>(dimension: usize, q: T) -> T {
         match dimension {
             1 => truncated(q, 5, [-4.5, -22.5, 58.5, 472.5]),
             _ => truncated(q, 6, [-5.5, -33.0, 82.5, 880.0]),

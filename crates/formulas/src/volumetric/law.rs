@@ -1,7 +1,7 @@
 //! The registry of volumetric materials.
 
 use super::{Prestressed, VolumetricResponse};
-use crate::{Scalar, power::integer_power};
+use crate::{Number, power::integer_power};
 
 /// A material whose energy depends on the volume ratio alone.
 ///
@@ -160,7 +160,7 @@ fn wave_modulus(wave_speed: f64, density: f64) -> Result<f64, MaterialError> {
 
 impl VolumetricResponse for VolumetricLaw {
     #[inline]
-    fn energy<T: Scalar>(&self, volume_ratio: T) -> T {
+    fn energy<T: Number>(&self, volume_ratio: T) -> T {
         let strain = volume_ratio - 1.0;
         match *self {
             Self::Linear { bulk_modulus } => strain * strain * (0.5 * bulk_modulus),
@@ -169,7 +169,7 @@ impl VolumetricResponse for VolumetricLaw {
     }
 
     #[inline]
-    fn pressure<T: Scalar>(&self, volume_ratio: T) -> T {
+    fn pressure<T: Number>(&self, volume_ratio: T) -> T {
         match *self {
             Self::Linear { bulk_modulus } => (volume_ratio - 1.0) * -bulk_modulus,
             Self::Gamma { bulk_modulus, gamma } => {
@@ -179,7 +179,7 @@ impl VolumetricResponse for VolumetricLaw {
     }
 
     #[inline]
-    fn tangent<T: Scalar>(&self, volume_ratio: T) -> T {
+    fn tangent<T: Number>(&self, volume_ratio: T) -> T {
         match *self {
             Self::Linear { bulk_modulus } => T::from(bulk_modulus),
             Self::Gamma { bulk_modulus, gamma } => {
@@ -204,8 +204,8 @@ impl VolumetricResponse for VolumetricLaw {
 ///
 /// The closed form subtracts numbers of order one, so that rounding would hide the energy of a
 /// small strain; there the binomial series takes over.
-fn gamma_energy<T: Scalar>(strain: T, gamma: f64) -> T {
-    if strain.re().abs() * (gamma + 1.0) < SERIES_BELOW {
+fn gamma_energy<T: Number>(strain: T, gamma: f64) -> T {
+    let series = || {
         let mut term = strain * strain * (0.5 * gamma);
         let mut sum = term;
         for order in 2..SERIES_ORDER {
@@ -213,15 +213,18 @@ fn gamma_energy<T: Scalar>(strain: T, gamma: f64) -> T {
             term = term * strain * (-(gamma + order - 1.0) / (order + 1.0));
             sum += term;
         }
-        return sum;
-    }
-    let logarithm = strain.ln_1p();
-    let exponent = 1.0 - gamma;
-    if exponent == 0.0 {
-        strain - logarithm
-    } else {
-        strain - (logarithm * exponent).exp_m1() * (1.0 / exponent)
-    }
+        sum
+    };
+    let closed = || {
+        let logarithm = strain.ln_1p();
+        let exponent = 1.0 - gamma;
+        if exponent == 0.0 {
+            strain - logarithm
+        } else {
+            strain - (logarithm * exponent).exp_m1() * (1.0 / exponent)
+        }
+    };
+    T::choose((strain.abs() * (gamma + 1.0)).below(SERIES_BELOW), series, closed)
 }
 
 /// Bound of `|J - 1| (gamma + 1)` for the series: each term is below a twentieth of the one before.
@@ -234,7 +237,7 @@ const SERIES_ORDER: u32 = 16;
 ///
 /// That is several times as fast as the general power, and the same on every machine.
 #[inline]
-fn power<T: Scalar>(base: T, exponent: f64) -> T {
+fn power<T: Number>(base: T, exponent: f64) -> T {
     if exponent.fract() == 0.0 && (0.0..=64.0).contains(&exponent) {
         integer_power(base, exponent as u32)
     } else {

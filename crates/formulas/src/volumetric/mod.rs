@@ -13,7 +13,7 @@ pub use law::{MaterialError, VolumetricLaw};
 pub use moduli::{StressState, bulk_modulus};
 pub use prestressed::Prestressed;
 
-use crate::Scalar;
+use crate::Number;
 
 /// What a material of volume answers to a volume ratio `J > 0`.
 ///
@@ -22,13 +22,13 @@ use crate::Scalar;
 /// infinite or NaN.
 pub trait VolumetricResponse {
     /// Energy `psi(J)` per reference volume, J/m^3.
-    fn energy<T: Scalar>(&self, volume_ratio: T) -> T;
+    fn energy<T: Number>(&self, volume_ratio: T) -> T;
 
     /// Pressure `p = -d psi/dJ`, Pa, positive in compression.
-    fn pressure<T: Scalar>(&self, volume_ratio: T) -> T;
+    fn pressure<T: Number>(&self, volume_ratio: T) -> T;
 
     /// Tangent `d2 psi/dJ2 = -dp/dJ`, Pa.
-    fn tangent<T: Scalar>(&self, volume_ratio: T) -> T;
+    fn tangent<T: Number>(&self, volume_ratio: T) -> T;
 
     /// The volume ratio at which the pressure is `pressure` (Pa), in closed form.
     ///
@@ -41,7 +41,7 @@ pub trait VolumetricResponse {
     ///
     /// At `J = 1` it is Upwind (3.54) for the linear law and (6.31) for the gamma law.
     #[inline]
-    fn wave_speed<T: Scalar>(&self, volume_ratio: T, density: f64) -> T {
+    fn wave_speed<T: Number>(&self, volume_ratio: T, density: f64) -> T {
         (self.tangent(volume_ratio) * (1.0 / density)).sqrt()
     }
 }

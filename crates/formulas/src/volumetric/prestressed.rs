@@ -1,7 +1,7 @@
 //! A material seen from a configuration that is already stressed.
 
 use super::{VolumetricLaw, VolumetricResponse};
-use crate::Scalar;
+use crate::Number;
 
 /// A law whose reference configuration has itself the volume ratio `J0` to the stress-free one.
 ///
@@ -27,17 +27,17 @@ impl Prestressed {
 
 impl VolumetricResponse for Prestressed {
     #[inline]
-    fn energy<T: Scalar>(&self, volume_ratio: T) -> T {
+    fn energy<T: Number>(&self, volume_ratio: T) -> T {
         self.law.energy(volume_ratio * self.reference_ratio) * (1.0 / self.reference_ratio)
     }
 
     #[inline]
-    fn pressure<T: Scalar>(&self, volume_ratio: T) -> T {
+    fn pressure<T: Number>(&self, volume_ratio: T) -> T {
         self.law.pressure(volume_ratio * self.reference_ratio)
     }
 
     #[inline]
-    fn tangent<T: Scalar>(&self, volume_ratio: T) -> T {
+    fn tangent<T: Number>(&self, volume_ratio: T) -> T {
         self.law.tangent(volume_ratio * self.reference_ratio) * self.reference_ratio
     }
 

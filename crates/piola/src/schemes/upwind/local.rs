@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::volumetric::VolumetricResponse;
-use piola_formulas::{Scalar, riemann, tensor};
+use piola_formulas::{Number, riemann, tensor};
 
 use super::{Row, Upwind, WaveSpeed};
 use crate::{Tensor, Vector, parallel};
@@ -28,7 +28,7 @@ pub(super) struct Side<T, const D: usize> {
     pub wave_speed: T,
 }
 
-impl<T: Scalar, const D: usize> Default for Side<T, D> {
+impl<T: Number, const D: usize> Default for Side<T, D> {
     fn default() -> Self {
         Self {
             position: SVector::zeros(),
@@ -90,7 +90,7 @@ impl<const D: usize> Upwind<D> {
 
     /// What particle a with these unknowns shows its neighbours.
     #[inline]
-    pub(super) fn side<T: Scalar>(&self, a: usize, unknowns: &Unknowns<T, D>) -> Side<T, D> {
+    pub(super) fn side<T: Number>(&self, a: usize, unknowns: &Unknowns<T, D>) -> Side<T, D> {
         let reference = &self.reference[a];
         let wave_speed = match self.settings.wave_speed {
             WaveSpeed::Constant => T::from(reference.wave_speed),

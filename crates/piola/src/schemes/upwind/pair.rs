@@ -1,7 +1,7 @@
 //! What a particle gets from one neighbour.
 
 use nalgebra::{SMatrix, SVector};
-use piola_formulas::Scalar;
+use piola_formulas::Number;
 use piola_formulas::riemann::Interface;
 
 use super::gather::Sums;
@@ -28,7 +28,7 @@ pub(super) struct Pair<'a, T, const D: usize> {
     pub slopes: [&'a Slope<T, D>; 2],
 }
 
-impl<T: Scalar, const D: usize> Pair<'_, T, D> {
+impl<T: Number, const D: usize> Pair<'_, T, D> {
     /// Adds the terms of b in the sums of a to those of one lane: the exchanges of theory (12) and
     /// (13) where dissipation of velocity or pressure is on, with reconstructed jumps if asked.
     ///
@@ -84,14 +84,14 @@ impl<T: Scalar, const D: usize> Pair<'_, T, D> {
     #[inline(always)]
     fn impedance(&self) -> T {
         let [mine, theirs] = [self.me.wave_speed, self.other.wave_speed];
-        let fastest = if mine.re() > theirs.re() { mine } else { theirs };
+        let fastest = T::select(theirs.less(mine), mine, theirs);
         fastest * (0.5 * (self.me.density + self.other.density))
     }
 }
 
 /// `matrix vector`.
 #[inline(always)]
-pub(super) fn applied<T: Scalar, const D: usize>(
+pub(super) fn applied<T: Number, const D: usize>(
     matrix: &SMatrix<T, D, D>,
     vector: &Vector<D>,
 ) -> SVector<T, D> {
@@ -106,7 +106,7 @@ pub(super) fn applied<T: Scalar, const D: usize>(
 
 /// `a . b`.
 #[inline(always)]
-fn along<T: Scalar, const D: usize>(a: &SVector<T, D>, b: &Vector<D>) -> T {
+fn along<T: Number, const D: usize>(a: &SVector<T, D>, b: &Vector<D>) -> T {
     let mut sum = a[0] * b[0];
     for i in 1..D {
         sum += a[i] * b[i];
