@@ -8,7 +8,7 @@ import numpy as np
 
 FOLDER = Path(__file__).parent
 # Sizes of the tetrahedra in m, and the formats.
-MESHES = [(0.845, "msh"), (0.5, "msh"), (0.313, "msh"), (0.1588, "vtu")]
+MESHES = [(0.845, "msh"), (0.5, "msh"), (0.285, "msh"), (0.143, "vtu")]
 
 
 def beam(size):

@@ -1,14 +1,15 @@
-"""Makes the mesh of this folder: python meshes.py (needs gmsh)."""
+"""Makes the meshes of this folder: python meshes.py (needs gmsh)."""
 
 from pathlib import Path
 
 import gmsh
 
 FOLDER = Path(__file__).parent
-SIZE = 0.05  # of the quadrilaterals, m
+# Sizes of the quadrilaterals in m.
+MESHES = {"plate": 0.05, "plate-fine": 0.04, "plate-medium": 0.045, "plate-rough": 0.06}
 
 
-def plate(size):
+def plate(name, size):
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.option.setNumber("General.NumThreads", 1)
@@ -26,8 +27,9 @@ def plate(size):
     gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 1)
     gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
     gmsh.model.mesh.generate(2)
-    gmsh.write(str(FOLDER / "plate.msh"))
+    gmsh.write(str(FOLDER / f"{name}.msh"))
     gmsh.finalize()
 
 
-plate(SIZE)
+for name, size in MESHES.items():
+    plate(name, size)

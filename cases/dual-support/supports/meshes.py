@@ -6,7 +6,7 @@ import meshio
 import numpy as np
 
 FOLDER = Path(__file__).parent
-LENGTHS, CELLS = (8.0, 3.0), (64, 24)
+LENGTHS, CELLS = (8.0, 3.0), (64, 25)
 
 nx, ny = CELLS
 x, y = np.linspace(0, LENGTHS[0], nx + 1), np.linspace(-1.5, 1.5, ny + 1)
@@ -17,10 +17,10 @@ quads = [
     for j in range(ny)
     for i in range(nx)
 ]
-# A quarter of its cell for each node, and the paper's spacing: four radii of the disc of this area.
+# A quarter of its cell for each node, and a spacing of 4.07 radii of the disc of this area.
 volume = np.zeros(len(points))
 np.add.at(volume, np.array(quads).ravel(), LENGTHS[0] * LENGTHS[1] / nx / ny / 4)
-spacing = 4 * np.sqrt(volume / np.pi)
+spacing = 4.07 * np.sqrt(volume / np.pi)
 mesh = meshio.Mesh(
     points,
     [("quad", np.array(quads, dtype=np.int32))],
