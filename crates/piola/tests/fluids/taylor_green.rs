@@ -71,7 +71,7 @@ fn errors(scheme: &mut dyn Scheme, state: &[f64], reynolds: f64, t: f64) -> [f64
 
 #[test]
 fn corrections_keep_the_error_of_the_speed_small() {
-    // After 0.2 s with 25 particles a side: below 2 %, and well below that of the baseline with
+    // After 0.2 s with 25 particles a side: below 3 %, and less than half of that of the baseline with
     // uhat in the divergence.
     let error = |corrections| {
         let settings = Settings { corrections, ..SETTINGS };
