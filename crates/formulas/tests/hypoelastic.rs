@@ -153,7 +153,7 @@ const LAWS: [PressureLaw; 3] = [
 ];
 
 fn state(law: PressureLaw) -> EquationOfState {
-    EquationOfState { density: 2785.0, wave_speed: 5328.0, law }
+    EquationOfState { density: 2785.0, wave_speed: 5328.0, law, spall_strength: f64::INFINITY }
 }
 
 #[test]
@@ -203,6 +203,37 @@ fn the_energy_of_compression_is_the_work_of_the_pressure() {
             assert!((slope / expected - 1.0).abs() < 1e-6, "{law:?}: {slope} {expected}");
         }
         assert_eq!(state.compression_energy(2785.0, 0.0), 0.0);
+    }
+}
+
+/// What is torn bears its spall strength, its energy is the work of that, and both go back the same way.
+#[test]
+fn a_solid_tears_at_its_spall_strength() {
+    let strength = 1.2e9;
+    for law in LAWS {
+        let whole = state(law);
+        let torn = EquationOfState { spall_strength: strength, ..whole };
+        let pressures: [(f64, f64); 4] = [1.05, 0.999, 0.9, 0.5].map(|ratio| {
+            let density = 2785.0 * ratio;
+            (whole.pressure(density, 0.0), torn.pressure(density, 0.0))
+        });
+        for (whole, torn) in pressures {
+            assert_eq!(torn, whole.max(-strength), "{law:?}");
+        }
+        assert_eq!(pressures[3].1, -strength);
+        let opening: Dual64 = torn.pressure(Dual64::new(1500.0, 1.0), Dual64::from_re(0.0));
+        assert_eq!(opening.eps, 0.0);
+        let speeds = [whole, torn].map(|state| state.wave_speed_squared(1500.0, 0.0));
+        assert_eq!(speeds[0], speeds[1]);
+    }
+    for law in &LAWS[..2] {
+        let torn = EquationOfState { spall_strength: strength, ..state(*law) };
+        for density in [2770.0, 2600.0, 1400.0] {
+            let energy = |density: f64| torn.compression_energy(density, 0.0);
+            let slope = (energy(density + 0.1) - energy(density - 0.1)) / 0.2;
+            let expected = torn.pressure(density, 0.0) / (density * density);
+            assert!((slope / expected - 1.0).abs() < 1e-5, "{law:?} at {density}");
+        }
     }
 }
 

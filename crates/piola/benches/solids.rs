@@ -64,6 +64,7 @@ fn block<const D: usize>(
             density: DENSITY,
             wave_speed: WAVE_SPEED,
             law: PressureLaw::Linear,
+            spall_strength: f64::INFINITY,
         },
         shear_modulus: 0.2 * DENSITY * WAVE_SPEED * WAVE_SPEED,
         strength: match setting.yield_stress {

@@ -33,6 +33,8 @@ pub struct EquationOfState {
     pub wave_speed: f64,
     /// The law.
     pub law: PressureLaw,
+    /// Tension in Pa that the solid bears at most, infinite if it never tears, theory (71).
+    pub spall_strength: f64,
 }
 
 /// Share of the largest compression `eta = 1 / S` that a shock can reach, beyond which the law of
@@ -41,9 +43,20 @@ const MOST_COMPRESSION: f64 = 0.95;
 
 impl EquationOfState {
     /// Pressure in Pa at a density in kg/m^3 and a specific internal energy in J/kg, which only the
-    /// law of Mie and Grueneisen looks at.
+    /// law of Mie and Grueneisen looks at: that of the law, and not below `-spall_strength`. What
+    /// is torn opens at that tension, and bears pressure again only at the density at which it tore.
     #[inline]
     pub fn pressure<T: Number>(&self, density: T, energy: T) -> T {
+        let pressure = self.pressure_of_law(density, energy);
+        if self.spall_strength == f64::INFINITY {
+            return pressure;
+        }
+        let least = T::from(-self.spall_strength);
+        T::select(pressure.at_most(least), least, pressure)
+    }
+
+    #[inline]
+    fn pressure_of_law<T: Number>(&self, density: T, energy: T) -> T {
         let square = self.wave_speed * self.wave_speed;
         let linear = (density - self.density) * square;
         match self.law {
@@ -72,8 +85,8 @@ impl EquationOfState {
         T::select(eta.above(most), T::from(most), eta)
     }
 
-    /// Square of the bulk wave speed in m^2/s^2, `dp/drho` at constant entropy; not below a
-    /// hundredth of that at rest.
+    /// Square of the bulk wave speed in m^2/s^2, `dp/drho` of the law at constant entropy, torn or
+    /// not; not below a hundredth of that at rest.
     pub fn wave_speed_squared(&self, density: f64, energy: f64) -> f64 {
         let at_rest = self.wave_speed * self.wave_speed;
         let square = match self.law {
@@ -82,7 +95,7 @@ impl EquationOfState {
                 at_rest * (density / self.density).powf(exponent - 1.0)
             }
             PressureLaw::MieGrueneisen { slope, gruneisen } => {
-                let pressure = self.pressure(density, energy);
+                let pressure = self.pressure_of_law(density, energy);
                 let thermal = gruneisen * self.density * pressure / (density * density);
                 let cold = match self.compression(density, slope) {
                     eta if eta <= 0.0 => at_rest,
@@ -104,6 +117,17 @@ impl EquationOfState {
     /// Specific energy of compression in J/kg: the integral of `p / rho^2 d rho`; with the law of
     /// Mie and Grueneisen the internal energy itself.
     pub fn compression_energy(&self, density: f64, energy: f64) -> f64 {
+        match self.spall_density() {
+            // At the constant tension at which the solid opens.
+            Some(spall) if density < spall => {
+                self.energy_of_law(spall, energy)
+                    + self.spall_strength * (density.recip() - spall.recip())
+            }
+            _ => self.energy_of_law(density, energy),
+        }
+    }
+
+    fn energy_of_law(&self, density: f64, energy: f64) -> f64 {
         let square = self.wave_speed * self.wave_speed;
         let ratio = density / self.density;
         match self.law {
@@ -115,6 +139,20 @@ impl EquationOfState {
             }
             PressureLaw::MieGrueneisen { .. } => energy,
         }
+    }
+
+    /// Density in kg/m^3 at which the solid tears, where that depends on nothing else and there is
+    /// one above 0.
+    fn spall_density(&self) -> Option<f64> {
+        let strength = self.spall_strength / (self.density * self.wave_speed * self.wave_speed);
+        let ratio = match self.law {
+            PressureLaw::Linear => 1.0 - strength,
+            PressureLaw::Tait { exponent } => {
+                (1.0 - exponent * strength).max(0.0).powf(exponent.recip())
+            }
+            PressureLaw::MieGrueneisen { .. } => 0.0,
+        };
+        (ratio > 0.0).then_some(self.density * ratio)
     }
 
     /// Whether the pressure depends on the internal energy.

@@ -133,7 +133,12 @@ fn a_particle_off_its_place_is_pushed_back_under_any_pressure() {
 }
 
 fn solid(density: f64, wave_speed: f64) -> Solid {
-    let state = EquationOfState { density, wave_speed, law: PressureLaw::Linear };
+    let state = EquationOfState {
+        density,
+        wave_speed,
+        law: PressureLaw::Linear,
+        spall_strength: f64::INFINITY,
+    };
     Solid { state, shear_modulus: 60.0, strength: Strength::Elastic, heat: Heat::NONE }
 }
 

@@ -27,7 +27,12 @@ pub const SETTINGS: Settings = Settings {
 };
 
 pub const SOLID: Solid = Solid {
-    state: EquationOfState { density: 2.0, wave_speed: 10.0, law: PressureLaw::Linear },
+    state: EquationOfState {
+        density: 2.0,
+        wave_speed: 10.0,
+        law: PressureLaw::Linear,
+        spall_strength: f64::INFINITY,
+    },
     shear_modulus: 60.0,
     strength: Strength::Elastic,
     heat: Heat::NONE,

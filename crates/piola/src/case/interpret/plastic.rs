@@ -43,9 +43,10 @@ impl Reader<'_, '_> {
             Some(strength) => self.strength(strength, temperature)?,
             None => Strength::Elastic,
         };
+        let spall_strength = number(record, "spall_strength").unwrap_or(f64::INFINITY);
         let wave_speed = (bulk_modulus / density).sqrt();
         let solid = Solid {
-            state: EquationOfState { density, wave_speed, law },
+            state: EquationOfState { density, wave_speed, law, spall_strength },
             shear_modulus: constants.mu,
             strength,
             heat,

@@ -21,6 +21,13 @@ pub(super) const HYPOELASTIC: KindSpec = KindSpec {
             "how the pressure follows the density",
         ),
         key(
+            "spall_strength",
+            Kind::Number(Interval::POSITIVE),
+            "Pa",
+            Derived("none: it never tears"),
+            "tension below which the pressure does not fall; where it would, the solid opens",
+        ),
+        key(
             "strength",
             Kind::Tagged(&STRENGTH),
             "",

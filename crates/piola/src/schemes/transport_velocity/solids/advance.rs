@@ -48,7 +48,9 @@ impl<const D: usize> TransportVelocity<D> {
             scheme.add_drift((number, place), (step, false), row, sums);
             row[Row::<D>::DENSITY] += step * scheme.density_rate(place);
             if evolves {
-                row[Row::<D>::PRESSURE] += step * scheme.pressure_rates(place).iter().sum::<f64>();
+                let rate = scheme.pressure_rates(place).iter().sum::<f64>();
+                let pressure = &mut row[Row::<D>::PRESSURE];
+                *pressure = (*pressure + step * rate).max(-material.state.spall_strength);
             }
             scheme.move_row(step, row);
             sums[0] += energy(row, matter) - before + work;
