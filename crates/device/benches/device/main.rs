@@ -1,0 +1,22 @@
+//! Passes traced from the formulas, on a GPU and on the processor: bits, times, bandwidth.
+//!
+//! `crates/device/benches/device.sh` runs it with 100 particles a side. Without a GPU only the processor is
+//! measured.
+
+mod cloud;
+mod gpu;
+mod processor;
+
+use std::error::Error;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut sides = std::env::args().skip(1).filter_map(|argument| argument.parse().ok());
+    let (large, small) = (sides.next().unwrap_or(24), sides.next().unwrap_or(16));
+    println!("particles: {} to measure, {} for bits", large * large * large, small * small * small);
+    match gpu::open() {
+        Ok(device) => gpu::measure(&device, small, large)?,
+        Err(reason) => println!("NOT RUN on a GPU: {reason}"),
+    }
+    processor::measure(large);
+    Ok(())
+}

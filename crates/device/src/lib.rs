@@ -1,0 +1,28 @@
+//! The formulas of piola as text for other machines.
+//!
+//! A law is a Rust function that is generic over [`Number`](piola_formulas::Number). Run once with
+//! [`Traced`] numbers it is recorded as a [`Law`]: a list of operations, without those that would be
+//! done twice. A law can be [run](Law::run) here, with the bits of the function itself, or written as
+//! [text](Law::text) in C, OpenCL C or CUDA C++, in double or single precision. There is no second
+//! source of a formula.
+//!
+//! - [`laws`] is the list of all laws by name: kernels, elastic solids, volumetric materials, fluids.
+//! - [`Portable`] numbers compute exponentials and logarithms as the text does, so that a processor
+//!   has the bits of a device.
+//! - [`passes`] writes whole passes over particles, with their loops over neighbours, around laws.
+//! - [`cuda`] compiles and runs them on an NVIDIA GPU, if there is one. Nothing of CUDA is needed to
+//!   build.
+
+pub mod cuda;
+mod law;
+pub mod laws;
+mod operators;
+pub mod passes;
+mod portable;
+mod record;
+mod text;
+
+pub use law::{Law, Outputs};
+pub use portable::{Bits, Portable};
+pub use record::{Traced, Truth};
+pub use text::{Language, Precision};

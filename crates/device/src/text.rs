@@ -1,0 +1,319 @@
+//! Laws as text in C and what is close to it.
+
+use std::fmt::Write;
+
+use piola_formulas::Number;
+
+use crate::law::Law;
+use crate::portable;
+use crate::record::{Binary, Operation, Unary};
+
+/// A language that laws are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// C99.
+    C,
+    /// OpenCL C 1.2.
+    OpenCl,
+    /// CUDA C++.
+    Cuda,
+}
+
+/// The numbers of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// 64 bits.
+    Double,
+    /// 32 bits. Exponentials and logarithms are those of the machine.
+    Single,
+}
+
+impl Precision {
+    /// Bytes a number.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::Double => 8,
+            Self::Single => 4,
+        }
+    }
+
+    fn type_name(self) -> &'static str {
+        match self {
+            Self::Double => "double",
+            Self::Single => "float",
+        }
+    }
+
+    fn literal(self, value: f64) -> String {
+        let text = match self {
+            Self::Double => format!("{value:?}"),
+            Self::Single => format!("{:?}f", value as f32),
+        };
+        match text.trim_end_matches('f').trim_start_matches('-') {
+            "in" | "inf" if value > 0.0 => "P_INFINITY".into(),
+            "in" | "inf" => "(-P_INFINITY)".into(),
+            "NaN" => "P_NAN".into(),
+            _ if text.starts_with('-') => format!("({text})"),
+            _ => text,
+        }
+    }
+}
+
+const C: &str = "#include <math.h>
+#include <string.h>
+#define LAW static inline
+#define KERNEL
+#define GLOBAL
+#define EACH(a, n) for (int a = 0; a < (n); ++a)
+#define ALIGNED
+#define P_INFINITY INFINITY
+#define P_NAN NAN
+";
+
+const OPEN_CL: &str = "#pragma OPENCL FP_CONTRACT OFF
+#define LAW static inline
+#define KERNEL __kernel
+#define GLOBAL __global
+#define EACH(a, n) const int a = get_global_id(0); if (a < (n))
+#define ALIGNED __attribute__((aligned(16)))
+#define P_INFINITY INFINITY
+#define P_NAN NAN
+";
+
+const CUDA: &str = "#define LAW static __device__ __forceinline__
+#define KERNEL extern \"C\" __global__
+#define GLOBAL
+#define EACH(a, n) const int a = blockIdx.x * blockDim.x + threadIdx.x; if (a < (n))
+#define ALIGNED __align__(16)
+#define P_INFINITY __longlong_as_double(0x7ff0000000000000)
+#define P_NAN __longlong_as_double(0x7ff8000000000000)
+";
+
+/// The helpers that take a double precision number apart.
+fn bits(language: Language) -> String {
+    let (to, from, prologue) = match language {
+        Language::Cuda => ("__longlong_as_double", "__double_as_longlong", ""),
+        Language::OpenCl => ("as_double", "as_long", ""),
+        Language::C => (
+            "p_number",
+            "p_bits",
+            "LAW double p_number(long long bits) { double x; memcpy(&x, &bits, 8); return x; }\n\
+             LAW long long p_bits(double x) { long long bits; memcpy(&bits, &x, 8); return bits; }\n",
+        ),
+    };
+    let long = if language == Language::OpenCl { "long" } else { "long long" };
+    format!(
+        "{prologue}\
+         LAW double p_two_to(double k) {{ return {to}((({long})k + 1023) << 52); }}\n\
+         LAW double p_exponent(double x) {{ return (double)((({from}(x) >> 52) & 2047) - 1023); }}\n\
+         LAW double p_mantissa(double x) {{ return {to}(({from}(x) & 0xfffffffffffff) | 0x3ff0000000000000); }}\n"
+    )
+}
+
+/// A function of one or two portable numbers, as a law.
+fn portable_function(name: &str) -> Law {
+    let inputs: &[&str] = if name == "pow" { &["x", "y"] } else { &["x"] };
+    Law::record(format!("p_{name}"), inputs.iter().copied(), |x| {
+        let value = match name {
+            "exp" => portable::exp(x[0]),
+            "expm1" => portable::exp_m1(x[0]),
+            "log" => portable::ln(x[0]),
+            "log1p" => portable::ln_1p(x[0]),
+            // By the two functions above it.
+            _ => (x[1] * x[0].ln()).exp(),
+        };
+        vec![("value".into(), value)]
+    })
+}
+
+impl Language {
+    /// What stands before all laws: types, names of what differs between languages, and in double
+    /// precision the functions of [`Portable`](crate::Portable) numbers.
+    pub fn prologue(self, precision: Precision) -> String {
+        let mut text = match self {
+            Self::C => C,
+            Self::OpenCl => OPEN_CL,
+            Self::Cuda => CUDA,
+        }
+        .to_string();
+        let _ = writeln!(text, "typedef {} real;", precision.type_name());
+        if precision == Precision::Double {
+            text += &bits(self);
+            for name in ["exp", "expm1", "log", "log1p", "pow"] {
+                text += &portable_function(name).function(self, precision);
+            }
+        }
+        text
+    }
+}
+
+impl Law {
+    /// The law as a function in a language, which stands behind its
+    /// [prologue](Language::prologue): it takes numbers by value and pointers to results.
+    pub fn text(&self, language: Language, precision: Precision) -> String {
+        self.function(language, precision)
+    }
+
+    /// A law of one result called `value` returns it.
+    fn function(&self, language: Language, precision: Precision) -> String {
+        let returns = self.outputs == ["value"];
+        let inputs = self.inputs.iter().map(|name| format!("real {name}"));
+        let pointers = self.outputs.iter().map(|name| format!("real *{name}"));
+        let arguments: Vec<String> = match returns {
+            true => inputs.collect(),
+            false => inputs.chain(pointers).collect(),
+        };
+        let mut writer = Writer { law: self, language, precision, text: String::new() };
+        writer.body();
+        let mut text = format!(
+            "/* {} operations */\nLAW {} {}({})\n{{\n{}",
+            self.operations(),
+            if returns { "real" } else { "void" },
+            self.name,
+            arguments.join(", "),
+            writer.text
+        );
+        let writer = Writer { text: String::new(), ..writer };
+        for (name, place) in self.outputs.iter().zip(&self.results) {
+            let _ = match returns {
+                true => writeln!(text, "    return {};", writer.name(*place)),
+                false => writeln!(text, "    *{name} = {};", writer.name(*place)),
+            };
+        }
+        text + "}\n"
+    }
+}
+
+struct Writer<'a> {
+    law: &'a Law,
+    language: Language,
+    precision: Precision,
+    text: String,
+}
+
+impl Writer<'_> {
+    fn body(&mut self) {
+        let mut finished = vec![false; self.law.tape.loops.len()];
+        for place in self.law.places().filter(|place| self.law.inside[*place as usize].is_none()) {
+            match self.law.tape.operations[place as usize] {
+                Operation::Final(number, _) => {
+                    if !std::mem::replace(&mut finished[number as usize], true) {
+                        self.repeat(number);
+                    }
+                }
+                _ => self.statement(place, "    "),
+            }
+        }
+    }
+
+    fn repeat(&mut self, number: u32) {
+        let law = self.law;
+        let body = &law.tape.loops[number as usize];
+        for (i, start) in body.start.iter().enumerate() {
+            let _ = writeln!(self.text, "    real s{number}_{i} = {};", self.name(*start));
+        }
+        let _ = writeln!(
+            self.text,
+            "    for (int k{number} = 0; k{number} < {}; ++k{number}) {{",
+            body.most
+        );
+        let until = format!("        if ({}) break;\n", self.name(body.until));
+        let is_outside = law.inside[body.until as usize] != Some(number);
+        if is_outside {
+            self.text += &until;
+        }
+        let inside = |place: &u32| law.inside[*place as usize] == Some(number);
+        for place in law.places().filter(inside) {
+            self.statement(place, "        ");
+            if place == body.until {
+                self.text += &until;
+            }
+        }
+        for (i, next) in body.next.iter().enumerate() {
+            let _ = writeln!(self.text, "        const real n{number}_{i} = {};", self.name(*next));
+        }
+        for i in 0..body.next.len() {
+            let _ = writeln!(self.text, "        s{number}_{i} = n{number}_{i};");
+        }
+        self.text += "    }\n";
+    }
+
+    /// What stands for the result of an operation.
+    fn name(&self, place: u32) -> String {
+        match self.law.tape.operations[place as usize] {
+            Operation::Input(number) => self.law.inputs[number as usize].clone(),
+            Operation::Constant(bits) => self.precision.literal(f64::from_bits(bits)),
+            Operation::State(number, i) | Operation::Final(number, i) => format!("s{number}_{i}"),
+            _ => format!("t{place}"),
+        }
+    }
+
+    fn statement(&mut self, place: u32, indent: &str) {
+        let name = |at: u32| self.name(at);
+        let (kind, value) = match self.law.tape.operations[place as usize] {
+            Operation::Input(_)
+            | Operation::Constant(_)
+            | Operation::State(..)
+            | Operation::Final(..) => return,
+            Operation::Unary(Unary::Negate, a) => ("real", format!("-{}", name(a))),
+            Operation::Unary(function, a) => {
+                ("real", format!("{}({})", self.function_name(function), name(a)))
+            }
+            Operation::Binary(function, a, b) => {
+                let sign = match function {
+                    Binary::Add => "+",
+                    Binary::Subtract => "-",
+                    Binary::Multiply => "*",
+                    Binary::Divide => "/",
+                    Binary::Power | Binary::Atan2 => "",
+                };
+                let call = |function: &str| format!("{function}({}, {})", name(a), name(b));
+                let value = match function {
+                    Binary::Power if self.precision == Precision::Double => call("p_pow"),
+                    Binary::Power => call(&self.of_machine("pow")),
+                    Binary::Atan2 => call(&self.of_machine("atan2")),
+                    _ => format!("{} {sign} {}", name(a), name(b)),
+                };
+                ("real", value)
+            }
+            Operation::Select(mask, yes, no) => {
+                ("real", format!("{} ? {} : {}", name(mask), name(yes), name(no)))
+            }
+            Operation::Less(a, b) => ("int", format!("{} < {}", name(a), name(b))),
+            Operation::AtMost(a, b) => ("int", format!("{} <= {}", name(a), name(b))),
+            Operation::And(a, b) => ("int", format!("{} & {}", name(a), name(b))),
+            Operation::Or(a, b) => ("int", format!("{} | {}", name(a), name(b))),
+            Operation::Not(a) => ("int", format!("!{}", name(a))),
+        };
+        let _ = writeln!(self.text, "{indent}const {kind} t{place} = {value};");
+    }
+
+    /// The name of a function of the machine.
+    fn of_machine(&self, name: &str) -> String {
+        match (self.language, self.precision) {
+            (Language::C | Language::Cuda, Precision::Single) => format!("{name}f"),
+            _ => name.into(),
+        }
+    }
+
+    fn function_name(&self, function: Unary) -> String {
+        let (name, is_portable) = match function {
+            Unary::Negate => unreachable!("it is an operator"),
+            Unary::Abs => ("fabs", false),
+            Unary::Sqrt => ("sqrt", false),
+            Unary::Sin => ("sin", false),
+            Unary::Cos => ("cos", false),
+            Unary::Exp => ("exp", true),
+            Unary::ExpM1 => ("expm1", true),
+            Unary::Ln => ("log", true),
+            Unary::Ln1p => ("log1p", true),
+            Unary::TwoTo => ("two_to", true),
+            Unary::Exponent => ("exponent", true),
+            Unary::Mantissa => ("mantissa", true),
+        };
+        match is_portable && self.precision == Precision::Double {
+            true => format!("p_{name}"),
+            false => self.of_machine(name),
+        }
+    }
+}
