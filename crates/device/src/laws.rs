@@ -124,11 +124,17 @@ pub const SHEAR_MODULUS: f64 = 4.4e10;
 
 /// One equation of state of each kind.
 pub fn equations_of_state() -> [(&'static str, EquationOfState); 3] {
-    let of = |law| EquationOfState { density: 8930.0, wave_speed: 3900.0, law };
+    let of = |law, spall_strength| EquationOfState {
+        density: 8930.0,
+        wave_speed: 3900.0,
+        law,
+        spall_strength,
+    };
+    let mie_gruneisen = PressureLaw::MieGrueneisen { slope: 1.49, gruneisen: 2.0 };
     [
-        ("linear_pressure", of(PressureLaw::Linear)),
-        ("tait", of(PressureLaw::Tait { exponent: 7.15 })),
-        ("mie_gruneisen", of(PressureLaw::MieGrueneisen { slope: 1.49, gruneisen: 2.0 })),
+        ("linear_pressure", of(PressureLaw::Linear, f64::INFINITY)),
+        ("tait", of(PressureLaw::Tait { exponent: 7.15 }, f64::INFINITY)),
+        ("mie_gruneisen", of(mie_gruneisen, 1.2e9)),
     ]
 }
 
