@@ -1,6 +1,6 @@
 //! `piola check`: what a run will do.
 
-use piola::case::{Case, Plan};
+use piola::case::{Case, Plan, Undamped};
 use piola::schemes::Particle;
 
 use super::{assemble, read, use_threads};
@@ -48,6 +48,7 @@ fn report(case: &Case, plan: &Plan) -> String {
     section("first step", vec![format!("{first} s ({})", plan.limiter)]);
     let end = significant(*case.time.end, 6);
     section("steps", vec![format!("{} to t = {end} s, if all are as long", plan.steps)]);
+    section("undamped", plan.undamped.iter().map(undamped).collect());
     section(
         "wall time",
         vec![format!(
@@ -136,6 +137,19 @@ fn limits(plan: &Plan) -> Vec<String> {
         })
         .collect();
     table::align(&rows, None, &[])
+}
+
+fn undamped(fastest: &Undamped) -> String {
+    // What is within rounding of one is one.
+    let share =
+        |factor: f64| round(100.0 * if (factor - 1.0).abs() < 1e-12 { 0.0 } else { factor - 1.0 });
+    format!(
+        "the fastest oscillation of the particles has a period of {} s; the integrator changes its \
+         energy by {:+} % a period, to {} of what it was at the end",
+        significant(fastest.period, 3),
+        share(fastest.by_period),
+        significant(fastest.by_end, 3)
+    )
 }
 
 fn place(particle: &Particle) -> String {

@@ -30,7 +30,12 @@ pub fn kernels() -> Vec<Choice> {
 pub fn integrators() -> Vec<Choice> {
     let meaning = |kind: IntegratorKind| match kind {
         IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
-        IntegratorKind::KickDriftKick => "kick-drift-kick, CTVF (54) to (60)",
+        IntegratorKind::SspRk3 => {
+            "explicit three-stage strong-stability-preserving Runge-Kutta, of third order, which damps what nothing else does; `upwind` and `dual_support` only"
+        }
+        IntegratorKind::KickDriftKick => {
+            "kick-drift-kick, CTVF (54) to (60); with `upwind` only where `tau_velocity` and `tau_pressure` are 0"
+        }
         IntegratorKind::Newmark => {
             "Newmark's method, implicit, with `beta` and `gamma`; `dual_support` only"
         }

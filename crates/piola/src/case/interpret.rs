@@ -50,6 +50,10 @@ pub(super) fn case(
     reader.collect_names(record);
     let scheme = record.record("scheme").and_then(|scheme| reader.scheme(scheme));
     reader.names.scheme = scheme.as_ref().map_or("upwind", |scheme| scheme.value.name());
+    reader.names.dissipates = match scheme.as_ref().map(|scheme| &scheme.value) {
+        Some(Scheme::Upwind(upwind)) => upwind.tau_velocity > 0.0 || upwind.tau_pressure > 0.0,
+        _ => true,
+    };
     let domain = reader.domain(record.record("domain"));
     let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
     let time = reader.clock(record);
@@ -138,6 +142,8 @@ struct Names {
     variants: Vec<String>,
     scheme: &'static str,
     is_static: bool,
+    /// Whether the scheme dissipates by itself.
+    dissipates: bool,
     /// Whether a body is of a hypoelastic solid.
     is_solid: bool,
 }

@@ -46,7 +46,7 @@ pub use expression::Expression;
 use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
-pub use plan::{Plan, PlannedLimit};
+pub use plan::{Plan, PlannedLimit, Undamped};
 pub use simulation::{Finished, RunError, Simulation};
 pub use source::{Located, Place, SourceText};
 

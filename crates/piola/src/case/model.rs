@@ -21,9 +21,9 @@ pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reductio
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use physics::{
-    Boundary, Checkpoint, Correction, DualSupport, Elastodynamics, GradientKind, Interpolation,
-    Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Roller, Scheme, StepControl,
-    Stiffness, SupportSize, Time, TransportVelocity, Upwind, Wall, Weights,
+    Boundary, Checkpoint, Correction, Dissipation, DualSupport, Elastodynamics, GradientKind,
+    Interpolation, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Roller, Scheme,
+    StepControl, Stiffness, SupportSize, Time, TransportVelocity, Upwind, Wall, Weights,
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
 pub(super) use sweeps::{member_name, member_of};

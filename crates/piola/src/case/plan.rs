@@ -26,6 +26,8 @@ pub struct Plan {
     pub limiter: String,
     /// Number of steps to the end if all are as large as the first.
     pub steps: u64,
+    /// What the integrator makes of what nothing damps, where that is known.
+    pub undamped: Option<Undamped>,
     /// Particle evaluations a second, measured on this machine.
     pub evaluations_per_second: f64,
     /// Wall time of the run in s at that speed, without output.
@@ -36,6 +38,34 @@ pub struct Plan {
     pub outputs: Vec<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
+}
+
+/// The fastest oscillation that the particles resolve and that nothing damps, in a run whose steps
+/// are all as long as the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undamped {
+    /// Its period in s.
+    pub period: f64,
+    /// What a period multiplies its energy by.
+    pub by_period: f64,
+    /// What the whole run multiplies its energy by.
+    pub by_end: f64,
+}
+
+impl Undamped {
+    /// More than this, and what is lost in rounding is an energy as large as any in the run.
+    const MOST: f64 = 2.0;
+
+    fn warning(&self, integrator: &str) -> Option<String> {
+        (self.by_end > Self::MOST).then(|| {
+            format!(
+                "nothing damps the fastest oscillation of the particles, and `{integrator}` multiplies \
+                 its energy by {:.3e} until the end; use `kick_drift_kick`, which keeps it, or \
+                 `ssp_rk3`, which damps it, or lower `time.cfl`",
+                self.by_end
+            )
+        })
+    }
 }
 
 /// A bound on the first step.
@@ -93,6 +123,15 @@ impl Simulation {
         // An end that is a multiple of the step up to round-off takes no step more.
         let steps = (*self.case.time.end / step - 1e-9).ceil().max(0.0) as u64;
         let count = scheme.particle_count();
+        let evaluations = integrator.evaluations(scheme);
+        let undamped = integrator.energy_factor(0.0).and_then(|_| {
+            let frequency = scheme.undamped_frequency(&state).filter(|it| *it > 0.0)?;
+            let period = std::f64::consts::TAU / frequency;
+            let rate = integrator.energy_factor(frequency * step)?.ln() / step;
+            let [by_period, by_end] = [period, *self.case.time.end].map(|time| (rate * time).exp());
+            Some(Undamped { period, by_period, by_end })
+        });
+        warnings.extend(undamped.and_then(|it| it.warning(integrator.name())));
         Plan {
             bodies: self.built.bodies.clone(),
             neighbors: self.built.neighbors,
@@ -106,8 +145,9 @@ impl Simulation {
             step,
             limiter,
             steps,
+            undamped,
             evaluations_per_second: count as f64 / evaluation,
-            seconds: steps as f64 * integrator.evaluations() as f64 * evaluation,
+            seconds: steps as f64 * evaluations as f64 * evaluation,
             memory: scheme.memory() + STATES * size_of_val(state.as_slice()),
             outputs: self.planned_outputs(),
             warnings,

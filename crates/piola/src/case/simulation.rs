@@ -14,7 +14,9 @@ use crate::observe::{Line, ProfileRecorder, Recorder, Series, Tables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::Scheme;
 use crate::solve::Costs;
-use crate::time::{Checkpoints, Executor, Misfit, ObserveError, Progress, Schedule, Summary};
+use crate::time::{
+    Checkpoints, Executor, Misfit, ObserveError, Progress, Schedule, Summary, Unserved,
+};
 
 /// A case with its particles, lists and scheme.
 pub struct Simulation {
@@ -51,6 +53,9 @@ pub enum RunError {
     /// A file during the run.
     #[error(transparent)]
     Observe(#[from] ObserveError),
+    /// The integrator cannot move the scheme.
+    #[error(transparent)]
+    Unserved(#[from] Unserved),
     /// There are checkpoints, and none of them is any good for this run.
     #[error("{newest}\nno checkpoint of this run is sound; nothing was changed")]
     NoCheckpoint {
@@ -151,7 +156,7 @@ impl Simulation {
         }
         let integrator = build::integrator(&case, length);
         let control = build::step_control(&case);
-        let mut executor = Executor::new(built.scheme, integrator, control, *case.time.end);
+        let mut executor = Executor::new(built.scheme, integrator, control, *case.time.end)?;
         executor.max_steps = case.time.max_steps.unwrap_or(u64::MAX);
         executor.min_step = case.time.min_step;
         executor.max_speed = case.time.max_speed;

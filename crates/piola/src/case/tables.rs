@@ -209,6 +209,13 @@ const UPWIND: KindSpec = KindSpec {
             "share of the upwinding of pressure",
         ),
         key(
+            "dissipation",
+            Kind::Name(DISSIPATIONS),
+            "",
+            Default("\"corrected\""),
+            "form of both upwindings; what is not `corrected` is for comparison with the paper only",
+        ),
+        key(
             "reconstruction",
             Kind::Boolean,
             "",
@@ -233,6 +240,15 @@ const CORRECTIONS: Choices = choices(&[
 const WEIGHTS: Choices = choices(&[
     choice("lattice", "the volume of a lattice cell for every particle, also at a face"),
     choice("volume", "the volume of the particle"),
+]);
+const DISSIPATIONS: Choices = choices(&[
+    choice("corrected", "as derived"),
+    choice("printed_3_38", "velocity without the density, as Upwind (3.38) is printed"),
+    choice(
+        "printed_3_42",
+        "pressure with the sign of Upwind (3.42) as printed, which feeds energy in",
+    ),
+    choice("as_printed", "both of these"),
 ]);
 const WAVE_SPEEDS: Choices = choices(&[
     choice("constant", "that of the reference state"),

@@ -26,5 +26,5 @@ pub use momentum::{MomentumComponent, momentum_components};
 pub use newmark::{Newmark, NewmarkScheme, UnstableWeights};
 pub use rule::ImplicitRule;
 pub use scheme::{Escape, Health, Ledger, Particle, Scheme, StepLimit, snapshot};
-pub use split::SplitScheme;
+pub use split::{PartitionedScheme, SplitScheme};
 pub use theta::{Theta, ThetaScheme, UnstableTheta};

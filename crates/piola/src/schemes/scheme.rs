@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{NewmarkScheme, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme};
+use super::{
+    NewmarkScheme, PartitionedScheme, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
+};
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 use crate::solve::Costs;
 
@@ -117,6 +119,23 @@ pub trait Scheme: Send {
 
     /// The formulation as one whose steps can be split, if it is one.
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {
+        None
+    }
+
+    /// The formulation as one whose accelerations depend on places alone, if it is one and nothing in
+    /// it dissipates.
+    fn partitioned(&mut self) -> Option<&mut dyn PartitionedScheme> {
+        None
+    }
+
+    /// Whether [`Scheme::rates`] are all there is of its motion, as Runge-Kutta methods need it.
+    fn has_rates(&self) -> bool {
+        true
+    }
+
+    /// The largest angular frequency of small oscillations about `state` in rad/s that nothing
+    /// damps; `None` where all of them are damped, or it is not known.
+    fn undamped_frequency(&mut self, _state: &[f64]) -> Option<f64> {
         None
     }
 }

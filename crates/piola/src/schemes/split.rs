@@ -17,3 +17,14 @@ pub trait SplitScheme: Scheme {
     /// Finds the accelerations of `state` at `time` and stores them in it.
     fn accelerate(&mut self, time: f64, state: &mut [f64]);
 }
+
+/// A formulation whose accelerations depend on places alone, and all else on velocities and places:
+/// nothing in it dissipates.
+pub trait PartitionedScheme: Scheme {
+    /// Changes velocities by the accelerations in `rate` times `duration` s.
+    fn kick(&self, duration: f64, rate: &[f64], state: &mut [f64]);
+
+    /// Moves all the rest of the rows by `duration` s, on straight paths with the velocities as they
+    /// are, of which `rate` has the rates at the start. The ledger is not its own.
+    fn drift(&self, duration: f64, rate: &[f64], state: &mut [f64]);
+}

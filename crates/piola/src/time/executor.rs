@@ -6,7 +6,7 @@ use super::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use super::clock::{Clock, Tally};
 use super::failure::Failure;
 use super::history::{History, Mark};
-use super::integrator::Integrator;
+use super::integrator::{Integrator, Unserved};
 use super::judgement::supersonic;
 use super::observer::{Moment, ObserveError, Observer};
 use super::step::{ChosenStep, StepControl};
@@ -79,13 +79,19 @@ impl Executor {
     pub const ACCURACY: &str = "accuracy";
 
     /// A run without observers and checkpoints, with as many steps as it takes and no retries.
+    ///
+    /// # Errors
+    /// The integrator cannot move the scheme.
     pub fn new(
-        scheme: Box<dyn Scheme>,
+        mut scheme: Box<dyn Scheme>,
         integrator: Box<dyn Integrator>,
         control: StepControl,
         end: f64,
-    ) -> Self {
-        Self {
+    ) -> Result<Self, Unserved> {
+        if !integrator.serves(scheme.as_mut()) {
+            return Err(Unserved::new(integrator.name(), scheme.as_mut()));
+        }
+        Ok(Self {
             scheme,
             integrator,
             control,
@@ -97,7 +103,7 @@ impl Executor {
             observers: Vec::new(),
             checkpoints: None,
             resume: None,
-        }
+        })
     }
 
     /// The formulation that it moves.
@@ -137,7 +143,8 @@ impl Executor {
         // The state before the last step: where a run goes back to when a step fails for good.
         let mut previous = (run.clock, run.state.clone());
         let mut limits: Vec<StepLimit> = Vec::with_capacity(8);
-        let evaluations = self.integrator.evaluations() * self.scheme.particle_count() as u64;
+        let evaluations =
+            self.integrator.evaluations(self.scheme.as_mut()) * self.scheme.particle_count() as u64;
         let mut failed_in_step = false;
 
         let outcome = loop {

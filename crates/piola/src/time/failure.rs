@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::integrator::Unserved;
 use crate::schemes::{Escape, Missed, NoSolution, Particle};
 
 /// What went wrong, where and when, with what to do about it.
@@ -155,6 +156,9 @@ pub enum Failure {
     /// The equations of a step have no solution, as far as was looked.
     #[error(transparent)]
     NoSolution(NoSolution),
+    /// The integrator cannot move the scheme.
+    #[error(transparent)]
+    Unserved(#[from] Unserved),
     /// A step is less accurate than was asked for. The run takes a shorter one.
     #[error(
         "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, and may have \
@@ -197,6 +201,7 @@ impl Failure {
                 Missed::Inverted => "inverted",
                 Missed::Unstable => "unstable",
             },
+            Self::Unserved(_) => "unserved",
             Self::Inaccurate { .. } => "inaccurate",
             Self::TooManySteps { .. } => "too_many_steps",
         }
@@ -212,7 +217,10 @@ impl Failure {
             | Self::FixedStepTooLarge { index, .. }
             | Self::StepBelowFloor { index, .. } => Some(*index),
             // What led there is in its message; to take the steps once more would take long.
-            Self::NoSolution(_) | Self::Inaccurate { .. } | Self::TooManySteps { .. } => None,
+            Self::NoSolution(_)
+            | Self::Unserved(_)
+            | Self::Inaccurate { .. }
+            | Self::TooManySteps { .. } => None,
         }
     }
 }

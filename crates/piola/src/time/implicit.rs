@@ -1,7 +1,7 @@
 //! Implicit steps as an integrator.
 
 use super::failure::Failure;
-use super::integrator::Integrator;
+use super::integrator::{Integrator, Unserved};
 use crate::schemes::{ImplicitRule, Scheme};
 
 /// Goes from state to state by solving for the next one: Newmark's method and those that damp short
@@ -65,7 +65,10 @@ impl ImplicitStepping {
                 scheme.theta().map(|scheme| scheme.advance(rule, time, step, old, new))
             }
         };
-        advanced.unwrap_or(Ok(())).map_err(Failure::NoSolution)
+        match advanced {
+            Some(advanced) => advanced.map_err(Failure::NoSolution),
+            None => Err(Unserved::new(self.name, scheme).into()),
+        }
     }
 }
 
@@ -93,12 +96,17 @@ impl Integrator for ImplicitStepping {
     }
 
     /// About as many products as a step takes iteratively: for estimates only.
-    fn evaluations(&self) -> u64 {
+    fn evaluations(&self, _scheme: &mut dyn Scheme) -> u64 {
         100
     }
 
-    /// A scheme that does not take such steps stays where it is; the reader of cases refuses the
-    /// pairing.
+    fn serves(&self, scheme: &mut dyn Scheme) -> bool {
+        match self.rule {
+            ImplicitRule::Newmark(_) => scheme.newmark().is_some(),
+            ImplicitRule::Theta(_) => scheme.theta().is_some(),
+        }
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

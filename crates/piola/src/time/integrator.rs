@@ -2,10 +2,13 @@
 
 use std::ops::RangeInclusive;
 
+use thiserror::Error;
+
 use super::failure::Failure;
 use super::implicit::ImplicitStepping;
 use super::kick_drift_kick::KickDriftKick;
 use super::load_steps::LoadStepping;
+use super::ssp_rk3::SspRk3;
 use super::tvd_rk2::TvdRk2;
 use crate::schemes::{ImplicitRule, NEWTON_ITERATIONS, Newmark, Scheme, Theta};
 
@@ -14,14 +17,24 @@ pub trait Integrator: Send {
     /// Name in a case file.
     fn name(&self) -> &'static str;
 
-    /// Evaluations of the rates a step.
-    fn evaluations(&self) -> u64;
+    /// Evaluations of the rates of `scheme` a step.
+    fn evaluations(&self, scheme: &mut dyn Scheme) -> u64;
+
+    /// Whether it can move `scheme` as it is built.
+    fn serves(&self, scheme: &mut dyn Scheme) -> bool;
+
+    /// What a step multiplies the energy of an undamped mode by that turns by `phase`, its angular
+    /// frequency times the step; `None` where that is not known.
+    fn energy_factor(&self, _phase: f64) -> Option<f64> {
+        None
+    }
 
     /// Writes the state at `time + step` to `new`, from `old` at `time`. Both have the layout of
     /// the scheme's state; `old` satisfies the constraints at `time`.
     ///
     /// # Errors
-    /// There is no such state, as far as was looked. Explicit methods always find one.
+    /// There is no such state, as far as was looked, or the integrator does not serve the scheme.
+    /// Explicit methods that do always find one.
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,
@@ -54,12 +67,43 @@ pub trait Integrator: Send {
 /// Iterations of Newton's method in a step that counts as quick.
 const QUICK: RangeInclusive<f64> = 1.0..=5.0;
 
+/// An integrator that cannot move a scheme.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error(
+    "the integrator `{integrator}` cannot move the scheme `{scheme}` as it is built; those that can: \
+     {}",
+    match able.as_slice() {
+        [] => "none".to_owned(),
+        able => able.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
+    }
+)]
+pub struct Unserved {
+    /// Name of the integrator.
+    pub integrator: &'static str,
+    /// Name of the scheme.
+    pub scheme: &'static str,
+    /// Names of the integrators that can.
+    pub able: Vec<&'static str>,
+}
+
+impl Unserved {
+    /// That of an integrator of this name.
+    pub fn new(integrator: &'static str, scheme: &mut dyn Scheme) -> Self {
+        let all = IntegratorKind::ALL.into_iter();
+        let able = all.filter(|kind| kind.build(0).serves(scheme)).map(IntegratorKind::name);
+        Self { integrator, able: able.collect(), scheme: scheme.description().name }
+    }
+}
+
 /// The integrators by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IntegratorKind {
     /// Two-stage TVD Runge-Kutta, Upwind (4.1).
     TvdRk2,
-    /// Kick-drift-kick, CTVF (54) to (60), for schemes that can be split.
+    /// Three-stage strong-stability-preserving Runge-Kutta, which damps what nothing else does.
+    SspRk3,
+    /// Kick-drift-kick, CTVF (54) to (60), for schemes that can be split and those in which nothing
+    /// dissipates.
     KickDriftKick,
     /// Newmark's method, theory (53), for schemes that solve for displacements.
     Newmark,
@@ -81,8 +125,9 @@ pub enum IntegratorKind {
 
 impl IntegratorKind {
     /// All integrators.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::TvdRk2,
+        Self::SspRk3,
         Self::KickDriftKick,
         Self::Newmark,
         Self::HhtAlpha,
@@ -105,6 +150,7 @@ impl IntegratorKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::TvdRk2 => "tvd_rk2",
+            Self::SspRk3 => "ssp_rk3",
             Self::KickDriftKick => "kick_drift_kick",
             Self::Newmark => "newmark",
             Self::HhtAlpha => "hht_alpha",
@@ -126,7 +172,8 @@ impl IntegratorKind {
     pub fn build(self, length: usize) -> Box<dyn Integrator> {
         match self {
             Self::TvdRk2 => Box::new(TvdRk2::new(length)),
-            Self::KickDriftKick => Box::new(KickDriftKick),
+            Self::SspRk3 => Box::new(SspRk3::new(length)),
+            Self::KickDriftKick => Box::new(KickDriftKick::default()),
             Self::Static => Box::new(LoadStepping),
             Self::Newmark => self.with(ImplicitRule::Newmark(Newmark::AVERAGE_ACCELERATION), None),
             Self::HhtAlpha => {

@@ -1,7 +1,7 @@
 //! Statics as an integrator: each step is one of the loads.
 
 use super::failure::Failure;
-use super::integrator::Integrator;
+use super::integrator::{Integrator, Unserved};
 use crate::schemes::Scheme;
 
 /// Goes from equilibrium to equilibrium. The time is the load factor, so that output, probes,
@@ -15,11 +15,14 @@ impl Integrator for LoadStepping {
     }
 
     /// About as many products as a step takes by conjugate gradients: for estimates only.
-    fn evaluations(&self) -> u64 {
+    fn evaluations(&self, _scheme: &mut dyn Scheme) -> u64 {
         300
     }
 
-    /// A scheme without equilibria stays where it is; the reader of cases refuses the pairing.
+    fn serves(&self, scheme: &mut dyn Scheme) -> bool {
+        scheme.equilibrium().is_some()
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,
@@ -29,7 +32,11 @@ impl Integrator for LoadStepping {
         new: &mut [f64],
     ) -> Result<(), Failure> {
         new.copy_from_slice(old);
-        let Some(scheme) = scheme.equilibrium() else { return Ok(()) };
-        scheme.equilibrate(time, time + step, old, new).map_err(Failure::NoSolution)
+        match scheme.equilibrium() {
+            Some(scheme) => {
+                scheme.equilibrate(time, time + step, old, new).map_err(Failure::NoSolution)
+            }
+            None => Err(Unserved::new(self.name(), scheme).into()),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The two-stage total-variation-diminishing Runge-Kutta method.
 
 use super::failure::Failure;
-use super::integrator::Integrator;
+use super::integrator::{Integrator, Unserved};
 use crate::parallel;
 use crate::schemes::Scheme;
 
@@ -46,8 +46,16 @@ impl Integrator for TvdRk2 {
         "tvd_rk2"
     }
 
-    fn evaluations(&self) -> u64 {
+    fn evaluations(&self, _scheme: &mut dyn Scheme) -> u64 {
         2
+    }
+
+    fn serves(&self, scheme: &mut dyn Scheme) -> bool {
+        scheme.has_rates()
+    }
+
+    fn energy_factor(&self, phase: f64) -> Option<f64> {
+        Some(1.0 + 0.25 * phase.powi(4))
     }
 
     fn step(
@@ -58,6 +66,9 @@ impl Integrator for TvdRk2 {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), Failure> {
+        if !scheme.has_rates() {
+            return Err(Unserved::new(self.name(), scheme).into());
+        }
         scheme.rates(time, old, &mut self.rate);
         predict(step, old, &self.rate, new);
         scheme.constrain(time + step, new);

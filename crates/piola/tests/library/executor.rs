@@ -131,7 +131,8 @@ impl Observer for Witness {
 
 fn executor(scheme: Pendulum, control: StepControl, end: f64) -> Executor {
     let integrator = IntegratorKind::TvdRk2.build(3);
-    let mut executor = Executor::new(Box::new(scheme), integrator, control, end);
+    let mut executor = Executor::new(Box::new(scheme), integrator, control, end)
+        .expect("a Runge-Kutta method serves it");
     executor.max_steps = 100_000;
     executor
 }
@@ -396,7 +397,11 @@ impl Integrator for Picky {
         "picky"
     }
 
-    fn evaluations(&self) -> u64 {
+    fn serves(&self, _scheme: &mut dyn Scheme) -> bool {
+        true
+    }
+
+    fn evaluations(&self, _scheme: &mut dyn Scheme) -> u64 {
         1
     }
 

@@ -9,6 +9,7 @@ mod executor;
 mod failures;
 mod fuzz;
 mod histories;
+mod integrators;
 mod ledger;
 mod loads;
 mod matrices;

@@ -232,7 +232,7 @@ fn angular_momentum_is_kept(settings: Settings) {
 fn executor<S: Scheme + 'static>(scheme: S, control: StepControl, end: f64) -> Executor {
     let length = scheme.initial_state().len();
     let integrator = IntegratorKind::TvdRk2.build(length);
-    Executor::new(Box::new(scheme), integrator, control, end)
+    Executor::new(Box::new(scheme), integrator, control, end).expect("it serves the scheme")
 }
 
 /// U1: a bar with one mode follows u(L, t) = sin(w t) / w, w = pi c / 2L.

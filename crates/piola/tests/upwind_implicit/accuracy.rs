@@ -35,7 +35,9 @@ fn swing(rule: Theta, kind: IntegratorKind, error: f64) -> (Summary, Vec<f64>) {
     let length = scheme.initial_state().len();
     let integrator = kind.with(ImplicitRule::Theta(rule), Some((error, length)));
     let last = Last::default();
-    let mut executor = Executor::new(Box::new(scheme), integrator, StepControl::AtMost(10.0), 4.0);
+    let control = StepControl::AtMost(10.0);
+    let mut executor =
+        Executor::new(Box::new(scheme), integrator, control, 4.0).expect("it was built for that");
     executor.observers = vec![Box::new(last.clone())];
     let summary =
         executor.run(&AtomicBool::new(false), &mut |_| {}).expect("nothing is written anywhere");

@@ -5,6 +5,7 @@ mod fluids;
 mod functions;
 mod interpolation;
 mod loads;
+mod printed;
 mod probes;
 mod selections;
 mod solids;
@@ -142,7 +143,8 @@ fn build_upwind<const D: usize>(
     let poorly_supported =
         rows.filter(|&a| support.list.row(a).len() < D).map(|a| a as u32).collect();
     let neighbors = support.list.statistics();
-    let warnings = stencil_warning::<D>(settings, &bodies, kernel, &neighbors);
+    let mut warnings = stencil_warning::<D>(settings, &bodies, kernel, &neighbors);
+    warnings.extend(printed::warning(settings));
 
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
@@ -181,6 +183,10 @@ fn upwind<const D: usize>(
     problems: &mut Vec<Problem>,
 ) -> Option<Upwind<D>> {
     let materials = materials(case, problems);
+    let [tau_velocity, tau_pressure] = printed::strengths(case, settings).unwrap_or_else(|found| {
+        problems.extend(found);
+        [0.0; 2]
+    });
     let initial = initial(case, &particles);
     let prescribed = selections::prescribed(case, &particles, problems);
     let body_forces = loads::body_forces(case);
@@ -202,8 +208,8 @@ fn upwind<const D: usize>(
         support,
         settings: Settings {
             correction,
-            tau_velocity: settings.tau_velocity,
-            tau_pressure: settings.tau_pressure,
+            tau_velocity,
+            tau_pressure,
             reconstruction: settings.reconstruction,
             wave_speed: match settings.wave_speed {
                 model::ReferenceWaveSpeed::Constant => WaveSpeed::Constant,

@@ -6,7 +6,8 @@ use super::*;
 use crate::boundaries::History;
 use crate::case::expression::Expression;
 use crate::case::model::{
-    Boundary, Correction, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Upwind, Weights,
+    Boundary, Correction, Dissipation, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Upwind,
+    Weights,
 };
 use crate::output::Curve;
 
@@ -24,6 +25,12 @@ pub(super) fn upwind(record: &Record) -> Option<Upwind> {
         weights: weights(record)?,
         tau_velocity: record.number("tau_velocity")?.value,
         tau_pressure: record.number("tau_pressure")?.value,
+        dissipation: record.text("dissipation")?.map(|name| match name.as_str() {
+            "printed_3_38" => Dissipation::WithoutDensity,
+            "printed_3_42" => Dissipation::TurnedArea,
+            "as_printed" => Dissipation::AsPrinted,
+            _ => Dissipation::Corrected,
+        }),
         reconstruction: record.boolean("reconstruction")?,
         wave_speed: match record.text("wave_speed")?.as_str() {
             "stretch" => ReferenceWaveSpeed::Stretch,

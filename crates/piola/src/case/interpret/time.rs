@@ -30,7 +30,10 @@ impl March {
                 | IntegratorKind::ImplicitMidpoint,
             ) => Self::Theta,
             Some(IntegratorKind::Static) => Self::Static,
-            Some(IntegratorKind::TvdRk2 | IntegratorKind::KickDriftKick) | None => Self::Explicit,
+            Some(
+                IntegratorKind::TvdRk2 | IntegratorKind::SspRk3 | IntegratorKind::KickDriftKick,
+            )
+            | None => Self::Explicit,
         }
     }
 }
@@ -38,7 +41,7 @@ impl March {
 impl Reader<'_, '_> {
     pub(super) fn time(&mut self, record: &Record) -> Option<Time> {
         let natural = match self.names.scheme {
-            "upwind" => IntegratorKind::TvdRk2,
+            "upwind" if self.names.dissipates => IntegratorKind::TvdRk2,
             _ => IntegratorKind::KickDriftKick,
         };
         let integrator = match record.text("integrator") {
@@ -86,6 +89,7 @@ impl Reader<'_, '_> {
     ) {
         let scheme = self.names.scheme;
         let (name, place) = (&integrator.value, integrator.place);
+        let kicks = IntegratorKind::KickDriftKick.name();
         let (message, help) = match march {
             March::Static | March::Implicit if scheme != "dual_support" => {
                 let what = match march {
@@ -106,11 +110,16 @@ impl Reader<'_, '_> {
                     _ => format!("use `{}`", natural.name()),
                 },
             ),
-            March::Explicit if scheme == "upwind" && *name != natural.name() => (
-                format!("the scheme `{scheme}` cannot be split for this integrator"),
-                "use `tvd_rk2`".into(),
+            March::Explicit
+                if scheme == "upwind" && *name == kicks && self.names.dissipates =>
+            (
+                "forces of this scheme depend on velocities where it dissipates, and this integrator \
+                 takes those that do not"
+                    .into(),
+                "use `tvd_rk2` or `ssp_rk3`, or set `scheme.tau_velocity` and `scheme.tau_pressure` to 0"
+                    .into(),
             ),
-            March::Explicit if scheme != "dual_support" && *name != natural.name() => (
+            March::Explicit if !["dual_support", "upwind"].contains(&scheme) && *name != kicks => (
                 format!("the scheme `{scheme}` keeps its accelerations in its state"),
                 "use `kick_drift_kick`".into(),
             ),

@@ -189,10 +189,47 @@ pub struct Upwind {
     pub tau_velocity: f64,
     /// Share of the upwinding of pressure, 0 for none.
     pub tau_pressure: f64,
+    /// Whether it is as derived or as the paper prints it.
+    pub dissipation: Located<Dissipation>,
     /// Whether the states at the mid-edge are reconstructed, Upwind (3.53).
     pub reconstruction: bool,
     /// The wave speed of the upwinding.
     pub wave_speed: ReferenceWaveSpeed,
+}
+
+/// Which form the upwinding has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dissipation {
+    /// As derived: theory (12) and (13).
+    Corrected,
+    /// With (3.38) as printed.
+    WithoutDensity,
+    /// With (3.42) as printed.
+    TurnedArea,
+    /// With both as printed.
+    AsPrinted,
+}
+
+impl Dissipation {
+    /// Name in a case file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Corrected => "corrected",
+            Self::WithoutDensity => "printed_3_38",
+            Self::TurnedArea => "printed_3_42",
+            Self::AsPrinted => "as_printed",
+        }
+    }
+
+    /// Whether it lacks the density.
+    pub fn lacks_density(self) -> bool {
+        matches!(self, Self::WithoutDensity | Self::AsPrinted)
+    }
+
+    /// Whether the area of the upwinding of pressure has the other sign.
+    pub fn turns_area(self) -> bool {
+        matches!(self, Self::TurnedArea | Self::AsPrinted)
+    }
 }
 
 /// Settings of the scheme `transport_velocity`.

@@ -11,7 +11,9 @@ pub(super) static TIME: TableSpec = TableSpec {
             "integrator",
             Kind::Name(Choices::Registry(catalogue::integrators)),
             "",
-            Derived("`kick_drift_kick`; `tvd_rk2` for the scheme `upwind`"),
+            Derived(
+                "`kick_drift_kick`; `tvd_rk2` for the scheme `upwind` where `tau_velocity` or `tau_pressure` is above 0",
+            ),
             "time integrator",
         ),
         key(

@@ -119,6 +119,11 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
         self.matrix.row(index).iter().copied().filter(|&b| b as usize != index).collect()
     }
 
+    /// Accelerations are kept in the state, for kicks.
+    fn has_rates(&self) -> bool {
+        false
+    }
+
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {
         Some(self)
     }

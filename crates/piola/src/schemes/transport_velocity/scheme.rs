@@ -242,6 +242,11 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         self.support.memory() + arrays + size_of_val(self.start.as_slice())
     }
 
+    /// Accelerations are kept in the state, for kicks.
+    fn has_rates(&self) -> bool {
+        false
+    }
+
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {
         Some(self)
     }

@@ -1,7 +1,7 @@
 //! What acts on the body from outside: tractions and prescribed motion, with the work and the
 //! momentum that enter with them.
 
-use super::{BOUNDARY_MOTION, FIGURES, IMPULSES, MECHANISMS, Row, TRACTION, Upwind};
+use super::{BOUNDARY_MOTION, IMPULSES, KEPT, MECHANISMS, Row, TRACTION, Upwind};
 use crate::Vector;
 use crate::parallel;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
@@ -10,7 +10,7 @@ impl<const D: usize> Upwind<D> {
     /// Numbers at the end of a state: the work of each mechanism, then the impulse of each way
     /// in which momentum enters, component by component, then the figures of implicit steps.
     pub(super) fn tail_length() -> usize {
-        MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len() + FIGURES.len()
+        MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len() + KEPT
     }
 
     /// Adds tractions and replaces the acceleration of prescribed components by the rate of

@@ -18,12 +18,14 @@
 
 mod build;
 mod external;
+mod folding;
 mod gather;
 mod implicit;
 mod inspect;
 mod local;
 mod pair;
 mod pairs;
+mod partitioned;
 mod passes;
 mod reconstruction;
 mod scheme;
@@ -107,8 +109,13 @@ const MECHANISMS: [&str; 5] =
 /// forces and dissipation are not among them.
 const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
 
-/// What the table of steps has of implicit steps, behind the ledger in the state's tail.
-const FIGURES: [(&str, &str); 2] = [(NEWTON_ITERATIONS, "1"), ("linear_steps", "1")];
+/// What the table of steps has besides: of implicit steps, which the state keeps behind its ledger, and
+/// whether the lattice has folded.
+const FIGURES: [(&str, &str); 3] =
+    [(NEWTON_ITERATIONS, "1"), ("linear_steps", "1"), ("least_corner", "1")];
+
+/// Those that the state keeps.
+const KEPT: usize = 2;
 
 /// What the pair pass adds up of some particles.
 #[derive(Clone, Copy, Debug, Default)]

@@ -13,7 +13,7 @@ impl<const D: usize> Upwind<D> {
     /// Writes the rates of all rows and the powers at their end.
     pub(super) fn pair_pass(&mut self, rate: &mut [f64]) {
         let settings = &self.settings;
-        let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure > 0.0);
+        let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure != 0.0);
         let rate_rows = match (velocity, pressure, settings.reconstruction) {
             (false, false, _) => rate_rows::<D, false, false, false>,
             (true, false, false) => rate_rows::<D, true, false, false>,

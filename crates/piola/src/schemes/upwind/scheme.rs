@@ -4,10 +4,12 @@ use piola_formulas::tensor;
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::local::deformation;
-use super::{ENERGIES, FIGURES, IMPULSES, MECHANISMS, Row, Upwind};
+use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Row, Upwind};
 use crate::fields::{FieldDescription, FieldKind};
 use crate::parallel;
-use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit, ThetaScheme};
+use crate::schemes::{
+    Health, Particle, PartitionedScheme, Scheme, SchemeDescription, StepLimit, ThetaScheme,
+};
 use crate::solve::Costs;
 
 const FIELDS: [FieldDescription; 13] = [
@@ -108,7 +110,8 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
-        figures.extend_from_slice(&state[state.len() - FIGURES.len()..]);
+        figures.extend_from_slice(&state[state.len() - KEPT..]);
+        figures.push(self.least_corner(state));
     }
 
     fn linear_costs(&self) -> Option<Costs> {
@@ -210,6 +213,14 @@ impl<const D: usize> Scheme for Upwind<D> {
 
     fn theta(&mut self) -> Option<&mut dyn ThetaScheme> {
         self.implicit.is_some().then_some(self as &mut dyn ThetaScheme)
+    }
+
+    fn partitioned(&mut self) -> Option<&mut dyn PartitionedScheme> {
+        self.is_conservative().then_some(self as &mut dyn PartitionedScheme)
+    }
+
+    fn undamped_frequency(&mut self, state: &[f64]) -> Option<f64> {
+        self.is_conservative().then(|| self.largest_frequency(state))
     }
 }
 

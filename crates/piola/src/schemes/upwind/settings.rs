@@ -20,7 +20,8 @@ pub struct Settings {
     pub correction: Correction,
     /// Strength of the velocity dissipation, 0 for none, 1 for the full Riemann flux.
     pub tau_velocity: f64,
-    /// Strength of the pressure dissipation.
+    /// Strength of the pressure dissipation. A negative one feeds energy in: the printed sign of
+    /// Upwind (3.42).
     pub tau_pressure: f64,
     /// Whether the states at an interface are reconstructed linearly, Upwind (3.50).
     pub reconstruction: bool,

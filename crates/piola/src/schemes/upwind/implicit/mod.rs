@@ -12,7 +12,7 @@ mod taylor;
 use num_dual::Dual64;
 
 use super::local::Unknowns;
-use super::{FIGURES, Row, Upwind};
+use super::{KEPT, Row, Upwind};
 use crate::boundaries::BodyForce;
 use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Missed, NoSolution, Scheme, Theta, ThetaScheme};
@@ -87,7 +87,7 @@ impl<const D: usize> Implicit<D> {
     /// # Errors
     /// [`LinearError`] where the factors do not fit into memory.
     pub fn new(scheme: &Upwind<D>, mut settings: ImplicitSettings) -> Result<Self, LinearError> {
-        settings.keeps_ratio |= scheme.settings.tau_pressure > 0.0;
+        settings.keeps_ratio |= scheme.settings.tau_pressure != 0.0;
         let (count, list) = (scheme.particles.len(), &scheme.support.list);
         let row = |a: usize| {
             let near = || std::iter::once(a as u32).chain(list.row(a).iter().copied());
@@ -289,7 +289,7 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
         self.implicit = Some(parts);
         rule.finish(old, new);
         self.constrain(end, new);
-        let figures = new.len() - FIGURES.len();
+        let figures = new.len() - KEPT;
         new[figures..].copy_from_slice(&[iterations as f64, linear_steps as f64]);
         Ok(())
     }

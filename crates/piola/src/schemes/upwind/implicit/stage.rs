@@ -191,7 +191,7 @@ impl<const D: usize> Stage<'_, D> {
         a: usize,
     ) -> Exchange<T, D> {
         let settings = &self.scheme.settings;
-        let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure > 0.0);
+        let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure != 0.0);
         let add_terms: Terms<T, D> = match (velocity, pressure, settings.reconstruction) {
             (false, false, _) => {
                 |pair, lane, sums| pair.add_terms::<false, false, false, 1>(lane, sums)
