@@ -1,4 +1,4 @@
-"""Writes d'Alembert's solution at three stations of the bar, of the load of case.toml."""
+"""Writes d'Alembert's solution at the stations of the bar, of the loads of case.toml."""
 
 import math
 from pathlib import Path
@@ -25,25 +25,28 @@ def smooth(x):
     return 0.5 + 0.5 * (math.copysign(1, x) if abs(x) >= 1 else simpson(x) / HALF)
 
 
-def pulse(t):
-    return -STRESS * (smooth((t - START) / FLANK) - smooth((t - START - DURATION) / FLANK))
+def pulse(t, flank=FLANK, start=START):
+    return -STRESS * (smooth((t - start) / flank) - smooth((t - start - DURATION) / flank))
 
 
-def stress(x, t):
+def stress(x, t, flank=FLANK, start=START):
     # The wave to the right, its image from the fixed end, and that from the load again.
-    back = pulse(t - (2 * LENGTH - x) / SPEED) - pulse(t - (2 * LENGTH + x) / SPEED)
-    return pulse(t - x / SPEED) + back
+    def delayed(way):
+        return pulse(t - way / SPEED, flank, start)
+
+    return delayed(x) + delayed(2 * LENGTH - x) - delayed(2 * LENGTH + x)
 
 
-for name, place in [("left", 0.0), ("near", LENGTH / 3), ("far", 2 * LENGTH / 3)]:
-    rows = ["time,stress"]
-    for k in range(601):
-        t = k * 5e-8
-        rows.append(f"{t:.10g},{stress(place, t):.8g}")
-    Path(__file__).with_name("reference").joinpath(f"{name}.csv").write_text("\n".join(rows) + "\n")
+def write(name, header, rows):
+    text = "\n".join([header, *(f"{t:.10g},{value:.8g}" for t, value in rows)])
+    Path(__file__).with_name("reference").joinpath(f"{name}.csv").write_text(text + "\n")
 
-rows = ["time,factor"]
-for k in range(301):
-    t = k * 5e-8
-    rows.append(f"{t:.10g},{abs(pulse(t)) / STRESS:.8g}")
-Path(__file__).with_name("reference").joinpath("load.csv").write_text("\n".join(rows) + "\n")
+
+TIMES = [k * 5e-8 for k in range(721)]
+STATIONS = [("left", 0.0), ("near", LENGTH / 3), ("far", 2 * LENGTH / 3), ("right", LENGTH)]
+for name, place in STATIONS:
+    write(name, "time,stress", [(t, stress(place, t)) for t in TIMES])
+    if place:
+        rows = [(t, stress(place, t, 2 * FLANK, 5e-6)) for t in TIMES]
+        write(f"smoother-{name}", "time,stress", rows)
+write("load", "time,factor", [(t, abs(pulse(t)) / STRESS) for t in TIMES[:301]])

@@ -1,10 +1,10 @@
 //! The two compressible neo-Hookean laws of Dual-support.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SMatrix};
 
 use super::kinematics::{Kinematics, scaled, trace};
 use super::{HyperelasticResponse, LameConstants, MooneyRivlin};
-use crate::Number;
+use crate::{Number, tensor};
 
 /// `psi = kappa/2 (J - 1)^2 + mu/2 (J^(-2/3) F : F - 3)`: theory (39), Dual-support (46) and (47).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,25 @@ impl HyperelasticResponse for NeoHookean {
 /// held sideways at 0.49 has a negative stiffness between stretches of 3.63 and 6.40.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookeanLogarithmic(pub LameConstants);
+
+impl NeoHookeanLogarithmic {
+    /// Smallest and largest modulus of a wave along a principal direction of a displacement gradient
+    /// of `D` dimensions, the others held, Pa.
+    ///
+    /// With `m = F^-T N` the acoustic tensor of direction N is
+    /// `mu I + (mu + lambda - lambda ln J) m (x) m`, and `|m|` is one over the principal stretch.
+    pub fn wave_moduli<const D: usize>(&self, gradient: &SMatrix<f64, D, D>) -> [f64; 2] {
+        let LameConstants { lambda, mu } = self.0;
+        let deformation = gradient + SMatrix::identity();
+        let strain = tensor::right_cauchy_green(&deformation);
+        let factor = mu + lambda - lambda * tensor::determinant(&deformation).ln();
+        let along = [tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain)]
+            .map(|square| mu + factor / square);
+        // Across a direction there is nothing but shear.
+        let across = if D > 1 { mu } else { along[0] };
+        [along[0].min(along[1]).min(across), along[0].max(along[1]).max(across)]
+    }
+}
 
 impl HyperelasticResponse for NeoHookeanLogarithmic {
     #[inline]

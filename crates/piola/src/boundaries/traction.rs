@@ -46,10 +46,15 @@ impl<const D: usize> Traction<D> {
     pub(crate) fn loaded(&self, positions: &[Vector<D>]) -> impl Iterator<Item = Loaded<D>> {
         self.parts(positions).map(|(particle, area, place)| Loaded {
             particle,
-            area,
+            area: Vector::from_element(area),
             place,
             value: self.value.clone(),
         })
+    }
+
+    /// The load on a particle with this area in m^(D-1) for each component, of the value at a place.
+    pub(crate) fn at(&self, particle: usize, area: Vector<D>, place: &Vector<D>) -> Loaded<D> {
+        Loaded { particle, area, place: padded(place), value: self.value.clone() }
     }
 }
 
@@ -57,8 +62,8 @@ impl<const D: usize> Traction<D> {
 pub(crate) struct Loaded<const D: usize> {
     /// Index of the particle in memory.
     pub particle: usize,
-    /// Reference area in m^(D-1).
-    area: f64,
+    /// Reference area in m^(D-1) that each component acts on.
+    area: Vector<D>,
     place: [f64; 3],
     value: [Arc<dyn SpaceTime>; D],
 }
@@ -66,7 +71,7 @@ pub(crate) struct Loaded<const D: usize> {
 impl<const D: usize> Loaded<D> {
     /// The force in N at a time in s.
     pub fn force(&self, time: f64) -> Vector<D> {
-        self.traction(time) * self.area
+        self.traction(time).component_mul(&self.area)
     }
 
     /// The traction in Pa at a time in s.

@@ -24,6 +24,8 @@ pub(crate) struct Figures {
     pub health: Health,
     /// Largest modulus of a wave over that at rest.
     pub stiffening: f64,
+    /// Index in memory of the particle that has it.
+    pub stiffest: usize,
     /// Smallest modulus of a wave over that at rest.
     pub convexity: f64,
     /// Index in memory of the particle that has it.
@@ -34,6 +36,7 @@ impl Figures {
     const NEUTRAL: Self = Self {
         health: Health::NEUTRAL,
         stiffening: 0.0,
+        stiffest: 0,
         convexity: f64::INFINITY,
         least_convex: 0,
     };
@@ -50,6 +53,7 @@ impl Figures {
                 ..Health::NEUTRAL
             },
             stiffening: (largest / at_rest[1]).max(0.0),
+            stiffest: a,
             convexity: least / at_rest[0],
             least_convex: a,
         }
@@ -57,9 +61,11 @@ impl Figures {
 
     fn worse(self, other: Self) -> Self {
         let other_is_less = other.convexity < self.convexity;
+        let other_is_stiffer = other.stiffening > self.stiffening;
         Self {
             health: self.health.worse(other.health),
             stiffening: self.stiffening.max(other.stiffening),
+            stiffest: if other_is_stiffer { other.stiffest } else { self.stiffest },
             convexity: self.convexity.min(other.convexity),
             least_convex: if other_is_less { other.least_convex } else { self.least_convex },
         }

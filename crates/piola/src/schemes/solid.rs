@@ -2,7 +2,7 @@
 //! and wave speeds of a deformation.
 
 use nalgebra::Matrix3;
-use piola_formulas::hyperelastic::{HyperelasticResponse, Reduced};
+use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse, Reduced};
 use piola_formulas::tensor;
 
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -106,6 +106,11 @@ pub(crate) fn wave_moduli<const D: usize>(
     law: &Reduced<D>,
     displacement_gradient: &Tensor<D>,
 ) -> [f64; 2] {
+    if let (HyperelasticLaw::NeoHookeanLogarithmic(own), false) =
+        (law.law(), law.state().is_free_across())
+    {
+        return own.wave_moduli(displacement_gradient);
+    }
     let tangent = law.tangent(displacement_gradient);
     let strain = tensor::right_cauchy_green(&(displacement_gradient + Tensor::identity()));
     let mut moduli = [f64::INFINITY, 0.0_f64];

@@ -256,6 +256,73 @@ fn rollers_hold_a_homogeneous_stretch() {
     assert!(acceleration.iter().all(|a| a.abs() < 1e-5), "{acceleration:?}");
 }
 
+/// A homogeneous stress is in equilibrium with the load on its face, at all particles: the traction
+/// on an edge gives the traction.
+#[test]
+fn a_face_takes_its_traction_as_a_stress() {
+    fn check<const D: usize>(intervals: [usize; D]) {
+        let cover = (Kernel::ModifiedMollifier, 2.5);
+        let mut made = input(intervals, HyperelasticLaw::linear_elastic, cover, PLAIN);
+        let (traction, positions) = (2e8, made.particles.position.clone());
+        let length = intervals[0] as f64;
+        let all = || 0..positions.len() as u32;
+        let on = |axis: usize, place: f64| -> Vec<u32> {
+            all().filter(|&a| (positions[a as usize][axis] - place).abs() < 1e-9).collect()
+        };
+        for axis in 0..D {
+            let particles = on(axis, 0.0);
+            let continuation = Continuation::Odd;
+            made.mirrors
+                .push((Mirror { axis, place: 0.0, is_upper: false, continuation }, particles[0]));
+            made.prescribed.push(PrescribedVelocity {
+                name: "roller".into(),
+                particles,
+                component: axis,
+                value: Arc::new(0.0),
+            });
+        }
+        let particles = on(0, length);
+        // Of a cell that is half at each edge of the face.
+        let is_at_edge = |a: u32, axis: usize| {
+            let place = positions[a as usize][axis];
+            place < 1e-9 || place > intervals[axis] as f64 - 1e-9
+        };
+        let half = |a: u32, axis: usize| if is_at_edge(a, axis) { 0.5 } else { 1.0 };
+        let area = |&a: &u32| (1..D).map(|axis| half(a, axis)).product::<f64>();
+        made.tractions = vec![Traction {
+            name: "pull".into(),
+            areas: particles.iter().map(area).collect(),
+            particles,
+            places: vec![],
+            value: std::array::from_fn(|i| -> Arc<dyn SpaceTime> {
+                Arc::new(if i == 0 { traction } else { 0.0 })
+            }),
+        }];
+        let (young, nu) = (200e9, 0.3);
+        let (along, across) = match D {
+            2 => ((1.0 - nu * nu) / young, -nu * (1.0 + nu) / young),
+            _ => (1.0 / young, -nu / young),
+        };
+        let strain = |i: usize| traction * if i == 0 { along } else { across };
+        let displaced = |x: &Vector<D>| Vector::from_fn(|i, _| strain(i) * x[i]);
+        made.displacement = positions.iter().map(displaced).collect();
+        let mut scheme = Elastodynamics::new(made).unwrap();
+        let state = scheme.initial_state();
+        let (mut stress, mut acceleration) = (Vec::new(), Vec::new());
+        let all: Vec<u32> = all().collect();
+        scheme.sample(0.0, &state, "stress", &all, &mut stress);
+        scheme.sample(0.0, &state, "acceleration", &all, &mut acceleration);
+        for stress in stress.chunks_exact(D * D) {
+            assert!((stress[0] / traction - 1.0).abs() < 1e-9);
+        }
+        // Of the traction over a spacing and the density.
+        let largest = acceleration.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
+        assert!(largest < 1e-3 * traction / DENSITY, "{largest} of {}", traction / DENSITY);
+    }
+    check([16, 7]);
+    check([14, 5, 5]);
+}
+
 /// What viscosity and damping take is missing from the energy, and the bound on the step holds.
 #[test]
 fn dissipation_is_in_the_ledger() {

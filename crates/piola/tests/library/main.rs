@@ -4,6 +4,7 @@
 //! One program, as the code of the library that is generic over the dimension is compiled anew for each.
 
 mod convergence;
+mod deformed_steps;
 mod elastodynamics;
 mod executor;
 mod failures;

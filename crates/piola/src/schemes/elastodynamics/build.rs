@@ -4,6 +4,7 @@ use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
 use super::edges::{self, Edges};
+use super::tractions::Body;
 use super::{Configuration, Elastodynamics, Form, Mixture, Settings, stable_step::Bound};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
@@ -177,9 +178,6 @@ impl<const D: usize> Elastodynamics<D> {
             domain,
         };
         let (mut loaded, mut found) = (Vec::new(), None);
-        if settings.form == Form::Adjoint {
-            loaded = input.tractions.iter().flat_map(|load| load.loaded(positions)).collect();
-        }
         let (matrix, hourglass) = match settings.form {
             _ if settings.configuration == Configuration::Updated
                 && (D > 1 || settings.form == Form::Adjoint) =>
@@ -209,6 +207,10 @@ impl<const D: usize> Elastodynamics<D> {
         let data = found.as_ref().map_or(0, |edges| edges.slots.len());
         let at_rest = |mixture: &Mixture<D>| mixture.wave_moduli(&Tensor::zeros());
         let moduli: Vec<[f64; 2]> = input.mixtures.iter().map(at_rest).collect();
+        let body = Body { particles: &particles, matrix: &matrix, group: &group, radius: &radius };
+        if settings.form == Form::Adjoint {
+            loaded = input.tractions.iter().flat_map(|load| body.loads(load)).collect();
+        }
         let rate_length = if settings.is_viscous() { count } else { 0 };
         let mut scheme = Self {
             mirrors: input.mirrors.iter().map(|&(mirror, on)| (mirror, on as usize)).collect(),
@@ -221,6 +223,7 @@ impl<const D: usize> Elastodynamics<D> {
             moduli_at_rest: moduli,
             not_convex: None,
             body_forces: input.body_forces,
+            is_evaluated: false,
             displacement: vec![Vector::zeros(); count + data],
             velocity: vec![Vector::zeros(); count + data],
             acceleration: vec![Vector::zeros(); count + data],

@@ -16,11 +16,8 @@ impl<const D: usize> Elastodynamics<D> {
         let mut cauchy = rate * (2.0 * self.settings.viscosity);
         let expansion = rate.trace();
         if expansion < 0.0 {
-            let (linear, quadratic) =
-                (self.artificial_modulus(a), self.settings.artificial_viscosity[1]);
-            let length = self.particles.spacing[a];
-            let density = self.mixtures[self.mixture[a] as usize].density();
-            let pressure = -linear * expansion + quadratic * density * (length * expansion).powi(2);
+            let linear = self.artificial_modulus(a);
+            let pressure = -linear * expansion + self.quadratic_modulus(a) * expansion.powi(2);
             cauchy -= Tensor::identity() * pressure;
         }
         cauchy * inverse.transpose() * tensor::determinant(&deformation)
@@ -28,8 +25,18 @@ impl<const D: usize> Elastodynamics<D> {
 
     /// `b_1 rho c l` of the artificial viscosity, Pa s, with the wave speed at rest and the spacing l.
     pub(super) fn artificial_modulus(&self, a: usize) -> f64 {
+        self.settings.artificial_viscosity[0] * self.impedance(a) * self.particles.spacing[a]
+    }
+
+    /// `b_2 rho l^2` of the artificial viscosity, Pa s^2.
+    pub(super) fn quadratic_modulus(&self, a: usize) -> f64 {
+        let density = self.mixtures[self.mixture[a] as usize].density();
+        self.settings.artificial_viscosity[1] * density * self.particles.spacing[a].powi(2)
+    }
+
+    /// `rho c` of the fastest wave at rest, Pa s/m.
+    pub(super) fn impedance(&self, a: usize) -> f64 {
         let mixture = self.mixture[a] as usize;
-        let impedance = (self.mixtures[mixture].density() * self.moduli_at_rest[mixture][1]).sqrt();
-        self.settings.artificial_viscosity[0] * impedance * self.particles.spacing[a]
+        (self.mixtures[mixture].density() * self.moduli_at_rest[mixture][1]).sqrt()
     }
 }

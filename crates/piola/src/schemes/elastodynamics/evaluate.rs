@@ -20,6 +20,7 @@ impl<const D: usize> Elastodynamics<D> {
     /// Takes displacements and velocities out of a state.
     pub(super) fn load(&mut self, state: &[f64]) {
         let length = Row::<D>::LENGTH;
+        self.is_evaluated = false;
         let count = self.mass.len();
         parallel::for_each_chunk(&mut self.displacement[..count], |first, rows| {
             for (offset, displacement) in rows.iter_mut().enumerate() {
@@ -101,6 +102,7 @@ impl<const D: usize> Elastodynamics<D> {
             hourglass.add_forces(&self.displacement, &data, &mut force);
         }
         self.force = force;
+        self.is_evaluated = true;
     }
 
     /// The data of displacements of a state in which these were found.

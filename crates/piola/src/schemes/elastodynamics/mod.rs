@@ -25,6 +25,7 @@ mod settings;
 mod slopes;
 mod split;
 mod stable_step;
+mod tractions;
 
 pub use build::{ElastodynamicsError, ElastodynamicsInput};
 pub use scheme::DESCRIPTION;
@@ -68,6 +69,8 @@ pub struct Elastodynamics<const D: usize> {
     body_forces: Vec<BodyForce<D>>,
     loaded: Vec<Loaded<D>>,
     prescribed: PrescribedComponents,
+    /// Whether gradients and forces are those of the displacements at hand.
+    is_evaluated: bool,
     displacement: Vec<Vector<D>>,
     velocity: Vec<Vector<D>>,
     acceleration: Vec<Vector<D>>,

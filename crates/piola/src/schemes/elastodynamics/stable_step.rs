@@ -1,32 +1,63 @@
-//! The largest step of central differences.
+//! The largest step of central differences, of the body as it is deformed.
+
+use piola_formulas::tensor;
 
 use super::Elastodynamics;
+use crate::schemes::StepLimit;
 use crate::solve::largest_mode;
 use crate::{Tensor, Vector};
 
 /// By how much the eigenvalues that are found may be too small, as all of Lanczos' values are.
 const SAFETY: f64 = 1.002;
 
+/// Stiffening that is rounding.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Bounds on frequencies of the discrete body at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bound {
     /// Largest eigenvalue of `M^-1 K`, 1/s^2.
     stiffness: f64,
-    /// Largest eigenvalue of `M^-1 C` with the matrix C of all dissipation, 1/s.
-    dissipation: f64,
+    /// Largest eigenvalue of `M^-1 C` with the matrix C of the reference viscosity, 1/s.
+    viscosity: f64,
+    /// Rate of damping, 1/s.
+    damping: f64,
     /// The particle that moves most in the fastest mode.
+    particle: usize,
+}
+
+/// The largest of a ratio over particles, and who has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Most {
+    pub ratio: f64,
     pub particle: usize,
 }
 
+impl Most {
+    pub const NONE: Self = Self { ratio: 0.0, particle: 0 };
+
+    pub fn or(self, other: Self) -> Self {
+        if other.ratio > self.ratio { other } else { self }
+    }
+}
+
 impl Bound {
-    /// Largest step in s of central differences with dissipation by the velocities half a step back,
-    /// theory (67), of a body that has become stiffer by a factor.
-    pub fn step(&self, stiffening: f64) -> f64 {
-        let (stiffness, dissipation) = (self.stiffness * stiffening, self.dissipation);
-        if !(stiffness > 0.0) {
-            return if dissipation > 0.0 { 2.0 / dissipation } else { f64::INFINITY };
-        }
-        4.0 / (dissipation + (dissipation * dissipation + 4.0 * stiffness).sqrt())
+    /// The largest step of central differences with dissipation by the velocities half a step back,
+    /// theory (67), of a body whose stiffness and whose viscosity have grown by these factors since
+    /// rest. It is named by the larger of its two parts.
+    pub fn limit(&self, stiffening: Most, thickening: Most) -> StepLimit {
+        let stiffness = self.stiffness * stiffening.ratio;
+        let dissipation = self.viscosity * thickening.ratio + self.damping;
+        let sum = dissipation + (dissipation * dissipation + 4.0 * stiffness).sqrt();
+        let (name, particle) = match dissipation * dissipation > stiffness {
+            true => ("dissipation", thickening.particle),
+            // The mode at rest tells where small or crowded particles are, until something stiffens.
+            false if stiffening.ratio > 1.0 + ROUND_OFF => ("eigenvalue", stiffening.particle),
+            false => ("eigenvalue", self.particle),
+        };
+        let step = if sum > 0.0 { 4.0 / sum } else { f64::INFINITY };
+        // No number stays no number: no step is safe then.
+        StepLimit { name, step: if sum.is_nan() { sum } else { step }, particle, scaled: true }
     }
 }
 
@@ -39,15 +70,46 @@ impl<const D: usize> Elastodynamics<D> {
             scheme.mixtures[kind].stress_at_rest(&tangents[kind], gradient)
         };
         let (stiffness, particle) = self.largest(true, elastic);
-        let mut dissipation = self.settings.damping;
+        let mut viscosity = 0.0;
         if self.settings.is_viscous() {
             let viscous = |scheme: &Self, rate: &Tensor<D>, a: usize| {
-                (rate + rate.transpose()) * scheme.settings.viscosity
-                    + Tensor::identity() * (rate.trace() * scheme.artificial_modulus(a))
+                let eta = scheme.settings.viscosity;
+                let bulk = scheme.reference_viscosity(a) - 2.0 * eta;
+                (rate + rate.transpose()) * eta + Tensor::identity() * (rate.trace() * bulk)
             };
-            dissipation += self.largest(false, viscous).0;
+            viscosity = self.largest(false, viscous).0;
         }
-        Bound { stiffness, dissipation, particle }
+        Bound { stiffness, viscosity, damping: self.settings.damping, particle }
+    }
+
+    /// By how much the viscosity that a wave meets at particle `a` exceeds the reference viscosity.
+    ///
+    /// Rates `a (x) N` have `d = sym(a (x) m)` with `m = F^-T N`, so that the power of (65) and (66),
+    /// `J (2 eta d : d + b (tr d)^2)`, is at most `J |m|^2 (2 eta + b) |a|^2`, for a and m along the
+    /// direction of the smallest stretch l, where `|m| = 1/l`. The slope of the quadratic part is
+    /// `b = 2 b_2 rho l^2 |tr d|`.
+    pub(super) fn thickening(
+        &self,
+        gradient: &Tensor<D>,
+        rate: Option<&Tensor<D>>,
+        a: usize,
+    ) -> f64 {
+        let deformation = gradient + Tensor::identity();
+        let shortest = tensor::smallest_eigenvalue(&tensor::right_cauchy_green(&deformation));
+        let mut viscosity = 2.0 * self.settings.viscosity + self.artificial_modulus(a);
+        if let (Some(rate), Some(inverse)) = (rate, tensor::inverse(&deformation)) {
+            let expansion = (rate * inverse).trace();
+            viscosity += 2.0 * self.quadratic_modulus(a) * (-expansion).max(0.0);
+        }
+        tensor::determinant(&deformation).abs() / shortest * viscosity / self.reference_viscosity(a)
+    }
+
+    /// What [`Elastodynamics::thickening`] is counted from, Pa s: the sum of all viscosities at rest,
+    /// the quadratic one as large as if the spacing closed at half the wave speed.
+    fn reference_viscosity(&self, a: usize) -> f64 {
+        let [_, quadratic] = self.settings.artificial_viscosity;
+        let impedance = self.impedance(a) * self.particles.spacing[a];
+        2.0 * self.settings.viscosity + self.artificial_modulus(a) + quadratic * impedance
     }
 
     /// Largest eigenvalue of `M^-1/2 K M^-1/2` for a stress that is linear in the gradient, and the
