@@ -6,9 +6,9 @@ use super::{Row, Upwind};
 use crate::parallel;
 use crate::{Tensor, Vector};
 
-/// Neighbours up to so many times the distance to the nearest make the corners of a particle: those
-/// along the axes of a lattice, and not its diagonals.
-const CLOSE: f64 = 1.35;
+/// Neighbours up to so many times the largest spacing of a particle make its corners: those along the
+/// axes of a lattice, and not its diagonals.
+const CLOSE: f64 = 1.1;
 
 /// Directions whose determinant is below this share of the product of their lengths make no corner.
 const FLAT: f64 = 0.1;
@@ -31,7 +31,7 @@ impl<const D: usize> Upwind<D> {
         let mut count = 0;
         for &b in self.support.list.row(a) {
             let reference = self.support.separation(&self.particles.position, a, b);
-            if count < spans.len() && reference.norm() < CLOSE * self.nearest[a] {
+            if count < spans.len() && reference.norm() < CLOSE * self.particles.spacing[a] {
                 let current = self.support.domain.separation(&place(a), &place(b as usize));
                 spans[count] = (reference, current);
                 count += 1;
