@@ -83,6 +83,13 @@ parts = modes(points, volume, 0.58 / 3, 1, points[:, 1] < 1e-9, 1e6 / 1.4, 1000.
 times = np.linspace(0, 2.0, 40_001)
 place = int(np.argmin(np.linalg.norm(points - [1.5, 2.5], axis=1)))
 top = motion(parts, -np.sin(math.pi * points[:, 1] / 5), place, times)
-crossings = zeros(times, top)
-period = 2 * (crossings[-1] - crossings[0]) / (len(crossings) - 1)
+# As `period` of a check: crossings of the middle between the largest and the smallest value, least squares of
+# their time against their number, with an offset for either direction.
+crossings = zeros(times, top - 0.5 * (top.max() + top.min()))
+covariance = variance = 0.0
+for same in (crossings[::2], crossings[1::2]):
+    number = np.arange(len(same)) - 0.5 * (len(same) - 1)
+    covariance += number @ same
+    variance += number @ number
+period = covariance / variance
 print("U6: period of the top", period, "largest", top.max(), "smallest", top.min())
