@@ -8,7 +8,6 @@ use std::fmt::Write;
 use std::rc::Rc;
 
 use super::model::{Against, Case, Level};
-use super::resume::fingerprint;
 use super::simulation::Finished;
 use super::verify::CheckRow;
 use crate::output::Plot;
@@ -103,7 +102,8 @@ impl PageCase {
                 let runs: Vec<_> = row.runs.iter().filter_map(known).collect();
                 let finished = runs.iter().filter_map(|(.., run)| run.as_ref());
                 let work = finished.clone().map(|run| run.summary.evaluations).sum();
-                let sums: Vec<String> = runs.iter().map(|(_, case, _)| fingerprint(case)).collect();
+                let sums: Vec<String> =
+                    runs.iter().map(|(_, case, _)| case.fingerprint()).collect();
                 let mut new = Row::new(row, setting.case.level, work, sums.join(" "));
                 if row.is_long && finished.count() == row.runs.len() {
                     new.date = Some(today.to_owned());

@@ -3,6 +3,7 @@
 mod cases;
 mod citations;
 mod generated;
+mod numbers;
 mod pages;
 mod paths;
 mod promises;

@@ -1,17 +1,33 @@
-//! The validation page is that of the cases: every case, every check, with what it expects.
+//! The validation page and the results that it is made of are those of the cases.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
+use piola::case::page::{Reproduction, Results, Row};
 use piola::case::verify::{CheckRow, Ending, RunResults, VariantRun, verify};
-use piola::case::{LoadOptions, load};
+use piola::case::{Case, Level, LoadOptions, build, load};
 use piola::observe::Series;
 use piola::time::Outcome;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg64;
 
 use super::pages::{below, page, root};
 
 const PAGE: &str = "docs/validation.md";
+const RESULTS: &str = "docs/validation.json";
+const LIST: &str = "cases/reproduction.toml";
 const RENEW: &str =
     "renew it: cargo run --release -- verify cases --full --page docs/validation.md";
+
+/// Evaluations times particles that the sample of rows which is run again may take, all and each:
+/// some ten seconds.
+const WORK: u64 = 12_000_000;
+const WORK_OF_ONE: u64 = 2_500_000;
+/// How far a number may be from that of the page, which was made on another machine, whose
+/// exponentials differ by the last bit; and what counts as round-off.
+const DIFFERENCE: f64 = 1e-4;
+const ROUND_OFF: f64 = 1e-8;
 
 /// A run of which nothing is known: enough to tell which rows there have to be.
 struct NotRun;
@@ -26,24 +42,20 @@ impl RunResults for NotRun {
     }
 }
 
-/// The rows that the case at `path` has at the full setting.
-fn planned(path: &Path) -> (String, Vec<CheckRow>) {
-    let read = |variant: Option<&str>| {
-        let options = LoadOptions { variant: variant.map(str::to_owned), ..LoadOptions::default() };
-        load(path, &options).unwrap_or_else(|problems| panic!("{problems}"))
-    };
-    let base = read(None);
-    let rows = verify(&base, &mut |variant| Ok(VariantRun { case: read(variant), run: NotRun }));
-    (format!("### {}: {}", base.id.as_deref().unwrap_or_default(), base.title), rows)
+pub(super) fn results() -> Results {
+    serde_json::from_str(&page(RESULTS).text).unwrap_or_else(|error| panic!("{RESULTS}: {error}"))
 }
 
-/// The cells of the rows of a section of the page.
-fn rows(section: &str) -> Vec<Vec<String>> {
-    let lines = section.lines().filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |"));
-    lines
-        .skip(1)
-        .map(|line| line.split(" | ").map(|cell| cell.trim().to_owned()).collect())
-        .collect()
+fn read(path: &Path, variant: Option<&str>, level: Level) -> Case {
+    let variant = variant.map(str::to_owned);
+    let options = LoadOptions { variant, level, ..LoadOptions::default() };
+    load(path, &options).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The rows that the case at `path` has at a setting.
+fn planned(path: &Path, level: Level) -> Vec<CheckRow> {
+    let base = read(path, None, level);
+    verify(&base, &mut |name| Ok(VariantRun { case: read(path, name, level), run: NotRun }))
 }
 
 /// The numbers of a cell, without units and names.
@@ -52,40 +64,141 @@ fn numbers(cell: &str) -> Vec<f64> {
     cell.split([' ', ',']).filter_map(|word| word.parse().ok()).collect()
 }
 
-/// The section of the page under a heading.
-fn section<'a>(text: &'a str, heading: &str) -> &'a str {
-    let start =
-        text.find(&format!("\n{heading}\n")).unwrap_or_else(|| panic!("{heading}: {RENEW}"));
-    let rest = &text[start + 1 + heading.len()..];
-    rest.split("\n### ").next().unwrap_or(rest).split("\n## ").next().unwrap_or_default()
+/// Whether a kept row is of what the case plans today.
+fn is_of(row: &Row, planned: &CheckRow) -> bool {
+    let is_comparison = ["less than", "more than"];
+    let is_comparison = is_comparison.iter().any(|words| planned.expected.starts_with(words));
+    row.check == planned.check
+        && (&row.run, &row.quantity) == (&planned.run, &planned.quantity)
+        && (row.against, &row.source, &row.bound)
+            == (planned.against, &planned.source, &planned.bound)
+        && (is_comparison || numbers(&row.expected) == numbers(&planned.expected))
+        && numbers(&row.tolerance) == numbers(&planned.tolerance)
 }
 
 #[test]
-fn the_page_has_every_case_and_every_check() {
-    let text = page(PAGE).text;
-    assert!(text.contains(&format!("version {} wrote it, at the full", env!("CARGO_PKG_VERSION"))));
+fn the_results_are_of_every_check_of_every_case_as_it_is() {
+    let results = results();
     let cases = below("cases", &["/case.toml"]);
-    let mut total = 0;
+    assert_eq!(results.cases.len(), cases.len(), "{RENEW}");
     for case in &cases {
-        let (heading, planned) = planned(&root().join(&case.name));
-        let shown = rows(section(&text, &heading));
-        assert_eq!(shown.len(), planned.len(), "{heading}: {RENEW}");
-        total += shown.len();
-        for (shown, planned) in shown.iter().zip(&planned) {
-            let run = planned.run.as_ref().map_or(String::new(), |run| format!("{run}: "));
-            assert_eq!(shown[0], format!("{run}{}", planned.quantity), "{RENEW}");
-            assert_eq!(shown[5], planned.source, "{RENEW}");
-            let comparison = ["less than", "more than"];
-            if !comparison.iter().any(|relation| planned.expected.starts_with(relation)) {
-                assert_eq!(numbers(&shown[1]), numbers(&planned.expected), "{shown:?}: {RENEW}");
+        let path = root().join(&case.name);
+        let folder = path.parent().and_then(Path::file_name).expect("a case lies in a folder");
+        let id = read(&path, None, Level::Case).id.unwrap_or_default();
+        let kept = results.cases.iter().find(|kept| *kept.name == *folder && kept.id == id);
+        let kept = kept.unwrap_or_else(|| panic!("{}: {RENEW}", case.name));
+        let mut fresh = BTreeSet::new();
+        for level in Level::ALL {
+            let planned = planned(&path, level);
+            for row in kept.rows.iter().filter(|row| row.read_at == level) {
+                let known = planned.iter().any(|planned| is_of(row, planned));
+                assert!(known, "{}: no check makes {row:?}: {RENEW}", case.name);
+                let names = row.runs.iter().map(Option::as_deref);
+                let sums: Vec<String> =
+                    names.map(|name| read(&path, name, level).fingerprint()).collect();
+                assert_eq!(row.fingerprint, sums.join(" "), "{}: {}", case.name, row.name());
+                fresh.insert((row.check, row.run.clone()));
             }
-            assert_eq!(numbers(&shown[2]), numbers(&planned.tolerance), "{shown:?}: {RENEW}");
-            assert_eq!(shown[6], "yes", "{shown:?}");
+            // What is the same at the coarse setting and as it stands is there once.
+            for row in planned.iter().filter(|_| level != Level::Coarse) {
+                let there = fresh.contains(&(row.check, row.run.clone()));
+                assert!(there, "{}: {} is missing: {RENEW}", case.name, row.quantity);
+            }
         }
     }
-    let head = format!("{total} of {total} results in {} cases are as expected.", cases.len());
-    assert!(text.contains(&head), "{head} {RENEW}");
-    assert_eq!(text.matches("\n### ").count(), cases.len(), "{RENEW}");
+}
+
+#[test]
+fn the_page_is_made_of_the_results() {
+    let list = Reproduction::read(&page(LIST).text).unwrap_or_else(|error| panic!("{error}"));
+    assert!(results().page(&list, "validation") == page(PAGE).text, "{RENEW}");
+}
+
+/// A number with what stands behind it, apart.
+fn value(text: &str) -> Option<f64> {
+    text.split(' ').next()?.parse().ok()
+}
+
+#[test]
+fn a_sample_of_the_results_comes_out_again() {
+    let results = results();
+    let cases = results.cases.iter();
+    let rows = cases.flat_map(|case| case.rows.iter().map(move |row| (case, row)));
+    let mut rows: Vec<_> = rows
+        .filter(|(_, row)| row.work <= WORK_OF_ONE && row.was_run() && row.got != "-")
+        .collect();
+    // Another page, another sample.
+    let seed = page(RESULTS)
+        .text
+        .bytes()
+        .fold(0_u64, |sum, byte| sum.wrapping_mul(0x0100_0000_01b3).wrapping_add(u64::from(byte)));
+    rows.shuffle(&mut Pcg64::seed_from_u64(seed));
+    let mut work = 0;
+    let mut count = 0;
+    for (case, row) in rows {
+        if work + row.work > WORK {
+            continue;
+        }
+        let path = root().join("docs").join(&case.link).with_file_name("case.toml");
+        let base = read(&path, None, row.read_at);
+        let again = verify(&base, &mut |name| {
+            if !row.runs.iter().any(|run| run.as_deref() == name) {
+                return Err("no run of this row".to_owned());
+            }
+            let case = read(&path, name, row.read_at);
+            let simulation = build(&case).map_err(|problems| problems.to_string())?;
+            let run = simulation.run(None, &Default::default(), &mut |_| {});
+            Ok(VariantRun { case, run: run.map_err(|error| error.to_string())? })
+        });
+        let again = again.iter().find(|again| is_of(row, again)).expect("the check is there");
+        let got = again.got.as_ref().map_or_else(|| "-".to_owned(), ToString::to_string);
+        let is_same = match (value(&row.got), value(&got)) {
+            (Some(old), Some(new)) => (old - new).abs() <= (DIFFERENCE * old.abs()).max(ROUND_OFF),
+            _ => row.got == got,
+        };
+        let name = format!("{} {}: {}", case.name, row.read_at.name(), row.name());
+        assert!(is_same, "{name}: the page has {}, a run {got}: {RENEW}", row.got);
+        assert_eq!(row.pass, again.pass, "{name}: {RENEW}");
+        work += row.work;
+        count += 1;
+    }
+    assert!(count >= 10, "the sample has {count} rows");
+}
+
+#[test]
+fn every_check_says_what_it_is_worth_and_why_its_bound_is_what_it_is() {
+    for case in below("cases", &["/case.toml"]) {
+        let tree: toml::Table = case.text.parse().expect("case files are TOML");
+        for check in tree.get("check").and_then(toml::Value::as_array).into_iter().flatten() {
+            let has = |key: &str| check.get(key).is_some();
+            let what = &check["quantity"];
+            assert!(has("against"), "{}: {what}: `against` is missing", case.name);
+            let bounds = ["tolerance", "at_least", "at_most", "order", "ratio"];
+            let is_bound = bounds.into_iter().any(has);
+            assert!(!is_bound || has("reason"), "{}: {what}: `reason` is missing", case.name);
+        }
+    }
+}
+
+#[test]
+fn every_variant_has_a_check() {
+    for case in below("cases", &["/case.toml"]) {
+        let tree: toml::Table = case.text.parse().expect("case files are TOML");
+        let list = |key: &str| tree.get(key).and_then(toml::Value::as_array).into_iter().flatten();
+        let used = |name: &toml::Value, key: &str| {
+            let of_check = list("check").any(|check| check.get(key) == Some(name));
+            let compared = ["less_than", "more_than"];
+            let compared =
+                list("check").any(|check| compared.iter().any(|key| check.get(key) == Some(name)));
+            let of_sweep = list("sweep").any(|sweep| sweep.get(key) == Some(name));
+            of_check || compared || of_sweep
+        };
+        for (table, key) in [("variant", "variant"), ("sweep", "sweep")] {
+            for entry in list(table) {
+                assert!(used(&entry["name"], key), "{}: no check of {}", case.name, entry["name"]);
+            }
+        }
+    }
 }
 
 #[test]

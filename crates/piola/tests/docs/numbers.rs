@@ -1,0 +1,92 @@
+//! No number in a table of a README that the results or the case do not hold.
+
+use piola::case::page::CaseResults;
+
+use super::pages::{below, page, root};
+use super::validation::results;
+
+/// Units that a table may have in place of those of the results: %, mm, us, kPa and so on.
+const FACTORS: [f64; 7] = [1.0, 1e2, 1e3, 1e6, 1e-2, 1e-3, 1e-6];
+
+/// The numbers of `text`, each as it is written: digits with a point, and perhaps an exponent.
+fn written(text: &str) -> Vec<String> {
+    let is_part = |c: char| c.is_ascii_digit() || ".-+e".contains(c);
+    let words =
+        text.split(|c: char| !is_part(c)).map(|word| word.trim_matches(['.', '-', '+', 'e']));
+    words
+        .filter(|word| word.contains('.') && word.parse::<f64>().is_ok())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// All numbers that a case has results of, or files.
+fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, String) {
+    let cells = |text: &str| {
+        let words = text.split([' ', ',', ';', '(', ')', '=']).map(str::to_owned);
+        words.filter_map(|word| word.trim_end_matches('%').parse().ok()).collect::<Vec<f64>>()
+    };
+    let numbers = case.rows.iter().flat_map(|row| {
+        let own = [&row.got, &row.expected, &row.tolerance, &row.off_by, &row.source];
+        let texts = own.into_iter().chain(&row.members).chain(&row.run).chain(&row.bound);
+        texts.flat_map(|text| cells(text)).collect::<Vec<_>>()
+    });
+    let files = below(folder, &["case.toml", ".csv", ".py"]);
+    (numbers.collect(), files.into_iter().map(|file| file.text).collect())
+}
+
+/// Whether a number is `written` with fewer digits.
+fn is_rounded(written: &str, value: f64) -> bool {
+    let (mantissa, exponent) = written.split_once('e').unwrap_or((written, "0"));
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let (Ok(number), Ok(exponent)) = (written.parse::<f64>(), exponent.parse::<i32>()) else {
+        return false;
+    };
+    let unit = 10_f64.powi(exponent - i32::try_from(decimals).unwrap_or(0));
+    (value.abs() - number.abs()).abs() <= 0.5001 * unit
+}
+
+fn unheld(table: &str, case: &CaseResults, folder: &str) -> Vec<String> {
+    let (values, files) = known(case, folder);
+    let held = |number: &String| {
+        let rounded = |value: &f64| FACTORS.iter().any(|factor| is_rounded(number, value * factor));
+        files.contains(number.as_str()) || values.iter().any(rounded)
+    };
+    written(table).into_iter().filter(|number| !held(number)).collect()
+}
+
+fn tables(text: &str) -> String {
+    text.lines().filter(|line| line.starts_with('|')).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn numbers_in_tables_of_cases_are_those_of_the_results() {
+    let results = results();
+    let mut wrong = Vec::new();
+    for case in &results.cases {
+        let path = root().join("docs").join(&case.link);
+        let folder = path.parent().expect("a case lies in a folder");
+        let folder = folder.canonicalize().expect("it is there");
+        let base = root().canonicalize().expect("it is there");
+        let folder = folder.strip_prefix(base).expect("it is below the root").display().to_string();
+        let readme = page(&format!("{folder}/README.md"));
+        let numbers = unheld(&tables(&readme.text), case, &folder);
+        if !numbers.is_empty() {
+            wrong.push(format!("{}: {}", readme.name, numbers.join(", ")));
+        }
+        // The table of all cases has a row for each.
+        let main = page("README.md");
+        let rows = main.text.lines().filter(|line| line.contains(&format!("]({folder})")));
+        let numbers = unheld(&rows.collect::<Vec<_>>().join("\n"), case, &folder);
+        if !numbers.is_empty() {
+            wrong.push(format!("README.md, {folder}: {}", numbers.join(", ")));
+        }
+    }
+    assert!(wrong.is_empty(), "neither results nor files of the case hold:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn numbers_are_compared_with_the_digits_they_have() {
+    assert_eq!(written("| 0.008 | -1.5e-3 m, 25 | v1.2.3 |"), ["0.008", "1.5e-3"]);
+    assert!(is_rounded("0.008", 0.00799) && !is_rounded("0.008", 0.0086));
+    assert!(is_rounded("1.5e-3", 0.00149) && is_rounded("0.77", 0.7699));
+}
