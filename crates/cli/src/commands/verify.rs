@@ -40,7 +40,12 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
         }
         match one(path, arguments, &stop) {
             Found::Nothing => {}
-            Found::Unreadable(row) => rows.push(*row),
+            Found::Unreadable(row) => {
+                if let Some(page) = &mut page {
+                    page.add_unreadable(&row, path);
+                }
+                rows.push(*row);
+            }
             Found::Case(case) => {
                 rows.push((case.id(), case.rows(&today)));
                 if let Some(page) = &mut page {

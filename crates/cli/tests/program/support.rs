@@ -59,6 +59,7 @@ reduce = "initial"
 expected = 0.0
 tolerance = 1e-15
 absolute = true
+against = "exact"
 source = "it starts at rest"
 "#;
 

@@ -13,11 +13,22 @@ fn checks_that_pass() {
     let place = Place::with_bar();
     let (stdout, _) = place.run("verify bar", 0);
     let mut lines = stdout.lines();
-    assert_contains(lines.next().unwrap(), &["id", "quantity", "got", "expected", "tolerance"]);
+    assert_contains(
+        lines.next().unwrap(),
+        &["id", "setting", "quantity", "got", "expected", "tolerance"],
+    );
     let row: Vec<&str> = lines.next().unwrap().split("  ").filter(|s| !s.is_empty()).collect();
     let row: Vec<&str> = row.iter().map(|cell| cell.trim()).collect();
-    let expected =
-        ["T1", "tip.displacement.x initial", "0 m", "0 m", "1e-15 m", "it starts at rest", "yes"];
+    let expected = [
+        "T1",
+        "coarse",
+        "tip.displacement.x initial",
+        "0 m",
+        "0 m",
+        "1e-15 m",
+        "it starts at rest",
+        "yes",
+    ];
     assert_eq!(row, expected);
     assert_contains(&stdout, &["1 check of 1 case: 1 passed, 0 failed"]);
     // It leaves no files.

@@ -130,7 +130,7 @@ impl Results {
     /// Puts the results of a case in the place of earlier ones, of which those of runs that take
     /// long are kept where the case has not changed since.
     pub fn put(&mut self, mut case: CaseResults) {
-        let is_same = |known: &CaseResults| known.name == case.name && known.id == case.id;
+        let is_same = |known: &CaseResults| known.link == case.link;
         if let Some(index) = self.cases.iter().position(is_same) {
             case.keep_long(&self.cases[index]);
             self.cases.remove(index);

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
-use piola::case::page::{PageCase, Reproduction, Results};
+use piola::case::page::{CaseResults, PageCase, Reproduction, Results, Row};
 use piola::output::{Plot, atomic};
 
 use crate::exit::{Exit, Fault};
@@ -67,6 +67,17 @@ impl Writer {
             self.charts.extend(charts);
         }
         Ok(())
+    }
+
+    /// Adds the case at `path`, which cannot be read: the name of its folder, and a row that says so.
+    pub fn add_unreadable(&mut self, (name, rows): &(String, Vec<Row>), path: &Path) {
+        self.results.put(CaseResults {
+            id: name.clone(),
+            name: name.clone(),
+            link: relative(&self.above, path),
+            rows: rows.clone(),
+            ..CaseResults::default()
+        });
     }
 
     /// Writes page, charts and results, and removes charts that no case has any more. The list of

@@ -16,7 +16,7 @@ pub struct Results {
 }
 
 /// Those of one case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CaseResults {
     /// Its row of the reproduction list, or the name of its folder.
     pub id: String,
