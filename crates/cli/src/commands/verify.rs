@@ -30,7 +30,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     let today = page::today();
     let mut rows: Vec<Rows> = Vec::new();
     let mut page = match &arguments.page {
-        Some(file) => Some(page::Writer::new(file)?),
+        Some(file) => Some(page::Writer::new(file, &arguments.paths)?),
         None => None,
     };
     let paths = discover(&arguments.paths)?;
@@ -42,7 +42,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
             Found::Nothing => {}
             Found::Unreadable(row) => {
                 if let Some(page) = &mut page {
-                    page.add_unreadable(&row, path);
+                    page.add_unreadable(&row, path)?;
                 }
                 rows.push(*row);
             }
@@ -75,7 +75,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
         return Ok(Exit::Interrupted);
     }
     if let Some(page) = page.filter(|_| !rows.is_empty()) {
-        page.write(&arguments.paths)?;
+        page.report()?;
     }
     match (total + skipped, failed) {
         (0, _) => Err(Fault::new(Exit::FailedCheck, nothing_found(arguments))),

@@ -21,17 +21,18 @@ pub fn today() -> String {
 }
 
 /// A page in the making: `NAME.md`, with its charts in the folder `NAME` and its results in
-/// `NAME.json`, where those of cases that are not run again stay as they are.
+/// `NAME.json`, where those of cases that are not run again stay as they are. It is written after
+/// each case, so that nothing is lost where the next one is interrupted.
 pub struct Writer {
     file: PathBuf,
     above: PathBuf,
-    results: Results,
-    charts: Vec<(String, Plot)>,
+    list: Vec<Reproduction>,
+    charts: usize,
 }
 
 impl Writer {
-    /// A page for `file`, with the results of an earlier one.
-    pub fn new(file: &Path) -> Result<Self, Fault> {
+    /// A page for `file`. The list of what the papers show is looked for above `paths`.
+    pub fn new(file: &Path, paths: &[PathBuf]) -> Result<Self, Fault> {
         if file.with_extension("") == file {
             let message = format!("the page {} needs an ending, for example `.md`", file.display());
             return Err(Fault::new(Exit::BadCase, message));
@@ -39,19 +40,24 @@ impl Writer {
         let above = file.parent().filter(|above| !above.as_os_str().is_empty());
         let above = above.unwrap_or(Path::new(".")).to_owned();
         fs::create_dir_all(&above).map_err(|error| fault(&above, &error))?;
-        let known = file.with_extension("json");
-        let mut results: Results = match fs::read_to_string(&known) {
-            Err(_) => Results::default(),
-            Ok(text) => serde_json::from_str(&text).map_err(|error| {
-                let message = format!(
-                    "{} holds no results of an earlier page: {error}; remove it to start anew",
-                    known.display()
-                );
-                Fault::new(Exit::BadCase, message)
-            })?,
-        };
-        results.cases.retain(|case| above.join(&case.link).exists());
-        Ok(Self { file: file.to_owned(), above, results, charts: Vec::new() })
+        let writer = Self { file: file.to_owned(), above, list: list(paths)?, charts: 0 };
+        writer.earlier()?;
+        Ok(writer)
+    }
+
+    /// The results that there are, without those of cases that have gone.
+    fn earlier(&self) -> Result<Results, Fault> {
+        let file = self.file.with_extension("json");
+        let Ok(text) = fs::read_to_string(&file) else { return Ok(Results::default()) };
+        let mut results: Results = serde_json::from_str(&text).map_err(|error| {
+            let name = file.display();
+            let message = format!(
+                "{name} holds no results of an earlier page: {error}; remove it to start anew"
+            );
+            Fault::new(Exit::BadCase, message)
+        })?;
+        results.cases.retain(|case| self.above.join(&case.link).exists());
+        Ok(results)
     }
 
     /// Adds the case at `path`.
@@ -62,41 +68,46 @@ impl Writer {
         }
         let target = if target.is_file() { target } else { path.to_owned() };
         case.link = relative(&self.above, &target);
-        if let Some((results, charts)) = case.results(today) {
-            self.results.put(results);
-            self.charts.extend(charts);
+        match case.results(today) {
+            Some((results, charts)) => self.write(results, &charts),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// Adds the case at `path`, which cannot be read: the name of its folder, and a row that says so.
-    pub fn add_unreadable(&mut self, (name, rows): &(String, Vec<Row>), path: &Path) {
-        self.results.put(CaseResults {
+    pub fn add_unreadable(
+        &mut self,
+        (name, rows): &(String, Vec<Row>),
+        path: &Path,
+    ) -> Result<(), Fault> {
+        let results = CaseResults {
             id: name.clone(),
             name: name.clone(),
             link: relative(&self.above, path),
             rows: rows.clone(),
             ..CaseResults::default()
-        });
+        };
+        self.write(results, &[])
     }
 
-    /// Writes page, charts and results, and removes charts that no case has any more. The list of
-    /// what the papers show is looked for below `paths`.
-    pub fn write(mut self, paths: &[PathBuf]) -> Result<(), Fault> {
+    /// Writes page, results and the charts of a case, and removes charts that no case has any more.
+    fn write(&mut self, case: CaseResults, charts: &[(String, Plot)]) -> Result<(), Fault> {
         let io = |error| Fault::new(Exit::Io, error);
-        self.results.version = env!("CARGO_PKG_VERSION").to_owned();
+        let mut results = self.earlier()?;
+        results.version = env!("CARGO_PKG_VERSION").to_owned();
+        results.put(case);
         let folder = self.file.with_extension("");
         let name =
             folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
-        let list = list(paths)?;
-        let page = self.results.page(&list, &name);
-        if !self.charts.is_empty() {
+        let page = results.page(&self.list, &name);
+        if !charts.is_empty() {
             fs::create_dir_all(&folder).map_err(|error| fault(&folder, &error))?;
         }
-        for (chart, plot) in &self.charts {
+        for (chart, plot) in charts {
             plot.write_png(&folder.join(chart)).map_err(io)?;
         }
-        let json = serde_json::to_string_pretty(&self.results).unwrap_or_default() + "\n";
+        self.charts += charts.len();
+        let json = serde_json::to_string_pretty(&results).unwrap_or_default() + "\n";
         let earlier = fs::read_to_string(&self.file).unwrap_or_default();
         atomic::write_file(&self.file.with_extension("json"), |out| out.write_all(json.as_bytes()))
             .map_err(io)?;
@@ -106,7 +117,12 @@ impl Writer {
             // It may be gone already.
             let _ = fs::remove_file(folder.join(chart));
         }
-        let charts = count(self.charts.len() as u64, "chart");
+        Ok(())
+    }
+
+    /// Says what has been written.
+    pub fn report(&self) -> Result<(), Fault> {
+        let charts = count(self.charts as u64, "chart");
         terminal::print(&format!("wrote {} with {charts}\n", self.file.display()))
     }
 }
