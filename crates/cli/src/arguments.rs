@@ -57,7 +57,8 @@ pub struct CaseArguments {
     /// The case file
     #[arg(value_name = "CASE", value_hint = ValueHint::FilePath)]
     pub case: PathBuf,
-    /// Set a key of the case file: a path and a TOML value, for example body.column.spacing=0.1
+    /// Set a key of the case file: a path and a TOML value, for example body.column.spacing=0.1; or
+    /// append to a list: 'load+={ kind = "body_force", acceleration = ["0", "-9.81"] }'
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,
     /// Apply this variant of the case, or this member of a sweep (NAME.1, NAME.2, ...)

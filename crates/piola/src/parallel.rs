@@ -44,8 +44,8 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     if count <= CHUNK {
         return partial(0);
     }
-    let partials: Vec<f64> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
-    partials.iter().sum()
+    let [sum] = sums_of_chunks(count.div_ceil(CHUNK), |chunk| [partial(chunk)]);
+    sum
 }
 
 /// Adds up `N` numbers a row over `0..count`: `add(i, sums)` adds the terms of row i. The order
@@ -59,15 +59,31 @@ pub fn sums<const N: usize>(count: usize, add: impl Fn(usize, &mut [f64; N]) + S
     if count <= CHUNK {
         return partial(0);
     }
-    let partials: Vec<[f64; N]> = (0..count.div_ceil(CHUNK)).into_par_iter().map(partial).collect();
-    add_up(&partials)
+    sums_of_chunks(count.div_ceil(CHUNK), partial)
 }
 
-fn add_up<const N: usize>(partials: &[[f64; N]]) -> [f64; N] {
-    partials.iter().fold([0.0; N], |mut sums, part| {
+/// Chunks whose sums are kept side by side until they are added, so that none are allocated.
+const SIDE_BY_SIDE: usize = 64;
+
+/// Adds up the sums of all chunks in their order.
+fn sums_of_chunks<const N: usize>(
+    chunks: usize,
+    partial: impl Fn(usize) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let mut kept = [[0.0; N]; SIDE_BY_SIDE];
+    let mut sums = [0.0; N];
+    for first in (0..chunks).step_by(SIDE_BY_SIDE) {
+        let kept = &mut kept[..SIDE_BY_SIDE.min(chunks - first)];
+        kept.par_iter_mut().enumerate().for_each(|(k, part)| *part = partial(first + k));
+        add_to(&mut sums, kept);
+    }
+    sums
+}
+
+fn add_to<const N: usize>(sums: &mut [f64; N], parts: &[[f64; N]]) {
+    for part in parts {
         sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-        sums
-    })
+    }
 }
 
 /// The larger of two numbers, infinite where the second is not a number.
@@ -134,10 +150,18 @@ pub fn sums_over_rows<const N: usize, T: Send>(
     if rows.len() <= CHUNK * length {
         return chunk(0, rows);
     }
-    let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
-    let partials: Vec<[f64; N]> =
-        chunks.map(|(number, rows)| chunk(number * CHUNK, rows)).collect();
-    add_up(&partials)
+    let mut kept = [[0.0; N]; SIDE_BY_SIDE];
+    let mut sums = [0.0; N];
+    let side_by_side = SIDE_BY_SIDE * CHUNK;
+    for (block, rows) in rows.chunks_mut(side_by_side * length).enumerate() {
+        let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
+        let count = chunks.len();
+        chunks.zip(&mut kept[..count]).for_each(|((number, rows), part)| {
+            *part = chunk(block * side_by_side + number * CHUNK, rows);
+        });
+        add_to(&mut sums, &kept[..count]);
+    }
+    sums
 }
 
 /// As [`sums_over_rows`], over rows of two arrays beside each other, of `lengths` numbers each:
@@ -156,11 +180,21 @@ pub fn sums_over_pairs_of_rows<const N: usize>(
     if rows.len() <= CHUNK * lengths[0] {
         return chunk(0, rows, others);
     }
-    let pairs = rows.par_chunks_mut(CHUNK * lengths[0]);
-    let pairs = pairs.zip(others.par_chunks_mut(CHUNK * lengths[1])).enumerate();
-    let partials: Vec<[f64; N]> =
-        pairs.map(|(number, (rows, others))| chunk(number * CHUNK, rows, others)).collect();
-    add_up(&partials)
+    let mut kept = [[0.0; N]; SIDE_BY_SIDE];
+    let mut sums = [0.0; N];
+    let side_by_side = SIDE_BY_SIDE * CHUNK;
+    let blocks = rows.chunks_mut(side_by_side * lengths[0]);
+    let blocks = blocks.zip(others.chunks_mut(side_by_side * lengths[1])).enumerate();
+    for (block, (rows, others)) in blocks {
+        let pairs = rows.par_chunks_mut(CHUNK * lengths[0]);
+        let pairs = pairs.zip(others.par_chunks_mut(CHUNK * lengths[1])).enumerate();
+        let count = pairs.len();
+        pairs.zip(&mut kept[..count]).for_each(|((number, (rows, others)), part)| {
+            *part = chunk(block * side_by_side + number * CHUNK, rows, others);
+        });
+        add_to(&mut sums, &kept[..count]);
+    }
+    sums
 }
 
 /// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them, and

@@ -36,7 +36,7 @@ impl Drop for Browser {
     }
 }
 
-/// The browser of this machine; `None`, with a word about it, if there is none.
+/// The browser of this machine; `None`, with a word about it, if there is none and none is required.
 pub fn find() -> Option<PathBuf> {
     let given = std::env::var_os("PIOLA_BROWSER").map(PathBuf::from);
     let paths = std::env::var_os("PATH").unwrap_or_default();
@@ -46,7 +46,7 @@ pub fn find() -> Option<PathBuf> {
     if found.is_none() {
         let required = std::env::var("PIOLA_BROWSER_REQUIRED").is_ok_and(|value| value == "1");
         assert!(!required, "no browser is found: install chromium, or set PIOLA_BROWSER");
-        println!("not run: no browser is found. Install chromium, or set PIOLA_BROWSER");
+        eprintln!("no browser is found: install chromium, or set PIOLA_BROWSER");
     }
     found
 }

@@ -1,6 +1,8 @@
 //! What a reader of the report sees and does.
 
-use crate::browser::{Browser, find};
+use std::path::Path;
+
+use crate::browser::Browser;
 use crate::results::Results;
 
 /// What is drawn of the particles: pixels that are not background, a number for where they are,
@@ -40,7 +42,7 @@ fn drawn(browser: &mut Browser, canvas: &str) -> Drawn {
 }
 
 /// Opens a report and waits until its particles are drawn.
-fn opened(browser: &mut Browser, page: &std::path::Path) {
+fn opened(browser: &mut Browser, page: &Path) {
     browser.open(page);
     browser.wait_for("document.getElementById('view').dataset.ready === 'yes'");
     settled(browser);
@@ -72,12 +74,10 @@ fn assert_quiet(browser: &mut Browser) {
     assert!(requests[0].starts_with("file://") && requests[0].ends_with("report.html"));
 }
 
-#[test]
-fn a_2d_report_shows_its_particles_and_obeys() {
-    let Some(program) = find() else { return };
+pub fn a_2d_report_shows_its_particles_and_obeys(program: &Path) {
     let results = Results::new();
     let page = results.of_repository("upwind/column-impact", &[]);
-    let mut browser = Browser::start(&program, &[]);
+    let mut browser = Browser::start(program, &[]);
     opened(&mut browser, &page);
     browser.shot("2d");
     let last = drawn(&mut browser, "drawing");
@@ -139,13 +139,11 @@ fn a_2d_report_shows_its_particles_and_obeys() {
     assert_quiet(&mut browser);
 }
 
-#[test]
-fn a_3d_report_turns() {
-    let Some(program) = find() else { return };
+pub fn a_3d_report_turns(program: &Path) {
     let results = Results::new();
     let coarse = ["--set", "body.column.spacing=0.5"];
     let page = results.of_repository("upwind/column-impact-3d", &coarse);
-    let mut browser = Browser::start(&program, &[]);
+    let mut browser = Browser::start(program, &[]);
     opened(&mut browser, &page);
     browser.shot("3d");
     let first = drawn(&mut browser, "drawing");
@@ -168,12 +166,10 @@ fn a_3d_report_turns() {
     assert_quiet(&mut browser);
 }
 
-#[test]
-fn a_1d_report_draws_a_curve_beside_its_reference() {
-    let Some(program) = find() else { return };
+pub fn a_1d_report_draws_a_curve_beside_its_reference(program: &Path) {
     let results = Results::new();
     let page = results.of_repository("upwind/bar-step", &[]);
-    let mut browser = Browser::start(&program, &[]);
+    let mut browser = Browser::start(program, &[]);
     opened(&mut browser, &page);
     let last = drawn(&mut browser, "overlay");
     assert!(last.pixels > 3_000, "{last:?}");
@@ -185,12 +181,10 @@ fn a_1d_report_draws_a_curve_beside_its_reference() {
     assert_quiet(&mut browser);
 }
 
-#[test]
-fn without_webgl_the_page_says_so_and_shows_pictures() {
-    let Some(program) = find() else { return };
+pub fn without_webgl_the_page_says_so_and_shows_pictures(program: &Path) {
     let results = Results::new();
     let page = results.of_repository("upwind/column-impact", &[]);
-    let mut browser = Browser::start(&program, &["--disable-3d-apis"]);
+    let mut browser = Browser::start(program, &["--disable-3d-apis"]);
     browser.open(&page);
     browser.wait_for("document.getElementById('trouble').textContent.includes('WebGL 2')");
     assert_eq!(browser.evaluate("document.getElementById('view').hidden"), true);
@@ -230,16 +224,14 @@ expected = "</td><script>window.hacked = 1</script>"
 source = "\" onmouseover=\"window.hacked = 1"
 "#;
 
-#[test]
-fn a_hostile_case_stays_text_and_a_failure_comes_first() {
-    let Some(program) = find() else { return };
+pub fn a_hostile_case_stays_text_and_a_failure_comes_first(program: &Path) {
     let results = Results::new();
     let page = results.of_text(HOSTILE, 3);
     // The names of bodies are plain in any case that runs, but who knows what became of the record.
     let script =
         "</script><script>window.hacked = 1</script><img src=x onerror='window.hacked = 1'>";
     results.change_record("\"block\"", &format!("\"{script}\""));
-    let mut browser = Browser::start(&program, &[]);
+    let mut browser = Browser::start(program, &[]);
     opened(&mut browser, &page);
     let title = "document.querySelector('h1').textContent";
     let start = browser.evaluate(title);

@@ -28,6 +28,8 @@ pub(super) struct Context<'a> {
     pub parameters: Vec<(String, Option<f64>)>,
     /// What was found so far.
     pub problems: Vec<Problem>,
+    /// What is left out without being wrong, in sentences.
+    pub remarks: Vec<String>,
 }
 
 impl Context<'_> {

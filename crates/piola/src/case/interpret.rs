@@ -37,6 +37,16 @@ pub(super) struct Setting<'a> {
     pub level: Level,
     /// Folder of the case file. `None` where the text is from elsewhere: files are not looked for.
     pub folder: Option<&'a Path>,
+    /// Whether the case is not as its author wrote it, by overrides of the command line: what it says
+    /// about the run may then be left out where it does not fit any more.
+    pub is_changed: bool,
+}
+
+impl Setting<'_> {
+    /// Whether it is the case itself.
+    fn is_plain(&self) -> bool {
+        self.variant.is_none() && self.level == Level::Case
+    }
 }
 
 /// Reads the whole case. `None` where something is refused, which is reported in `context` then.
@@ -46,7 +56,8 @@ pub(super) fn case(
     setting: Setting<'_>,
 ) -> Option<Case> {
     let dimension = context.dimension?;
-    let mut reader = Reader { context, dimension, setting, names: Names::default() };
+    let mut reader =
+        Reader { context, dimension, setting, names: Names::default(), late: Late::default() };
     reader.collect_names(record);
     let scheme = record.record("scheme").and_then(|scheme| reader.scheme(scheme));
     reader.names.scheme = scheme.as_ref().map_or("upwind", |scheme| scheme.value.name());
@@ -96,6 +107,7 @@ pub(super) fn case(
         set: strings(paper, "set"),
         is_long: paper.boolean("long").unwrap_or(false),
     });
+    reader.say_what_is_late(end.unwrap_or_default());
     let parameters = reader.context.parameters.iter();
     Some(Case {
         id: record.text("id").map(|id| id.value),
@@ -122,6 +134,8 @@ pub(super) fn case(
         checks: checks.into_iter().collect::<Option<_>>()?,
         variant: setting.variant.map(str::to_owned),
         level: setting.level,
+        is_changed: setting.is_changed,
+        remarks: context.remarks.clone(),
         as_run: String::new(),
         sources: context.sources.into(),
     })
@@ -133,6 +147,14 @@ struct Reader<'r, 'c> {
     dimension: usize,
     setting: Setting<'r>,
     names: Names,
+    late: Late,
+}
+
+/// What a run is too short for.
+#[derive(Default)]
+struct Late {
+    pictures: Vec<f64>,
+    checks: Vec<f64>,
 }
 
 /// The names that other tables refer to.
@@ -222,6 +244,26 @@ impl Reader<'_, '_> {
             return self.refuse(problem.help("paths are relative to the folder of the case file"));
         }
         Some(Located::new(path, name.place))
+    }
+
+    /// Remarks on what lies after the end of the run.
+    fn say_what_is_late(&mut self, end: f64) {
+        let Late { pictures, checks } = std::mem::take(&mut self.late);
+        for (what, consequence, mut times) in [
+            ("pictures", "they are left out", pictures),
+            ("checks", "they cannot be evaluated", checks),
+        ] {
+            times.sort_by(f64::total_cmp);
+            times.dedup();
+            let Some(first) = times.first() else { continue };
+            let times = match times.last().filter(|last| *last > first) {
+                Some(last) => format!("from {first} to {last} s"),
+                None => format!("at {first} s"),
+            };
+            self.context
+                .remarks
+                .push(format!("the run ends at {end} s, before the {what} {times}: {consequence}"));
+        }
     }
 
     fn domain(&mut self, record: Option<&Record>) -> Option<Domain> {

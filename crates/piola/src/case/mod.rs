@@ -56,7 +56,8 @@ const FLAG: &str = "--set ";
 /// What to read of a case file, beside the file itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
-    /// Overrides `path.to.key=value`, applied last, in this order.
+    /// Overrides `path.to.key=value` and `path.to.list+=value`, applied last, in this order. They are
+    /// meant for the setting that is read, so that the others are not looked at where there are any.
     pub overrides: Vec<String>,
     /// The variant, `None` or `base` for the case itself; `NAME.3` for the third member of the
     /// sweep `NAME`.
@@ -70,7 +71,7 @@ pub struct LoadOptions {
 ///
 /// # Errors
 /// All problems at once; [`Problems::is_io`] where the file cannot be read. The settings that the
-/// options do not ask for (variants, coarse, paper) are checked too.
+/// options do not ask for (variants, coarse, paper) are checked too where there are no overrides.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Case, Problems> {
     let source = document::read(path)?;
     // A bare file name has the empty path as its folder, to which names can be joined.
@@ -98,9 +99,12 @@ fn assemble(
     let sources: Arc<[SourceText]> = std::iter::once(file).chain(flags).collect();
     let tree = parsed.map_err(|problems| Problems::new(sources.clone(), problems))?;
     let variant = options.variant.as_deref().filter(|name| *name != "base");
-    let wanted = Setting { variant, level: options.level, folder };
+    let is_changed = !options.overrides.is_empty();
+    let wanted = Setting { variant, level: options.level, folder, is_changed };
     let case = read(&tree, &sources, options, wanted).and_then(|(case, changed)| {
-        others(&tree, &sources, options, wanted, &case)?;
+        if !is_changed {
+            others(&tree, &sources, options, wanted, &case)?;
+        }
         Ok(Case { as_run: document::write(&changed), ..case })
     });
     case.map_err(|problems| Problems::new(sources, problems))
@@ -127,7 +131,7 @@ fn read(
 fn recorded(text: &str, variant: Option<&str>) -> Result<Case, Problems> {
     let sources: Arc<[SourceText]> =
         Arc::new([SourceText { name: "the case as run".to_owned(), text: text.to_owned() }]);
-    let setting = Setting { variant, level: Level::Case, folder: None };
+    let setting = Setting { variant, level: Level::Case, folder: None, is_changed: true };
     let tree = document::parse(text);
     let case = tree.and_then(|tree| check(&tree, &sources, setting, Vec::new()));
     let case = case.map_err(|problems| Problems::new(sources, problems))?;
@@ -147,7 +151,8 @@ fn check(
         }
         _ => None,
     };
-    let mut context = Context { sources, dimension, parameters: Vec::new(), problems };
+    let mut context =
+        Context { sources, dimension, parameters: Vec::new(), problems, remarks: Vec::new() };
     evaluate_parameters(&mut context, tree);
     let record = context.table(&tables::CASE, tree, Place::new(0, 0..0));
     let case = interpret::case(&record, &mut context, setting);

@@ -75,6 +75,10 @@ pub struct Case {
     pub variant: Option<String>,
     /// The setting whose overrides are applied.
     pub level: Level,
+    /// Whether overrides of the command line are applied.
+    pub is_changed: bool,
+    /// What of the case is left out of this run, in sentences.
+    pub remarks: Vec<String>,
     /// The case after all overrides, as TOML without comments, for the record of the run.
     pub as_run: String,
     /// The case file first, then one text for each override of the command line.

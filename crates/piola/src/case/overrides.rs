@@ -1,4 +1,5 @@
-//! Overrides: `path.to.key=value`, from the command line, a variant or the coarse setting.
+//! Overrides: `path.to.key=value`, from the command line, a variant or the coarse setting, and
+//! `path.to.list+=value`, which appends to a list.
 
 use std::ops::Range;
 
@@ -63,18 +64,22 @@ impl<'a> Override<'a> {
         Problem::new(self.place(span), message, label)
     }
 
-    /// Sets the key in `root`. An empty value removes it.
+    /// Sets the key in `root`, or appends to the list there. An empty value removes it.
     ///
     /// Unknown keys are set too: who checks the tree afterwards finds them with their place here.
     pub(super) fn apply(&self, root: &mut Table, problems: &mut Vec<Problem>) {
-        let applied = self.split().and_then(|(path, value)| {
+        let applied = self.split().and_then(|(mut path, value)| {
+            let appends = self.value.is_none() && path.last_mut().is_some_and(Segment::strip_plus);
             let Some((last, parents)) = path.split_last() else {
                 return Err(self.problem(0..value, "the path of the key is empty", "no path"));
             };
             let new = match self.value {
                 Some(node) => Some(node.clone()),
-                None => self.value(value, problems),
+                None => self.value(value, problems)?,
             };
+            if appends {
+                return self.append(root, &path, new);
+            }
             if let Some(other) = alternative(parents, last).filter(|_| new.is_some()) {
                 remove(root, ALTERNATIVES.0, other);
             }
@@ -140,19 +145,67 @@ impl<'a> Override<'a> {
         Ok((Segment { name: name.to_owned(), span }, start + length))
     }
 
-    /// The value, `None` to remove the key. What is not TOML is text.
-    fn value(&self, start: usize, problems: &mut Vec<Problem>) -> Option<Node> {
+    /// The value, `None` to remove the key. What is not TOML is text, but for what begins as a table
+    /// or a list.
+    fn value(&self, start: usize, problems: &mut Vec<Problem>) -> Result<Option<Node>, Problem> {
         let text = self.text[start..].trim();
         if text.is_empty() {
-            return None;
+            return Ok(None);
         }
         let start = start + self.text[start..].find(text).unwrap_or(0);
         let place = |span: Range<usize>| self.place(start + span.start..start + span.end);
-        let parsed = parse_value(text, &place, problems);
-        Some(parsed.unwrap_or_else(|| Node {
-            value: Value::Text(text.to_owned()),
-            place: place(0..text.len()),
-        }))
+        if let Some(parsed) = parse_value(text, &place, problems) {
+            return Ok(Some(parsed));
+        }
+        let what = match text.chars().next() {
+            Some('{') => "table",
+            Some('[') => "list",
+            _ => {
+                let value = Value::Text(text.to_owned());
+                return Ok(Some(Node { value, place: place(0..text.len()) }));
+            }
+        };
+        let message = format!("the {what} cannot be read");
+        Err(self.problem(start..start + text.len(), message, format!("no {what} of TOML")).help(
+            "texts in it stand in quotes, and the shell takes away those outside: write \
+             --set 'path.to.key={ key = \"text\", list = [1, 2] }'",
+        ))
+    }
+
+    /// Appends to the list that `path` leads to, which is made if it is not there.
+    fn append(&self, root: &mut Table, path: &[Segment], new: Option<Node>) -> Result<(), Problem> {
+        let [first, rest @ ..] = path else { return Ok(()) };
+        let (start, end) = (first.span.start, path[path.len() - 1].span.end);
+        let Some(new) = new else {
+            return Err(self
+                .problem(start..end, "there is nothing to append", "no value after `+=`")
+                .help("an entry of a list is appended with path.to.list+=value"));
+        };
+        let make_list = |table: &mut Table, segment: &Segment| match table.get(&segment.name) {
+            Some(_) => Ok(()),
+            None => {
+                let list = Node { value: Value::List(Vec::new()), place: new.place };
+                self.set_key(table, segment, Some(list))
+            }
+        };
+        if rest.is_empty() {
+            make_list(root, first)?;
+        }
+        let mut node = self.entry(root, first);
+        for (number, segment) in (1..).zip(rest) {
+            if let (true, Value::Table(table)) = (number == rest.len(), &mut node.value) {
+                make_list(table, segment)?;
+            }
+            node = self.child(node, segment)?;
+        }
+        match &mut node.value {
+            Value::List(list) => list.push(new),
+            other => {
+                let message = format!("`+=` appends to a list, and this is {}", other.describe());
+                return Err(self.problem(start..end, message, "not a list"));
+            }
+        }
+        Ok(())
     }
 
     fn set(
@@ -291,6 +344,16 @@ fn remove(root: &mut Table, table: &str, key: &str) {
 struct Segment {
     name: String,
     span: Range<usize>,
+}
+
+impl Segment {
+    /// Takes away a `+` at the end of the name, and says whether there was one.
+    fn strip_plus(&mut self) -> bool {
+        let Some(name) = self.name.strip_suffix('+').map(str::trim_end) else { return false };
+        self.span.end = self.span.start + name.len();
+        self.name = name.to_owned();
+        true
+    }
 }
 
 fn name(node: &Node) -> Option<&str> {

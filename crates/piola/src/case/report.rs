@@ -57,6 +57,7 @@ pub fn write(folder: &Path) -> Result<PathBuf, ReportError> {
         })
         .ok();
     if let Some(case) = &mut case {
+        case.is_changed = !record.overrides.is_empty();
         find_references(case, &folder, &record);
         tables.profiles = profiles(case, &folder);
     }

@@ -422,7 +422,7 @@ static COARSE: TableSpec = TableSpec {
         Kind::List(&Kind::Text),
         "",
         Required,
-        "overrides, each `path.to.key=value`; applied before those of a variant",
+        "overrides, each `path.to.key=value`, or `path.to.list+=value` to append; applied before those of a variant",
     )],
 };
 

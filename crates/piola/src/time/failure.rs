@@ -13,7 +13,7 @@ pub enum Failure {
     #[error(
         "particle {} (reference position {:?} m) has a value that is not finite after step \
          {step}, t = {time:.6} s: the step was too large for the state or the state had broken up \
-         before; lower `time.cfl`, or {advice}",
+         before; take smaller steps (`time.cfl` or `time.step`), or {advice}",
         particle.id,
         particle.reference
     )]
@@ -82,8 +82,8 @@ pub enum Failure {
          t = {time:.6} s, where at most {limit:.4e} m/s is expected (ten times the sum of the \
          largest speed and the wave speed at the start, unless `time.max_speed` says otherwise): \
          the state has broken up, or the material is far too soft for its loads; check the \
-         numbers of the material and their units, lower `time.cfl` or {advice}, or raise \
-         `time.max_speed` if such speeds are meant",
+         numbers of the material and their units, take smaller steps (`time.cfl` or `time.step`) or \
+         {advice}, or raise `time.max_speed` if such speeds are meant",
         particle.id,
         particle.reference
     )]

@@ -16,8 +16,10 @@ fn promised_tests_exist() {
             } else {
                 let test = format!("#[test]\nfn {name}()");
                 let inside = format!("#[test]\n    fn {name}()");
+                // A test with a harness of its own is listed by name beside the function.
+                let listed = format!("\"{name}\"");
                 assert!(
-                    source.contains(&test) || source.contains(&inside),
+                    [test, inside, listed].iter().any(|form| source.contains(form)),
                     "{name} is no test: {row}"
                 );
                 count += 1;

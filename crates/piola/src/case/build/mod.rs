@@ -81,6 +81,7 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
             interpolation::build(case, settings, particles, bodies, domain)?
         }
     };
+    built.warnings.splice(0..0, case.remarks.iter().cloned());
     built.warnings.extend(uneven_steps(case));
     Ok(Simulation::new(case, built))
 }

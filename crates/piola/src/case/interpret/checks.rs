@@ -211,6 +211,10 @@ impl Reader<'_, '_> {
     fn at(&mut self, time: Located<f64>, end: Option<f64>) -> Option<f64> {
         match end.filter(|end| time.value > *end) {
             None => Some(time.value),
+            Some(_) if self.setting.is_changed => {
+                self.late.checks.push(time.value);
+                Some(time.value)
+            }
             Some(end) => {
                 let message = format!("the run ends at {end} s, before the time {}", time.value);
                 self.refuse(Problem::new(time.place, message, "after the end"))

@@ -170,23 +170,16 @@ impl Reader<'_, '_> {
             let Datum::Number(time) = item.value else { continue };
             if time <= end {
                 times.push(Located::new(time, item.place));
-            } else if self.is_plain() {
-                let message = format!("the run ends at {end} s, before the picture at {time} s");
-                self.report(Problem::new(item.place, message, "after the end"));
+            } else if self.setting.is_changed || self.setting.is_plain() {
+                self.late.pictures.push(time);
             }
-            // A variant, the coarse setting or an override may end earlier: fewer pictures then.
+            // A variant or the coarse setting is meant to have fewer pictures then.
         }
         if !record.has("times") {
             times.push(Located::new(end, record.place));
         }
         let range = record.ends("range").map(|range| range.value);
         Some(Picture { field: field?, times, range })
-    }
-
-    /// Whether the case is read as its file has it, without any overrides.
-    fn is_plain(&self) -> bool {
-        let Setting { variant, level, .. } = self.setting;
-        variant.is_none() && level == Level::Case && self.context.sources.len() == 1
     }
 
     pub(super) fn plot(&mut self, record: &Record, probes: Option<&[Probe]>) -> Option<Plot> {

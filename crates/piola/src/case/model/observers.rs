@@ -131,7 +131,7 @@ pub enum Compression {
 pub struct Picture {
     /// A single number of each particle.
     pub field: Located<FieldSelector>,
-    /// Times in s, at least one.
+    /// Times in s; none where all of them are after the end of the run.
     pub times: Vec<Located<f64>>,
     /// Ends of the colour bar, `None` for those of the data.
     pub range: Option<[f64; 2]>,

@@ -97,7 +97,7 @@ pub(in crate::case) fn chart(
             style: output::Style::Line,
         });
         for (check, curve) in case.iter().flat_map(|case| references(case, name)) {
-            let label = format!("reference of {name}");
+            let label = reference_label(case, name);
             if series.iter().any(|other: &output::Series| other.column.name == label) {
                 continue;
             }
@@ -115,6 +115,14 @@ pub(in crate::case) fn chart(
         }
     }
     Chart { title: title.to_owned(), across, series, sources }
+}
+
+/// How the reference of the column `name` is called. It is one of the case as its author wrote it.
+fn reference_label(case: Option<&Case>, name: &str) -> String {
+    match case.is_some_and(|case| case.is_changed) {
+        true => format!("reference of {name} for the case without overrides"),
+        false => format!("reference of {name}"),
+    }
 }
 
 /// The reference curves that checks of this run compare the column `name` with.

@@ -231,3 +231,86 @@ fn one_way_to_choose_the_step_replaces_the_other() {
     let message = read_with(FULL, &overrides).expect_err("not there").to_string();
     assert!(message.contains("there is no `cfl` to remove"), "{message}");
 }
+
+#[test]
+fn overrides_append_to_lists() {
+    let case = read_with(
+        FULL,
+        &[
+            "boundary+={ name = 'late', where = { kind = 'all' }, velocity = { x = 'speed' } }",
+            "boundary.late.velocity.y=0",
+            "load += { kind = \"body_force\", acceleration = [\"1\", \"0\"] }",
+            "picture.0.times+=0.75",
+        ],
+    )
+    .unwrap_or_else(|problems| panic!("{problems}"));
+    let [.., late] = &case.boundaries[..] else { panic!("a third boundary") };
+    assert_eq!((case.boundaries.len(), case.loads.len()), (3, 3));
+    assert!(late.velocity.iter().all(Option::is_some));
+    assert_eq!(case.pictures[0].times.len(), 3);
+    let bare = FULL.replace("[output]", "[parameters.unused]");
+    let bare = bare.split("[parameters.unused]").next().unwrap();
+    let probe = "probe+={ name = 'new', kind = 'extremum', of = 'largest', field = 'pressure' }";
+    let case = read_with(bare, &[probe]).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(*case.probes[case.probes.len() - 1].name, "new");
+}
+
+#[test]
+fn problems_of_what_is_appended_have_their_places() {
+    for (text, expected) in [
+        (
+            "boundary+={ name = 'late', where = { kind = 'all' }, velocty = { x = '0' } }",
+            "[[boundary]] has no key `velocty`\n  --> command line:1:60\n",
+        ),
+        (
+            "time+={ end = 1 }",
+            "`+=` appends to a list, and this is a table\n  --> command line:1:7\n",
+        ),
+        ("boundary+=", "there is nothing to append\n  --> command line:1:7\n"),
+        ("load+={ kind = body_force }", "the table cannot be read\n  --> command line:1:13\n"),
+        ("time.end=[1, ", "the list cannot be read\n  --> command line:1:16\n"),
+    ] {
+        let shown = shown(&[text]);
+        assert!(shown.starts_with(&format!("error: {expected}")), "{shown}");
+    }
+}
+
+/// What is said on the command line is said of the setting that runs.
+#[test]
+fn overrides_are_judged_for_the_setting_that_runs() {
+    // The shape of the variant has no `max`, and its sweep steps of its own.
+    let text = FULL.replace(
+        "set = [\"scheme.tau_velocity=0\"]",
+        "set = [\"body.column.shape={ kind = 'ball', center = [0.0, 2.0], radius = 1.0 }\"]",
+    );
+    let overrides = vec!["body.column.shape.max=[2.0, 4.0]".to_owned()];
+    let read = |variant: Option<&str>| {
+        let variant = variant.map(str::to_owned);
+        let options =
+            LoadOptions { overrides: overrides.clone(), variant, ..LoadOptions::default() };
+        parse(&text, "case.toml", &options)
+    };
+    assert!(read(None).is_ok(), "{}", read(None).unwrap_err());
+    let shown = read(Some("no-upwinding")).unwrap_err().to_string();
+    assert!(shown.contains("`max`"), "{shown}");
+}
+
+#[test]
+fn a_shorter_run_leaves_out_what_is_later_and_says_so() {
+    let case = read_with(FULL, &["time.end=0.2"]).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(case.pictures[0].times.len(), 1);
+    assert_eq!(
+        case.remarks,
+        [
+            "the run ends at 0.2 s, before the pictures at 0.5 s: they are left out",
+            "the run ends at 0.2 s, before the checks at 0.25 s: they cannot be evaluated",
+        ]
+    );
+    // So does a file that was changed, though its checks have to fit.
+    let shorter = FULL.replacen("end = 3.0", "end = 0.3", 1);
+    let case = read_with(&shorter, &[]).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(case.remarks.len(), 1);
+    // What the record of the run holds is read again.
+    let again = crate::case::recorded(&read_with(FULL, &["time.end=0.2"]).unwrap().as_run, None);
+    assert!(again.is_ok());
+}

@@ -129,7 +129,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn stability_advice(&self) -> &'static str {
-        "lower `time.cfl`, or raise `scheme.viscosity` or `scheme.hourglass`"
+        "raise `scheme.viscosity` or `scheme.hourglass`"
     }
 
     fn collapse_advice(&self, index: usize) -> String {
