@@ -2,7 +2,10 @@
 
 mod support;
 
+use std::path::Path;
+
 use piola::Vector;
+use piola::case::{self, LoadOptions};
 use piola::schemes::Scheme;
 use piola::schemes::upwind::{Settings, WaveSpeed};
 use piola::time::{Integrator, IntegratorKind};
@@ -64,4 +67,54 @@ fn steps_after_the_first_allocate_nothing() {
             }
         }
     });
+}
+
+/// Allocations of a few steps of a case after the first ones, with the look at each state that the
+/// executor takes.
+fn of_case(name: &str, overrides: &[&str]) -> u64 {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
+    let overrides = overrides.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, ..LoadOptions::default() };
+    let case = case::load(&path.join("case.toml"), &options);
+    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+    let mut simulation = case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let scheme = simulation.scheme();
+    let count = scheme.particle_count();
+    // Several chunks, so that the loops are the parallel ones.
+    assert!(count > 3 * piola::parallel::CHUNK, "{name}: {count}");
+    let kind = IntegratorKind::from_name(&case.time.integrator).expect("a known integrator");
+    let mut state = scheme.initial_state();
+    let mut integrator = kind.build(state.len());
+    let (mut new, mut limits) = (state.clone(), Vec::with_capacity(8));
+    let mut time = 0.0;
+    let mut step = || {
+        scheme.inspect(&state, &mut limits);
+        let stable = limits.iter().map(|limit| limit.step).fold(f64::INFINITY, f64::min);
+        let step = 0.1 * stable;
+        integrator.step(scheme, time, step, &state, &mut new).expect("explicit steps are found");
+        std::mem::swap(&mut state, &mut new);
+        time += step;
+    };
+    (0..3).for_each(|_| step());
+    allocation_counter::measure(|| (0..5).for_each(|_| step())).count_total
+}
+
+/// Every scheme that takes explicit steps, at about 5000 particles.
+#[test]
+fn steps_of_all_schemes_allocate_nothing() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    let counts = pool.install(|| {
+        [
+            ("upwind/column-impact", &["parameters.n=70"][..]),
+            ("ctvf/taylor-green", &["parameters.side=71"]),
+            ("ctvf/dam-break", &["parameters.dx=0.025"]),
+            ("ctvf/swinging-plate", &[]),
+            ("ctvf/rings", &[]),
+            ("dual-support/free-vibration", &["parameters.dx=0.2"]),
+            ("elastodynamics/pulse", &["parameters.cells=5000"]),
+            ("elastodynamics/wave-2d", &["parameters.dx=0.0004"]),
+        ]
+        .map(|(name, overrides)| (name, of_case(name, overrides)))
+    });
+    assert!(counts.iter().all(|(_, count)| *count == 0), "{counts:?}");
 }

@@ -193,14 +193,21 @@ fn a_load_that_is_no_number() {
 /// What to change is a key of the scheme that runs, not of another.
 #[test]
 fn the_advice_is_that_of_the_scheme() {
-    let load = "load=[{ kind = 'body_force', acceleration = [0, 'sqrt(0.01 - t)'] }]";
-    for (case, key) in [
-        ("column-impact", "`scheme.tau_velocity`"),
-        ("../ctvf/couette", "`scheme.artificial_viscosity`"),
+    for (case, end, keys) in [
+        ("column-impact", 0.01, &["tau_velocity"][..]),
+        ("../ctvf/couette", 0.01, &["artificial_viscosity"]),
+        ("../elastodynamics/wave-2d", 1e-5, &["viscosity", "hourglass"]),
     ] {
-        let text = failure(&run(&self::load(case, &[load]), None)).to_string();
-        assert!(text.contains("not finite") && text.contains(key), "{text}");
-        assert_eq!(text.matches("`scheme.").count(), 1, "{text}");
+        let force = format!("{{ kind = 'body_force', acceleration = [0, 'sqrt({end} - t)'] }}");
+        let load = format!("load=[{force}]");
+        let text = failure(&run(&self::load(case, &[&load]), None)).to_string();
+        assert!(text.contains("not finite"), "{text}");
+        assert_eq!(text.matches("`scheme.").count(), keys.len(), "{text}");
+        // Nothing is advised twice.
+        assert_eq!(text.matches("`time.cfl`").count(), 1, "{text}");
+        for key in keys {
+            assert_eq!(text.matches(&format!("`scheme.{key}`")).count(), 1, "{text}");
+        }
     }
 }
 
