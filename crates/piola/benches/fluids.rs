@@ -52,7 +52,6 @@ fn vortices<const D: usize>(
             artificial_viscosity: 0.0,
             free_surface: false,
             at_surface: AtSurface::Held,
-            density_drift: 0.02,
         },
         fluid: Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 },
         solids: None,

@@ -86,7 +86,6 @@ fn block<const D: usize>(
             artificial_viscosity: 1.0,
             free_surface: true,
             at_surface: AtSurface::Along,
-            density_drift: f64::INFINITY,
         },
         fluid: Fluid::of_solids(&[material]),
         solids: Some(SolidsInput {

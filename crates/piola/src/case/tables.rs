@@ -287,7 +287,7 @@ static LOAD: TaggedSpec = TaggedSpec {
                 Kind::Expressions(Variables::PositionAndTime),
                 "m/s^2",
                 Required,
-                "one expression a component, of the reference position and time",
+                "one expression a component, of time and the reference position, with `transport_velocity` the current one",
             )],
         },
         KindSpec {

@@ -23,7 +23,6 @@ pub const SETTINGS: Settings = Settings {
     artificial_viscosity: 0.0,
     free_surface: false,
     at_surface: AtSurface::Held,
-    density_drift: 0.02,
 };
 
 pub const SOLID: Solid = Solid {

@@ -19,7 +19,6 @@ pub const SETTINGS: Settings = Settings {
     artificial_viscosity: 0.0,
     free_surface: false,
     at_surface: AtSurface::Held,
-    density_drift: 0.02,
 };
 
 /// `side^D` particles in the unit box, each coordinate displaced by up to `jitter` spacings.

@@ -8,6 +8,7 @@ use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::geometry::{Faces, Particles, Shape};
 use crate::neighbors::{Domain, spatial_order};
+use crate::schemes::Initial;
 use crate::schemes::transport_velocity::{
     Fluid, Guard, Solid, SolidsInput, TransportVelocity, TransportVelocityError,
     TransportVelocityInput, Wall,
@@ -65,6 +66,9 @@ pub(super) fn build<const D: usize>(
         warnings.extend(tanks::warnings(case, shape, &particles, &faces, support));
     }
     let initial = initial(case, &particles);
+    if solids.is_none() {
+        warnings.extend(compression(&fluid, &initial));
+    }
     let sliding = sliding(case, &particles);
     let built = TransportVelocity::new(TransportVelocityInput {
         domain,
@@ -114,6 +118,25 @@ pub(super) fn build<const D: usize>(
         neighbors,
         poorly_supported,
         warnings,
+    })
+}
+
+/// What of its density a fluid may be compressed by at the start without a warning: that of speeds of a
+/// tenth of the wave speed, the bound of what is called weakly compressible.
+const COMPRESSION: f64 = 0.01;
+
+/// A warning of a fluid that its wave speed is too low for.
+fn compression<const D: usize>(fluid: &Fluid, initial: &Initial<D>) -> Option<String> {
+    let pressure = initial.pressure.iter().map(|p| p.abs()).fold(0.0, f64::max);
+    let stiffness = fluid.density * fluid.wave_speed.powi(2);
+    (pressure > COMPRESSION * stiffness).then(|| {
+        format!(
+            "the pressure at the start, up to {pressure:.3e} Pa, compresses the fluid by {:.1} %, more than the \
+             1 % of a weakly compressible one: pressure and level will be off by as much from those of an \
+             incompressible fluid; raise its wave speed to {:.3e} m/s",
+            100.0 * pressure / stiffness,
+            (pressure / (COMPRESSION * fluid.density)).sqrt()
+        )
     })
 }
 

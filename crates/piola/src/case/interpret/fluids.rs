@@ -80,7 +80,6 @@ impl Reader<'_, '_> {
                     None if !is_solid => AtSurface::Held,
                     _ => AtSurface::Along,
                 },
-                density_drift: record.number("density_drift")?.value,
             },
             contact,
             self_contact: record.number("self_contact"),

@@ -29,13 +29,6 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "how the density is found",
         ),
         key(
-            "density_drift",
-            Kind::Number(Interval::POSITIVE),
-            "1",
-            Default("0.02"),
-            "with `continuity` and `edac`, the relative departure of a density from that of its pressure, CTVF (8), beyond which it is set to it",
-        ),
-        key(
             "pressure",
             Kind::Name(PRESSURES),
             "",

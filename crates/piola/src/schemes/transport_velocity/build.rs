@@ -7,8 +7,8 @@ use thiserror::Error;
 use super::inspect::ChunkFigures;
 use super::shifting::Iteration;
 use super::{
-    Continua, DensityRule, Fluid, Forces, Opening, PressureRule, Rates, Row, Settings, Side, Slip,
-    Solids, SolidsInput, TransportVelocity, WallParticle, WallValues,
+    Continua, DensityRule, Fluid, Forces, Opening, Rates, Row, Settings, Side, Slip, Solids,
+    SolidsInput, TransportVelocity, WallParticle, WallValues,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
@@ -247,13 +247,11 @@ impl<const D: usize> TransportVelocity<D> {
     }
 }
 
-/// The density that belongs to a pressure: by the law of state if that rules, otherwise rho0.
+/// The density that the law of state gives for a pressure, or rho0 where sums over masses follow.
 fn start_density(settings: &Settings, fluid: &Fluid, pressure: f64) -> f64 {
-    match settings.pressure {
-        PressureRule::StateEquation if settings.density == DensityRule::Continuity => {
-            fluid::density(pressure, fluid.density, fluid.wave_speed)
-        }
-        _ => fluid.density,
+    match settings.density {
+        DensityRule::Continuity => fluid::density(pressure, fluid.density, fluid.wave_speed),
+        DensityRule::Summation => fluid.density,
     }
 }
 

@@ -29,8 +29,8 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Gives the fluid the density and pressure that are functions of where particles are, or of
-    /// each other, and ties a density that has drifted to its pressure again. Returns the largest
-    /// speed of the fluid in m/s, as it passes over all particles anyhow.
+    /// each other. Returns the largest speed of the fluid in m/s, as it passes over all particles
+    /// anyhow.
     pub(super) fn update_density_and_pressure(&mut self) -> f64 {
         if self.solids.is_some() {
             return self.update_pressure_of_solids();
@@ -40,7 +40,6 @@ impl<const D: usize> TransportVelocity<D> {
         if sums {
             self.sum_densities();
         }
-        let drift = self.settings.density_drift * self.fluid.density;
         let (densities, list, fluid) = (&self.densities, self.support.list(), self.fluid);
         let nothing = &mut vec![(); self.sides.len()];
         let update = |first: usize, sides: &mut [Side<D>], _: &mut [()]| {
@@ -50,12 +49,7 @@ impl<const D: usize> TransportVelocity<D> {
                 if list.is_passive(place) {
                     continue;
                 }
-                let tied = fluid::density(side.pressure, fluid.density, fluid.wave_speed);
-                let density = match (sums, algebraic) {
-                    (true, _) => densities[place],
-                    (false, false) if (side.density - tied).abs() > drift => tied,
-                    (false, _) => side.density,
-                };
+                let density = if sums { densities[place] } else { side.density };
                 let pressure = match algebraic {
                     true => fluid::pressure(density, fluid.density, fluid.wave_speed),
                     false => side.pressure,

@@ -71,11 +71,11 @@ impl<const D: usize> TransportVelocity<D> {
         self.rates = rates;
     }
 
-    /// Gradient of the pressure of a fluid at rest, `rho0 g` in Pa/m, which must not diffuse out of
-    /// a free surface.
-    fn gradient_at_rest(&self, place: usize, time: f64) -> Vector<D> {
+    /// Half of the body force g in m/s^2. Times the densities of two particles it is the gradient of
+    /// the pressure between them in a fluid at rest, which must not diffuse out of a free surface.
+    fn half_of_body_force(&self, place: usize, time: f64) -> Vector<D> {
         let number = self.support.list().numbers()[place] as usize;
-        self.body_force_at(number, place, time) * self.fluid.density
+        self.body_force_at(number, place, time) * 0.5
     }
 
     /// The sums of the particle at `place`, returned by value as those of the accelerations.
@@ -84,7 +84,7 @@ impl<const D: usize> TransportVelocity<D> {
         &self,
         place: usize,
         constants: &Constants,
-        at_rest: &Vector<D>,
+        half_force: &Vector<D>,
         block: &mut NeighborBlock<D>,
     ) -> Sums {
         let me = &self.sides[place];
@@ -107,7 +107,7 @@ impl<const D: usize> TransportVelocity<D> {
                         others[lane],
                         &group.neighbor(lane),
                         constants,
-                        at_rest,
+                        half_force,
                     );
                 }
             }
@@ -141,7 +141,7 @@ impl Sums {
         other: &Side<D>,
         neighbor: &Neighbor<D>,
         constants: &Constants,
-        at_rest: &Vector<D>,
+        half_force: &Vector<D>,
     ) {
         let slope = other.volume * neighbor.slope;
         let mut flow = me.velocity - other.velocity;
@@ -159,7 +159,8 @@ impl Sums {
         let scale = fluid::exchange_scale(densities, neighbor.square, constants.softening);
         let slope = other.mass() * neighbor.slope;
         let exchange = fluid::diffusion(constants.diffusivity, neighbor.square, slope, scale);
-        let excess = if FALLS { jump + at_rest.dot(&neighbor.separation) } else { jump };
+        let at_rest = if FALLS { half_force.dot(&neighbor.separation) * densities } else { 0.0 };
+        let excess = jump + at_rest;
         self.pressure_diffusion[lane] -= exchange * excess;
     }
 }
@@ -178,10 +179,14 @@ fn fill<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bo
     for (offset, row) in rows.iter_mut().enumerate() {
         let place = first + offset;
         if !scheme.support.list().is_passive(place) {
-            let at_rest =
-                if FALLS { scheme.gradient_at_rest(place, time) } else { Vector::zeros() };
-            let sums = scheme
-                .gather_rates::<CORRECTS, MOVES, FALLS>(place, constants, &at_rest, &mut block);
+            let half_force =
+                if FALLS { scheme.half_of_body_force(place, time) } else { Vector::zeros() };
+            let sums = scheme.gather_rates::<CORRECTS, MOVES, FALLS>(
+                place,
+                constants,
+                &half_force,
+                &mut block,
+            );
             *row = scheme.rates_of(&sums);
         }
     }

@@ -6,7 +6,7 @@
 //! `V = m / rho` and the kernel gradient `grad W_ab` at a, the equations solved are
 //!
 //! ```text
-//! drho_a/dt = rho_a sum V_b u_ab . grad W_ab + sum V_b (rho_b - rho_a) d_b . grad W_ab
+//! drho_a/dt = rho_a sum V_b u_ab . grad W_ab + sum V_b (rho_b - rho_a) d_b . grad W_ab + E_a / c^2
 //!   dp_a/dt = rho_a c^2 sum V_b u_ab . grad W_ab + sum V_b (p_b - p_a) d_b . grad W_ab + E_a
 //!   du_a/dt = - sum m_b (p_a / rho_a^2 + p_b / rho_b^2 + Pi_ab) grad W_ab + N_a + g
 //!             + sum m_b (u_a d_a / rho_a + u_b d_b / rho_b) . grad W_ab
@@ -19,8 +19,9 @@
 //! `rho_a uhat_ab - (rho d)_ab = rho_a u_ab + (rho_b - rho_a) d_b`, and likewise for p.
 //!
 //! E exchanges what pressures are beyond those of a fluid at rest,
-//! `p_b - p_a - rho0 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the same; at a
-//! free surface, which has neighbours below only, the pressure of depth would diffuse out without end.
+//! `p_b - p_a - (rho_a + rho_b)/2 g . (r_b - r_a)` for the paper's `p_b - p_a`. Inside a fluid that is the
+//! same; at a free surface, which has neighbours below only, the pressure of depth would diffuse out
+//! without end. The density takes `E_a / c^2`, which ties it to the pressure.
 //!
 //! Instead of a fluid there may be elastic and elastic-plastic bodies, see [`Solid`]; what is said of the
 //! fluid of neighbours, walls, surfaces, shifting and time holds for them.

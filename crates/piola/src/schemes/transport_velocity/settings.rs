@@ -157,10 +157,6 @@ pub struct Settings {
     pub free_surface: bool,
     /// How particles are shifted there.
     pub at_surface: AtSurface,
-    /// Largest relative departure of an integrated density from that of an integrated pressure.
-    /// Nothing else ties the two to each other, and the density drifts; beyond this it is set to
-    /// the density that the law of state gives for the pressure.
-    pub density_drift: f64,
 }
 
 /// The one fluid of a run.

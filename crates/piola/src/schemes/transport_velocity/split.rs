@@ -106,9 +106,16 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Rate of the density in kg/(m^3 s) of the particle at `place`.
+    ///
+    /// A fluid's takes part in the exchange of its pressure, theory (20): the two have the same rates
+    /// then, but for `c^2`, and stay what the law of state says.
     pub(super) fn density_rate(&self, place: usize) -> f64 {
         let rates = &self.rates[place];
-        rates.density_transport - self.sides[place].density * rates.divergence
+        let exchange = match self.solids {
+            Some(_) => 0.0,
+            None => rates.pressure_diffusion / self.fluid.wave_speed.powi(2),
+        };
+        rates.density_transport - self.sides[place].density * rates.divergence + exchange
     }
 
     /// Rates of the pressure in Pa/s by compression, transport and diffusion.
