@@ -48,6 +48,9 @@ pub fn integrators() -> Vec<Choice> {
         IntegratorKind::Static => {
             "no motion: equilibrium under loads that grow with the time, which is the load factor; `dual_support` only"
         }
+        IntegratorKind::ArcLength => {
+            "no motion, and loads may fall: steps along the path of equilibria, stable or not, of which the time is the length. In the first step it is the load factor, which is `step.load_factor` from then on, and `t` in loads and boundaries; `dual_support` only"
+        }
         IntegratorKind::BackwardEuler => {
             "backward Euler, implicit, of first order, which damps short periods away, Upwind (4.4); `upwind` only"
         }

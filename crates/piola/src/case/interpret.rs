@@ -68,8 +68,9 @@ pub(super) fn case(
     let domain = reader.domain(record.record("domain"));
     let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
     let time = reader.clock(record);
-    reader.names.is_static =
-        time.as_ref().is_some_and(|time| *time.integrator == IntegratorKind::Static.name());
+    reader.names.is_static = time.as_ref().is_some_and(|time| {
+        IntegratorKind::from_name(&time.integrator).is_some_and(IntegratorKind::is_static)
+    });
     let end = time.as_ref().map(|time| *time.end);
     let checkpoint = match record.record("checkpoint") {
         Some(record) => Reader::checkpoint(record),

@@ -6,21 +6,30 @@ use crate::boundaries::SpaceTime;
 use crate::fields::FieldSelector;
 use crate::schemes::Scheme;
 
-/// The relative difference `sum |f - e| / sum |e|` of a field f from a function e of the place of
-/// each particle and time, CTVF (66) with absolute values; or the root of that of squares, as
-/// Dual-support (56).
+/// The relative difference `sum |f - e| / sum |e|` of fields f from functions e of the place of
+/// each particle and time, CTVF (66) with absolute values; or the root of that of squares, which
+/// with volumes is Dual-support (56).
 #[derive(Clone)]
 pub struct Deviation {
-    /// One number of each particle.
-    pub field: FieldSelector,
-    /// What it should be.
-    pub exact: Arc<dyn SpaceTime>,
+    /// Numbers of each particle, with what they should be.
+    pub parts: Vec<(FieldSelector, Arc<dyn SpaceTime>)>,
     /// Whether the means of both are taken away first, as of a pressure without a zero.
     pub without_mean: bool,
-    /// Whether squares are summed, and the root taken.
-    pub of_squares: bool,
+    /// What is summed.
+    pub norm: Norm,
     /// Indices in memory of the particles, at least one.
     pub particles: Vec<u32>,
+}
+
+/// What a [`Deviation`] sums over its particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Norm {
+    /// Absolute values.
+    Absolute,
+    /// Squares, of which the root is taken.
+    Square,
+    /// Squares times reference volumes, of which the root is taken.
+    Volume,
 }
 
 impl Deviation {
@@ -31,26 +40,39 @@ impl Deviation {
         state: &[f64],
         scratch: &mut Vec<f64>,
     ) -> f64 {
-        let dimension = scheme.dimension();
-        scratch.clear();
-        scheme.sample(time, state, "position", &self.particles, scratch);
-        let exact: Vec<f64> = scratch
-            .chunks_exact(dimension)
-            .map(|position| {
+        let mut sample = |field: &str| {
+            scratch.clear();
+            scheme.sample(time, state, field, &self.particles, scratch);
+            scratch.clone()
+        };
+        let weights = match self.norm {
+            Norm::Volume => sample("volume"),
+            _ => vec![1.0; self.particles.len()],
+        };
+        let positions = sample("position");
+        let dimension = positions.len() / self.particles.len().max(1);
+        let size = |value: f64| match self.norm {
+            Norm::Absolute => value.abs(),
+            _ => value * value,
+        };
+        let (mut difference, mut whole) = (0.0, 0.0);
+        for (selector, exact) in &self.parts {
+            let exact = positions.chunks_exact(dimension.max(1)).map(|position| {
                 let mut place = [0.0; 3];
                 place[..dimension].copy_from_slice(position);
-                self.exact.value(place, time)
-            })
-            .collect();
-        scratch.clear();
-        scheme.sample(time, state, self.field.field.name, &self.particles, scratch);
-        let components = self.field.field.kind.components(dimension);
-        let found = scratch.chunks_exact(components).map(|value| self.field.value(value));
-        let mean = |sum: f64| if self.without_mean { sum / exact.len() as f64 } else { 0.0 };
-        let offset = mean(found.clone().sum()) - mean(exact.iter().sum());
-        let size = |value: f64| if self.of_squares { value * value } else { value.abs() };
-        let difference: f64 = found.zip(&exact).map(|(f, e)| size(f - offset - e)).sum();
-        let ratio = difference / exact.iter().map(|e| size(*e)).sum::<f64>();
-        if self.of_squares { ratio.sqrt() } else { ratio }
+                exact.value(place, time)
+            });
+            let exact: Vec<f64> = exact.collect();
+            let values = sample(selector.field.name);
+            let components = selector.field.kind.components(dimension);
+            let found = values.chunks_exact(components).map(|value| selector.value(value));
+            let mean = |sum: f64| if self.without_mean { sum / exact.len() as f64 } else { 0.0 };
+            let offset = mean(found.clone().sum()) - mean(exact.iter().sum());
+            let all = found.zip(&exact).zip(&weights);
+            difference += all.map(|((f, e), w)| w * size(f - offset - e)).sum::<f64>();
+            whole += exact.iter().zip(&weights).map(|(e, w)| w * size(*e)).sum::<f64>();
+        }
+        let ratio = difference / whole;
+        if self.norm == Norm::Absolute { ratio } else { ratio.sqrt() }
     }
 }

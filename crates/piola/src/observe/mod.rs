@@ -13,7 +13,7 @@ mod recorder;
 pub mod reduce;
 mod tables;
 
-pub use comparison::Deviation;
+pub use comparison::{Deviation, Norm};
 pub use files::WrittenFiles;
 pub use frames::FrameWriter;
 pub use interpolation::Interpolated;

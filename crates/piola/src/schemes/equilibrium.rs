@@ -19,6 +19,21 @@ pub trait StaticScheme: Scheme {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution>;
+
+    /// As [`Self::equilibrate`] along a path on which loads may fall: `from` and `to` are lengths of
+    /// the path in the space of displacements, in such a unit that in the first step the length is the
+    /// load factor that this step would have if it were straight. The load factor is found with the
+    /// state, and is one of its figures; states need not be stable.
+    ///
+    /// # Errors
+    /// [`NoSolution`]; `new` is of no use then.
+    fn follow(
+        &mut self,
+        from: f64,
+        to: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), NoSolution>;
 }
 
 /// Why there is no state that meets the equations, as far as was looked.

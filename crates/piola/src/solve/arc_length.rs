@@ -40,14 +40,14 @@ pub fn follow_arc<E: LoadedEquations + ?Sized>(
     start: Vec<f64>,
     mut show: impl FnMut(&mut E, Increment) -> bool,
 ) -> Result<(), LoadError> {
-    let mut walk = Walk { factor: 0.0, x: start, last: None };
+    let mut walk = ArcPath { factor: 0.0, x: start, last: None };
     let mut radius = None;
     let mut largest = f64::INFINITY;
     for _ in 0..arc.most_steps {
         let mut cuts = 0;
         let (factor, x, solved) = loop {
-            match walk.step(equations, newton, arc, &mut radius) {
-                Ok(found) => break found,
+            match walk.attempt(equations, newton, arc.first, &mut radius) {
+                Ok(Increment { factor, x, solved }) => break (factor, x, solved),
                 Err(_) if cuts < MOST_CUTS => {
                     cuts += 1;
                     radius = radius.map(|radius| 0.5 * radius);
@@ -65,7 +65,7 @@ pub fn follow_arc<E: LoadedEquations + ?Sized>(
         let growth = (arc.wanted_iterations as f64 / taken as f64).sqrt();
         radius = radius.map(|radius| (radius * growth).min(largest));
         let moved = x.iter().zip(&walk.x).map(|(new, old)| new - old).collect();
-        walk = Walk { factor, x: x.clone(), last: Some(moved) };
+        walk = ArcPath { factor, x: x.clone(), last: Some(moved) };
         if !show(equations, Increment { factor, x, solved }) {
             break;
         }
@@ -73,21 +73,30 @@ pub fn follow_arc<E: LoadedEquations + ?Sized>(
     Ok(())
 }
 
-/// The last state with the way that led to it.
-struct Walk {
-    factor: f64,
-    x: Vec<f64>,
-    last: Option<Vec<f64>>,
+/// Where a path by arc length has come to: the last state with the way that led to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArcPath {
+    /// Load factor of the state.
+    pub factor: f64,
+    /// Its unknowns.
+    pub x: Vec<f64>,
+    /// The last step of the unknowns, of any length; none at the start.
+    pub last: Option<Vec<f64>>,
 }
 
-impl Walk {
-    fn step<E: LoadedEquations + ?Sized>(
+impl ArcPath {
+    /// The state one step of a length of `radius` further, stable or not. Where there is no radius
+    /// yet it becomes the length of the step that a load factor of `first` would have alone.
+    ///
+    /// # Errors
+    /// [`NewtonError`] where the step does not converge.
+    pub fn attempt<E: LoadedEquations + ?Sized>(
         &self,
         equations: &mut E,
         newton: &Newton,
-        arc: &ArcLength,
+        first: f64,
         radius: &mut Option<f64>,
-    ) -> Result<(f64, Vec<f64>, Solved), NewtonError> {
+    ) -> Result<Increment, NewtonError> {
         let count = self.x.len();
         let linear = |source, history: &[Iteration]| NewtonError::Linear {
             source,
@@ -103,11 +112,11 @@ impl Walk {
             })
             .map_err(|source| linear(source, &[]))?;
         let size = norm(&along);
-        let radius = *radius.get_or_insert(arc.first.abs() * size);
+        let radius = *radius.get_or_insert(first.abs() * size);
         // Onwards: the way along the load that goes on where the last step went.
         let ahead = match &self.last {
             Some(last) => dot(last, &along).signum(),
-            None => arc.first.signum(),
+            None => first.signum(),
         };
         let mut factor = self.factor + ahead * radius / size;
         let mut moved: Vec<f64> = along.iter().map(|d| ahead * radius / size * d).collect();
@@ -126,7 +135,8 @@ impl Walk {
             if residual <= newton.tolerance {
                 equations.linearise(factor, &x, false).map_err(|e| linear(e, &history))?;
                 let stability: Stability = equations.stability();
-                return Ok((factor, x, Solved { iterations: history, residual, stability }));
+                let solved = Solved { iterations: history, residual, stability };
+                return Ok(Increment { factor, x, solved });
             }
             if history.len() >= newton.most_iterations || !residual.is_finite() {
                 return Err(NewtonError::NoConvergence { history, residual });

@@ -31,7 +31,7 @@ mod newton;
 mod reduction;
 mod sparse;
 
-pub use arc_length::{ArcLength, follow_arc};
+pub use arc_length::{ArcLength, ArcPath, follow_arc};
 pub use blocks::BlockMatrix;
 pub use dissection::dissect;
 pub use factor::{Factor, FactorError};

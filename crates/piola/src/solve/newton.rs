@@ -200,6 +200,9 @@ impl Newton {
         let mut left = vec![0.0; x.len()];
         let mut direction = vec![0.0; x.len()];
         let mut residual = equations.residual(factor, x, &mut left);
+        // Where a body comes back to rest there is nothing left that forces could be measured by, and
+        // unknowns go to zero: they are rounded as where they came from.
+        let usual = largest(x);
         loop {
             if residual <= self.tolerance && equations.settle(factor, x) {
                 residual = equations.residual(factor, x, &mut left);
@@ -216,7 +219,7 @@ impl Newton {
                 .map_err(|source| NewtonError::Linear { source, history: history.clone() })?;
             // Nothing that the unknowns could still hold: the residual is their rounding. A shift
             // would make any step short.
-            if report.shift == 0.0 && largest(&direction) <= ROUNDING * largest(x) {
+            if report.shift == 0.0 && largest(&direction) <= ROUNDING * largest(x).max(usual) {
                 return Ok(Found { iterations: history, residual });
             }
             let start = Start { x: &*x, left: &left, direction: &direction, residual };

@@ -113,6 +113,8 @@ pub enum IntegratorKind {
     GeneralisedAlpha,
     /// Equilibrium under loads that grow, for schemes that know it.
     Static,
+    /// Equilibrium along a path on which loads may fall, for the same.
+    ArcLength,
     /// Backward Euler, Upwind (4.4), for schemes that solve for their rates.
     BackwardEuler,
     /// Crank-Nicolson, Upwind (4.5), for the same.
@@ -125,7 +127,7 @@ pub enum IntegratorKind {
 
 impl IntegratorKind {
     /// All integrators.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::TvdRk2,
         Self::SspRk3,
         Self::KickDriftKick,
@@ -133,6 +135,7 @@ impl IntegratorKind {
         Self::HhtAlpha,
         Self::GeneralisedAlpha,
         Self::Static,
+        Self::ArcLength,
         Self::BackwardEuler,
         Self::CrankNicolson,
         Self::Theta,
@@ -156,11 +159,17 @@ impl IntegratorKind {
             Self::HhtAlpha => "hht_alpha",
             Self::GeneralisedAlpha => "generalised_alpha",
             Self::Static => "static",
+            Self::ArcLength => "arc_length",
             Self::BackwardEuler => "backward_euler",
             Self::CrankNicolson => "crank_nicolson",
             Self::Theta => "theta",
             Self::ImplicitMidpoint => "implicit_midpoint",
         }
+    }
+
+    /// Whether nothing moves, and states are in equilibrium.
+    pub fn is_static(self) -> bool {
+        matches!(self, Self::Static | Self::ArcLength)
     }
 
     /// The integrator of that name.
@@ -174,7 +183,8 @@ impl IntegratorKind {
             Self::TvdRk2 => Box::new(TvdRk2::new(length)),
             Self::SspRk3 => Box::new(SspRk3::new(length)),
             Self::KickDriftKick => Box::new(KickDriftKick::default()),
-            Self::Static => Box::new(LoadStepping),
+            Self::Static => Box::new(LoadStepping { by_arc_length: false }),
+            Self::ArcLength => Box::new(LoadStepping { by_arc_length: true }),
             Self::Newmark => self.with(ImplicitRule::Newmark(Newmark::AVERAGE_ACCELERATION), None),
             Self::HhtAlpha => {
                 self.with(ImplicitRule::Newmark(Newmark::hilber_hughes_taylor(Self::ALPHA)), None)

@@ -7,11 +7,14 @@ use crate::schemes::Scheme;
 /// Goes from equilibrium to equilibrium. The time is the load factor, so that output, probes,
 /// checkpoints and retries with smaller steps are those of any run.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct LoadStepping;
+pub struct LoadStepping {
+    /// Whether the time is the length of the path instead, so that loads may fall.
+    pub by_arc_length: bool,
+}
 
 impl Integrator for LoadStepping {
     fn name(&self) -> &'static str {
-        "static"
+        if self.by_arc_length { "arc_length" } else { "static" }
     }
 
     /// About as many products as a step takes by conjugate gradients: for estimates only.
@@ -32,11 +35,11 @@ impl Integrator for LoadStepping {
         new: &mut [f64],
     ) -> Result<(), Failure> {
         new.copy_from_slice(old);
-        match scheme.equilibrium() {
-            Some(scheme) => {
-                scheme.equilibrate(time, time + step, old, new).map_err(Failure::NoSolution)
-            }
-            None => Err(Unserved::new(self.name(), scheme).into()),
-        }
+        let found = match scheme.equilibrium() {
+            Some(scheme) if self.by_arc_length => scheme.follow(time, time + step, old, new),
+            Some(scheme) => scheme.equilibrate(time, time + step, old, new),
+            None => return Err(Unserved::new(self.name(), scheme).into()),
+        };
+        found.map_err(Failure::NoSolution)
     }
 }

@@ -108,8 +108,8 @@ pub(super) fn build<const D: usize>(
         bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
         removes: settings.removes_escaped,
     });
-    let (neighbors, mut poorly_supported) = row_statistics(&scheme);
-    poorly_supported.retain(|&a| !scheme.is_wall(a));
+    // Particles deep in a wall may be alone.
+    let (neighbors, poorly_supported) = row_statistics(&scheme, |a| !scheme.is_wall(a));
     Ok(Built {
         scheme: Box::new(scheme),
         probes,

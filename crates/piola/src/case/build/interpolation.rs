@@ -65,7 +65,7 @@ pub(super) fn build<const D: usize>(
              {least:.3} to {most:.3}: use a narrower cover, in 2D at most 2.5 spacings"
         )
     });
-    let (neighbors, poorly_supported) = row_statistics(&scheme);
+    let (neighbors, poorly_supported) = row_statistics(&scheme, |_| true);
     Ok(Built {
         poorly_supported,
         scheme: Box::new(scheme),

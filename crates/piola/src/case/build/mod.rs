@@ -101,16 +101,21 @@ fn uneven_steps(case: &Case) -> Option<String> {
 }
 
 /// How many neighbours the particles of a scheme have, and which have fewer than there are dimensions.
-fn row_statistics(scheme: &dyn Scheme) -> (NeighborStatistics, Vec<u32>) {
-    let count = scheme.particle_count();
-    let lengths: Vec<usize> = (0..count).map(|a| scheme.neighborhood(a).len()).collect();
+fn row_statistics(
+    scheme: &dyn Scheme,
+    counts: impl Fn(u32) -> bool,
+) -> (NeighborStatistics, Vec<u32>) {
+    let all = (0..scheme.particle_count() as u32).filter(|&a| counts(a));
+    let lengths: Vec<(u32, usize)> =
+        all.map(|a| (a, scheme.neighborhood(a as usize).len())).collect();
+    let each = || lengths.iter().map(|(_, length)| *length);
     let statistics = NeighborStatistics {
-        least: lengths.iter().copied().min().unwrap_or(0),
-        mean: lengths.iter().sum::<usize>() as f64 / count.max(1) as f64,
-        most: lengths.iter().copied().max().unwrap_or(0),
+        least: each().min().unwrap_or(0),
+        mean: each().sum::<usize>() as f64 / lengths.len().max(1) as f64,
+        most: each().max().unwrap_or(0),
     };
-    let poor = (0u32..).zip(&lengths).filter(|(_, length)| **length < scheme.dimension());
-    (statistics, poor.map(|(a, _)| a).collect())
+    let poor = lengths.iter().filter(|(_, length)| *length < scheme.dimension());
+    (statistics, poor.map(|(a, _)| *a).collect())
 }
 
 /// The kernel of a name.
@@ -318,18 +323,25 @@ fn stencil_warning<const D: usize>(
     neighbors: &NeighborStatistics,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
-    let reaches_diagonals = bodies.iter().any(|body| {
+    // Smoothing lengths in spacings at which supports reach the next particles along all axes, and the
+    // nearest ones across.
+    let least = 1.0 / kernel.support_over_h();
+    let most = bodies.iter().map(|body| {
         let widest = body.spacing.iter().copied().fold(0.0, f64::max);
         let mut edges = body.spacing.clone();
         edges.sort_by(f64::total_cmp);
         let diagonal = edges.iter().take(2).map(|edge| edge * edge).sum::<f64>().sqrt();
-        D > 1 && kernel.support_radius(*settings.smoothing_length * widest) > diagonal
+        least * diagonal / widest
     });
-    if reaches_diagonals {
+    let most = most.fold(f64::INFINITY, f64::min);
+    if D > 1 && *settings.smoothing_length > most {
+        // Rounded down, so that it is one that does.
+        let most = (100.0 * most).floor() / 100.0;
         warnings.push(format!(
             "the support reaches diagonal neighbours ({:.0} neighbours on average): gradients stay \
              exact for linear fields, but nodal forces near walls and edges are no longer; a \
-             smoothing length between 0.5 and 0.7 spacings keeps them exact on a lattice",
+             smoothing length above {least:.2} and up to {most:.2} spacings keeps them exact on this \
+             lattice",
             neighbors.mean
         ));
     }

@@ -51,12 +51,11 @@ pub(super) fn probes<const D: usize>(
             },
             // Those have tables of their own.
             model::ProbeKind::Line { .. } => continue,
-            model::ProbeKind::Error { field, exact, without_mean, of_squares, region } => {
+            model::ProbeKind::Error { parts, without_mean, norm, region } => {
                 ProbeKind::Error(Deviation {
-                    field: field.value,
-                    exact: function(exact),
+                    parts: parts.iter().map(|(field, exact)| (*field, function(exact))).collect(),
                     without_mean: *without_mean,
-                    of_squares: *of_squares,
+                    norm: *norm,
                     particles: select(case, particles, region, body, problems),
                 })
             }

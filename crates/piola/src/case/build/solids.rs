@@ -15,10 +15,9 @@ use crate::operators::{DirectedSupport, DualGradient, Face, Trace, lattice_areas
 use crate::schemes::InputError;
 use crate::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
-    StaticsError, StaticsInput,
+    StaticsError, StaticsInput, free_to_move,
 };
 use crate::solve::Newton;
-use crate::time::IntegratorKind;
 
 /// Builds the scheme `dual_support`.
 pub(super) fn build<const D: usize>(
@@ -68,7 +67,7 @@ pub(super) fn build<const D: usize>(
     let usual = Newton::default();
     let newton = Newton { tolerance: case.time.tolerance.unwrap_or(usual.tolerance), ..usual };
     let (prescribed, motion) = match integrator_kind(case) {
-        IntegratorKind::Static => {
+        kind if kind.is_static() => {
             let Held { particles: prescribed, faces: prescribed_faces, ties } =
                 selections::held(case, &particles, &mut problems);
             let input = StaticsInput {
@@ -129,7 +128,14 @@ pub(super) fn build<const D: usize>(
             DualSupportError::Statics(_) => (case.time.integrator.place, "with this integrator"),
             _ => (place, "with these supports"),
         };
-        vec![case.problem_at(place, error.to_string(), label, None)]
+        let message = match &error {
+            DualSupportError::Statics(StaticsError::Free { body, part, motion }) => {
+                let name = case.bodies[*body as usize].name.value.as_str();
+                free_to_move(&format!("the body `{name}`"), part.as_ref(), motion)
+            }
+            error => error.to_string(),
+        };
+        vec![case.problem_at(place, message, label, None)]
     })?;
     Ok(Built {
         scheme: Box::new(scheme),

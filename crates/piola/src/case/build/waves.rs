@@ -99,7 +99,7 @@ pub(super) fn build<const D: usize>(
         };
         vec![case.problem_at(place, error.to_string(), label, None)]
     })?;
-    let (neighbors, poorly_supported) = row_statistics(&scheme);
+    let (neighbors, poorly_supported) = row_statistics(&scheme, |_| true);
     Ok(Built {
         poorly_supported,
         scheme: Box::new(scheme),

@@ -6,7 +6,9 @@ use crate::case::model::{
     Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind, Quantity,
 };
 
-use crate::fields::FieldDescription;
+use crate::case::expression::Expression;
+use crate::fields::{Component, FieldDescription, FieldKind, FieldSelector};
+use crate::observe::Norm;
 use crate::schemes::ImplicitRule;
 
 /// Particle files that a run may write at most.
@@ -34,13 +36,13 @@ impl Reader<'_, '_> {
             }
             "tangent" => ProbeKind::Tangent { step: record.number("step")?.value },
             "error" => {
-                let field = record.text("field").and_then(|field| self.selector(&field));
+                let parts = self.deviations(record);
+                let norm = self.norm(record);
                 let region = record.record("where").and_then(|region| self.region(region));
                 ProbeKind::Error {
-                    field: field?,
-                    exact: record.expression("exact")?,
+                    parts: parts?,
                     without_mean: record.boolean("without_mean")?,
-                    of_squares: record.text("norm")?.as_str() == "square",
+                    norm: norm?,
                     region: region?,
                 }
             }
@@ -57,6 +59,52 @@ impl Reader<'_, '_> {
             _ => return None,
         };
         Some(Probe { name: record.text("name")?, body, kind })
+    }
+
+    /// What is compared by a probe of errors, with what it should be.
+    fn deviations(&mut self, record: &Record) -> Option<Vec<(FieldSelector, Expression)>> {
+        let name = record.text("field")?;
+        match (record.has("exact"), record.has("components")) {
+            (true, false) => {
+                let field = self.selector(&name);
+                Some(vec![(field?.value, record.expression("exact")?)])
+            }
+            (false, true) => {
+                let field = self.field(&name, name.place)?;
+                if field.kind != FieldKind::Vector {
+                    let message =
+                        format!("`{}` is no vector, and has no components x, y, z", name.value);
+                    let problem = Problem::new(name.place, message, "no vector");
+                    return self.refuse(problem.help("give `exact` instead of `components`"));
+                }
+                let entry =
+                    |component| FieldSelector { field, component: Component::Entry(component) };
+                let expressions = super::physics::expressions_per_axis(record, "components");
+                let parts = expressions.into_iter().enumerate();
+                Some(parts.filter_map(|(axis, exact)| Some((entry(axis), exact?))).collect())
+            }
+            (both, _) => {
+                let message = match both {
+                    true => "there are `exact` and `components`, and they exclude each other",
+                    false => "the probe needs the key `exact`, or `components` of a vector",
+                };
+                self.refuse(Problem::new(record.place, message, "what should it be?"))
+            }
+        }
+    }
+
+    /// What a probe of errors sums.
+    fn norm(&mut self, record: &Record) -> Option<Norm> {
+        let name = record.text("norm")?;
+        match name.as_str() {
+            "square" => Some(Norm::Square),
+            "volume" => {
+                // Refused where particles have no such field.
+                self.field("volume", name.place)?;
+                Some(Norm::Volume)
+            }
+            _ => Some(Norm::Absolute),
+        }
     }
 
     /// The box that a probe may have.

@@ -29,7 +29,7 @@ impl March {
                 | IntegratorKind::Theta
                 | IntegratorKind::ImplicitMidpoint,
             ) => Self::Theta,
-            Some(IntegratorKind::Static) => Self::Static,
+            Some(IntegratorKind::Static | IntegratorKind::ArcLength) => Self::Static,
             Some(
                 IntegratorKind::TvdRk2 | IntegratorKind::SspRk3 | IntegratorKind::KickDriftKick,
             )

@@ -4,6 +4,7 @@ use super::Region;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::fields::{FieldDescription, FieldSelector};
+use crate::observe::Norm;
 
 /// Something recorded against time, or along a line.
 #[derive(Clone, Debug)]
@@ -71,14 +72,12 @@ pub enum ProbeKind {
     },
     /// The difference of a field from what it should be.
     Error {
-        /// A single number of each particle.
-        field: Located<FieldSelector>,
-        /// What it should be, of the current position and time.
-        exact: Expression,
+        /// Numbers of each particle with what they should be, of the current position and time.
+        parts: Vec<(FieldSelector, Expression)>,
         /// Whether the means of both are taken away first.
         without_mean: bool,
-        /// Whether squares are summed, and the root taken.
-        of_squares: bool,
+        /// What is summed.
+        norm: Norm,
         /// The particles.
         region: Located<Region>,
     },

@@ -164,14 +164,21 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Text,
                     "",
                     Required,
-                    "a field with one number a particle, or FIELD.COMPONENT, or FIELD.magnitude",
+                    "a field with one number a particle, or FIELD.COMPONENT, or FIELD.magnitude; with `components` a vector field",
                 ),
                 key(
                     "exact",
                     Kind::Expression(Variables::PositionAndTime),
                     "",
-                    Required,
+                    Derived("required unless there are `components`"),
                     "what it should be, of the current position and time",
+                ),
+                key(
+                    "components",
+                    Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
+                    "",
+                    Derived("none"),
+                    "what components of a vector should be, instead of `exact`; those that are left away do not count",
                 ),
                 key(
                     "without_mean",
@@ -204,6 +211,10 @@ const WHERE: KeySpec = key(
 const NORMS: Choices = choices(&[
     choice("absolute", "absolute values"),
     choice("square", "squares, of which the root is taken"),
+    choice(
+        "volume",
+        "squares times reference volumes, of which the root is taken, Dual-support (56)",
+    ),
 ]);
 const EXTREMA: Choices =
     choices(&[choice("largest", "the largest value"), choice("smallest", "the smallest value")]);

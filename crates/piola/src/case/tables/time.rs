@@ -29,8 +29,8 @@ pub(super) static TIME: TableSpec = TableSpec {
             "step",
             Kind::Number(Interval::POSITIVE),
             "s",
-            Derived("none; a tenth of `end` with the integrator `static`"),
-            "fixed time step instead of `cfl`, checked against the stable step; with an implicit integrator or `static` the largest step, shortened to meet output",
+            Derived("none; a tenth of `end` with the integrators `static` and `arc_length`"),
+            "fixed time step instead of `cfl`, checked against the stable step; with an implicit integrator, `static` or `arc_length` the largest step, shortened to meet output",
         ),
         key(
             "beta",
@@ -80,7 +80,9 @@ pub(super) static TIME: TableSpec = TableSpec {
             "tolerance",
             Kind::Number(Interval::between(1e-13, 1e-2)),
             "1",
-            Derived("1e-8 with `static` or an implicit integrator, 1e-10 with `upwind`"),
+            Derived(
+                "1e-8 with `static`, `arc_length` or an implicit integrator, 1e-10 with `upwind`",
+            ),
             "what Newton's method may leave of the forces, over loads and reactions; with `upwind` of \
              the momentum of a step, over what there is and what forces change of it",
         ),
@@ -88,7 +90,7 @@ pub(super) static TIME: TableSpec = TableSpec {
             "linear_solver",
             Kind::Name(LINEAR_SOLVERS),
             "",
-            Derived("`automatic` with `static` or an implicit integrator"),
+            Derived("`automatic` with `static`, `arc_length` or an implicit integrator"),
             "how the linear equations of Newton's method are solved",
         ),
         key(

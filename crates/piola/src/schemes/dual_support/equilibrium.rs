@@ -2,7 +2,8 @@
 
 use super::statics::Known;
 use super::{
-    BODY_FORCE, BOUNDARY_MOTION, DualSupport, MECHANISMS, PRESSURE, Row, StaticsError, TRACTION,
+    ARC_SCALE, BODY_FORCE, BOUNDARY_MOTION, DualSupport, FIGURES, ITERATIONS, LOAD_FACTOR,
+    MECHANISMS, PRESSURE, Row, StaticState, Statics, StaticsError, TRACTION,
 };
 use crate::boundaries::{pressure::Pressed, traction::Loaded};
 use crate::schemes::{Missed, NoSolution, Scheme, StaticScheme};
@@ -20,23 +21,79 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution> {
+        self.settle([from, to], from, old, new, |statics, known| {
+            statics.advance(known, to).map_err(|error| NoSolution {
+                kind: kind(&error),
+                time: to,
+                reached: from,
+                message: advised(&error),
+            })
+        })
+    }
+
+    /// Rows hold the rate of the displacement by the arc length.
+    fn follow(
+        &mut self,
+        from: f64,
+        to: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), NoSolution> {
+        let [_, factor, scale] = figures(old);
+        let mut radius = (from > 0.0).then_some(scale * (to - from));
+        self.settle([from, to], factor, old, new, |statics, known| {
+            statics.advance_along(known, to - from, &mut radius).map_err(|error| NoSolution {
+                kind: kind(&error),
+                time: to,
+                reached: from,
+                message: format!(
+                    "{error} (a step of arc length is `time.step`; `time.on_failure = \"retry\"` \
+                     halves it)"
+                ),
+            })
+        })?;
+        if let Some(radius) = radius {
+            figures_of(new)[ARC_SCALE] = if from > 0.0 { scale } else { radius / (to - from) };
+        }
+        Ok(())
+    }
+}
+
+/// The numbers of the last step in a state, or its tail.
+pub(super) fn figures_of(state: &mut [f64]) -> &mut [f64] {
+    let start = state.len() - FIGURES;
+    &mut state[start..]
+}
+
+fn figures(state: &[f64]) -> [f64; FIGURES] {
+    let mut figures = [0.0; FIGURES];
+    figures.copy_from_slice(&state[state.len() - FIGURES..]);
+    figures
+}
+
+impl<const D: usize> DualSupport<D> {
+    /// Writes the state that `find` finds after the one in `old`, which is in equilibrium with the
+    /// loads of `factor`, in a step of time, or what takes its part.
+    fn settle(
+        &mut self,
+        [from, to]: [f64; 2],
+        factor: f64,
+        old: &[f64],
+        new: &mut [f64],
+        find: impl FnOnce(&mut Statics<D>, &Known<D>) -> Result<StaticState<D>, NoSolution>,
+    ) -> Result<(), NoSolution> {
         let length = Row::<D>::LENGTH;
         new.copy_from_slice(old);
         let count = self.mass.len();
         let rows = || old.chunks_exact(length).take(count);
         let known = Known {
-            factor: from,
+            factor,
             displacement: rows().map(Row::<D>::displacement).collect(),
             rate: (from > 0.0).then(|| rows().map(Row::<D>::velocity).collect()),
         };
         let Some(statics) = &mut self.statics else { return Ok(()) };
-        let held_before = statics.support_forces(from, &known.displacement);
-        let state = statics.advance(&known, to).map_err(|error| NoSolution {
-            kind: kind(&error),
-            time: to,
-            reached: from,
-            message: advised(&error),
-        })?;
+        let held_before = statics.support_forces(factor, &known.displacement);
+        let state = find(statics, &known)?;
         let moved: Vec<Vector<D>> =
             state.displacement.iter().zip(&known.displacement).map(|(u, last)| u - last).collect();
         for (a, row) in new.chunks_exact_mut(length).take(count).enumerate() {
@@ -45,10 +102,13 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
         }
         let held = held_before.iter().zip(&state.support_force);
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
-        let work = self.work([from, to], [&known.displacement, &state.displacement], &held);
+        let ends = [&*known.displacement, &*state.displacement];
+        let work = self.work([factor, state.factor], ends, &held);
         let tail = &mut new[count * length..];
         tail.iter_mut().zip(work).for_each(|(sum, work)| *sum += work);
-        tail[Self::tail_length() - 1] = state.solved.iterations.len() as f64;
+        let figures = figures_of(tail);
+        figures[ITERATIONS] = state.solved.iterations.len() as f64;
+        figures[LOAD_FACTOR] = state.factor;
         Ok(())
     }
 }
@@ -87,7 +147,7 @@ impl<const D: usize> DualSupport<D> {
     pub(super) fn reactions(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
         self.load(state);
         if let (true, Some(statics)) = (self.is_static, &mut self.statics) {
-            return statics.support_forces(time, &self.displacement);
+            return statics.support_forces(figures(state)[LOAD_FACTOR], &self.displacement);
         }
         let mut rate = std::mem::take(&mut self.rate);
         self.rates(time, state, &mut rate);

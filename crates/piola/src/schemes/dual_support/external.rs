@@ -1,7 +1,8 @@
 //! What acts on the body from outside, with the work and the momentum that enter with it.
 
 use super::{
-    BODY_FORCE, BOUNDARY_MOTION, DualSupport, IMPULSES, MECHANISMS, PRESSURE, Row, Side, TRACTION,
+    BODY_FORCE, BOUNDARY_MOTION, DualSupport, FIGURES, IMPULSES, MECHANISMS, PRESSURE, Row, Side,
+    TRACTION,
 };
 use crate::boundaries::BodyForce;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
@@ -17,10 +18,10 @@ impl<const D: usize> DualSupport<D> {
         MECHANISMS.len() + IMPULSES.len() * momentum_components(D).len()
     }
 
-    /// Numbers behind the rows: the ledger, its rates, how fast its powers grow in a kick, and in
-    /// statics the iterations of the last step.
+    /// Numbers behind the rows: the ledger, its rates, how fast its powers grow in a kick, and the
+    /// [`FIGURES`] of the last step.
     pub(super) fn tail_length() -> usize {
-        2 * Self::ledger_length() + MECHANISMS.len() + 1
+        2 * Self::ledger_length() + MECHANISMS.len() + FIGURES
     }
 
     /// Current position of particle a in m, of its row of a state.

@@ -22,9 +22,10 @@ impl<const D: usize> DualSupport<D> {
             };
             Deformed { gradient, moduli, at_rest, density: material.density }
         });
-        self.not_convex = figures
-            .not_convex()
-            .map(|a| (a, self.discrete.displacement_gradient(&self.displacement, a)));
+        if let Some(a) = figures.not_convex() {
+            let gradient = self.discrete.displacement_gradient(&self.displacement, a);
+            self.not_convex = Some((a, gradient));
+        }
         limits.clear();
         if self.is_static {
             // Nothing moves: rows hold another rate.

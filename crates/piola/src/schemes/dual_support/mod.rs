@@ -33,6 +33,7 @@ pub use build::{DualSupportError, DualSupportInput};
 pub use discrete::{Discrete, Side};
 pub use scheme::DESCRIPTION;
 pub use settings::{Gradients, Motion, Settings};
+pub(crate) use statics::free_to_move;
 pub use statics::{
     InertialStep, Known, Reaction, StaticState, Statics, StaticsError, StaticsInput, Stiffness,
 };
@@ -60,7 +61,7 @@ pub struct DualSupport<const D: usize> {
     stiffest: usize,
     /// Moduli of the slowest and the fastest wave at rest of each material, Pa.
     moduli_at_rest: Vec<[f64; 2]>,
-    /// A particle of the last look that has lost its convexity, with its displacement gradient.
+    /// The last particle seen to have lost its convexity, with its displacement gradient.
     not_convex: Option<(usize, Tensor<D>)>,
     body_forces: Vec<BodyForce<D>>,
     loaded: Vec<Loaded<D>>,
@@ -81,6 +82,13 @@ const MECHANISMS: [&str; 4] = ["body_force", "traction", "pressure", "boundary_m
 
 /// The ways in which momentum enters: all mechanisms, since forces between particles cancel.
 const IMPULSES: [&str; 4] = MECHANISMS;
+
+/// Numbers at the end of a state that belong to its last step: iterations of Newton's method, the load
+/// factor, and the length in m that displacements have moved by per unit of arc length.
+const FIGURES: usize = 3;
+const ITERATIONS: usize = 0;
+const LOAD_FACTOR: usize = 1;
+const ARC_SCALE: usize = 2;
 
 const BODY_FORCE: usize = 0;
 const TRACTION: usize = 1;

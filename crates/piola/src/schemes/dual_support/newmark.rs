@@ -1,8 +1,8 @@
 //! The formulation in implicit steps.
 
-use super::equilibrium::kind;
+use super::equilibrium::{figures_of, kind};
 use super::statics::InertialStep;
-use super::{DualSupport, MECHANISMS, Row};
+use super::{DualSupport, ITERATIONS, MECHANISMS, Row};
 use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Newmark, NewmarkScheme, NoSolution, Scheme};
 use crate::{Vector, parallel};
@@ -87,7 +87,7 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
         }
         tail[ledger..2 * ledger].copy_from_slice(rates);
         self.rate = rate;
-        tail[Self::tail_length() - 1] = iterations as f64;
+        figures_of(tail)[ITERATIONS] = iterations as f64;
         Ok(())
     }
 

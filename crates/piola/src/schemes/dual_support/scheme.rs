@@ -1,7 +1,7 @@
 //! The dual-support formulation as integrators, clock and output see it.
 
 use super::sample::FIELDS;
-use super::{DualSupport, ENERGIES, IMPULSES, MECHANISMS, Row, Side};
+use super::{DualSupport, ENERGIES, FIGURES, IMPULSES, MECHANISMS, Row, Side};
 use crate::schemes::look::convexity_is_lost;
 use crate::schemes::{
     Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme,
@@ -10,7 +10,11 @@ use crate::schemes::{
 use crate::solve::Costs;
 use crate::{Vector, parallel};
 
-const FIGURES: [(&str, &str); 1] = [(NEWTON_ITERATIONS, "1")];
+const COLUMNS: [(&str, &str); 2] = [(NEWTON_ITERATIONS, "1"), ("load_factor", "1")];
+
+/// What to do about a body whose material has been seen to lose its convexity.
+const CONVEXITY: &str = "the material had lost its convexity before, which smaller steps do not bring \
+                         back: use another law, or a smaller load";
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
@@ -19,7 +23,7 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,
     impulses: &IMPULSES,
-    figures: &FIGURES,
+    figures: &COLUMNS,
 };
 
 impl<const D: usize> Scheme for DualSupport<D> {
@@ -73,7 +77,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
-        figures.extend(state.last());
+        figures.extend_from_slice(&state[state.len() - FIGURES..][..COLUMNS.len()]);
     }
 
     fn linear_costs(&self) -> Option<Costs> {
@@ -154,12 +158,16 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn stability_advice(&self) -> &'static str {
-        "raise `scheme.hourglass`"
+        match self.not_convex {
+            Some(_) => CONVEXITY,
+            None => "raise `scheme.hourglass`",
+        }
     }
 
     fn collapse_advice(&self, index: usize) -> String {
         let law = self.discrete.material(index).law.law();
         match law.name() {
+            _ if self.not_convex.is_some() => CONVEXITY.into(),
             "linear_elastic" | "saint_venant_kirchhoff" => format!(
                 "`{}` does not resist being turned inside out: use a neo-Hookean law, or a \
                  smaller load",

@@ -30,8 +30,10 @@ impl<const D: usize> Elastodynamics<D> {
         });
         let thickening = self.thickest(&gradient_of);
         let stiffening = Most { ratio: figures.stiffening, particle: figures.stiffest };
-        let not_convex = figures.not_convex().map(|a| (a, gradient_of(a)));
-        self.not_convex = not_convex;
+        if let Some(a) = figures.not_convex() {
+            let gradient = gradient_of(a);
+            self.not_convex = Some((a, gradient));
+        }
         self.is_evaluated = known;
         limits.clear();
         limits.push(self.stable.limit(stiffening, thickening));

@@ -129,13 +129,19 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn stability_advice(&self) -> &'static str {
-        "raise `scheme.viscosity` or `scheme.hourglass`"
+        match self.not_convex {
+            Some(_) => {
+                "the material had lost its convexity before, which smaller steps do not bring back: \
+                 add `scheme.viscosity`, or use another law"
+            }
+            None => "raise `scheme.viscosity` or `scheme.hourglass`",
+        }
     }
 
     fn collapse_advice(&self, index: usize) -> String {
         let mixture = &self.mixtures[self.mixture[index] as usize];
         let [least, _] = mixture.wave_moduli(&self.gradient[index]);
-        match least < 0.0 {
+        match least < 0.0 || self.not_convex.is_some() {
             true => "the material has lost its convexity at this deformation, which no numerical \
                      method can follow without a length: add `scheme.viscosity`, or use another law"
                 .to_owned(),

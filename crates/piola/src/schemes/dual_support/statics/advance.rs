@@ -2,7 +2,7 @@
 
 use super::{StaticState, Statics, StaticsError};
 use crate::Vector;
-use crate::solve::{LoadError, NewtonError, Path};
+use crate::solve::{ArcPath, LoadError, NewtonError, Path};
 
 /// A state that a step starts from.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +38,31 @@ impl<const D: usize> Statics<D> {
         let newton = self.newton;
         let increment =
             path.attempt(self, &newton, factor, false).map_err(|error| self.located(error))?;
+        Ok(self.state(increment))
+    }
+
+    /// The state one step of arc length after a known one, stable or not, whatever its load factor is:
+    /// displacements move by `radius` in the norm of all unknowns together, or where there is none yet
+    /// by what a load factor of `first` would move them alone, which `radius` then is.
+    ///
+    /// # Errors
+    /// [`StaticsError`] where none is found.
+    pub fn advance_along(
+        &mut self,
+        known: &Known<D>,
+        first: f64,
+        radius: &mut Option<f64>,
+    ) -> Result<StaticState<D>, StaticsError> {
+        let x = self.collect(&known.displacement);
+        let last = known.rate.as_ref().map(|rate| self.collect(rate));
+        self.faces.reset();
+        self.solver.restart();
+        let path = ArcPath { factor: known.factor, x, last };
+        let newton = self.newton;
+        let increment = path.attempt(self, &newton, first, radius).map_err(|source| {
+            let factor = known.factor;
+            self.located(LoadError::Newton { factor, reached: factor, source })
+        })?;
         Ok(self.state(increment))
     }
 

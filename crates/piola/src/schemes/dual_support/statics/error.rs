@@ -49,15 +49,7 @@ pub enum StaticsError {
         component: usize,
     },
     /// A body that can move as a whole.
-    #[error(
-        "{}body {body} is free to {motion}: prescribe displacements that hold it",
-        match part {
-            Some((id, position)) => format!(
-                "nothing connects particle {id} at {position:?} with the rest: this part of "
-            ),
-            None => String::new(),
-        }
-    )]
+    #[error("{}", free_to_move(&format!("body {body}"), part.as_ref(), motion))]
     Free {
         /// Number of the body.
         body: u32,
@@ -155,4 +147,15 @@ impl<const D: usize> Statics<D> {
             error => StaticsError::Load(error),
         }
     }
+}
+
+/// That a body can move as a whole, with the name of it.
+pub(crate) fn free_to_move(body: &str, part: Option<&(u32, Vec<f64>)>, motion: &str) -> String {
+    let part = part.map(|(id, position)| {
+        format!("nothing connects particle {id} at {position:?} with the rest: this part of ")
+    });
+    format!(
+        "{}{body} is free to {motion}: prescribe displacements that hold it",
+        part.unwrap_or_default()
+    )
 }

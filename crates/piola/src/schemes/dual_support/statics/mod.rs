@@ -17,6 +17,7 @@ mod supports;
 
 pub use advance::Known;
 pub use error::StaticsError;
+pub(crate) use error::free_to_move;
 pub use inertia::InertialStep;
 pub use stiffness::Stiffness;
 
