@@ -259,8 +259,8 @@ fn overrides_append_to_lists() {
 fn problems_of_what_is_appended_have_their_places() {
     for (text, expected) in [
         (
-            "boundary+={ name = 'late', where = { kind = 'all' }, velocty = { x = '0' } }",
-            "[[boundary]] has no key `velocty`\n  --> command line:1:60\n",
+            "boundary+={ name = 'late', where = { kind = 'all' }, velocity = { x = '0' }, velocty = 1 }",
+            "[[boundary]] has no key `velocty`\n  --> command line:1:84\n",
         ),
         (
             "time+={ end = 1 }",
