@@ -57,12 +57,12 @@ fn energy_that_is_damped_is_said_to_be() {
 /// Five times the stable step without upwinding: the column breaks up.
 #[test]
 fn a_step_that_is_too_large() {
-    let set = ["time.cfl=2.5", "scheme.tau_velocity=0"];
+    let set = ["time.cfl=2.5", "scheme.tau_velocity=0", "time.integrator='tvd_rk2'"];
     let finished = run(&load("column-impact", &set), None);
     let Failure::Inverted { particle, ratio, step, time, advice, .. } = failure(&finished) else {
         panic!("{:?}", finished.summary.outcome)
     };
-    assert!(*ratio <= 0.0 && advice.contains("lower `time.cfl`"), "{ratio}: {advice}");
+    assert!(*ratio <= 0.0 && advice.contains("`time.cfl`"), "{ratio}: {advice}");
     // It ends with the step that broke it, and what it leaves is the state before.
     assert_eq!(*step, finished.summary.steps + 1);
     assert!(*time > finished.summary.time && finished.summary.worst.smallest_ratio > 0.0);
@@ -89,7 +89,7 @@ fn a_step_that_is_too_large() {
 /// The steps of the trace are taken anew; they are those of the run to the bit.
 #[test]
 fn the_trace_is_what_happened() {
-    let set = ["time.cfl=2.5", "scheme.tau_velocity=0"];
+    let set = ["time.cfl=2.5", "scheme.tau_velocity=0", "time.integrator='tvd_rk2'"];
     let finished = run(&load("column-impact", &set), None);
     let place = match failure(&finished) {
         Failure::Inverted { particle, .. } => format!("{:?}", particle.reference),
@@ -124,7 +124,7 @@ fn a_kernel_that_is_too_narrow() {
 /// Bodies that would touch themselves where they are whole are noticed, with the place of the key.
 #[test]
 fn a_self_contact_within_the_support() {
-    let case = load_of("ctvf", "rings", &["scheme.self_contact=2.9"]);
+    let case = load_of("ctvf", "rings", &["scheme.self_contact=2.9", "scheme.smoothing_length=1.0"]);
     let problems = case::build(&case).err().unwrap().to_string();
     for part in
         ["began 2.900e-3 m apart", "reaches 3.000e-3 m", "self_contact=2.9", "make it larger"]

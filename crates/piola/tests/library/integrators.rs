@@ -51,15 +51,17 @@ fn explicit_integrators_have_their_orders() {
             let squares = state.iter().zip(&exact).map(|(a, b)| (a - b) * (a - b));
             squares.sum::<f64>().sqrt()
         };
-        let found = (error(200) / error(400)).log2();
-        assert!((found - order).abs() < 0.1, "{kind:?} has order {found}");
+        let errors = [200, 400, 800].map(error);
+        let found = (errors[1] / errors[2]).log2();
+        assert!((found - order).abs() < 0.1, "{kind:?} has order {found}: {errors:?}");
     }
 }
 
 /// The energy of one mode of a linear bar changes by the factor that is stated, step for step.
 #[test]
 fn one_mode_grows_and_decays_as_stated() {
-    let cells = 20;
+    // Few, so that the fastest mode, twice as fast, has stable steps, too.
+    let cells = 2;
     let linear = VolumetricLaw::linear(1000.0).expect("a sound material");
     for kind in [IntegratorKind::TvdRk2, IntegratorKind::SspRk3, IntegratorKind::KickDriftKick] {
         let mut choice = Choice::new(lattice([1.0], [cells]), linear).fix(0, |x| x[0] < 1e-9);
@@ -82,7 +84,8 @@ fn one_mode_grows_and_decays_as_stated() {
     }
 }
 
-/// The power method finds the wave of four spacings, the fastest of central differences.
+/// The power method finds the fastest mode of central differences: at the free end, where half a mass
+/// hangs on a one-sided slope, w = sqrt(2) c / dx.
 #[test]
 fn the_fastest_mode_is_found() {
     let linear = VolumetricLaw::linear(1000.0).expect("a sound material");
@@ -92,7 +95,7 @@ fn the_fastest_mode_is_found() {
     let mut scheme = choice.build(|_| Vector::<1>::zeros());
     let state = scheme.initial_state();
     let found = scheme.undamped_frequency(&state).expect("nothing damps it");
-    let exact = 10.0 * 60.0;
+    let exact = 2.0_f64.sqrt() * 10.0 * 60.0;
     assert!((found / exact - 1.0).abs() < 0.05, "{found} for {exact}");
     let mut damped = bar(Settings { tau_velocity: 0.5, ..PLAIN });
     assert_eq!(damped.undamped_frequency(&state), None);

@@ -123,7 +123,7 @@ fn a_linear_bar_takes_one_iteration() {
         walk(&mut scheme, &rule, 0.01, 20, |scheme, state| {
             let mut figures = Vec::new();
             scheme.figures(state, &mut figures);
-            assert_eq!(figures, [1.0, 1.0], "{rule:?}");
+            assert_eq!(figures[..2], [1.0, 1.0], "{rule:?}");
         });
     }
 }
