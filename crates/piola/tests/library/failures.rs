@@ -99,7 +99,7 @@ fn the_trace_is_what_happened() {
         format!("probe.top.at={place}"),
         "probe.top.fields=['displacement', 'acceleration']".to_owned(),
     ];
-    let seen = run(&load("column-impact", &[set[0], set[1], &probe, &fields]), None);
+    let seen = run(&load("column-impact", &[set[0], set[1], set[2], &probe, &fields]), None);
     let of_last = |name: &str| {
         let rows = column(&seen, "step").into_iter().zip(column(&seen, "is_bad"));
         let row = rows.into_iter().position(|row| row == (seen.summary.steps as f64, 1.0));
@@ -124,7 +124,8 @@ fn a_kernel_that_is_too_narrow() {
 /// Bodies that would touch themselves where they are whole are noticed, with the place of the key.
 #[test]
 fn a_self_contact_within_the_support() {
-    let case = load_of("ctvf", "rings", &["scheme.self_contact=2.9", "scheme.smoothing_length=1.0"]);
+    let case =
+        load_of("ctvf", "rings", &["scheme.self_contact=2.9", "scheme.smoothing_length=1.0"]);
     let problems = case::build(&case).err().unwrap().to_string();
     for part in
         ["began 2.900e-3 m apart", "reaches 3.000e-3 m", "self_contact=2.9", "make it larger"]
