@@ -202,9 +202,9 @@ pub struct Upwind {
 pub enum Dissipation {
     /// As derived: theory (12) and (13).
     Corrected,
-    /// With (3.38) as printed.
+    /// Upwind (3.38) as printed.
     WithoutDensity,
-    /// With (3.42) as printed.
+    /// Upwind (3.42) as printed.
     TurnedArea,
     /// With both as printed.
     AsPrinted,
