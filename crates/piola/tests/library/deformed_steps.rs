@@ -190,7 +190,7 @@ fn the_bound_is_that_of_the_deformed_body() {
         let (rest, deformed) = (at(plain, 1.0), at(plain, pulled));
         assert!((rest.step / deformed.step / stiffening.sqrt() - 1.0).abs() < 1e-6);
         assert_eq!(deformed.name, "eigenvalue");
-        // Equation (67) of the theory, solved for the viscous eigenvalue at rest, which grows with J/l^2 = 1/l.
+        // As solved in theory (67) for the viscous eigenvalue at rest, which grows with J/l^2 = 1/l.
         let step = at(stiff, 1.0).step;
         let viscous = 2.0 / step - 2.0 * step / rest.step.powi(2);
         let (growth, elastic) = (viscous / stretch, 4.0 / deformed.step.powi(2));
