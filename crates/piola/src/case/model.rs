@@ -13,20 +13,25 @@ use super::source::{Located, Place, SourceText};
 
 mod checks;
 mod geometry;
+mod loads;
+mod materials;
 mod observers;
-mod physics;
+mod schemes;
 mod sweeps;
+mod time;
 
 pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reduction, Trend, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
+pub use loads::{Boundary, Load, LoadKind, Roller};
+pub use materials::{Material, PlaneState, Stiffness, Wall};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
-pub use physics::{
-    Boundary, Checkpoint, Correction, Dissipation, DualSupport, Elastodynamics, GradientKind,
-    Interpolation, Load, LoadKind, Material, PlaneState, ReferenceWaveSpeed, Roller, Scheme,
-    StepControl, Stiffness, SupportSize, Time, TransportVelocity, Upwind, Wall, Weights,
+pub use schemes::{
+    Correction, Dissipation, DualSupport, Elastodynamics, GradientKind, Interpolation,
+    ReferenceWaveSpeed, Scheme, SupportSize, TransportVelocity, Upwind, Weights,
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
 pub(super) use sweeps::{member_name, member_of};
+pub use time::{Checkpoint, StepControl, Time};
 
 /// One case: everything that a run needs to know.
 #[derive(Clone, Debug)]

@@ -1,0 +1,144 @@
+//! What bodies are made of.
+
+use piola_formulas::hyperelastic::HyperelasticLaw;
+use piola_formulas::volumetric::{self, StressState};
+
+use crate::case::expression::Expression;
+use crate::schemes::transport_velocity;
+
+/// What a body is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// Pressure linear in the volume ratio, `p = -kappa (J - 1)`, Upwind (3.11) and (3.12) corrected.
+    Linear {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// How its bulk modulus is given.
+        stiffness: Stiffness,
+    },
+    /// `p = kappa (J^-gamma - 1)`, Upwind (6.30).
+    GammaLaw {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// Exponent, at least 1.
+        gamma: f64,
+        /// How its bulk modulus is given, never by Young's modulus.
+        stiffness: Stiffness,
+    },
+    /// A fluid with `p = kappa (rho / rho0 - 1)`, CTVF (8).
+    WeaklyCompressible {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// How its bulk modulus is given, never by Young's modulus.
+        stiffness: Stiffness,
+        /// Kinematic viscosity in m^2/s.
+        viscosity: f64,
+    },
+    /// An elastic solid with a strain energy.
+    Hyperelastic {
+        /// Reference density in kg/m^3.
+        density: f64,
+        /// Its strain energy in three dimensions.
+        law: HyperelasticLaw,
+        /// What the directions that the case does not have do. Without meaning in 3D.
+        plane: PlaneState,
+    },
+    /// A solid whose stress is integrated in time, CTVF (4).
+    Hypoelastic(transport_velocity::Solid),
+}
+
+impl Material {
+    /// What bodies are made of of which no one asks.
+    pub const PLACEHOLDER: Self =
+        Self::Linear { density: 1.0, stiffness: Stiffness::BulkModulus(1.0) };
+
+    /// Reference density in kg/m^3.
+    pub fn density(&self) -> f64 {
+        match *self {
+            Self::Linear { density, .. }
+            | Self::GammaLaw { density, .. }
+            | Self::WeaklyCompressible { density, .. }
+            | Self::Hyperelastic { density, .. } => density,
+            Self::Hypoelastic(solid) => solid.state.density,
+        }
+    }
+
+    /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions; of an elastic
+    /// solid that of small strains.
+    ///
+    /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
+    /// Upwind (6.31) solved for kappa, with gamma = 1 for the linear law.
+    pub fn bulk_modulus(&self, dimension: usize) -> f64 {
+        let (density, gamma, stiffness) = match *self {
+            Self::Linear { density, stiffness } => (density, 1.0, stiffness),
+            Self::GammaLaw { density, gamma, stiffness } => (density, gamma, stiffness),
+            Self::WeaklyCompressible { density, stiffness, .. } => (density, 1.0, stiffness),
+            Self::Hyperelastic { law, .. } => return law.small_strain().bulk_modulus(),
+            Self::Hypoelastic(solid) => return solid.bulk_modulus(),
+        };
+        match stiffness {
+            Stiffness::BulkModulus(modulus) => modulus,
+            Stiffness::WaveSpeed(speed) => density * speed * speed / gamma,
+            Stiffness::Young { modulus, poisson_ratio, plane } => {
+                plane.bulk_modulus(modulus, poisson_ratio, dimension)
+            }
+        }
+    }
+}
+
+/// The ways to give a bulk modulus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stiffness {
+    /// The modulus kappa itself, in Pa.
+    BulkModulus(f64),
+    /// The wave speed in the reference state, in m/s.
+    WaveSpeed(f64),
+    /// Young's modulus and Poisson's ratio.
+    Young {
+        /// Young's modulus in Pa.
+        modulus: f64,
+        /// Poisson's ratio.
+        poisson_ratio: f64,
+        /// What the directions that the case does not have do. Without meaning in 3D.
+        plane: PlaneState,
+    },
+}
+
+/// What happens in the directions that a case of one or two dimensions does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneState {
+    /// No stress there.
+    Stress,
+    /// No strain there.
+    Strain,
+}
+
+impl PlaneState {
+    /// Ratio of pressure to relative change of length, area or volume of an isotropic elastic body
+    /// ([`volumetric::bulk_modulus`]); in three dimensions nothing is left to choose. NaN where it
+    /// does not exist, which no reader of cases lets pass.
+    pub fn bulk_modulus(self, young_modulus: f64, poisson_ratio: f64, dimension: usize) -> f64 {
+        let state = self.stress_state(dimension);
+        volumetric::bulk_modulus(young_modulus, poisson_ratio, state).unwrap_or(f64::NAN)
+    }
+
+    /// The stress state in a case of `dimension` dimensions.
+    pub fn stress_state(self, dimension: usize) -> StressState {
+        match (dimension, self) {
+            (1, Self::Stress) => StressState::UniaxialStress,
+            (1, Self::Strain) => StressState::UniaxialStrain,
+            (2, Self::Stress) => StressState::PlaneStress,
+            (2, Self::Strain) => StressState::PlaneStrain,
+            _ => StressState::ThreeDimensional,
+        }
+    }
+}
+
+/// What makes a body a wall.
+#[derive(Clone, Debug)]
+pub struct Wall {
+    /// What viscosity does along it.
+    pub slip: transport_velocity::Slip,
+    /// Velocity of its surface where it is, by component, in m/s.
+    pub sliding: Vec<Option<Expression>>,
+}
