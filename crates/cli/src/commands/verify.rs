@@ -58,10 +58,15 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     let all = || rows.iter().flat_map(|(_, rows)| rows);
     let skipped = all().filter(|row| !row.was_run()).count();
     let total = all().count() - skipped;
-    let failed = all().filter(|row| row.was_run() && !row.pass).count();
-    let passed = total - failed;
+    let failed = all().filter(|row| row.is_failed()).count();
+    let unmet = all().filter(|row| row.was_run() && row.unmet.is_some()).count();
+    let passed = total - failed - unmet;
+    let known = match unmet {
+        0 => String::new(),
+        _ => format!("{unmet} not met as their cases say, "),
+    };
     let mut text = format!(
-        "{} of {}: {passed} passed, {failed} failed ({})\n",
+        "{} of {}: {passed} passed, {known}{failed} failed ({})\n",
         count(total as u64, "check"),
         count(rows.len() as u64, "case"),
         duration(seconds)
@@ -268,12 +273,15 @@ fn render(rows: &[Rows]) -> String {
             row.expected.clone(),
             row.tolerance.clone(),
             row.source.clone(),
-            terminal::verdict(if row.pass { "yes" } else { "NO" }, row.pass),
+            match &row.unmet {
+                Some(_) => "no".to_owned(),
+                None => terminal::verdict(if row.pass { "yes" } else { "NO" }, row.pass),
+            },
         ]
     };
     let table: Vec<Vec<String>> = std::iter::once(header).chain(rows().map(cells)).collect();
     let lines = table::align(&table, terminal::stdout_width(), &[6, 2, 4, 0]);
-    let reasons = rows().map(|(_, row)| row.reason.as_deref());
+    let reasons = rows().map(|(_, row)| row.reason.as_deref().or(row.unmet.as_deref()));
     let mut text = String::new();
     for (line, reason) in lines.iter().zip(std::iter::once(None).chain(reasons)) {
         text.push_str(line);

@@ -46,6 +46,20 @@ fn a_failed_check_is_named_and_counted() {
 }
 
 #[test]
+fn what_a_case_knows_not_to_be_met_does_not_fail() {
+    let place = Place::new();
+    let known = impossible("always") + "unmet = \"bars are no longer than that\"\n";
+    place.write("cases/a/case.toml", BAR.to_owned() + &known);
+    let (stdout, _) = place.run("verify", 0);
+    let count = "2 checks of 1 case: 1 passed, 1 not met as their cases say, 0 failed";
+    assert_contains(&stdout, &["bars are no longer than that", "  no\n", count]);
+    // Once it is met, the mark is wrong.
+    place.write("cases/a/case.toml", BAR.to_owned() + &known.replace("1e3", "-1e3"));
+    let (stdout, _) = place.run("verify", 1);
+    assert_contains(&stdout, &["remove `unmet`", "1 passed, 1 failed"]);
+}
+
+#[test]
 fn the_setting_chooses_runs_and_checks() {
     let place = Place::new();
     place.write("bar/case.toml", BAR.to_owned() + &impossible("case"));

@@ -260,11 +260,11 @@ fn section(page: &mut String, case: &CaseResults, folder: &str) {
         push(page, &format!("| {} |\n", cells(row).map(|text| cell(&text)).join(" | ")));
     }
     let reasons = case.rows.iter().filter(|row| !row.pass && row.was_run()).filter_map(|row| {
-        let first = row.reason.as_ref()?.lines().next()?;
+        let first = row.unmet.as_ref().or(row.reason.as_ref())?.lines().next()?;
         Some(format!("- {}: {}\n", cell(&row.name()), cell(first)))
     });
     let reasons: Vec<String> = reasons.collect();
-    list(page, "Not as expected:", &reasons);
+    list(page, "Not met, and why:", &reasons);
     let orders = case.rows.iter().filter(|row| row.expected.starts_with("order "));
     let orders = orders.filter_map(|row| {
         let run = row.run.as_ref().map(|run| format!("{run}: ")).unwrap_or_default();

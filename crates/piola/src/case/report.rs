@@ -169,13 +169,14 @@ fn checks(case: &Case, run: &Recorded) -> Vec<CheckLine> {
         verdict: match (run.record.outcome.as_str(), row.pass) {
             (_, true) => Verdict::Passed,
             ("interrupted" | "running", false) => Verdict::Open,
+            _ if row.unmet.is_some() => Verdict::Unmet,
             _ => Verdict::Failed,
         },
         quantity: row.quantity,
         expected: row.expected,
         tolerance: row.tolerance,
         source: row.source,
-        reason: row.reason,
+        reason: row.unmet.or(row.reason),
     })
     .collect()
 }

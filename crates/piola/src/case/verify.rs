@@ -115,6 +115,8 @@ pub struct CheckRow {
     pub is_long: bool,
     /// Whether the check passes.
     pub pass: bool,
+    /// Why it is not met, as the case knows; `None` where it passes, or where it should.
+    pub unmet: Option<String>,
     /// Why it could not be evaluated, or how the run failed; `None` if only the number is off.
     pub reason: Option<String>,
     /// For checks of how members of a sweep follow each other, what each gave.
@@ -200,7 +202,7 @@ fn own_runs(case: &Case, check: &Check) -> Vec<Option<String>> {
     }
 }
 
-/// Evaluates the checks of `base` that apply in its setting, coarse or full, in their order.
+/// Evaluates the checks of `base` that apply in its setting, in their order.
 ///
 /// `run` is called once for each variant of [`needed_variants`]. It applies the variant and the
 /// setting, runs, and says why where it cannot.
@@ -214,7 +216,30 @@ pub fn verify<Run: RunResults>(base: &Case, run: &mut RunVariant<'_, Run>) -> Ve
         (variant, result)
     });
     let runs = Runs::new(base, runs.collect());
-    applicable(base).flat_map(|(index, check)| runs.rows(index, check)).collect()
+    let rows = applicable(base).flat_map(|(index, check)| {
+        let mut rows = runs.rows(index, check);
+        if let Some(why) = &check.unmet {
+            excuse(&mut rows, why);
+        }
+        rows
+    });
+    rows.collect()
+}
+
+/// Gives the rows of a check that is known not to be met the reason; where all are met, there is
+/// nothing to excuse, and the mark is the fault.
+fn excuse(rows: &mut [CheckRow], why: &str) {
+    if rows.iter().all(|row| row.pass) {
+        for row in rows {
+            row.pass = false;
+            row.reason = Some("it is met, and marked as not met: remove `unmet`".to_owned());
+        }
+        return;
+    }
+    // What could not be evaluated is no known result.
+    for row in rows.iter_mut().filter(|row| !row.pass && row.got.is_some()) {
+        row.unmet = Some(why.to_owned());
+    }
 }
 
 /// The checks that apply in the setting of `case`, with their numbers.

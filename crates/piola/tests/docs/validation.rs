@@ -91,13 +91,18 @@ fn the_results_are_of_every_check_of_every_case_as_it_is() {
         let mut fresh = BTreeSet::new();
         for level in Level::ALL {
             let planned = planned(&path, level);
+            let base = read(&path, None, level);
             for row in kept.rows.iter().filter(|row| row.read_at == level) {
                 let known = planned.iter().any(|planned| is_of(row, planned));
                 assert!(known, "{}: no check makes {row:?}: {RENEW}", case.name);
                 let names = row.runs.iter().map(Option::as_deref);
                 let sums: Vec<String> =
                     names.map(|name| read(&path, name, level).fingerprint()).collect();
-                assert_eq!(row.fingerprint, sums.join(" "), "{}: {}", case.name, row.name());
+                let name = format!("{}: {}", case.name, row.name());
+                assert_eq!(row.fingerprint, sums.join(" "), "{name}");
+                let known = base.checks[row.check].unmet.as_ref().filter(|_| !row.pass);
+                assert!(!row.was_run() || row.unmet.as_ref() == known, "{name}: {RENEW}");
+                assert!(!row.is_failed(), "{name}: it is not met, and does not say why");
                 fresh.insert((row.check, row.run.clone()));
             }
             // What is the same at the coarse setting and as it stands is there once.

@@ -110,6 +110,7 @@ impl Reader<'_, '_> {
             against: record.text("against").and_then(|name| against(&name)),
             source: record.text("source")?.value,
             reason: record.text("reason").map(|reason| reason.value),
+            unmet: record.text("unmet").map(|why| why.value),
             when,
         })
     }

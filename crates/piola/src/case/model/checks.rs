@@ -25,6 +25,8 @@ pub struct Check {
     pub source: String,
     /// Why the tolerance, or the bound, is what it is.
     pub reason: Option<String>,
+    /// Why it is not met, where that is known and stands.
+    pub unmet: Option<String>,
     /// At which setting it is evaluated.
     pub when: When,
 }

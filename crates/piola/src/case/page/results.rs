@@ -71,6 +71,9 @@ pub struct Row {
     pub bound: Option<String>,
     /// Whether the check passes.
     pub pass: bool,
+    /// Why it does not, where that is known and stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unmet: Option<String>,
     /// Why it does not, where it is not the number that is off.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -107,6 +110,7 @@ impl Row {
             source: row.source.clone(),
             bound: row.bound.clone(),
             pass: row.pass,
+            unmet: row.unmet.clone(),
             reason: row.reason.as_ref().filter(|_| !row.pass).cloned(),
             members: members(row),
             work,
@@ -130,6 +134,11 @@ impl Row {
         key(self) == key(other) && self.fingerprint == other.fingerprint
     }
 
+    /// Whether it was run and is not met for no known reason.
+    pub fn is_failed(&self) -> bool {
+        self.was_run() && !self.pass && self.unmet.is_none()
+    }
+
     /// Whether it was run at all.
     pub fn was_run(&self) -> bool {
         !self.is_long || self.date.is_some()
@@ -145,7 +154,8 @@ impl CaseResults {
             if let Some(known) = known {
                 // What the check says today of the value and its worth stays.
                 let (against, bound) = (row.against, row.bound.clone());
-                *row = Row { check: row.check, against, bound, ..known.clone() };
+                let unmet = row.unmet.clone().filter(|_| !known.pass);
+                *row = Row { check: row.check, against, bound, unmet, ..known.clone() };
             }
         }
         let kept = earlier.charts.iter().filter(|_| self.rows.iter().any(|row| row.is_long));

@@ -184,6 +184,13 @@ pub(super) static CHECK: TableSpec = TableSpec {
             "why the tolerance or the bound is what it is: order of the method, digits printed, scatter of the experiment",
         ),
         key(
+            "unmet",
+            Kind::Text,
+            "",
+            Optional,
+            "why it is not met, where that is known and the expected value is right all the same. It counts as not met, but does not make `piola verify` fail; as soon as all its rows are met, it does",
+        ),
+        key(
             "when",
             Kind::Name(SETTINGS),
             "",

@@ -82,6 +82,7 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
             runs,
             is_long,
             pass: false,
+            unmet: None,
             reason: None,
             trend: None,
         }

@@ -145,6 +145,7 @@ fn a_row_says_what_was_compared() {
             runs: vec![None],
             is_long: false,
             pass: true,
+            unmet: None,
             reason: None,
             trend: None,
         }
@@ -397,6 +398,26 @@ fn each_member_of_a_sweep_is_checked_with_its_own_parameters() {
     );
     assert_eq!(rows.len(), 2);
     assert!(rows.iter().all(|row| !row.pass && row.expected == "less than base (2 m)"));
+}
+
+#[test]
+fn what_is_known_not_to_be_met_has_its_reason_and_is_to_be_unmarked_once_it_is() {
+    let check = |at_most: f64| {
+        let rows =
+            sweep_rows(&format!("sweep = \"size\"\nat_most = {at_most:?}\nunmet = \"too large\""));
+        let verdicts = rows.into_iter().map(|row| (row.pass, row.unmet.is_some(), row.reason));
+        verdicts.collect::<Vec<_>>()
+    };
+    let (met, unmet) = ((true, false, None), (false, true, None));
+    // Amplitudes 1, 2, 4 with two kernels each.
+    let [one, two, four] = [met, unmet.clone(), unmet];
+    let each = [one.clone(), one, two.clone(), two, four.clone(), four];
+    assert_eq!(check(1.5), each);
+    let marked = check(9.0);
+    assert_eq!(marked.len(), 6);
+    for (pass, excused, reason) in marked {
+        assert!(!pass && !excused && reason.unwrap().contains("remove `unmet`"));
+    }
 }
 
 #[test]

@@ -74,6 +74,7 @@ fn verdict(verdict: Verdict) -> Markup {
     let (class, text) = match verdict {
         Verdict::Passed => ("badge good", "✓ pass"),
         Verdict::Failed => ("badge bad", "✗ FAIL"),
+        Verdict::Unmet => ("badge open", "✗ not met"),
         Verdict::Open => ("badge open", "– open"),
     };
     html! { span class=(class) { (text) } }

@@ -67,6 +67,8 @@ pub enum Verdict {
     Passed,
     /// Not as expected.
     Failed,
+    /// Not as expected, for a reason that the case gives.
+    Unmet,
     /// The run did not get far enough to say.
     Open,
 }

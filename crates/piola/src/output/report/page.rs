@@ -76,7 +76,8 @@ fn head(report: &Report) -> Markup {
         _ => "badge open",
     };
     let failed = report.checks.iter().any(|check| check.verdict == Verdict::Failed);
-    let open = report.checks.iter().any(|check| check.verdict == Verdict::Open);
+    let open =
+        report.checks.iter().any(|check| matches!(check.verdict, Verdict::Open | Verdict::Unmet));
     let checked = match (failed, open) {
         (true, _) => "badge bad",
         (_, true) => "badge open",
