@@ -7,12 +7,14 @@ use crate::Vector;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faces<const D: usize> {
     normals: Vec<Vector<D>>,
+    /// How far the point is behind them in m.
+    depth: f64,
 }
 
 impl<const D: usize> Faces<D> {
-    /// Faces with these unit normals.
-    pub fn new(normals: Vec<Vector<D>>) -> Self {
-        Self { normals }
+    /// Faces with these unit normals, that a point is so deep behind, in m.
+    pub fn new(normals: Vec<Vector<D>>, depth: f64) -> Self {
+        Self { normals, depth }
     }
 
     /// The unit normal between those of the faces; zero if there is none.
@@ -35,10 +37,11 @@ impl<const D: usize> Faces<D> {
         sum.try_normalize(1e-6 * direction.norm()).unwrap_or_else(|| self.between())
     }
 
-    /// How far a place is in front of that face which it is most in front of, in m, for the way to
-    /// there from a point that lies as deep as the faces are counted from; zero without a face.
-    pub fn height(&self, way: &Vector<D>) -> f64 {
-        self.normals.iter().map(|normal| way.dot(normal)).reduce(f64::max).unwrap_or(0.0)
+    /// How far a place is in front of the faces, in m, for the way to there from the point behind them, with the
+    /// normal of that face which it is most in front of; nothing without a face.
+    pub fn in_front(&self, way: &Vector<D>) -> Option<(f64, &Vector<D>)> {
+        let heights = self.normals.iter().map(|normal| (way.dot(normal) - self.depth, normal));
+        heights.reduce(|best, other| if other.0 > best.0 { other } else { best })
     }
 }
 
@@ -49,7 +52,7 @@ mod tests {
     #[test]
     fn an_edge_faces_where_it_is_looked_at_from() {
         let [x, y] = [Vector::<2>::new(1.0, 0.0), Vector::<2>::new(0.0, 1.0)];
-        let edge = Faces::new(vec![x, y]);
+        let edge = Faces::new(vec![x, y], 0.05);
         let diagonal = (x + y).normalize();
         assert_eq!(edge.towards(&(x * 3.0)), x);
         assert_eq!(edge.towards(&(x - y * 0.5)), x);
@@ -57,10 +60,11 @@ mod tests {
         assert!((edge.towards(&-x) - diagonal).norm() < 1e-15, "from behind");
         assert!((edge.between() - diagonal).norm() < 1e-15);
         // In front of one face is in front of the wall.
-        assert_eq!(edge.height(&Vector::<2>::new(0.1, -0.2)), 0.1);
-        assert!(edge.height(&Vector::<2>::new(-0.1, -0.2)) < 0.0);
-        assert_eq!(Faces::new(vec![x]).towards(&y), x);
-        assert_eq!(Faces::new(vec![x, -x]).between(), x);
+        assert!(edge.in_front(&Vector::<2>::new(-0.1, -0.2)).is_some_and(|found| found.0 < -0.05));
+        assert_eq!(edge.in_front(&Vector::<2>::new(0.15, -0.2)), Some((0.15 - 0.05, &x)));
+        assert_eq!(Faces::<2>::default().in_front(&x), None);
+        assert_eq!(Faces::new(vec![x], 0.0).towards(&y), x);
+        assert_eq!(Faces::new(vec![x, -x], 0.0).between(), x);
         assert_eq!(Faces::<2>::default().towards(&x), Vector::<2>::zeros());
     }
 }

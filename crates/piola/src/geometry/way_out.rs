@@ -47,7 +47,8 @@ impl<const D: usize> Shape<D> {
                 faces.push(found);
             }
         }
-        Faces::new(faces.into_iter().map(|face| face.1).collect())
+        let depth = faces[0].0;
+        Faces::new(faces.into_iter().map(|face| face.1).collect(), depth)
     }
 
     /// Length of the way out along a direction, infinite if it leaves the bounds.

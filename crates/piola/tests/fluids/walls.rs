@@ -183,5 +183,84 @@ fn a_jet_parts_at_the_edges_of_a_pillar() {
     for slip in ["free", "no"] {
         let finished = run(JET, &[&format!("body.pillar.wall.slip='{slip}'")]);
         assert_eq!(finished.summary.outcome, Outcome::Completed, "{slip}");
+        let behind = values(&finished, "step.behind");
+        assert!(behind.iter().all(|count| *count == 0.0), "{slip}: {behind:?}");
     }
+}
+
+/// A jet that hits a wall which moves towards it or not, until its films are thinner than a particle.
+const FILM: &str = r#"
+version = 1
+title = "A jet on a wall"
+dimension = 2
+
+[[body]]
+name = "jet"
+shape = { kind = "box", min = [-0.24, -0.04], max = [0.0, 0.04] }
+spacing = 0.01
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 800.0, wave_speed = 30.0, viscosity = 0.0 }
+initial = { velocity = ["3", "0"] }
+
+[[body]]
+name = "wall"
+shape = { kind = "box", min = [0.0, -0.8], max = [0.04, 0.8] }
+spacing = 0.01
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 800.0, wave_speed = 30.0, viscosity = 0.0 }
+wall = { slip = "free" }
+
+[scheme]
+kind = "transport_velocity"
+artificial_viscosity = 0.05
+free_surface = true
+
+[time]
+end = 0.12
+
+[output]
+table_every = 0.002
+"#;
+
+#[test]
+fn films_stay_in_front_of_walls() {
+    let settings: [&[&str]; 5] = [
+        &[],
+        &["body.wall.wall.slip='no'", "scheme.smoothing_length=1.3"],
+        &["scheme.shifting='ipst'"],
+        &["scheme.shifting='none'", "scheme.pressure='state_equation'"],
+        &["scheme.artificial_viscosity=0.2", "scheme.corrections='none'"],
+    ];
+    for set in settings {
+        let finished = run(FILM, set);
+        assert_eq!(finished.summary.outcome, Outcome::Completed, "{set:?}");
+        let behind = values(&finished, "step.behind");
+        assert!(behind.iter().all(|count| *count == 0.0), "{set:?}: {behind:?}");
+        // 800 * 3 * 0.24 * 0.08 = 46 kg m/s, and 69 J.
+        for (name, most) in [("momentum.balance.linear.x", 1e-10), ("energy.balance", 1e-9)] {
+            let balance = values(&finished, name).iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            assert!(balance < most, "{set:?}: {name} {balance:e}");
+        }
+    }
+}
+
+#[test]
+fn a_particle_that_touches_a_wall_comes_to_rest_in_front_of_it() {
+    // A drop too small for pressures: one particle, a fifth of the wave speed towards the wall. It stops after
+    // u dx/c, a fifth of a spacing, from a quarter of a spacing on; the wall has its momentum.
+    let drop = [
+        "body.jet.shape.min=[-0.02, 0.0]",
+        "body.jet.shape.max=[-0.01, 0.01]",
+        "body.jet.initial.velocity=['6', '1']",
+        "scheme.free_surface=false",
+        "scheme.shifting='none'",
+        "scheme.pressure='state_equation'",
+        "time.end=0.02",
+    ];
+    let wall = "load+={ kind = 'body_force', acceleration = ['9', '0'] }";
+    let finished = run(FILM, &[&drop[..], &[wall]].concat());
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0));
+    let speed = *values(&finished, "momentum.linear.y").last().expect("there are rows") / 0.08;
+    assert!((speed - 1.0).abs() < 1e-12, "nothing along the wall: {speed}");
 }

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::inspect::ChunkFigures;
 use super::shifting::Iteration;
 use super::{
-    Continua, DensityRule, Fluid, Forces, Opening, Rates, Row, Settings, Side, Slip, Solids,
+    Continua, DensityRule, Fluid, Forces, Hold, Opening, Rates, Row, Settings, Side, Slip, Solids,
     SolidsInput, TransportVelocity, WallParticle, WallValues,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -181,6 +181,10 @@ impl<const D: usize> TransportVelocity<D> {
             rates: vec![Rates::default(); count],
             forces: vec![Forces::default(); count],
             shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],
+            holds: vec![
+                Hold::default();
+                if walls.is_empty() || solids.is_some() { 0 } else { count }
+            ],
             wall_values: vec![WallValues::default(); walls.len()],
             openings: vec![Opening::default(); if settings.free_surface { count } else { 0 }],
             found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],

@@ -33,7 +33,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// from.
     ///
     /// A particle has gone through a wall if it is behind the plane of the nearest wall particle, at
-    /// an edge behind all of them, and has left the box around everything if it is further from that
+    /// an edge behind all of them, and not beyond the end of the wall. It has left the box around everything if it is further from that
     /// of the walls, along an axis that is not periodic, than everything is wide at the start.
     pub fn guard(&mut self, guard: Guard) {
         let position = &self.particles.position;
@@ -143,8 +143,12 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let (_, separation, wall) = nearest?;
         let number = list.numbers()[wall];
-        let height = self.faces(number as usize)?.height(&separation);
-        (height < -TOLERANCE * self.particles.spacing[0]).then_some(Some(number))
+        let faces = self.faces(number as usize)?;
+        let (_, normal) = faces.in_front(&separation)?;
+        let height = separation.dot(normal);
+        let is_through =
+            height < -TOLERANCE * self.particles.spacing[0] && self.is_beside(&separation, height);
+        is_through.then_some(Some(number))
     }
 
     /// Removes what has escaped in `state`, if that is what is to be done: such particles rest where

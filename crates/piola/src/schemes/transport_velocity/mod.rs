@@ -29,6 +29,7 @@
 //! Walls are layers of ghost particles, CTVF (46) to (52). Everything that a state needs to go on
 //! is in its rows: u, r, rho, p, du/dt and d of each particle.
 
+mod barrier;
 mod build;
 mod density;
 mod drift;
@@ -63,6 +64,7 @@ pub use settings::{
 };
 pub use solids::{Contact, Heat, Solid, SolidRates, SolidsInput};
 
+use barrier::Hold;
 use inspect::ChunkFigures;
 use shifting::Iteration;
 use sides::Side;
@@ -81,6 +83,8 @@ pub struct TransportVelocity<const D: usize> {
     mass: Vec<f64>,
     is_wall: Vec<bool>,
     walls: Vec<WallParticle<D>>,
+    /// What walls do to fluid that touches them, by place; empty without walls, and of solids.
+    holds: Vec<Hold<D>>,
     wall_values: Vec<WallValues<D>>,
     /// Velocity with which walls move, and with which their surface slides where it is.
     motion: PrescribedComponents,

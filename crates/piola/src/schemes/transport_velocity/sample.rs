@@ -15,6 +15,7 @@ impl<const D: usize> TransportVelocity<D> {
         self.force_pass();
         self.add_body_forces(time);
         self.hold_accelerations();
+        self.hold_off();
     }
 
     /// The terms of the equations at a state, particle by particle, for those who want to see

@@ -99,8 +99,8 @@ const FIELDS: [FieldDescription; 20] = [
 ];
 
 /// Names and units of the figures of the formulation.
-const FIGURES: [(&str, &str); 4] =
-    [("shifting_passes", "1"), ("removed", "1"), ("gap", "1"), ("pieces", "1")];
+const FIGURES: [(&str, &str); 5] =
+    [("shifting_passes", "1"), ("removed", "1"), ("behind", "1"), ("gap", "1"), ("pieces", "1")];
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
@@ -176,6 +176,7 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         figures.extend([
             tail[Tail::new(D).passes()],
             self.removed_count(state),
+            self.behind_count(state),
             self.largest_gap(state),
             self.piece_count(state),
         ]);

@@ -71,6 +71,7 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         self.add_body_forces(time);
         self.hold_accelerations();
         self.shift(fastest);
+        self.hold_off();
         let (rows, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
         let sums = parallel::sums_over_rows(rows, Row::<D>::LENGTH, |number, row, sums| {

@@ -20,7 +20,7 @@ pub(super) struct WallParticle<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WallValues<const D: usize> {
     /// Velocity with which the wall moves in m/s.
-    motion: Vector<D>,
+    pub motion: Vector<D>,
     /// Velocity with which its surface slides besides, in m/s.
     sliding: Vector<D>,
     /// Acceleration of the wall in m/s^2.

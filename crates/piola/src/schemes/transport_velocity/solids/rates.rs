@@ -238,7 +238,10 @@ impl<const D: usize> Sums<D> {
         }
         let approach = jump.dot(&neighbor.separation);
         if KIND != ALONE {
-            self.contact[lane] -= flow.dot(&neighbor.separation) * (area - own);
+            let opening = -flow.dot(&neighbor.separation) * (area - own);
+            // Where forces are cut, (75), parting does nothing either: it would make energy.
+            self.contact[lane] +=
+                if me.load + side.load < 0.0 { opening.min(0.0) } else { opening };
         }
         if KIND == ANY {
             let densities = me.density + side.density;
