@@ -33,7 +33,9 @@ fn between_platens(
         let (below, above) = (position[1] < thick, position[1] > 1.0 - thick);
         *body = u32::from(below || above);
         let normal = Vector::<2>::new(0.0, if below { 1.0 } else { -1.0 });
-        faces.push(if *body == 1 { Faces::new(vec![normal]) } else { Faces::default() });
+        let depth = thick - position[1].min(1.0 - position[1]);
+        let is_clamp = *body == 1;
+        faces.push(if is_clamp { Faces::new(vec![normal], depth) } else { Faces::default() });
     }
     let (kept, count) = (particles.clone(), particles.len());
     let input = solids_in_box(particles, SETTINGS, vec![SOLID; 2]);

@@ -246,8 +246,8 @@ fn films_stay_in_front_of_walls() {
 
 #[test]
 fn a_particle_that_touches_a_wall_comes_to_rest_in_front_of_it() {
-    // A drop too small for pressures: one particle, a fifth of the wave speed towards the wall. It stops after
-    // u dx/c, a fifth of a spacing, from a quarter of a spacing on; the wall has its momentum.
+    // One particle, a fifth of the wave speed towards the wall and pulled on: it stops after u dx/c, a fifth of a
+    // spacing, from a quarter of a spacing on. Pressures of single particles of the wall push it along a little.
     let drop = [
         "body.jet.shape.min=[-0.02, 0.0]",
         "body.jet.shape.max=[-0.01, 0.01]",
@@ -262,5 +262,5 @@ fn a_particle_that_touches_a_wall_comes_to_rest_in_front_of_it() {
     assert_eq!(finished.summary.outcome, Outcome::Completed);
     assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0));
     let speed = *values(&finished, "momentum.linear.y").last().expect("there are rows") / 0.08;
-    assert!((speed - 1.0).abs() < 1e-12, "nothing along the wall: {speed}");
+    assert!((speed - 1.0).abs() < 0.02, "nothing holds it along the wall: {speed}");
 }
