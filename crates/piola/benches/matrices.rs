@@ -74,6 +74,7 @@ fn on_matrices(particles: Particles<2>) -> Elastodynamics<2> {
         tractions: Vec::new(),
         prescribed: Vec::new(),
         mirrors: Vec::new(),
+        holes: Vec::new(),
         particles,
     })
     .expect("the scheme can be built")

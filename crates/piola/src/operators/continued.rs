@@ -6,18 +6,21 @@ use super::images::Image;
 use super::stencil::{Cover, GradientForm, stencils};
 use crate::{Tensor, Vector};
 
-/// A ghost of a particle, as the derivative along j of component i of a field sees it: entry (i, j)
-/// of its coefficients.
+/// What a source is multiplied with, for each component of a field: the matrix that turns a kernel
+/// gradient into the coefficients of the source.
+pub type Share<const D: usize> = [Tensor<D>; D];
+
+/// A ghost, made of particles and of data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ghost<const D: usize> {
-    /// The particle that it mirrors, by index in memory.
-    pub source: u32,
+    /// The particle whose weight and support it has, by index in memory.
+    pub like: u32,
     /// Where it is, in m.
     pub position: Vector<D>,
-    /// What the field of the source is multiplied with.
-    pub sign: Tensor<D>,
-    /// Numbers of data, and what they are multiplied with.
-    pub data: Vec<(u32, Tensor<D>)>,
+    /// Particles, by index in memory, with their shares.
+    pub sources: Vec<(u32, Share<D>)>,
+    /// Numbers of data, with their shares.
+    pub data: Vec<(u32, Share<D>)>,
 }
 
 impl<const D: usize> FoldedGradient<D> {
@@ -33,7 +36,7 @@ impl<const D: usize> FoldedGradient<D> {
         ghosts: &[Ghost<D>],
     ) -> Result<Self, OperatorError> {
         let image = |ghost: &Ghost<D>| Image {
-            source: ghost.source,
+            source: ghost.like,
             position: ghost.position,
             sign: [1.0; D],
             data: [[0.0; 2]; D],
@@ -57,16 +60,20 @@ impl<const D: usize> FoldedGradient<D> {
             }
             row.clear();
             for entry in &stencil.entries {
-                let whole = Tensor::from_fn(|_, j| entry.gradient[j]);
                 let Some(number) = entry.neighbor.checked_sub(count) else {
+                    let whole = Tensor::from_fn(|_, j| entry.gradient[j]);
                     row.push((entry.neighbor as u32, whole));
                     continue;
                 };
+                let of = |share: &Share<D>| {
+                    let rows = share.map(|own| own * entry.gradient);
+                    Tensor::from_fn(|i, j| rows[i][j])
+                };
                 let ghost = &ghosts[number];
-                row.push((ghost.source, whole.component_mul(&ghost.sign)));
-                for (datum, share) in &ghost.data {
-                    row.push((count as u32 + datum, whole.component_mul(share)));
-                }
+                let sources = ghost.sources.iter().map(|(source, share)| (*source, of(share)));
+                row.extend(sources);
+                let data = ghost.data.iter();
+                row.extend(data.map(|(datum, share)| (count as u32 + datum, of(share))));
             }
             forward.push(&mut row);
         }

@@ -34,7 +34,7 @@ pub use areas::{Block, LANES, Lanes, PairAreas};
 pub(crate) use block::all_of;
 pub use block::{Neighbor, NeighborBlock, NeighborGroup};
 pub use boundary_values::{BoundaryValueError, ModifiedMatrix, POOR_CONDITION, raise_ghosts};
-pub use continued::Ghost;
+pub use continued::{Ghost, Share};
 pub use directed::{DirectedSupport, nearest_radii};
 pub use dual_gradient::DualGradient;
 pub(crate) use dual_gradient::dual_row;

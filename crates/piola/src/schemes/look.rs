@@ -6,6 +6,14 @@ use super::solid::Row;
 use super::{Health, Particle};
 use crate::{Tensor, parallel};
 
+/// The share of the stable step at which a mode takes three steps a period, `2 sin(pi/3)/2`: there the
+/// quadratic part of a law drives the mode by itself, theory (67).
+pub(crate) const RESONANCE: f64 = 0.866_025_403_784_438_6;
+
+/// The largest ratio of a step to the one before of an undamped body, whose bound goes up and down
+/// with the vibrations of its stiffest particle: steps that go with them drive them.
+pub(crate) const MOST_GROWTH: f64 = 1.01;
+
 /// What the look needs to know of a particle.
 pub(crate) struct Deformed<const D: usize> {
     /// Displacement gradient.

@@ -255,6 +255,9 @@ pub struct StepLimit {
     pub particle: usize,
     /// Whether the CFL number scales this bound, or it is a bound by itself.
     pub scaled: bool,
+    /// The largest ratio of a step to the one before while this bound grows: infinite where it follows
+    /// the flow and not the phase of a vibration.
+    pub growth: f64,
 }
 
 /// Positions and the named fields of all particles at `state`; names that the scheme does not

@@ -26,6 +26,8 @@ pub(super) struct Tally {
     pub step_range: [f64; 2],
     /// Largest speed and largest wave speed at the start in m/s.
     pub start_speeds: [f64; 2],
+    /// The last step as it was chosen, before it was shortened for any reason, in s.
+    pub wanted: f64,
     /// What every step is multiplied by.
     pub factor: f64,
     pub retries: Vec<Retry>,
@@ -65,6 +67,7 @@ impl Tally {
         first_step: f64::NAN,
         step_range: [f64::INFINITY, 0.0],
         start_speeds: [0.0, 0.0],
+        wanted: f64::INFINITY,
         factor: 1.0,
         retries: Vec::new(),
         watches: Watches {

@@ -193,6 +193,7 @@ impl Executor {
             previous.0 = run.clock;
             std::mem::swap(&mut previous.1, &mut run.state);
             std::mem::swap(&mut run.state, &mut next);
+            run.tally.wanted = chosen.step / run.tally.factor;
             run.advance(self.control, met, soonest);
             run.lengthen(self.integrator.as_ref(), self.scheme.as_ref(), chosen, met);
             progress(&Progress {

@@ -3,7 +3,7 @@
 use super::clock::{Clock, Tally};
 use super::executor::Executor;
 use super::failure::Failure;
-use super::step::ChosenStep;
+use super::step::{ChosenStep, StepControl};
 use crate::schemes::{Health, StepLimit};
 
 impl Executor {
@@ -91,6 +91,14 @@ impl Executor {
                 time,
             }
         })?;
+        if let StepControl::Cfl(_) = self.control {
+            let growth = limits.iter().map(|limit| limit.growth).fold(f64::INFINITY, f64::min);
+            let most = tally.wanted * growth;
+            // A step that is no number stays one, and infinity times anything is no bound.
+            if chosen.step > most {
+                chosen.step = most;
+            }
+        }
         chosen.step *= tally.factor;
         if tally.factor < 1.0 && self.integrator.growth().is_some() {
             chosen.limiter = Self::ACCURACY;

@@ -117,8 +117,14 @@ mod tests {
     use super::*;
 
     const LIMITS: [StepLimit; 2] = [
-        StepLimit { name: "acoustic", step: 0.1, particle: 7, scaled: true },
-        StepLimit { name: "upwind dissipation", step: 0.05, particle: 3, scaled: false },
+        StepLimit { name: "acoustic", step: 0.1, particle: 7, scaled: true, growth: 1.0 },
+        StepLimit {
+            name: "upwind dissipation",
+            step: 0.05,
+            particle: 3,
+            scaled: false,
+            growth: 1.0,
+        },
     ];
 
     #[test]

@@ -65,6 +65,7 @@ fn input<const D: usize>(
         tractions: Vec::new(),
         prescribed: Vec::new(),
         mirrors: Vec::new(),
+        holes: Vec::new(),
     }
 }
 

@@ -56,7 +56,8 @@ impl Scheme for Pendulum {
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         limits.clear();
         let step = (self.limit)(state[2]);
-        limits.push(StepLimit { name: "swing", step, particle: 0, scaled: true });
+        let growth = f64::INFINITY;
+        limits.push(StepLimit { name: "swing", step, particle: 0, scaled: true, growth });
         Health { smallest_ratio: (self.ratio)(state[2]), ..Health::NEUTRAL }
     }
 

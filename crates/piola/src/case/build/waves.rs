@@ -12,7 +12,7 @@ use crate::neighbors::{Domain, NeighborError, search, spatial_order};
 use crate::operators::{Continuation, Mirror};
 use crate::schemes::InputError;
 use crate::schemes::elastodynamics::{
-    Elastodynamics, ElastodynamicsError, ElastodynamicsInput, Form, Mixture,
+    Elastodynamics, ElastodynamicsError, ElastodynamicsInput, Form, Hole, Mixture,
 };
 
 /// Particles of two bodies that are closer than this share of their spacing are one.
@@ -88,6 +88,7 @@ pub(super) fn build<const D: usize>(
         tractions,
         prescribed,
         mirrors,
+        holes: holes(case),
     });
     let scheme = scheme.map_err(|error| {
         let (place, label) = match &error {
@@ -109,6 +110,20 @@ pub(super) fn build<const D: usize>(
         neighbors,
         warnings: Vec::new(),
     })
+}
+
+/// The discs that are cut out of bodies.
+fn holes<const D: usize>(case: &Case) -> Vec<Hole<D>> {
+    let mut holes = Vec::new();
+    for body in &case.bodies {
+        let model::Shape::Difference { remove, .. } = &body.shape.value else { continue };
+        for shape in remove {
+            if let model::Shape::Ball { center, radius } = &shape.value {
+                holes.push(Hole { center: bodies::vector::<D>(center), radius: *radius });
+            }
+        }
+    }
+    holes
 }
 
 /// Which particles of different bodies lie at one place, where the bodies are joined.

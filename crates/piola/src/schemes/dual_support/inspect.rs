@@ -36,6 +36,7 @@ impl<const D: usize> DualSupport<D> {
             step: self.stable_step / figures.stiffening.sqrt(),
             particle: self.stiffest,
             scaled: true,
+            growth: f64::INFINITY,
         });
         figures.health
     }

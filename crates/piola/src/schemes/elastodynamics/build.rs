@@ -4,6 +4,7 @@ use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
 use super::edges::{self, Edges};
+use super::holes::Hole;
 use super::tractions::Body;
 use super::{Configuration, Elastodynamics, Form, Mixture, Settings, stable_step::Bound};
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -49,6 +50,8 @@ pub struct ElastodynamicsInput<const D: usize> {
     /// In the adjoint form symmetry planes and rollers, each with a particle on it whose velocity
     /// across is prescribed.
     pub mirrors: Vec<(Mirror, u32)>,
+    /// In the strong form round holes in the box, whose edges are free of stress.
+    pub holes: Vec<Hole<D>>,
 }
 
 /// Input that the formulation cannot work with.
@@ -94,6 +97,17 @@ pub enum ElastodynamicsError {
     NoEdge {
         /// Name of the load.
         name: String,
+    },
+    /// A hole in the strong form around which there are too few particles.
+    #[error(
+        "the hole of {radius} m around {center:?} is too small for the particles around it, or has a site \
+         of the lattice in its centre; make the spacing smaller, or use `form = \"adjoint\"`"
+    )]
+    Hole {
+        /// Its centre in m.
+        center: Vec<f64>,
+        /// Its radius in m.
+        radius: f64,
     },
     /// Matrices of the moment in the adjoint form, or in two dimensions.
     #[error(
@@ -185,9 +199,11 @@ impl<const D: usize> Elastodynamics<D> {
                 return Err(ElastodynamicsError::Updated);
             }
             Form::Strong => {
-                let known = edges::find(&particles, &group, &prescribed)?;
-                let [matrix, divergence] = edges::matrices(&cover, &known)?;
-                let (own, elsewhere) = Edges::new(known, divergence, &input.tractions, positions)?;
+                let known = edges::find(&particles, &group, &prescribed, &input.holes, reach)?;
+                let [matrix, divergence] = edges::matrices(&cover, &known.edges, &known.inside)?;
+                let of = |a: usize| input.mixtures[input.mixture[a] as usize].clone();
+                let (own, elsewhere) =
+                    Edges::new(known, divergence, &input.tractions, positions, of)?;
                 (loaded, found) = (elsewhere, Some(own));
                 (matrix, None)
             }
@@ -204,7 +220,7 @@ impl<const D: usize> Elastodynamics<D> {
             }
             Form::Adjoint => (FoldedGradient::new(&cover, GradientForm::Corrected)?, None),
         };
-        let data = found.as_ref().map_or(0, |edges| edges.slots.len());
+        let data = found.as_ref().map_or(0, Edges::data);
         let at_rest = |mixture: &Mixture<D>| mixture.wave_moduli(&Tensor::zeros());
         let moduli: Vec<[f64; 2]> = input.mixtures.iter().map(at_rest).collect();
         let body = Body { particles: &particles, matrix: &matrix, group: &group, radius: &radius };

@@ -4,7 +4,9 @@
 use std::collections::BTreeMap;
 
 use super::ElastodynamicsError;
-use super::ghosts::ghosts;
+use super::ghosts::{Places, ghosts};
+use super::holes::{self, Foot, Hole, Inside};
+use super::settings::Mixture;
 use super::slopes::Sought;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{Traction, traction::Loaded};
@@ -76,14 +78,27 @@ pub(super) struct Edges<const D: usize> {
     pub known: Vec<Vector<D>>,
     /// Slopes while they are searched for.
     pub found: Vec<Vector<D>>,
+    /// The feet of ghosts in holes, whose slopes stand behind those of edges.
+    pub feet: Vec<Foot<D>>,
+    /// Particles on the edges of holes, with the normals there.
+    pub rims: Vec<(usize, Vector<D>)>,
 }
 
-/// The edges of the box that particles fill.
+/// The edges and holes of a body, before their loads are known.
+pub(super) struct Outline<const D: usize> {
+    pub edges: Vec<Edge<D>>,
+    pub inside: Vec<Inside<D>>,
+    rims: Vec<(usize, Vector<D>)>,
+}
+
+/// The edges of the box that particles fill but for holes, whose ghosts lie within `reach` m.
 pub(super) fn find<const D: usize>(
     particles: &Particles<D>,
     group: &[u32],
     prescribed: &PrescribedComponents,
-) -> Result<Vec<Edge<D>>, ElastodynamicsError> {
+    holes: &[Hole<D>],
+    reach: f64,
+) -> Result<Outline<D>, ElastodynamicsError> {
     let mut bodies: Vec<u32> = group.to_vec();
     bodies.sort_unstable();
     bodies.dedup();
@@ -91,6 +106,8 @@ pub(super) fn find<const D: usize>(
         return Err(ElastodynamicsError::Strong { dimension: D, bodies: bodies.len() });
     }
     let positions = &particles.position;
+    let inside = holes::sites(particles, holes, reach)?;
+    let places = Places { particles, inside: &inside, slots: 0 };
     let mut edges: Vec<Edge<D>> = Vec::new();
     for axis in 0..D {
         for is_upper in [false, true] {
@@ -100,7 +117,7 @@ pub(super) fn find<const D: usize>(
             let is_on =
                 |a: &usize| farthest - side * positions[*a][axis] < ON_EDGE * particles.spacing[*a];
             let on: Vec<usize> = (0..positions.len()).filter(is_on).collect();
-            let feet = feet(particles, &on, axis)?;
+            let feet = feet(&places, &on, axis)?;
             let slots = on.iter().map(|&a| (a as u32, 0)).collect();
             edges.push(Edge { axis, is_upper, is_held: [false; D], feet, slots });
         }
@@ -108,25 +125,30 @@ pub(super) fn find<const D: usize>(
     hold(&mut edges, prescribed, particles)?;
     let slots = edges.iter_mut().flat_map(|edge| edge.slots.values_mut());
     (0u32..).zip(slots).for_each(|(number, slot)| *slot = number);
-    Ok(edges)
+    Ok(Outline { edges, inside, rims: holes::rims(particles, holes) })
 }
 
-/// The particle of an edge across `axis` in line with each particle.
+/// The particle of an edge across `axis` in line with each place. Where a hole has taken it, images are
+/// beyond reach, but for those of ghosts in the hole, for which the next one on the edge stands.
 fn feet<const D: usize>(
-    particles: &Particles<D>,
+    places: &Places<'_, D>,
     on: &[usize],
     axis: usize,
 ) -> Result<Vec<u32>, ElastodynamicsError> {
-    let along = |a: usize| if D == 1 { 0.0 } else { particles.position[a][1 - axis] };
+    let particles = places.particles;
+    let along = |a: usize| if D == 1 { 0.0 } else { places.position(a)[1 - axis] };
     let mut sorted: Vec<(f64, usize)> = on.iter().map(|&a| (along(a), a)).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut feet = Vec::with_capacity(particles.len());
-    for a in 0..particles.len() {
-        let slack = ON_EDGE * particles.spacing[a];
+    let mut feet = Vec::with_capacity(places.len());
+    for a in 0..places.len() {
+        let slack = ON_EDGE * particles.spacing[a.min(particles.len() - 1)];
         let next = sorted.partition_point(|(place, _)| *place < along(a) - slack);
-        match sorted.get(next).filter(|(place, _)| (place - along(a)).abs() <= slack) {
-            Some((_, foot)) => feet.push(*foot as u32),
-            None => return Err(gap(particles, a).into()),
+        let near = sorted[next.saturating_sub(1)..].iter().take(2);
+        let nearest = near.min_by(|x, y| (x.0 - along(a)).abs().total_cmp(&(y.0 - along(a)).abs()));
+        match nearest {
+            Some((place, foot)) if (place - along(a)).abs() <= slack => feet.push(*foot as u32),
+            Some((_, foot)) if !places.inside.is_empty() => feet.push(*foot as u32),
+            _ => return Err(gap(particles, a).into()),
         }
     }
     Ok(feet)
@@ -175,14 +197,16 @@ fn hold<const D: usize>(
     Ok(())
 }
 
-/// Matrices of displacements and of stresses of particles with their edges at `cover.particles`, whose
-/// own images are not used.
+/// Matrices of displacements and of stresses of particles with their edges and ghosts in holes at
+/// `cover.particles`, whose own images are not used.
 pub(super) fn matrices<const D: usize>(
     cover: &Cover<'_, D>,
     edges: &[Edge<D>],
+    inside: &[Inside<D>],
 ) -> Result<[FoldedGradient<D>; 2], OperatorError> {
     let reach = cover.radius.iter().copied().fold(0.0, f64::max);
-    let made = ghosts(cover.particles, edges, reach);
+    let slots = edges.iter().map(|edge| edge.slots.len()).sum();
+    let made = ghosts(&Places { particles: cover.particles, inside, slots }, edges, reach);
     // On an even lattice the matrix of moments is a factor an axis, by which the plain sums miss the
     // gradient of a linear field. In a row they are taken as they are, as the paper does.
     let form = if D == 1 { GradientForm::Plain } else { GradientForm::Corrected };
@@ -196,11 +220,18 @@ pub(super) fn matrices<const D: usize>(
 impl<const D: usize> Edges<D> {
     /// The edges with their loads, and the loads that act elsewhere.
     pub fn new(
-        edges: Vec<Edge<D>>,
+        outline: Outline<D>,
         divergence: FoldedGradient<D>,
         tractions: &[Traction<D>],
         positions: &[Vector<D>],
+        mixture_of: impl Fn(usize) -> Mixture<D>,
     ) -> Result<(Self, Vec<Loaded<D>>), ElastodynamicsError> {
+        let Outline { edges, inside, rims } = outline;
+        let foot = |inside: Inside<D>| {
+            let mixture = mixture_of(inside.like);
+            Foot::new(inside, &mixture)
+        };
+        let feet: Vec<Foot<D>> = inside.into_iter().map(foot).collect();
         let mut slots = Vec::new();
         for edge in &edges {
             for &particle in edge.slots.keys() {
@@ -244,13 +275,20 @@ impl<const D: usize> Edges<D> {
                 }
             }
         }
-        let none = vec![Vector::zeros(); slots.len()];
-        let (stress, known) = (none.clone(), none.clone());
-        Ok((Self { edges, slots, divergence, stress, known, found: none }, elsewhere))
+        let stress = vec![Vector::zeros(); slots.len()];
+        let found = vec![Vector::zeros(); slots.len() + feet.len()];
+        let known = found.clone();
+        let all = Self { edges, slots, divergence, stress, known, found, feet, rims };
+        Ok((all, elsewhere))
     }
 
-    /// What of `stress` edges say, in place: shear along edges that are held is zero, and the load is
-    /// all of the stress across.
+    /// Number of data: values and slopes at edges, and slopes at the feet of ghosts in holes.
+    pub fn data(&self) -> usize {
+        self.slots.len() + self.feet.len()
+    }
+
+    /// What of `stress` edges say, in place: shear along edges that are held is zero, the load is all of
+    /// the stress across, and there is none across the edge of a hole.
     pub fn overwrite(&self, stress: &mut [Tensor<D>], scale: impl Fn(usize) -> f64) {
         for slot in &self.slots {
             for i in (0..D).filter(|&i| slot.is_held[i]) {
@@ -263,6 +301,10 @@ impl<const D: usize> Edges<D> {
             for i in slot.loaded() {
                 stress[slot.particle][(i, slot.axis)] = load[i] * scale(slot.particle);
             }
+        }
+        for (particle, normal) in &self.rims {
+            let across = stress[*particle] * normal;
+            stress[*particle] -= across * normal.transpose();
         }
     }
 

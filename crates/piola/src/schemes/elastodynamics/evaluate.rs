@@ -146,7 +146,7 @@ impl<const D: usize> Elastodynamics<D> {
             radius: &self.radius,
             domain: self.domain,
         };
-        let made = edges::matrices(&cover, &known.edges);
+        let made = edges::matrices(&cover, &known.edges, &[]);
         let exist = made.is_ok();
         if let Ok([gradient, divergence]) = made {
             (self.matrix, known.divergence) = (gradient, divergence);
@@ -181,7 +181,8 @@ impl<const D: usize> Elastodynamics<D> {
         };
         let count = self.mass.len();
         let held = |datum: usize| {
-            let (slot, rate) = (&edges.slots[datum], &speed[count + datum]);
+            let Some(slot) = edges.slots.get(datum) else { return Vector::zeros() };
+            let rate = &speed[count + datum];
             Vector::from_fn(|i, _| if slot.is_held[i] { rate[i] } else { 0.0 })
         };
         let motion =

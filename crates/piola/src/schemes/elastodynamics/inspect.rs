@@ -1,5 +1,6 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
+use super::settings::is_linear;
 use super::stable_step::Most;
 use super::{Configuration, Elastodynamics};
 use crate::schemes::look::{Deformed, look};
@@ -36,7 +37,8 @@ impl<const D: usize> Elastodynamics<D> {
         }
         self.is_evaluated = known;
         limits.clear();
-        limits.push(self.stable.limit(stiffening, thickening));
+        let is_linear = self.mixtures.iter().all(is_linear);
+        limits.push(self.stable.limit(stiffening, thickening, is_linear));
         figures.health
     }
 

@@ -18,6 +18,7 @@ mod edges;
 mod evaluate;
 mod external;
 mod ghosts;
+mod holes;
 mod inspect;
 mod sample;
 mod scheme;
@@ -28,6 +29,7 @@ mod stable_step;
 mod tractions;
 
 pub use build::{ElastodynamicsError, ElastodynamicsInput};
+pub use holes::Hole;
 pub use scheme::DESCRIPTION;
 pub use settings::{Configuration, Form, Mixture, Settings};
 

@@ -20,7 +20,7 @@ const LAST_STEP: f64 = 1e-10;
 pub(super) type Sought<const D: usize> = [Option<(usize, usize)>; D];
 
 /// Derivatives of the stress by the entries (k, l) of the gradient.
-type Tangents<const D: usize> = [[Tensor<D>; D]; D];
+pub(super) type Tangents<const D: usize> = [[Tensor<D>; D]; D];
 
 impl<const D: usize> Slot<D> {
     /// What is sought in the slot of a number, and which entries of the gradient are not zero beforehand.
@@ -53,7 +53,7 @@ impl<const D: usize> Slot<D> {
 
 /// Entries of the displacement gradient at which those of the stress of a material are `stress`, by
 /// Newton's method from those of `gradient`, with steps that leave at least half of the volume.
-fn solve<const D: usize>(
+pub(super) fn solve<const D: usize>(
     mixture: &Mixture<D>,
     mut gradient: Tensor<D>,
     sought: &Sought<D>,
@@ -83,7 +83,7 @@ fn solve<const D: usize>(
 
 /// The change of the entries that are sought at which their stresses change by `rest`, which is told the
 /// entry and the slot.
-fn step<const D: usize>(
+pub(super) fn step<const D: usize>(
     tangents: &Tangents<D>,
     sought: &Sought<D>,
     rest: impl Fn(usize, usize, usize) -> f64,
@@ -111,6 +111,9 @@ impl<const D: usize> Edges<D> {
             let held = field[slot.particle];
             field[count + number] =
                 Vector::from_fn(|i, _| if slot.is_held[i] { held[i] } else { slope(number, i) });
+        }
+        for number in self.slots.len()..self.data() {
+            field[count + number] = Vector::from_fn(|i, _| slope(number, i));
         }
     }
 
@@ -150,6 +153,9 @@ impl<const D: usize> Edges<D> {
             let change = step(&tangents, sought, rest);
             let change = change.unwrap_or_else(|| Tensor::from_element(f64::NAN));
             *found = change.column(slot.axis).into();
+        }
+        for (foot, found) in self.feet.iter().zip(&mut found[self.slots.len()..]) {
+            *found = foot.slope_rate(field);
         }
         self.append(count, field, |number, i| found[number][i]);
         self.found = found;
@@ -194,6 +200,11 @@ impl<const D: usize> Elastodynamics<D> {
             let mixture = &self.mixtures[self.mixture[a] as usize];
             let solution = solve(mixture, gradient, sought, |slot, i| stress[slot][i]);
             *found = solution.column(slot.axis).into();
+        }
+        let first = edges.slots.len();
+        for (number, foot) in (first..).zip(&mut edges.feet) {
+            let mixture = &self.mixtures[self.mixture[foot.inside.like] as usize];
+            found[number] = foot.slope(mixture, &displacement, edges.known[number]);
         }
         edges.append(count, &mut displacement, |number, i| found[number][i]);
         edges.found = found;

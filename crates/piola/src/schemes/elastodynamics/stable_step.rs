@@ -3,7 +3,9 @@
 use piola_formulas::tensor;
 
 use super::Elastodynamics;
+use super::edges::Edges;
 use crate::schemes::StepLimit;
+use crate::schemes::look::{MOST_GROWTH, RESONANCE};
 use crate::solve::largest_mode;
 use crate::{Tensor, Vector};
 
@@ -45,7 +47,10 @@ impl Bound {
     /// The largest step of central differences with dissipation by the velocities half a step back,
     /// theory (67), of a body whose stiffness and whose viscosity have grown by these factors since
     /// rest. It is named by the larger of its two parts.
-    pub fn limit(&self, stiffening: Most, thickening: Most) -> StepLimit {
+    ///
+    /// Laws that are not linear resonate at three steps a period, which is the limit for them where
+    /// dissipation does not set a smaller one.
+    pub fn limit(&self, stiffening: Most, thickening: Most, is_linear: bool) -> StepLimit {
         let stiffness = self.stiffness * stiffening.ratio;
         let dissipation = self.viscosity * thickening.ratio + self.damping;
         let sum = dissipation + (dissipation * dissipation + 4.0 * stiffness).sqrt();
@@ -55,9 +60,17 @@ impl Bound {
             false if stiffening.ratio > 1.0 + ROUND_OFF => ("eigenvalue", stiffening.particle),
             false => ("eigenvalue", self.particle),
         };
-        let step = if sum > 0.0 { 4.0 / sum } else { f64::INFINITY };
-        // No number stays no number: no step is safe then.
-        StepLimit { name, step: if sum.is_nan() { sum } else { step }, particle, scaled: true }
+        let step = match sum {
+            sum if sum.is_nan() => sum,
+            sum if sum > 0.0 && is_linear => 4.0 / sum,
+            sum if sum > 0.0 => (4.0 / sum).min(RESONANCE * 2.0 / stiffness.sqrt()),
+            _ => f64::INFINITY,
+        };
+        let growth = match dissipation > 0.0 || is_linear {
+            true => f64::INFINITY,
+            false => MOST_GROWTH,
+        };
+        StepLimit { name, step, particle, scaled: true, growth }
     }
 }
 
@@ -126,7 +139,7 @@ impl<const D: usize> Elastodynamics<D> {
         let still = [[0.0; 2]; D];
         // Where no load grows: stresses at edges stay zero, and slopes follow the deformation.
         let mut edges = self.edges.take();
-        let data = edges.as_ref().map_or(0, |edges| edges.slots.len());
+        let data = edges.as_ref().map_or(0, Edges::data);
         let no_load = vec![Vector::<D>::zeros(); data];
         let tangents: Vec<_> =
             self.mixtures.iter().map(|mixture| mixture.tangent(&Tensor::zeros())).collect();

@@ -57,7 +57,8 @@ impl<const D: usize> TransportVelocity<D> {
         self.chunk_figures = figures;
 
         let h = self.support.smoothing_length();
-        let limit = |name, step, particle| StepLimit { name, step, particle, scaled: true };
+        let growth = f64::INFINITY;
+        let limit = |name, step, particle| StepLimit { name, step, particle, scaled: true, growth };
         limits.clear();
         let (fastest, particle) = match self.solids {
             Some(_) => worst.signal,

@@ -80,6 +80,7 @@ impl<const D: usize> Upwind<D> {
             step: worst.crossing,
             particle: worst.crossing_particle,
             scaled: true,
+            growth: f64::INFINITY,
         });
         let settings = &self.settings;
         let exchange = self.largest_exchange * worst.shock_ratio;
@@ -96,6 +97,7 @@ impl<const D: usize> Upwind<D> {
                 step: 1.0 / rate,
                 particle: worst.fastest_particle,
                 scaled: false,
+                growth: f64::INFINITY,
             });
         }
         Health { largest_wave_speed: worst.fastest, ..worst.health }
