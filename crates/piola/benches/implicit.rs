@@ -17,7 +17,7 @@ use piola::output::{Column, Plot, Series, Style};
 use piola::schemes::upwind::{BodyForce, ImplicitSettings, Settings, Upwind};
 use piola::schemes::{Scheme, Theta, ThetaScheme};
 use piola::solve::LinearMethod;
-use piola::time::{Integrator, TvdRk2};
+use piola::time::{Integrator, RungeKutta};
 use piola_formulas::volumetric::VolumetricLaw;
 use support::{Choice, PLAIN, lattice, varying};
 
@@ -130,7 +130,7 @@ fn settle(particles: usize, stiffness: f64) -> [f64; 2] {
     let exact = -DENSITY * GRAVITY * HEIGHT * HEIGHT / (2.0 * stiffness * SOFTEST);
     // Explicit steps are all alike: some of them tell what all cost.
     let step = 0.3 * stable(&mut scheme);
-    let mut integrator = TvdRk2::new(state.len());
+    let mut integrator = RungeKutta::tvd_rk2(state.len());
     let mut state = scheme.initial_state();
     let tried = (2_000_000 / particles).clamp(20, 2000) as u32;
     let (some, ()) = timed(|| {

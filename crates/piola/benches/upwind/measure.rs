@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use piola::schemes::Scheme;
 use piola::schemes::upwind::{PASSES, Upwind};
-use piola::time::tvd_rk2;
+use piola::time::runge_kutta::{Blend, advance};
 
 use crate::problem::{self, Switches};
 use crate::{bandwidth, clock};
@@ -47,8 +47,8 @@ pub fn run<const D: usize>(size: usize, switches: Switches) -> Measured {
     drop(scheme);
     let mut new = state.clone();
     let update = clock::best_time(|| {
-        tvd_rk2::predict(1e-9, &state, &rate, &mut new);
-        tvd_rk2::correct(1e-9, &state, &rate, black_box(&mut new));
+        advance(Blend::Predict, 1e-9, &state, &rate, &mut new);
+        advance(Blend::Halve, 1e-9, &state, &rate, black_box(&mut new));
     });
     let read_rate = bandwidth::read_rate(bytes);
     Measured { particles, neighbors, passes, inspect, update, bytes, read_rate }

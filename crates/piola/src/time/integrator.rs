@@ -8,8 +8,7 @@ use super::failure::Failure;
 use super::implicit::ImplicitStepping;
 use super::kick_drift_kick::KickDriftKick;
 use super::load_steps::LoadStepping;
-use super::ssp_rk3::SspRk3;
-use super::tvd_rk2::TvdRk2;
+use super::runge_kutta::RungeKutta;
 use crate::schemes::{ImplicitRule, NEWTON_ITERATIONS, Newmark, Scheme, Theta};
 
 /// A method that takes a state one step further.
@@ -180,8 +179,8 @@ impl IntegratorKind {
     /// An integrator for states of `length` numbers, with its usual weights.
     pub fn build(self, length: usize) -> Box<dyn Integrator> {
         match self {
-            Self::TvdRk2 => Box::new(TvdRk2::new(length)),
-            Self::SspRk3 => Box::new(SspRk3::new(length)),
+            Self::TvdRk2 => Box::new(RungeKutta::tvd_rk2(length)),
+            Self::SspRk3 => Box::new(RungeKutta::ssp_rk3(length)),
             Self::KickDriftKick => Box::new(KickDriftKick::default()),
             Self::Static => Box::new(LoadStepping { by_arc_length: false }),
             Self::ArcLength => Box::new(LoadStepping { by_arc_length: true }),
