@@ -36,9 +36,9 @@ fn report(case: &Case, plan: &Plan) -> String {
     section(
         "neighbours",
         vec![format!(
-            "{} least, {} mean, {} most",
-            neighbors.least,
+            "{} on average, from {} to {}",
             significant(neighbors.mean, 3),
+            neighbors.least,
             neighbors.most
         )],
     );

@@ -24,6 +24,10 @@ fn check_says_what_will_happen_and_runs_nothing() {
             "16 rows of the tables",
         ],
     );
+    let (stdout, _) = place.run("check bar/case.toml --set time.end=0.03 --set output.every=1", 0);
+    assert_contains(&stdout, &["1 particle file,"]);
+    let (_, stderr) = place.run("check bar/case.toml --set time.end=1.5s", 2);
+    assert_contains(&stderr, &["a unit is not written behind a number"]);
     assert_eq!(fs::read_dir(place.path("")).unwrap().count(), 1);
 }
 

@@ -246,6 +246,11 @@ fn syntax_problem(text: &str, span: Range<usize>, message: &str) -> Problem {
         return problem
             .help("write a point in numbers, `1.5`, and brackets around a list, `[1, 5]`");
     }
+    let unit = text[..span.end].ends_with(|last: char| last.is_alphabetic())
+        || text[span.end..].starts_with(|next: char| next.is_alphabetic());
+    if unit && (message.starts_with("invalid float") || message.starts_with("invalid integer")) {
+        return problem.help("write the number without a unit, `1.5`: all are of SI");
+    }
     problem
 }
 

@@ -159,32 +159,34 @@ impl Simulation {
         let count = |interval: f64| (end / interval).floor() as u64 + 1;
         let mut outputs = vec![
             format!(
-                "{} particle files, every {} s: {}",
-                count(*case.output.every),
+                "{}, every {} s: {}",
+                counted(count(*case.output.every), "particle file", "particle files"),
                 *case.output.every,
                 case.output.fields.iter().map(|field| field.name).collect::<Vec<_>>().join(", ")
             ),
             format!(
-                "{} rows of the tables, every {} s",
-                count(*case.output.table_every),
+                "{}, every {} s",
+                counted(count(*case.output.table_every), "row of the tables", "rows of the tables"),
                 *case.output.table_every
             ),
         ];
         for line in case.probes.iter().filter(|probe| probe.kind.length().is_some()) {
             let model::ProbeKind::Line { points, times, .. } = &line.kind else { continue };
             let profiles = times.as_ref().map_or(count(*case.output.every), |it| it.len() as u64);
-            outputs.push(format!("{profiles} profiles of {points} places: {}", *line.name));
+            let profiles = counted(profiles, "profile", "profiles");
+            outputs.push(format!("{profiles} of {points} places: {}", *line.name));
         }
         let pictures: usize = case.pictures.iter().map(|picture| picture.times.len()).sum();
         if pictures + case.plots.len() > 0 {
-            let plural = |count: usize| if count == 1 { "" } else { "s" };
-            let charts = case.plots.len();
-            outputs.push(format!(
-                "{pictures} picture{} and {charts} chart{}",
-                plural(pictures),
-                plural(charts)
-            ));
+            let pictures = counted(pictures as u64, "picture", "pictures");
+            let charts = counted(case.plots.len() as u64, "chart", "charts");
+            outputs.push(format!("{pictures} and {charts}"));
         }
         outputs
     }
+}
+
+/// A number of things.
+fn counted(count: u64, one: &str, more: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { more })
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use thiserror::Error;
 
 use super::build::{self, Built};
-use super::model::Case;
+use super::model::{self, Case};
 use super::outputs::Outputs;
 use super::report;
 use super::resume;
@@ -15,7 +15,8 @@ use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::Scheme;
 use crate::solve::Costs;
 use crate::time::{
-    Checkpoints, Executor, Misfit, ObserveError, Progress, Schedule, Summary, Unserved,
+    Checkpoints, Executor, IntegratorKind, Misfit, ObserveError, Progress, Schedule, Summary,
+    Unserved,
 };
 
 /// A case with its particles, lists and scheme.
@@ -184,8 +185,7 @@ impl Simulation {
         let summary = executor.run(stop, progress)?;
         warnings.extend(summary.warnings.iter().cloned());
         let tables = tables.lock().clone();
-        let damps = case.time.rule.is_some_and(|rule| rule.damps());
-        warnings.extend(unbalanced(&tables, damps));
+        warnings.extend(unbalanced(&tables, &case.time));
         let gone = removed(&tables);
         if gone > 0.0 {
             warnings.push(format!(
@@ -214,14 +214,20 @@ const UNBALANCED: f64 = 0.01;
 
 /// What the user should know if energy is not accounted for: by theory (18) what the balance is off
 /// by is the error of the integrator, which is damping where it is made to damp.
-fn unbalanced(tables: &Tables, damps: bool) -> Option<String> {
+fn unbalanced(tables: &Tables, time: &model::Time) -> Option<String> {
     let off = tables.energy.values("balance")?.last()?.abs();
     let largest = |name: &str| -> f64 {
         let values = tables.energy.values(name).unwrap_or_default();
         values.iter().fold(0.0, |most, value| most.max(value.abs()))
     };
     let share = off / largest("total");
-    let advice = match damps {
+    let is_static =
+        IntegratorKind::from_name(&time.integrator).is_some_and(IntegratorKind::is_static);
+    let advice = match time.rule.is_some_and(|rule| rule.damps()) {
+        _ if is_static => {
+            "the steps of the load are too large for what happens, or one went over a limit of it; lower \
+             `time.step` and compare"
+        }
         true => {
             "the integrator damps what is short against its steps; if that is more than was meant, \
              lower `time.step`, or let it damp less"

@@ -47,7 +47,7 @@ pub fn follow_arc<E: LoadedEquations + ?Sized>(
         let mut cuts = 0;
         let (factor, x, solved) = loop {
             match walk.attempt(equations, newton, arc.first, &mut radius) {
-                Ok(Increment { factor, x, solved }) => break (factor, x, solved),
+                Ok(Increment { factor, x, solved, .. }) => break (factor, x, solved),
                 Err(_) if cuts < MOST_CUTS => {
                     cuts += 1;
                     radius = radius.map(|radius| 0.5 * radius);
@@ -66,7 +66,7 @@ pub fn follow_arc<E: LoadedEquations + ?Sized>(
         radius = radius.map(|radius| (radius * growth).min(largest));
         let moved = x.iter().zip(&walk.x).map(|(new, old)| new - old).collect();
         walk = ArcPath { factor, x: x.clone(), last: Some(moved) };
-        if !show(equations, Increment { factor, x, solved }) {
+        if !show(equations, Increment { factor, x, solved, jumped: false }) {
             break;
         }
     }
@@ -136,7 +136,7 @@ impl ArcPath {
                 equations.linearise(factor, &x, false).map_err(|e| linear(e, &history))?;
                 let stability: Stability = equations.stability();
                 let solved = Solved { iterations: history, residual, stability };
-                return Ok(Increment { factor, x, solved });
+                return Ok(Increment { factor, x, solved, jumped: false });
             }
             if history.len() >= newton.most_iterations || !residual.is_finite() {
                 return Err(NewtonError::NoConvergence { history, residual });

@@ -33,6 +33,8 @@ pub struct Increment {
     pub x: Vec<f64>,
     /// What it took.
     pub solved: Solved,
+    /// Whether it may lie beyond a limit of the load, which a smaller step tells.
+    pub jumped: bool,
 }
 
 /// No further state in equilibrium.
@@ -182,10 +184,11 @@ impl Path {
         if let Stability::Unstable(negative) = solved.stability {
             return Err(unstable(negative));
         }
-        if near && self.may_have_jumped(factor, &start, &x, &solved) {
+        let jumped = self.may_have_jumped(factor, &start, &x, &solved);
+        if near && jumped {
             return Err(unstable(None));
         }
-        Ok(Increment { factor, x, solved })
+        Ok(Increment { factor, x, solved, jumped })
     }
 
     /// Whether a state may lie beyond a limit, which a smaller step tells: where the tangent was

@@ -329,3 +329,37 @@ fn a_material_that_loses_its_convexity_is_named_once() {
     assert!(warning.contains("`scheme.viscosity`") && warning.contains("seen first at t = "));
     assert_eq!(warnings("parameters.nu=0.3").len(), 0);
 }
+
+/// Beyond the bound of an explicit integrator, and a probe 7 m beside the column: both are said before the
+/// run, and nothing is of the case as it stands.
+#[test]
+fn steps_and_probes_that_are_far_off_are_told() {
+    let told = |set: &[&str]| case::build(&load("piston", set)).unwrap().plan().warnings;
+    let step = told(&["time.cfl=5"]);
+    assert!(step.iter().any(|text| text.contains("steps 5 times as long")), "{step:?}");
+    let probe = told(&["probe.0.at=[10.0, 2.5]"]);
+    let named = "`top` follows a particle that is 7.0000 m away from its point, 21.0 spacings";
+    assert!(probe.iter().any(|text| text.contains(named)), "{probe:?}");
+    assert_eq!(told(&[]), Vec::<String>::new());
+    assert_eq!(told(&["time.integrator='crank_nicolson'", "time.cfl=5"]), Vec::<String>::new());
+}
+
+/// A shallow arch under twice the load that it snaps at, in one step: a state is found, and that it may not
+/// belong to the path is said. Half of that load is borne.
+#[test]
+fn a_load_step_over_a_limit_is_told() {
+    let warnings = |load: &str| {
+        let steps = [format!("time.end={load}"), format!("time.step={load}")];
+        let every = [format!("output.every={load}"), format!("output.table_every={load}")];
+        let mut set =
+            vec!["body.arch.shape.file='arch-909.msh'", "time.integrator='static'", "picture=[]"];
+        set.extend(steps.iter().chain(&every).map(String::as_str));
+        run(&load_of("dual-support", "arch", &set), None).warnings
+    };
+    let told =
+        |texts: &[String]| texts.iter().any(|text| text.contains("may not belong to the path"));
+    let over = warnings("2.0");
+    assert!(told(&over), "{over:?}");
+    let under = warnings("0.5");
+    assert!(!told(&under), "{under:?}");
+}

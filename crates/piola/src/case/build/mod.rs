@@ -66,6 +66,7 @@ pub(super) struct Built {
 fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
     let domain = domain::<D>(case)?;
     let (particles, bodies) = bodies::particles::<D>(case, &domain)?;
+    let far = probes::far(case, &particles);
     let mut built = match &case.scheme.value {
         model::Scheme::Upwind(settings) => build_upwind(case, settings, particles, bodies, domain)?,
         model::Scheme::TransportVelocity(settings) => {
@@ -82,7 +83,9 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
         }
     };
     built.warnings.splice(0..0, case.remarks.iter().cloned());
+    built.warnings.extend(far);
     built.warnings.extend(uneven_steps(case));
+    built.warnings.extend(beyond_stable(case));
     Ok(Simulation::new(case, built))
 }
 
@@ -97,6 +100,18 @@ fn uneven_steps(case: &Case) -> Option<String> {
         "`output.every` is no multiple of `output.table_every`, so that longer and shorter steps take turns, \
          which lets short waves grow near the stable step: make it one, or lower `time.cfl` to 0.5"
             .to_owned()
+    })
+}
+
+/// Steps beyond the bound of an explicit integrator.
+fn beyond_stable(case: &Case) -> Option<String> {
+    let model::StepControl::Cfl(number) = *case.time.step else { return None };
+    let is_explicit = case.time.rule.is_none();
+    (is_explicit && number > 1.0).then(|| {
+        format!(
+            "`time.cfl = {number}` makes steps {number} times as long as the stable step of the explicit \
+             integrator, whose short waves then grow until the run breaks down: set it below 1"
+        )
     })
 }
 

@@ -4,6 +4,7 @@ use piola_formulas::kernels::Kernel;
 
 use super::bodies::vector;
 use super::selections::{function, select};
+use crate::Vector;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::case::source::Located;
@@ -25,14 +26,8 @@ pub(super) fn probes<const D: usize>(
         let kind = match &probe.kind {
             model::ProbeKind::Particle { at, fields } => {
                 let at = vector::<D>(at);
-                let of_body =
-                    |a: &usize| body.is_none_or(|body| particles.body[*a] as usize == body.value);
-                let distance = |a: usize| (particles.position[a] - at).norm_squared();
-                let nearest = (0..particles.len())
-                    .filter(of_body)
-                    .min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
                 ProbeKind::Particle {
-                    particle: nearest.unwrap_or(0) as u32,
+                    particle: nearest(particles, body, &at).unwrap_or(0) as u32,
                     fields: fields.iter().map(|field| field.value).collect(),
                 }
             }
@@ -69,6 +64,41 @@ pub(super) fn probes<const D: usize>(
         probes.push(Probe { name: probe.name.value.clone(), kind });
     }
     probes
+}
+
+/// Probes of a particle are meant to have one within so many spacings.
+const NEAR: f64 = 1.5;
+
+/// What the user should know of probes whose particle is not where they are.
+pub(super) fn far<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<String> {
+    let warning = |probe: &model::Probe| {
+        let model::ProbeKind::Particle { at, .. } = &probe.kind else { return None };
+        let at = vector::<D>(at);
+        let a = nearest(particles, probe.body.as_ref(), &at)?;
+        let (distance, spacing) = ((particles.position[a] - at).norm(), particles.spacing[a]);
+        (distance > NEAR * spacing).then(|| {
+            format!(
+                "the probe `{}` follows a particle that is {:.4} m away from its point, {:.1} spacings: give \
+                 it a point within the body",
+                *probe.name,
+                distance,
+                distance / spacing
+            )
+        })
+    };
+    case.probes.iter().filter_map(warning).collect()
+}
+
+/// The particle of a body, or of all, that is nearest to a point.
+fn nearest<const D: usize>(
+    particles: &Particles<D>,
+    body: Option<&Located<usize>>,
+    at: &Vector<D>,
+) -> Option<usize> {
+    let of_body = |a: &usize| body.is_none_or(|body| particles.body[*a] as usize == body.value);
+    let distance = |a: usize| (particles.position[a] - at).norm_squared();
+    let all = (0..particles.len()).filter(of_body);
+    all.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
 }
 
 /// The lines of a case.

@@ -308,7 +308,9 @@ impl<'a> Parser<'a> {
                     .help("write a point in numbers: `0.5`")
             }
             _ => ExpressionError::new(span, "an operator is missing here", "missing operator")
-                .help("write `*` for a product"),
+                .help(
+                    "write `*` for a product; a unit is not written behind a number, all are of SI",
+                ),
         }
     }
 }

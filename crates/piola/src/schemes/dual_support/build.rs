@@ -158,6 +158,7 @@ impl<const D: usize> DualSupport<D> {
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
             moduli_at_rest: discrete.materials.iter().map(at_rest).collect(),
             not_convex: None,
+            jumped: None,
             statics: statics.map(Box::new),
             is_static,
             stable_step,

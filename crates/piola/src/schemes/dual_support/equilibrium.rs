@@ -94,6 +94,9 @@ impl<const D: usize> DualSupport<D> {
         let Some(statics) = &mut self.statics else { return Ok(()) };
         let held_before = statics.support_forces(factor, &known.displacement);
         let state = find(statics, &known)?;
+        if state.jumped {
+            self.jumped.get_or_insert([factor, state.factor]);
+        }
         let moved: Vec<Vector<D>> =
             state.displacement.iter().zip(&known.displacement).map(|(u, last)| u - last).collect();
         for (a, row) in new.chunks_exact_mut(length).take(count).enumerate() {

@@ -63,6 +63,8 @@ pub struct DualSupport<const D: usize> {
     moduli_at_rest: Vec<[f64; 2]>,
     /// The last particle seen to have lost its convexity, with its displacement gradient.
     not_convex: Option<(usize, Tensor<D>)>,
+    /// Load factors of the first step that may have gone over a limit of the load.
+    jumped: Option<[f64; 2]>,
     body_forces: Vec<BodyForce<D>>,
     loaded: Vec<Loaded<D>>,
     pressed: Vec<Pressed<D>>,

@@ -85,8 +85,21 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn warning(&self) -> Option<String> {
-        let (index, gradient) = self.not_convex.as_ref()?;
-        Some(convexity_is_lost(&self.particle(*index), gradient, "use another law"))
+        let soft = self.not_convex.as_ref().map(|(index, gradient)| {
+            convexity_is_lost(&self.particle(*index), gradient, "use another law")
+        });
+        let jump = self.jumped.map(|[from, to]| {
+            format!(
+                "the equilibrium at a load factor of {to} may not belong to the path that led to {from}: the \
+                 tangent was indefinite on the way, or the body moved much farther than it led, as where it \
+                 snaps through; lower `time.step` and compare, or follow the path with \
+                 `time.integrator = \"arc_length\"`"
+            )
+        });
+        match (soft, jump) {
+            (Some(soft), Some(jump)) => Some(format!("{soft}\n{jump}")),
+            (soft, jump) => soft.or(jump),
+        }
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {

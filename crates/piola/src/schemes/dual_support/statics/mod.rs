@@ -103,6 +103,8 @@ pub struct StaticState<const D: usize> {
     pub energies: [f64; 2],
     /// What it took.
     pub solved: Solved,
+    /// Whether it may lie beyond a limit of the load that the step to it went over.
+    pub jumped: bool,
 }
 
 /// What a condition holds the body with.
@@ -238,7 +240,7 @@ impl<const D: usize> Statics<D> {
     }
 
     fn state(&mut self, increment: Increment) -> StaticState<D> {
-        let Increment { factor, x, solved } = increment;
+        let Increment { factor, x, solved, jumped } = increment;
         self.balance(factor, &x);
         let reduction = self.solver.reduction();
         let held: Vec<Vector<D>> =
@@ -263,6 +265,7 @@ impl<const D: usize> Statics<D> {
             },
             energies: self.discrete.total_energy(&self.displacement),
             solved,
+            jumped,
         }
     }
 }
