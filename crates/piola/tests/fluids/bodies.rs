@@ -165,3 +165,41 @@ fn results_of_solids_do_not_depend_on_the_number_of_threads() {
     };
     assert!(with(1) == with(3));
 }
+
+/// A soft block whose upper half has a velocity of its own.
+const HALVES: &str = r#"
+version = 1
+title = "The halves of a block slide or part"
+dimension = 2
+
+[parameters]
+along = 1.0
+across = 0.0
+
+[[body]]
+name = "block"
+shape = { kind = "box", min = [0.0, 0.0], max = [1.0, 0.4] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "hypoelastic", density = 1000.0, bulk_modulus = 1e5, shear_modulus = 1.0 }
+initial = { velocity = ["along * (y - 0.2) / abs(y - 0.2)", "across * (y - 0.2) / abs(y - 0.2)"] }
+
+[scheme]
+kind = "transport_velocity"
+
+[time]
+end = 0.1
+
+[output]
+table_every = 0.01
+"#;
+
+#[test]
+fn a_gap_is_empty() {
+    // Halves that slide by four spacings have others where their neighbours were.
+    let gaps = values(&run(HALVES, &[]), "step.gap");
+    assert!(gaps.iter().all(|gap| *gap < 2.0), "{gaps:?}");
+    // Halves that part by 0.2 m leave nothing between them, but for what tension takes of their speed.
+    let gaps = values(&run(HALVES, &["parameters.along=0", "parameters.across=8"]), "step.gap");
+    assert!(gaps.last().is_some_and(|gap| *gap > 4.0), "{gaps:?}");
+}

@@ -1,4 +1,4 @@
-//! Whether bodies have come apart in the numbers: gaps between first neighbours, and pieces.
+//! Whether bodies have come apart in the numbers: gaps between what were first neighbours, and pieces.
 
 use super::TransportVelocity;
 use crate::geometry::Particles;
@@ -38,14 +38,32 @@ impl Bonds {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// The largest distance between particles that were first neighbours at the start, in spacings;
-    /// 0 for fluids.
+    /// The largest gap between particles that were first neighbours at the start, in spacings; 0 for fluids.
+    ///
+    /// It is the diameter of the empty ball around the middle between the two: their distance, unless another particle
+    /// of their body is nearer to the middle. Shifting and flow move particles past each other in matter that is whole.
     pub(in super::super) fn largest_gap(&self, state: &[f64]) -> f64 {
         let Some(solids) = &self.solids else { return 0.0 };
-        let domain = self.support.list().domain();
+        let list = self.support.list();
         let position = |a: u32| Row::<D>::position(Row::<D>::of(state, a as usize));
         let largest = solids.bonds.pairs.iter().fold(0.0, |largest: f64, &[a, b]| {
-            largest.max(domain.separation(&position(a), &position(b)).norm_squared())
+            let across = list.domain().separation(&position(a), &position(b));
+            let square = across.norm_squared();
+            if square <= largest {
+                return largest;
+            }
+            let middle = position(a) + across * 0.5;
+            // Candidates of the list are all that are near, at any state since it was made.
+            let near = |end: u32| list.active_row(list.places()[end as usize] as usize).iter();
+            let between = near(a).chain(near(b)).map(|&place| list.numbers()[place as usize]);
+            let of_body = between
+                .filter(|&c| self.particles.body[c as usize] == self.particles.body[a as usize]);
+            of_body
+                .fold(square, |least, c| {
+                    let way = list.domain().separation(&middle, &position(c));
+                    least.min(4.0 * way.norm_squared())
+                })
+                .max(largest)
         });
         largest.sqrt() / self.particles.spacing[0]
     }
