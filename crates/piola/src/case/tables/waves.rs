@@ -76,7 +76,7 @@ pub(super) const ELASTODYNAMICS: KindSpec = KindSpec {
 const FORMS: Choices = choices(&[
     choice(
         "strong",
-        "by the matrices of the gradient, with ghosts beyond the edges that carry the load as a slope, theory (64): the paper's way; for one row in 1D, and in 2D for one box of a lattice with particles on its edges",
+        "by the matrices of the gradient, with ghosts beyond the edges that carry the load as a slope, theory (64): the paper's way; for one row in 1D, and in 2D for one box of a lattice with particles on its edges, out of which discs may be cut",
     ),
     choice("adjoint", "by their transposes, with tractions as forces on particles"),
 ]);
