@@ -211,7 +211,8 @@ fn head(page: &mut String, results: &Results) {
              **{} checks against something outside the program are met**: {} against an exact \
              solution, {} against another method or program, {} against the papers. Besides, {} \
              balances, symmetries and outcomes are as they have to be, and {} comparisons with \
-             other runs of piola, which are no evidence of correctness{unsaid}.{not_run}\n\n\
+             other runs of piola, which are no evidence of correctness{unsaid}.{not_run} \
+             A check that was evaluated at the coarse setting and again in the case as it stands counts once, as the latter.\n\n\
              Three settings: `coarse` for tests, `case` the case as its file has it, `paper` the \
              particle numbers, steps and parameters of the publication. A row that stands for a \
              variant or a sweep says so in front; a sweep's own rows say how its members follow \

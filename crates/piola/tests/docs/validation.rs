@@ -187,6 +187,22 @@ fn every_check_says_what_it_is_worth_and_why_its_bound_is_what_it_is() {
 }
 
 #[test]
+fn what_compares_runs_with_each_other_is_no_evidence_from_outside() {
+    for case in below("cases", &["/case.toml"]) {
+        let tree: toml::Table = case.text.parse().expect("case files are TOML");
+        for check in tree.get("check").and_then(toml::Value::as_array).into_iter().flatten() {
+            let has = |key: &str| check.get(key).is_some();
+            let compares = ["monotone", "ratio", "less_than", "more_than"].into_iter().any(has);
+            let is_inward =
+                compares && !has("expected") || check["quantity"].as_str() == Some("run.outcome");
+            let worth = check["against"].as_str().unwrap_or_default();
+            let is_outside = ["exact", "independent", "paper"].contains(&worth);
+            assert!(!(is_inward && is_outside), "{}: {check} is called `{worth}`", case.name);
+        }
+    }
+}
+
+#[test]
 fn every_variant_has_a_check() {
     for case in below("cases", &["/case.toml"]) {
         let tree: toml::Table = case.text.parse().expect("case files are TOML");

@@ -21,6 +21,8 @@ pub struct Reproduction {
     pub met: Met,
     /// Why it is not, or how it is known.
     pub why: String,
+    /// The id of the cases whose checks show it, where it is another.
+    pub checks_of: Option<String>,
 }
 
 /// Whether a row of the list is met.
@@ -73,7 +75,8 @@ pub(super) fn table(page: &mut String, list: &[Reproduction], results: &Results)
         ),
     );
     for row in list {
-        let cases = results.cases.iter().filter(|case| case.id == row.id);
+        let shown_by = row.checks_of.as_ref().unwrap_or(&row.id);
+        let cases = results.cases.iter().filter(|case| case.id == *shown_by);
         let outside = Against::ALL.into_iter().filter(|worth| worth.is_outside());
         let each = cases.flat_map(|case| outside.clone().map(|worth| case.count(Some(worth))));
         let [met, all] = each.fold([0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
@@ -82,9 +85,14 @@ pub(super) fn table(page: &mut String, list: &[Reproduction], results: &Results)
             Met::Partly => "partly",
             Met::No => "**no**",
         };
+        let checks = match (&row.checks_of, all) {
+            (_, 0) => "none".to_owned(),
+            (None, _) => format!("{met} of {all}"),
+            (Some(other), _) => format!("{met} of {all}, those of {other}"),
+        };
         let cells = [&row.id, &row.asked, &row.setting, &row.result].map(|text| cell(text));
         let line =
-            format!("| {} | {judged} | {} | {met} of {all} |\n", cells.join(" | "), cell(&row.why));
+            format!("| {} | {judged} | {} | {checks} |\n", cells.join(" | "), cell(&row.why));
         push(page, &line);
     }
 }

@@ -163,9 +163,16 @@ impl CaseResults {
         self.charts.extend(new);
     }
 
-    /// Checks that passed, and all that were run, with this worth.
+    /// Checks that passed, and all that were run, with this worth. One that was evaluated at several settings of
+    /// a case counts once, as at the last.
     pub fn count(&self, against: Option<Against>) -> [usize; 2] {
+        let is_repeated = |row: &Row| {
+            let later =
+                self.rows.iter().filter(|other| other.read_at > row.read_at && other.was_run());
+            later.into_iter().any(|other| (other.check, &other.run) == (row.check, &row.run))
+        };
         let own = self.rows.iter().filter(|row| row.against == against && row.was_run());
+        let own = own.filter(|row| !is_repeated(row));
         [own.clone().filter(|row| row.pass).count(), own.count()]
     }
 }

@@ -41,10 +41,11 @@ impl<const D: usize> TransportVelocity<D> {
     /// The largest gap between particles that were first neighbours at the start, in spacings; 0 for fluids.
     ///
     /// It is the diameter of the empty ball around the middle between the two: their distance, unless another particle
-    /// of their body is nearer to the middle. Shifting and flow move particles past each other in matter that is whole.
+    /// of their body, in the support of one of the two, is nearer to the middle. Shifting and flow move particles past each other in matter that is whole.
     pub(in super::super) fn largest_gap(&self, state: &[f64]) -> f64 {
         let Some(solids) = &self.solids else { return 0.0 };
         let list = self.support.list();
+        let reach = self.support.kernel().support_radius(self.support.smoothing_length()).powi(2);
         let position = |a: u32| Row::<D>::position(Row::<D>::of(state, a as usize));
         let largest = solids.bonds.pairs.iter().fold(0.0, |largest: f64, &[a, b]| {
             let across = list.domain().separation(&position(a), &position(b));
@@ -53,12 +54,18 @@ impl<const D: usize> TransportVelocity<D> {
                 return largest;
             }
             let middle = position(a) + across * 0.5;
-            // Candidates of the list are all that are near, at any state since it was made.
-            let near = |end: u32| list.active_row(list.places()[end as usize] as usize).iter();
-            let between = near(a).chain(near(b)).map(|&place| list.numbers()[place as usize]);
-            let of_body = between
-                .filter(|&c| self.particles.body[c as usize] == self.particles.body[a as usize]);
-            of_body
+            // The list has more than those within reach, depending on when it was made.
+            let near = |end: u32| {
+                let row = list.active_row(list.places()[end as usize] as usize).iter();
+                let numbers = row.map(|&place| list.numbers()[place as usize]);
+                let way = move |c: u32| list.domain().separation(&position(end), &position(c));
+                numbers.filter(move |&c| way(c).norm_squared() < reach)
+            };
+            let of_body =
+                |c: &u32| self.particles.body[*c as usize] == self.particles.body[a as usize];
+            near(a)
+                .chain(near(b))
+                .filter(of_body)
                 .fold(square, |least, c| {
                     let way = list.domain().separation(&middle, &position(c));
                     least.min(4.0 * way.norm_squared())
