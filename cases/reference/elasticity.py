@@ -57,8 +57,8 @@ def hole(n=32):
 
 def cube(n=8):
     """n elements along an edge; half of the cube, x from 0 to its middle. A dead pressure on y < 1/2."""
-    half = np.linspace(0, 0.5, n // 2 + 1)
-    solid = Solid(MeshHex.init_tensor(half, np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1)), neo_hookean(10.0, 0.3))
+    half, whole = np.linspace(0, 0.5, n // 2 + 1), np.linspace(0, 1, n + 1)
+    solid = Solid(MeshHex.init_tensor(half, whole, whole), neo_hookean(10.0, 0.3))
     foot = solid.where(lambda x, y, z: z < 1e-9, 0, 1, 2)
     held = np.union1d(foot, solid.where(lambda x, y, z: x > 0.5 - 1e-9, 0))
     load = solid.traction(lambda x: (x[2] > 1 - 1e-9) & (x[1] < 0.5), 2, lambda x, y, z: -2.0 + 0 * x)

@@ -84,8 +84,17 @@ def renewed(state, panels, width):
     return np.array([z, phi])
 
 
+def balances(state):
+    """Volume and energy over density, per m across."""
+    z, phi = state
+    phi, dy, x = phi.real, np.diff(z.imag), z.real
+    mean = lambda f: (f[1:] + f[:-1]) / 2
+    kinetic = np.sum(mean(phi) * np.diff(stream_function(z, phi))) / 2
+    return np.sum(mean(x) * dy), abs(kinetic) + G * np.sum(mean(x * z.imag) * dy)
+
+
 def collapse(aspect, width, panels, rounding, end):
-    """Rows of time and toe."""
+    """Rows of time and toe, and volume and energy at start and end."""
     radius, height = rounding * width, aspect * width
     angle = np.linspace(0, np.pi / 2, 200)
     corner = width - radius + 1j * (height - radius) + radius * np.exp(1j * angle)
@@ -96,7 +105,7 @@ def collapse(aspect, width, panels, rounding, end):
     z = np.interp(pick, length, outline.real) + 1j * np.interp(pick, length, outline.imag)
     state = renewed(np.array([z, 0 * z]), panels, width)
     place = np.linspace(0, len(z) - 1, panels + 1)
-    t, rows = 0.0, [(0.0, width)]
+    t, rows, before = 0.0, [(0.0, width)], balances(state)
     while t < end:
         k1 = rates(state)
         gaps = np.abs(np.diff(state[0]))
@@ -108,17 +117,19 @@ def collapse(aspect, width, panels, rounding, end):
         state = renewed(state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4), panels, width)
         t += step
         rows.append((t, state[0][0].real))
-    return np.array(rows)
+    return np.array(rows), np.array([before, balances(state)])
 
 
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     aspect, width = float(sys.argv[1]), float(sys.argv[2])
-    panels = int(sys.argv[3]) if len(sys.argv) > 3 else 160
+    panels = int(sys.argv[3]) if len(sys.argv) > 3 else 80
     rounding = float(sys.argv[4]) if len(sys.argv) > 4 else 0.06
     end = 3.2 * np.sqrt(width / (2 * G)) if aspect > 1 else 1.0
-    rows = collapse(aspect, width, panels, rounding, end)
+    rows, books = collapse(aspect, width, panels, rounding, end)
     toe = CubicSpline(*rows.T)
     for t in np.arange(0.1, end + 1e-9, 0.1):
         print(f"t {t:.1f}  toe {toe(t):.4f}")
+    volume, energy = books[1] / books[0] - 1
+    print(f"volume {volume:+.2e}, energy {energy:+.2e} of it at the end")
