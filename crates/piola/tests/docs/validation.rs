@@ -202,6 +202,46 @@ fn what_compares_runs_with_each_other_is_no_evidence_from_outside() {
     }
 }
 
+/// Whether `text` names a script that there is, from the root or from `folder`, or a publication:
+/// a year in brackets behind a name.
+fn names_where_it_comes_from(text: &str, folder: &str) -> bool {
+    let script = |word: &str| {
+        let is_there = |base: &Path| base.join(word).is_file();
+        word.ends_with(".py") && (is_there(&root()) || is_there(&root().join(folder)))
+    };
+    let is_year = |word: &str| word.len() == 4 && word.bytes().all(|byte| byte.is_ascii_digit());
+    let words = || text.split_whitespace();
+    let bare = |word: &str| {
+        let end = word.trim_end_matches([',', ';', ':', ')', '.']);
+        end.trim_start_matches('(').to_owned()
+    };
+    let published = words().zip(words().skip(1)).any(|(name, year)| {
+        let year = year.trim_end_matches([',', ';', ':', '.']);
+        let year = year.strip_prefix('(').and_then(|year| year.strip_suffix(')'));
+        name.starts_with(|c: char| c.is_ascii_uppercase()) && year.is_some_and(is_year)
+    });
+    published || words().any(|word| script(&bare(word)))
+}
+
+#[test]
+fn independent_checks_name_their_script_or_publication() {
+    let mut without = BTreeSet::new();
+    for case in below("cases", &["/case.toml"]) {
+        let folder = case.name.trim_end_matches("/case.toml");
+        let tree: toml::Table = case.text.parse().expect("case files are TOML");
+        for check in tree.get("check").and_then(toml::Value::as_array).into_iter().flatten() {
+            let text = |key: &str| check.get(key).and_then(toml::Value::as_str).unwrap_or_default();
+            let source = text("source");
+            if text("against") == "independent" && !names_where_it_comes_from(source, folder) {
+                without.insert(format!("{}: {source}", case.name));
+            }
+        }
+    }
+    assert!(without.is_empty(), "neither a script nor a publication:\n{without:#?}");
+    assert!(!names_where_it_comes_from("finite elements (nowhere.py), by Hand, 2002", "cases"));
+    assert!(names_where_it_comes_from("as in Martin and Moyce (1952), on a bed", "cases"));
+}
+
 #[test]
 fn every_variant_has_a_check() {
     for case in below("cases", &["/case.toml"]) {
