@@ -59,8 +59,10 @@ pub(super) fn case(
     let mut reader =
         Reader { context, dimension, setting, names: Names::default(), late: Late::default() };
     reader.collect_names(record);
-    let scheme = record.record("scheme").and_then(|scheme| reader.scheme(scheme));
-    reader.names.scheme = scheme.as_ref().map_or("upwind", |scheme| scheme.value.name());
+    // Without a scheme nothing is known of what the rest of the case may say.
+    let described = record.record("scheme")?;
+    let scheme = reader.scheme(described);
+    reader.names.scheme = described.kind;
     reader.names.dissipates = match scheme.as_ref().map(|scheme| &scheme.value) {
         Some(Scheme::Upwind(upwind)) => upwind.tau_velocity > 0.0 || upwind.tau_pressure > 0.0,
         _ => true,

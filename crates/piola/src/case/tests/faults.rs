@@ -33,6 +33,16 @@ fn broken(from: &str, to: &str) -> String {
 }
 
 #[test]
+fn of_an_unknown_scheme_nothing_else_is_said() {
+    let said = broken(
+        "kind = \"upwind\"\nsmoothing_length = 0.7\n",
+        "kind = \"upwnd\"\n[output]\nfields = [\"surface\"]\n",
+    );
+    assert!(said.contains("[scheme] has no kind `upwnd`"), "{said}");
+    assert_eq!(said.matches("error:").count(), 1, "{said}");
+}
+
+#[test]
 fn the_good_case_is_good() {
     let case = read_with(GOOD, &[]).unwrap_or_else(|problems| panic!("{problems}"));
     assert_eq!(case.output.every.value, 0.03);
