@@ -31,6 +31,9 @@ pub(super) struct Tally {
     /// What every step is multiplied by.
     pub factor: f64,
     pub retries: Vec<Retry>,
+    /// What the run has been warned of, and whether the scheme was who warned.
+    pub warnings: Vec<String>,
+    pub warned: bool,
     pub watches: Watches,
 }
 
@@ -70,6 +73,8 @@ impl Tally {
         wanted: f64::INFINITY,
         factor: 1.0,
         retries: Vec::new(),
+        warnings: Vec::new(),
+        warned: false,
         watches: Watches {
             step: Watch::ZERO,
             inspect: Watch::ZERO,

@@ -48,9 +48,6 @@ struct Run {
     /// When each observer is due next.
     due: Vec<Option<f64>>,
     history: History,
-    warnings: Vec<String>,
-    /// Whether the scheme has warned of a state.
-    warned: bool,
     resumed: Option<(f64, u64)>,
 }
 
@@ -227,7 +224,7 @@ impl Executor {
             retries: run.tally.retries,
             trace,
             resumed: run.resumed,
-            warnings: run.warnings,
+            warnings: run.tally.warnings,
         })
     }
 
@@ -239,16 +236,7 @@ impl Executor {
                 || Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
             let history = history.unwrap_or_else(|| History::new(mark()));
             let resumed = Some((clock.time, clock.step));
-            return Run {
-                clock,
-                tally,
-                state,
-                due,
-                history,
-                warnings: Vec::new(),
-                warned: false,
-                resumed,
-            };
+            return Run { clock, tally, state, due, history, resumed };
         }
         let mut state = self.scheme.initial_state();
         self.scheme.constrain(0.0, &mut state);
@@ -263,16 +251,7 @@ impl Executor {
         let (clock, tally) = (Clock::START, Tally::START);
         let mark = Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
         let history = History::new(mark);
-        Run {
-            clock,
-            tally,
-            state,
-            due,
-            history,
-            warnings: Vec::new(),
-            warned: false,
-            resumed: None,
-        }
+        Run { clock, tally, state, due, history, resumed: None }
     }
 
     /// Looks at the state: it is sound, or the run ends, or it goes back.
@@ -286,7 +265,7 @@ impl Executor {
         let health = tally.watches.inspect.time(|| scheme.inspect(state, limits));
         if clock.step == 0 {
             tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
-            run.warnings.extend(supersonic(tally.start_speeds));
+            tally.warnings.extend(supersonic(tally.start_speeds));
         }
         if let Some(failure) = self.broken(&health, state, clock, tally.start_speeds) {
             let may_retry =
@@ -297,10 +276,10 @@ impl Executor {
             self.go_back(run, &failure)?;
             return Ok(Verdict::Back);
         }
-        if let (false, Some(warning)) = (run.warned, self.scheme.warning()) {
+        if let (false, Some(warning)) = (tally.warned, self.scheme.warning()) {
             let Clock { step, time, .. } = *clock;
-            run.warnings.push(format!("{warning}; seen first at t = {time:e} s, step {step}"));
-            run.warned = true;
+            tally.warnings.push(format!("{warning}; seen first at t = {time:e} s, step {step}"));
+            tally.warned = true;
         }
         clock.health = health;
         tally.worst = tally.worst.worse(health);
@@ -313,14 +292,15 @@ impl Executor {
         let Run { clock, tally, state, due, history, .. } = run;
         let (step, time) = (clock.step, clock.time);
         let mark = history.go_back();
-        // What the failed attempt took of wall time, and that it was made, are not forgotten.
+        // What the failed attempt took of wall time, that it was made, and its warnings are not forgotten.
         let (watches, mut retries) = (tally.watches, std::mem::take(&mut tally.retries));
+        let (warnings, warned) = (std::mem::take(&mut tally.warnings), tally.warned);
         let factor = tally.factor * Self::RETRY_FACTOR;
         let back_to = mark.clock.time;
         let kind = failure.kind().to_owned();
         retries.push(Retry { kind, failure: failure.to_string(), step, time, back_to, factor });
         *clock = mark.clock;
-        *tally = Tally { watches, retries, factor, ..mark.tally.clone() };
+        *tally = Tally { watches, retries, warnings, warned, factor, ..mark.tally.clone() };
         state.copy_from_slice(&mark.state);
         due.copy_from_slice(&mark.due);
         for observer in &mut self.observers {
@@ -395,7 +375,7 @@ impl Executor {
         };
         let Some(checkpoints) = &mut self.checkpoints else { return };
         let kept = run.tally.watches.checkpoint.time(|| checkpoints.keep(&checkpoint));
-        run.warnings.extend(kept.err());
+        run.tally.warnings.extend(kept.err());
     }
 }
 
