@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use piola::case::{self, Case, Finished, Level, LoadOptions, RunError};
 use piola::output::checkpoint;
 use piola::time::{Outcome, Progress};
+use rayon::prelude::*;
 
 fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
@@ -98,7 +99,8 @@ fn cases() -> Vec<PathBuf> {
 /// has the bytes of the run that was never broken off.
 #[test]
 fn every_case_resumes_to_the_bit() {
-    cases().iter().for_each(|path| resumes_to_the_bit(path, None));
+    // Most of a run is on one thread: as many cases at a time as there are cores.
+    cases().par_iter().for_each(|path| resumes_to_the_bit(path, None));
 }
 
 /// The integrators that no base case has.

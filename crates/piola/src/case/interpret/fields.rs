@@ -110,7 +110,9 @@ impl Reader<'_, '_> {
             return Some(());
         }
         let message = format!("there is no column `{}`", text.value);
-        let help = suggestion(column, known.iter().copied());
+        let table = text.strip_suffix(column).unwrap_or_default();
+        let names: Vec<String> = known.iter().map(|name| format!("{table}{name}")).collect();
+        let help = suggestion(&text.value, names.iter().map(String::as_str));
         self.refuse(Problem::new(text.place, message, "unknown column").help(help))
     }
 

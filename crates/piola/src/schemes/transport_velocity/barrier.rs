@@ -107,13 +107,10 @@ impl<const D: usize> TransportVelocity<D> {
             for neighbor in block.iter() {
                 let number = self.support.list().numbers()[neighbor.place];
                 let Some(index) = self.wall_of(number) else { continue };
-                let wall = &self.walls[index];
-                let Some((height, normal)) = wall.faces.in_front(&neighbor.separation) else {
+                let Some((height, normal)) = self.over(index, &neighbor.separation) else {
                     continue;
                 };
-                let is_near = (-spacing..TOUCH * spacing).contains(&height)
-                    && self.is_beside(&neighbor.separation, neighbor.separation.dot(normal));
-                if !is_near {
+                if !(-spacing..TOUCH * spacing).contains(&height) {
                     continue;
                 }
                 let motion = &self.wall_values[index].motion;
@@ -135,7 +132,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Which wall particle has a number.
-    fn wall_of(&self, number: u32) -> Option<usize> {
+    pub(super) fn wall_of(&self, number: u32) -> Option<usize> {
         self.walls.binary_search_by_key(&number, |wall| wall.number).ok()
     }
 
@@ -150,10 +147,13 @@ impl<const D: usize> TransportVelocity<D> {
         })
     }
 
-    /// Whether a place is in front of a wall particle or behind it, for the way between them with its part along a
-    /// normal, and not beyond an edge.
-    pub(super) fn is_beside(&self, way: &Vector<D>, along: f64) -> bool {
-        way.norm_squared() - along * along <= (BESIDE * self.particles.spacing[0]).powi(2)
+    /// How far a place is in front of the face of wall particle `index` in m, less than zero behind it, for the
+    /// way from there, with the normal of the face; nothing beyond an edge.
+    pub(super) fn over(&self, index: usize, way: &Vector<D>) -> Option<(f64, &Vector<D>)> {
+        let (height, normal) = self.walls[index].faces.in_front(way)?;
+        let aside = way.norm_squared() - way.dot(normal).powi(2);
+        let is_beside = aside <= (BESIDE * self.particles.spacing[0]).powi(2);
+        is_beside.then_some((height, normal))
     }
 
     /// Whether the particle at `place` is behind the face of the wall particle that is nearest.
@@ -171,11 +171,8 @@ impl<const D: usize> TransportVelocity<D> {
         }
         nearest.is_some_and(|(_, wall)| {
             let way = list.domain().separation(&position(wall), &me);
-            let faces = self.faces(list.numbers()[wall] as usize);
-            faces.and_then(|faces| faces.in_front(&way)).is_some_and(|(height, normal)| {
-                height < -BEHIND * self.particles.spacing[0]
-                    && self.is_beside(&way, way.dot(normal))
-            })
+            let over = self.wall_of(list.numbers()[wall]).and_then(|index| self.over(index, &way));
+            over.is_some_and(|(height, _)| height < -BEHIND * self.particles.spacing[0])
         })
     }
 }

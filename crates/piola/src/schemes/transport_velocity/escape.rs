@@ -143,11 +143,8 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let (_, separation, wall) = nearest?;
         let number = list.numbers()[wall];
-        let faces = self.faces(number as usize)?;
-        let (_, normal) = faces.in_front(&separation)?;
-        let height = separation.dot(normal);
-        let is_through =
-            height < -TOLERANCE * self.particles.spacing[0] && self.is_beside(&separation, height);
+        let (_, normal) = self.over(self.wall_of(number)?, &separation)?;
+        let is_through = separation.dot(normal) < -TOLERANCE * self.particles.spacing[0];
         is_through.then_some(Some(number))
     }
 

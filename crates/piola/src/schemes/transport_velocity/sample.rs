@@ -132,8 +132,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// The faces that a wall particle is behind.
     pub(super) fn faces(&self, number: usize) -> Option<&Faces<D>> {
-        let wall = self.walls.binary_search_by_key(&(number as u32), |wall| wall.number);
-        Some(&self.walls[wall.ok()?].faces)
+        Some(&self.walls[self.wall_of(number as u32)?].faces)
     }
 
     /// The sum of those `d u_i / d x_axis` for which `which(axis, i)` holds, CTVF (31).
