@@ -137,9 +137,10 @@ pub struct VerifyArguments {
     /// Run at the paper's setting only
     #[arg(long, conflicts_with = "full")]
     pub paper: bool,
-    /// Run what takes long, too; may take hours
-    #[arg(long)]
-    pub long: bool,
+    /// Run what takes long, too, or only these variants and sweeps of it (`base` is the case
+    /// itself); may take hours
+    #[arg(long, value_name = "NAMES", num_args = 0.., require_equals = true, value_delimiter = ',')]
+    pub long: Option<Vec<String>>,
     /// Write a page with all checks, charts and results beside it, for example docs/validation.md;
     /// results of other cases that it has already stay
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -152,6 +153,17 @@ pub struct VerifyArguments {
     pub threads: Option<u16>,
 }
 
+impl VerifyArguments {
+    /// Whether to run a variant, or the case itself, that takes long. A sweep stands for its members.
+    pub fn is_long_wanted(&self, variant: Option<&str>) -> bool {
+        let is_named = |name: &String| {
+            let rest = variant.unwrap_or("base").strip_prefix(name.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        self.long.as_ref().is_some_and(|names| names.is_empty() || names.iter().any(is_named))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,5 +172,23 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn what_takes_long_is_chosen_by_name() {
+        let wanted = |options: &[&str], variant| {
+            let line = ["piola", "verify"].iter().chain(options).copied();
+            let Ok(Arguments { command: Command::Verify(arguments), .. }) =
+                Arguments::try_parse_from(line)
+            else {
+                panic!("{options:?}")
+            };
+            arguments.is_long_wanted(variant)
+        };
+        assert!(!wanted(&[], Some("fine")) && wanted(&["--long"], Some("fine")));
+        assert!(wanted(&["--long", "cases"], None));
+        let some = &["--long=table1,base", "cases"];
+        assert!(wanted(some, Some("table1.2")) && wanted(some, None));
+        assert!(!wanted(some, Some("table1-held.2")) && !wanted(some, Some("fine")));
     }
 }
