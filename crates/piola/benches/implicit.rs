@@ -15,7 +15,7 @@ use std::time::Instant;
 use piola::Vector;
 use piola::output::{Column, Plot, Series, Style};
 use piola::schemes::upwind::{BodyForce, ImplicitSettings, Settings, Upwind};
-use piola::schemes::{Scheme, Theta, ThetaScheme};
+use piola::schemes::{Observation, Scheme, Theta, ThetaScheme};
 use piola::solve::LinearMethod;
 use piola::time::{Integrator, RungeKutta};
 use piola_formulas::volumetric::VolumetricLaw;
@@ -125,8 +125,7 @@ fn settle(particles: usize, stiffness: f64) -> [f64; 2] {
             std::mem::swap(&mut state, &mut new);
         }
     });
-    let mut position = Vec::new();
-    scheme.sample(1.0, &state, "displacement", &[top as u32], &mut position);
+    let position = Observation::new(&mut scheme, 1.0, &state).values("displacement", &[top as u32]);
     let exact = -DENSITY * GRAVITY * HEIGHT * HEIGHT / (2.0 * stiffness * SOFTEST);
     // Explicit steps are all alike: some of them tell what all cost.
     let step = 0.3 * stable(&mut scheme);

@@ -31,6 +31,58 @@ pub fn for_each_pair_of_chunks<T: Send, U: Send>(
     chunks.for_each(|(chunk, (rows, others))| body(chunk * CHUNK, rows, others));
 }
 
+/// Writes `from` to `to`, of the same length.
+pub fn copy<T: Copy + Send + Sync>(to: &mut [T], from: &[T]) {
+    for_each_chunk(to, |first, to| to.copy_from_slice(&from[first..][..to.len()]));
+}
+
+/// Arrays beside each other that can be cut at a particle.
+pub trait Parts: Send + Sized {
+    /// Those of the first `middle` particles, and the rest.
+    fn split(self, middle: usize) -> (Self, Self);
+}
+
+impl<T: Send> Parts for &mut [T] {
+    fn split(self, middle: usize) -> (Self, Self) {
+        self.split_at_mut(middle)
+    }
+}
+
+impl<A: Parts, B: Parts> Parts for (A, B) {
+    fn split(self, middle: usize) -> (Self, Self) {
+        let ((a, later_a), (b, later_b)) = (self.0.split(middle), self.1.split(middle));
+        ((a, b), (later_a, later_b))
+    }
+}
+
+/// An array with one entry for each chunk of particles.
+pub struct PerChunk<'a, T>(pub &'a mut [T]);
+
+impl<T: Send> Parts for PerChunk<'_, T> {
+    fn split(self, middle: usize) -> (Self, Self) {
+        let (own, later) = self.0.split_at_mut(middle / CHUNK);
+        (Self(own), Self(later))
+    }
+}
+
+/// Calls `body(first, parts)` for chunks of the arrays of `count` particles.
+pub fn for_each_part<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) + Sync) {
+    split_parts(0, count, parts, &body);
+}
+
+/// Halves the chunks until each is alone, as a list of them would have to be allocated.
+fn split_parts<P: Parts>(first: usize, count: usize, parts: P, body: &(impl Fn(usize, P) + Sync)) {
+    if count <= CHUNK {
+        return body(first, parts);
+    }
+    let middle = count.div_ceil(CHUNK) / 2 * CHUNK;
+    let (own, later) = parts.split(middle);
+    rayon::join(
+        || split_parts(first, middle, own, body),
+        || split_parts(first + middle, count - middle, later, body),
+    );
+}
+
 /// Calls `body(number, item)` for each item, of which each is worth a thread's while.
 pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sync) {
     items.par_iter_mut().enumerate().for_each(|(number, item)| body(number, item));

@@ -2,8 +2,8 @@
 
 use piola::Vector;
 use piola::geometry::{LatticeSpec, Particles, Placement, Shape, fill};
-use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::TransportVelocity;
+use piola::schemes::{Observation, Scheme};
 use piola::time::IntegratorKind;
 use piola_formulas::kernels::Kernel;
 
@@ -98,9 +98,8 @@ pub fn measure<const D: usize>(
         }
     }) / f64::from(STEPS);
     let particles = scheme.particle_count();
-    let mut neighbors = Vec::new();
     let all: Vec<u32> = (0..particles as u32).collect();
-    scheme.sample(0.0, &state, "neighbors", &all, &mut neighbors);
+    let neighbors = Observation::new(&mut scheme, 0.0, &state).values("neighbors", &all);
     let speed = particles as f64 / least;
     println!(
         "| {D} | {threads} | {particles} | {mean:.1} | {kernel} | {name} | {millions:.2} | {ns:.0} |",

@@ -125,7 +125,7 @@ pub fn build<const D: usize>(size: usize, switches: Switches) -> (Upwind<D>, f64
 /// The initial state with every unknown disturbed by up to a thousandth of the size of its field.
 pub fn disturbed<const D: usize>(scheme: &Upwind<D>) -> Vec<f64> {
     let mut state = scheme.initial_state();
-    let rows = scheme.particle_count() * scheme.row_length();
+    let rows = scheme.particle_count() * scheme.width();
     for (index, value) in state[..rows].iter_mut().enumerate() {
         *value += 1e-3 * noise(index);
     }

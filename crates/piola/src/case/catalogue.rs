@@ -72,8 +72,8 @@ pub fn reductions() -> Vec<Choice> {
 }
 
 /// The fields of the scheme called `scheme`.
-pub fn fields(scheme: &str) -> &'static [FieldDescription] {
-    SchemeDescription::of(scheme).map_or(&[], |scheme| scheme.fields)
+pub fn fields(scheme: &str) -> Vec<FieldDescription> {
+    SchemeDescription::of(scheme).map_or_else(Vec::new, |scheme| scheme.shown().copied().collect())
 }
 
 /// Columns of the energy table, after `energy.`.

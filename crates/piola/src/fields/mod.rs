@@ -2,8 +2,11 @@
 //!
 //! Output, pictures, probes and checkpoints walk these descriptions; none of them knows a scheme.
 
+mod columns;
 mod selector;
 
+pub use columns::{column, width};
+pub(crate) use columns::{columns, take_column, take_column_mut};
 pub use selector::{Component, FieldSelector, component_name};
 
 /// How the components of a field are laid out.
@@ -28,17 +31,44 @@ pub struct FieldDescription {
     pub kind: FieldKind,
     /// One line of explanation for the generated reference.
     pub meaning: &'static str,
+    /// Where its values come from.
+    pub life: Life,
+    /// Its place in the table of its formulation, by which it is read.
+    pub number: usize,
+}
+
+/// Where the values of a field come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Life {
+    /// A column of the state that integrators advance.
+    Evolved,
+    /// A column of the state that the next step needs as it is.
+    Kept,
+    /// Made of the state, after this many stages of observation.
+    Derived(usize),
+    /// The same in all states.
+    Constant,
 }
 
 impl FieldDescription {
-    /// A field, all of it.
+    /// A field that does not change, the first of its table.
     pub const fn new(
         name: &'static str,
         unit: &'static str,
         kind: FieldKind,
         meaning: &'static str,
     ) -> Self {
-        Self { name, unit, kind, meaning }
+        Self { name, unit, kind, meaning, life: Life::Constant, number: 0 }
+    }
+
+    /// A table of fields with their numbers.
+    pub(crate) const fn numbered<const N: usize>(mut fields: [Self; N]) -> [Self; N] {
+        let mut number = 0;
+        while number < N {
+            fields[number].number = number;
+            number += 1;
+        }
+        fields
     }
 }
 

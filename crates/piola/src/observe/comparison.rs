@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::boundaries::SpaceTime;
 use crate::fields::FieldSelector;
-use crate::schemes::Scheme;
+use crate::schemes::Observation;
 
 /// The relative difference `sum |f - e| / sum |e|` of fields f from functions e of the place of
 /// each particle and time, CTVF (66) with absolute values; or the root of that of squares, which
@@ -33,23 +33,13 @@ pub enum Norm {
 }
 
 impl Deviation {
-    pub(super) fn record(
-        &self,
-        scheme: &mut dyn Scheme,
-        time: f64,
-        state: &[f64],
-        scratch: &mut Vec<f64>,
-    ) -> f64 {
-        let mut sample = |field: &str| {
-            scratch.clear();
-            scheme.sample(time, state, field, &self.particles, scratch);
-            scratch.clone()
-        };
+    pub(super) fn record(&self, now: &mut Observation, scratch: &mut Vec<f64>) -> f64 {
+        let time = now.time();
         let weights = match self.norm {
-            Norm::Volume => sample("volume"),
+            Norm::Volume => now.values("volume", &self.particles),
             _ => vec![1.0; self.particles.len()],
         };
-        let positions = sample("position");
+        let positions = now.values("position", &self.particles);
         let dimension = positions.len() / self.particles.len().max(1);
         let size = |value: f64| match self.norm {
             Norm::Absolute => value.abs(),
@@ -63,9 +53,10 @@ impl Deviation {
                 exact.value(place, time)
             });
             let exact: Vec<f64> = exact.collect();
-            let values = sample(selector.field.name);
+            scratch.clear();
+            now.read(&selector.field, &self.particles, scratch);
             let components = selector.field.kind.components(dimension);
-            let found = values.chunks_exact(components).map(|value| selector.value(value));
+            let found = scratch.chunks_exact(components).map(|value| selector.value(value));
             let mean = |sum: f64| if self.without_mean { sum / exact.len() as f64 } else { 0.0 };
             let offset = mean(found.clone().sum()) - mean(exact.iter().sum());
             let all = found.zip(&exact).zip(&weights);

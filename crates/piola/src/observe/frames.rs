@@ -3,7 +3,6 @@
 use super::files::WrittenFiles;
 use super::memory::{decode, encode, inside};
 use crate::output::{Compression, OutputError, ResultsFolder, pvd, vtp};
-use crate::schemes::snapshot;
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
 /// Writes a particle file at each due time and keeps the time series that names them.
@@ -30,11 +29,11 @@ impl FrameWriter {
     }
 
     fn write(&mut self, moment: &mut Moment) -> Result<(), OutputError> {
-        let shot = snapshot(moment.scheme, moment.time, moment.step, moment.state, &self.fields);
+        let shot = moment.now.snapshot(moment.step, &self.fields);
         let path = self.folder.particles(self.frames.len() as u64)?;
         vtp::write(&path, &shot, self.compression)?;
         let file = self.folder.relative(&path);
-        self.frames.push(pvd::Frame { time: moment.time, file });
+        self.frames.push(pvd::Frame { time: moment.now.time(), file });
         // The series is written after its newest file, so that it never names a missing one.
         pvd::write(&self.folder.series(), &self.frames)?;
         self.written.push(self.folder.series());
@@ -49,13 +48,13 @@ impl Observer for FrameWriter {
     }
 
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
-        if self.last_time == Some(moment.time) {
+        if self.last_time == Some(moment.now.time()) {
             return Ok(());
         }
-        self.last_time = Some(moment.time);
+        self.last_time = Some(moment.now.time());
         self.write(moment).map_err(|source| ObserveError {
             what: "writing a particle file",
-            time: moment.time,
+            time: moment.now.time(),
             source: source.into(),
         })
     }

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use piola_formulas::kernels::Kernel;
 
 use crate::fields::FieldDescription;
-use crate::schemes::Scheme;
+use crate::schemes::Observation;
 
 /// What the coefficients of a linear fit may add up to, signs apart: beyond it the fit amplifies noise,
 /// as where it reaches out of the particles, and the mean is taken.
@@ -43,15 +43,12 @@ impl Interpolated {
     /// Appends to `rows` for each place all components of all fields. `scratch` is overwritten.
     pub(super) fn record(
         &self,
-        scheme: &mut dyn Scheme,
-        time: f64,
-        state: &[f64],
+        now: &mut Observation,
         scratch: &mut Vec<f64>,
         rows: &mut Vec<f64>,
     ) {
-        let dimension = scheme.dimension();
-        scratch.clear();
-        scheme.sample(time, state, "position", &self.particles, scratch);
+        let dimension = now.scheme().dimension();
+        *scratch = now.values("position", &self.particles);
         let mut around = Around::default();
         for place in &self.places {
             self.look_around(place, scratch, &mut around);
@@ -62,7 +59,7 @@ impl Interpolated {
         let mut column = start;
         for field in &self.fields {
             scratch.clear();
-            scheme.sample(time, state, field.name, &around.particles, scratch);
+            now.read(field, &around.particles, scratch);
             let components = field.kind.components(dimension);
             for component in 0..components {
                 let mut values = scratch.iter().skip(component).step_by(components);

@@ -4,7 +4,6 @@ use super::files::WrittenFiles;
 use super::memory::{decode, encode, inside};
 use crate::fields::FieldSelector;
 use crate::output::{OutputError, Picture, ResultsFolder, When};
-use crate::schemes::snapshot;
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
 /// What a picture shows.
@@ -44,15 +43,15 @@ impl PictureWriter {
     fn draw(&mut self, moment: &mut Moment) -> Result<(), OutputError> {
         let PictureRequest { title, field, range, spacing } = &self.request;
         let name = field.field.name;
-        let shot = snapshot(moment.scheme, moment.time, moment.step, moment.state, &[name]);
+        let shot = moment.now.snapshot(moment.step, &[name]);
         let Some(found) = shot.field(name) else { return Ok(()) };
         let components = field.field.kind.components(shot.dimension);
         let values: Vec<f64> =
             found.values.chunks_exact(components).map(|value| field.value(value)).collect();
         let label = field.name(shot.dimension);
-        let when = match moment.scheme.equilibrium() {
-            Some(_) => When::LoadFactor(moment.time),
-            None => When::Time(moment.time),
+        let when = match moment.now.is_static() {
+            true => When::LoadFactor(moment.now.time()),
+            false => When::Time(moment.now.time()),
         };
         let path = self.folder.picture(&label, self.drawn.len() as u64)?;
         Picture {
@@ -68,7 +67,7 @@ impl PictureWriter {
             bounds: None,
         }
         .write_png(&path)?;
-        self.drawn.push((self.folder.relative(&path), moment.time));
+        self.drawn.push((self.folder.relative(&path), moment.now.time()));
         self.written.push(path);
         Ok(())
     }
@@ -84,12 +83,12 @@ impl Observer for PictureWriter {
         // or if pictures that were asked for will never be.
         let last = self.drawn.last().map(|(_, time)| *time);
         let pending = self.schedule.next_after(last.unwrap_or(-1.0));
-        if last == Some(moment.time) || (moment.last && pending.is_none()) {
+        if last == Some(moment.now.time()) || (moment.last && pending.is_none()) {
             return Ok(());
         }
         self.draw(moment).map_err(|source| ObserveError {
             what: "drawing the particles",
-            time: moment.time,
+            time: moment.now.time(),
             source: source.into(),
         })
     }

@@ -6,7 +6,7 @@ use super::comparison::Deviation;
 use super::interpolation::Interpolated;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
-use crate::schemes::{Scheme, Theta};
+use crate::schemes::{Observation, Theta};
 
 /// A probe bound to the particles of a run.
 #[derive(Clone)]
@@ -97,28 +97,21 @@ impl Probe {
     }
 
     /// Appends its numbers to `row`. `scratch` is overwritten.
-    pub fn record(
-        &self,
-        scheme: &mut dyn Scheme,
-        time: f64,
-        state: &[f64],
-        scratch: &mut Vec<f64>,
-        row: &mut Vec<f64>,
-    ) {
+    pub fn record(&self, now: &mut Observation, scratch: &mut Vec<f64>, row: &mut Vec<f64>) {
         match &self.kind {
             ProbeKind::Particle { particle, fields } => {
                 for field in fields {
-                    scheme.sample(time, state, field.name, &[*particle], row);
+                    now.read(field, &[*particle], row);
                 }
             }
             ProbeKind::Extremum { field, largest, particles, inside } => {
                 let counted = match inside {
                     None => Cow::Borrowed(particles),
-                    Some(corners) => Cow::Owned(within(corners, particles, scheme, time, state)),
+                    Some(corners) => Cow::Owned(within(corners, particles, now)),
                 };
                 scratch.clear();
-                scheme.sample(time, state, field.field.name, &counted, scratch);
-                let components = field.field.kind.components(scheme.dimension());
+                now.read(&field.field, &counted, scratch);
+                let components = field.field.kind.components(now.scheme().dimension());
                 let values = scratch.chunks_exact(components).map(|value| field.value(value));
                 let extremum =
                     if *largest { values.reduce(f64::max) } else { values.reduce(f64::min) };
@@ -126,17 +119,20 @@ impl Probe {
             }
             ProbeKind::Sum { field, particles } => {
                 scratch.clear();
-                scheme.sample(time, state, field.name, particles, scratch);
-                let components = field.kind.components(scheme.dimension());
+                now.read(field, particles, scratch);
+                let components = field.kind.components(now.scheme().dimension());
                 row.extend((0..components).map(|component| {
                     scratch.iter().skip(component).step_by(components).sum::<f64>()
                 }));
             }
-            ProbeKind::Point(point) => point.record(scheme, time, state, scratch, row),
-            ProbeKind::Error(error) => row.push(error.record(scheme, time, state, scratch)),
+            ProbeKind::Point(point) => point.record(now, scratch, row),
+            ProbeKind::Error(error) => row.push(error.record(now, scratch)),
             ProbeKind::Tangent { rule, step } => {
-                let tested =
-                    scheme.theta().map(|it| it.remainders(rule, time, *step, state, &SIZES));
+                let (time, state) = (now.time(), now.state());
+                let tested = now
+                    .scheme_mut()
+                    .theta()
+                    .map(|it| it.remainders(rule, time, *step, state, &SIZES));
                 let left = tested.unwrap_or_default();
                 let slopes = left.windows(2).map(|pair| (pair[0] / pair[1]).log10());
                 let [least, largest] = slopes.fold([f64::NAN; 2], |[least, largest], slope| {
@@ -150,19 +146,12 @@ impl Probe {
 }
 
 /// Those of some particles that are in a box at a time.
-fn within(
-    [lower, upper]: &[Vec<f64>; 2],
-    particles: &[u32],
-    scheme: &mut dyn Scheme,
-    time: f64,
-    state: &[f64],
-) -> Vec<u32> {
-    let mut places = Vec::new();
-    scheme.sample(time, state, "position", particles, &mut places);
+fn within([lower, upper]: &[Vec<f64>; 2], particles: &[u32], now: &mut Observation) -> Vec<u32> {
+    let places = now.values("position", particles);
     let is_inside = |place: &[f64]| {
         place.iter().zip(lower.iter().zip(upper)).all(|(x, (low, high))| low <= x && x <= high)
     };
-    let of_particles = places.chunks_exact(scheme.dimension()).zip(particles);
+    let of_particles = places.chunks_exact(now.scheme().dimension()).zip(particles);
     of_particles.filter(|(place, _)| is_inside(place)).map(|(_, particle)| *particle).collect()
 }
 

@@ -86,13 +86,7 @@ impl ProfileRecorder {
     fn record(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
         let mut values = Vec::new();
         let interpolated = &self.line.values;
-        interpolated.record(
-            moment.scheme,
-            moment.time,
-            moment.state,
-            &mut self.scratch,
-            &mut values,
-        );
+        interpolated.record(moment.now, &mut self.scratch, &mut values);
         let width = values.len() / self.line.distances.len();
         let places = self.line.distances.iter().zip(&interpolated.places);
         let rows =
@@ -103,16 +97,16 @@ impl ProfileRecorder {
         let Tables { profiles, over_time, .. } = &mut *tables;
         let table = &mut profiles[self.number];
         table.set_numbers(rows.collect()).expect("a place has a number for each column");
-        self.times.push(moment.time);
+        self.times.push(moment.now.time());
         for &(place, number) in &self.kept {
             let kept = &mut over_time[number];
-            kept.times.push(moment.time);
+            kept.times.push(moment.now.time());
             kept.values.extend(table.rows().map(|row| row[place]));
         }
         let Some((folder, written)) = &self.folder else { return Ok(()) };
         let fail = |source: crate::output::OutputError| ObserveError {
             what: "writing a profile",
-            time: moment.time,
+            time: moment.now.time(),
             source: source.into(),
         };
         let path = folder.profile(&self.line.name, self.files.len() as u64).map_err(fail)?;
@@ -134,7 +128,7 @@ impl Observer for ProfileRecorder {
             Schedule::At(_) => self.line.schedule.next_after(last.unwrap_or(-1.0)).is_some(),
             _ => true,
         };
-        if last == Some(moment.time) || (moment.last && !asked_for) {
+        if last == Some(moment.now.time()) || (moment.last && !asked_for) {
             return Ok(());
         }
         self.record(moment)

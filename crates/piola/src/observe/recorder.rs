@@ -142,22 +142,23 @@ impl Recorder {
         let complete = "a row has a number for each column";
 
         row.clear();
-        row.push(moment.time);
+        row.push(moment.now.time());
         for probe in &self.probes {
-            probe.record(moment.scheme, moment.time, moment.state, &mut self.scratch, row);
+            probe.record(moment.now, &mut self.scratch, row);
         }
         tables.probes.push_row(row).expect(complete);
 
-        let ledger = Ledger::of(moment.scheme, moment.state);
-        let energies = moment.scheme.description().energies.len();
+        let (scheme, state) = (moment.now.scheme(), moment.now.state());
+        let ledger = Ledger::of(scheme, state);
+        let energies = scheme.description().energies.len();
         row.clear();
         row.resize(1 + energies, 0.0);
-        row[0] = moment.time;
-        moment.scheme.energies(moment.state, &mut row[1..]);
+        row[0] = moment.now.time();
+        scheme.energies(state, &mut row[1..]);
         let total: f64 = row[1..].iter().sum();
         let components = self.components;
         let mut momentum = vec![0.0; components];
-        moment.scheme.momentum(moment.state, &mut momentum);
+        scheme.momentum(state, &mut momentum);
         let (energy_start, momentum_start) =
             self.memory.start.get_or_insert_with(|| (total, momentum.clone()));
         row.push(total);
@@ -166,7 +167,7 @@ impl Recorder {
         tables.energy.push_row(row).expect(complete);
 
         row.clear();
-        row.push(moment.time);
+        row.push(moment.now.time());
         row.extend_from_slice(&momentum);
         row.extend_from_slice(ledger.impulses);
         row.extend((0..components).map(|component| {
@@ -178,14 +179,14 @@ impl Recorder {
         row.clear();
         let health = moment.health;
         row.extend([
-            moment.time,
+            moment.now.time(),
             moment.step as f64,
             moment.step_size,
             health.smallest_ratio,
             health.ratio_mismatch,
             health.largest_speed,
         ]);
-        moment.scheme.figures(moment.state, row);
+        scheme.figures(state, row);
         tables.steps.push_row(row).expect(complete);
     }
 
@@ -214,15 +215,15 @@ impl Observer for Recorder {
     }
 
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
-        if self.memory.last_time != Some(moment.time) {
+        if self.memory.last_time != Some(moment.now.time()) {
             self.record(moment);
-            self.memory.last_time = Some(moment.time);
+            self.memory.last_time = Some(moment.now.time());
         }
-        if moment.last || self.memory.next_save.is_some_and(|due| moment.time >= due) {
-            self.memory.next_save = self.save.next_after(moment.time);
+        if moment.last || self.memory.next_save.is_some_and(|due| moment.now.time() >= due) {
+            self.memory.next_save = self.save.next_after(moment.now.time());
             self.write().map_err(|source| ObserveError {
                 what: "writing the tables",
-                time: moment.time,
+                time: moment.now.time(),
                 source: source.into(),
             })?;
         }

@@ -1,7 +1,7 @@
 //! What a formulation is called and what it shows, known before one is built.
 
 use super::{dual_support, elastodynamics, interpolation, transport_velocity, upwind};
-use crate::fields::FieldDescription;
+use crate::fields::{FieldDescription, Life};
 
 /// The figure of formulations that solve for a state: how many iterations the last step took.
 pub const NEWTON_ITERATIONS: &str = "newton_iterations";
@@ -11,8 +11,7 @@ pub const NEWTON_ITERATIONS: &str = "newton_iterations";
 pub struct SchemeDescription {
     /// Name in a case file.
     pub name: &'static str,
-    /// The fields that [`Scheme::sample`](super::Scheme::sample) and
-    /// [`snapshot`](super::snapshot()) can give.
+    /// The columns of its state and all that an [`Observation`](super::Observation) can show.
     pub fields: &'static [FieldDescription],
     /// The energies of [`Scheme::energies`](super::Scheme::energies).
     pub energies: &'static [&'static str],
@@ -34,6 +33,16 @@ impl SchemeDescription {
         &elastodynamics::DESCRIPTION,
         &interpolation::DESCRIPTION,
     ];
+
+    /// The fields that are shown: all but those that only the next step needs.
+    pub fn shown(&self) -> impl Iterator<Item = &'static FieldDescription> + use<> {
+        self.fields.iter().filter(|field| field.life != Life::Kept)
+    }
+
+    /// The field of a name.
+    pub fn field(&self, name: &str) -> Option<&'static FieldDescription> {
+        self.fields.iter().find(|field| field.name == name)
+    }
 
     /// The formulation of a name.
     pub fn of(name: &str) -> Option<&'static Self> {

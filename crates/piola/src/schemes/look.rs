@@ -2,9 +2,8 @@
 
 use piola_formulas::tensor;
 
-use super::solid::Row;
 use super::{Health, Particle};
-use crate::{Tensor, parallel};
+use crate::{Tensor, Vector, parallel};
 
 /// The share of the stable step at which a mode takes three steps a period, `2 sin(pi/3)/2`: there the
 /// quadratic part of a law drives the mode by itself, theory (67).
@@ -49,11 +48,11 @@ impl Figures {
         least_convex: 0,
     };
 
-    fn of<const D: usize>(a: usize, row: &[f64], deformed: &Deformed<D>) -> Self {
+    fn of<const D: usize>(a: usize, velocity: &Vector<D>, deformed: &Deformed<D>) -> Self {
         let Deformed { gradient, moduli: [least, largest], at_rest, density } = deformed;
         Self {
             health: Health {
-                largest_speed: Row::<D>::velocity(row).norm(),
+                largest_speed: velocity.norm(),
                 largest_speed_particle: a,
                 largest_wave_speed: (largest.max(0.0) / density).sqrt(),
                 smallest_ratio: tensor::determinant(&(gradient + Tensor::identity())),
@@ -85,21 +84,19 @@ impl Figures {
     }
 }
 
-/// The figures of all particles, whose rows of the state are `rows`.
+/// The figures of all particles, whose velocities are the first of `columns`, which are all of the state.
 pub(crate) fn look<const D: usize>(
-    rows: &[f64],
+    columns: [&[Vector<D>]; 3],
     deformed: impl Fn(usize) -> Deformed<D> + Sync,
 ) -> Figures {
-    let length = Row::<D>::LENGTH;
     let figures = |a: usize| {
-        let row = &rows[a * length..][..length];
-        if row.iter().any(|value| !value.is_finite()) {
+        if columns.iter().any(|column| column[a].iter().any(|value| !value.is_finite())) {
             let health = Health { first_not_finite: Some(a), ..Health::NEUTRAL };
             return Figures { health, ..Figures::NEUTRAL };
         }
-        Figures::of(a, row, &deformed(a))
+        Figures::of(a, &columns[0][a], &deformed(a))
     };
-    parallel::join(rows.len() / length, Figures::NEUTRAL, figures, Figures::worse)
+    parallel::join(columns[0].len(), Figures::NEUTRAL, figures, Figures::worse)
 }
 
 /// What the user should know of a particle of which the material has lost its convexity.

@@ -44,19 +44,12 @@ pub fn momentum_components(dimension: usize) -> &'static [MomentumComponent] {
     }
 }
 
-/// `sqrt(sum_a m_a |v_a - w_a|^2)` in J^(1/2) of the velocities v and w with which the rows of two
-/// states begin, of particles with the masses m in kg.
+/// `sqrt(sum_a m_a |v_a - w_a|^2)` in J^(1/2) of velocities v and w of particles with the masses m in kg.
 pub(crate) fn kinetic_distance<const D: usize>(
-    [one, other]: [&[f64]; 2],
-    row_length: usize,
-    count: usize,
+    [one, other]: [&[Vector<D>]; 2],
     mass: impl Fn(usize) -> f64 + Sync,
 ) -> f64 {
-    let velocity =
-        |state: &[f64], a: usize| Vector::<D>::from_column_slice(&state[a * row_length..][..D]);
-    let sum =
-        parallel::sum(count, |a| mass(a) * (velocity(one, a) - velocity(other, a)).norm_squared());
-    sum.sqrt()
+    parallel::sum(one.len(), |a| mass(a) * (one[a] - other[a]).norm_squared()).sqrt()
 }
 
 /// The momentum of `vector` (mass times velocity, or a force) at `point`, as

@@ -1,17 +1,19 @@
 //! What a formulation offers to integrators, clock, observers and output.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::{
     NewmarkScheme, PartitionedScheme, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
 };
-use crate::fields::{FieldDescription, FieldValues, Snapshot};
+use crate::fields::{self, FieldDescription};
 use crate::solve::Costs;
 
 /// A formulation bound to its particles, materials and kernel.
 ///
-/// The state is one flat slice: `particle_count` rows of `row_length` numbers, followed by the
-/// running integrals of the [`Ledger`]: the work of each of its mechanisms, then the
+/// The state is one flat slice: a column of `particle_count` rows for each of its
+/// [`fields`](SchemeDescription::fields) that is evolved or kept, followed by the running integrals of the [`Ledger`]: the work of each of its mechanisms, then the
 /// impulse of each way in, as its [`SchemeDescription`] has them, with as many numbers as momentum has components. The
 /// rate of an integral is a power or a force, so an integrator carries the bookkeeping to its own
 /// order without knowing of it, theory (18), and a copy of the state is all there is to save.
@@ -25,8 +27,16 @@ pub trait Scheme: Send {
     /// Number of particles.
     fn particle_count(&self) -> usize;
 
-    /// Numbers of state a particle.
-    fn row_length(&self) -> usize;
+    /// Numbers of state a particle: those of all columns.
+    fn width(&self) -> usize {
+        fields::width(self.description().fields, self.dimension())
+    }
+
+    /// Where the column of a field stands in a state; empty if it is not in it.
+    fn column(&self, field: &FieldDescription) -> Range<usize> {
+        let fields = self.description().fields;
+        fields::column(fields, self.dimension(), self.particle_count(), field)
+    }
 
     /// The state at the start, with zero integrals.
     fn initial_state(&self) -> Vec<f64>;
@@ -63,13 +73,16 @@ pub trait Scheme: Send {
     /// [`momentum_components`](super::momentum_components).
     fn momentum(&self, state: &[f64], momentum: &mut [f64]);
 
-    /// Appends the components of one of its [`fields`](SchemeDescription::fields) at `state` for each of `particles`
-    /// (indices in memory) to `values`. A field of another name appends nothing.
-    fn sample(
-        &mut self,
-        time: f64,
+    /// Runs one of the stages, counted from 1, that make derived fields of `state` at `time`, after
+    /// all before it. See [`Observation`](super::Observation).
+    fn observe(&mut self, _stage: usize, _time: f64, _state: &[f64]) {}
+
+    /// Appends the components of a field that is no column of `state` for each of `particles` (indices
+    /// in memory) to `values`. Its stages have been run.
+    fn derive(
+        &self,
         state: &[f64],
-        field: &str,
+        field: &FieldDescription,
         particles: &[u32],
         values: &mut Vec<f64>,
     );
@@ -152,7 +165,7 @@ pub struct Ledger<'a> {
 impl<'a> Ledger<'a> {
     /// The integrals of `state`.
     pub fn of(scheme: &dyn Scheme, state: &'a [f64]) -> Self {
-        let tail = &state[scheme.particle_count() * scheme.row_length()..];
+        let tail = &state[scheme.particle_count() * scheme.width()..];
         let description = scheme.description();
         let (work, rest) = tail.split_at(description.mechanisms.len());
         let components = super::momentum_components(scheme.dimension()).len();
@@ -258,37 +271,4 @@ pub struct StepLimit {
     /// The largest ratio of a step to the one before while this bound grows: infinite where it follows
     /// the flow and not the phase of a vibration.
     pub growth: f64,
-}
-
-/// Positions and the named fields of all particles at `state`; names that the scheme does not
-/// have are left out.
-pub fn snapshot(
-    scheme: &mut dyn Scheme,
-    time: f64,
-    step: u64,
-    state: &[f64],
-    names: &[&str],
-) -> Snapshot {
-    let particles: Vec<u32> = (0..scheme.particle_count() as u32).collect();
-    let fields = scheme.description().fields.iter().filter(|field| names.contains(&field.name));
-    let described: Vec<FieldDescription> = fields.copied().collect();
-    let mut all = |name: &str| {
-        let mut values = Vec::new();
-        scheme.sample(time, state, name, &particles, &mut values);
-        values
-    };
-    let positions = all("position");
-    let fields = described
-        .into_iter()
-        .map(|description| FieldValues { description, values: all(description.name) })
-        .collect();
-    Snapshot {
-        dimension: scheme.dimension(),
-        time,
-        step,
-        positions,
-        ids: scheme.ids().to_vec(),
-        bodies: scheme.bodies().to_vec(),
-        fields,
-    }
 }

@@ -1,5 +1,5 @@
-//! What formulations of elastic solids have in common: rows of the state, central differences, fields
-//! and wave speeds of a deformation.
+//! What formulations of elastic solids have in common: central differences, fields and wave speeds of a
+//! deformation.
 
 use nalgebra::Matrix3;
 use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse, Reduced};
@@ -18,49 +18,22 @@ pub struct Material<const D: usize> {
     pub law: Reduced<D>,
 }
 
-/// Where the unknowns stand in a row of the state: v, u, and the acceleration, which the next step
-/// needs.
-pub(crate) struct Row<const D: usize>;
-
-impl<const D: usize> Row<D> {
-    pub const DISPLACEMENT: usize = D;
-    pub const ACCELERATION: usize = 2 * D;
-    pub const LENGTH: usize = 3 * D;
-
-    /// Velocity of a row.
-    #[inline]
-    pub fn velocity(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[..D])
-    }
-
-    /// Displacement of a row.
-    #[inline]
-    pub fn displacement(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::DISPLACEMENT..Self::ACCELERATION])
-    }
-
-    /// Acceleration that a row keeps, zero where a velocity is prescribed.
-    #[inline]
-    pub fn acceleration(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::ACCELERATION..])
-    }
-}
-
-/// Half a step of velocities with the accelerations in `rows`. The tail begins with a ledger of
+/// Half a step of velocities with the accelerations of `kick`. The tail begins with a ledger of
 /// `ledger` integrals, of which the first `mechanisms` are works; behind it stand its rates, and how
 /// fast these powers grow.
 ///
 /// Work is force times the mean of the velocities before and after, so that it is the change of the
 /// kinetic energy to round-off.
 pub(crate) fn kick<const D: usize>(
-    rows: &mut [f64],
+    velocity: &mut [Vector<D>],
+    kick: &[Vector<D>],
     tail: &mut [f64],
     (ledger, mechanisms): (usize, usize),
     duration: f64,
 ) {
-    parallel::for_each_row(rows, Row::<D>::LENGTH, |_, row| {
-        for axis in 0..D {
-            row[axis] += duration * row[Row::<D>::ACCELERATION + axis];
+    parallel::for_each_chunk(velocity, |first, velocity| {
+        for (velocity, kick) in velocity.iter_mut().zip(&kick[first..]) {
+            *velocity += kick * duration;
         }
     });
     let (sums, rest) = tail.split_at_mut(ledger);
@@ -78,24 +51,24 @@ pub(crate) fn kick<const D: usize>(
     grow(rates);
 }
 
-/// A step of displacements with the velocities in `rows`, which are those half way.
+/// A step of displacements with velocities half way.
 pub(crate) fn drift<const D: usize>(
-    rows: &mut [f64],
+    displacement: &mut [Vector<D>],
+    velocity: &[Vector<D>],
     prescribed: &PrescribedComponents,
     time: f64,
     step: f64,
 ) {
-    let length = Row::<D>::LENGTH;
-    parallel::for_each_row(rows, length, |_, row| {
-        for axis in 0..D {
-            row[Row::<D>::DISPLACEMENT + axis] += step * row[axis];
+    parallel::for_each_chunk(displacement, |first, displacement| {
+        for (displacement, velocity) in displacement.iter_mut().zip(&velocity[first..]) {
+            *displacement += velocity * step;
         }
     });
     // Kicks leave a prescribed velocity alone; it moves its particle by its value half way.
     for entry in prescribed.iter() {
-        let row = &mut rows[entry.particle * length..][..length];
+        let (a, component) = (entry.particle, entry.component);
         let middle = entry.value.value(entry.place, time + 0.5 * step);
-        row[Row::<D>::DISPLACEMENT + entry.component] += step * (middle - row[entry.component]);
+        displacement[a][component] += step * (middle - velocity[a][component]);
     }
 }
 
@@ -154,11 +127,21 @@ pub(crate) fn append_rows<const D: usize>(tensor: &Tensor<D>, values: &mut Vec<f
     values.extend((0..D * D).map(|k| tensor[(k / D, k % D)]));
 }
 
-/// Appends a field that a law and a displacement gradient make, if it is one of these.
-pub(crate) fn append_field<const D: usize>(
+/// What a law makes of a displacement gradient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Measure {
+    DeformationGradient,
+    Determinant,
+    Stress,
+    CauchyStress,
+    VonMises,
+}
+
+/// Appends what a law makes of a displacement gradient.
+pub(crate) fn append_measure<const D: usize>(
     law: &Reduced<D>,
     gradient: &Tensor<D>,
-    field: &str,
+    measure: Measure,
     values: &mut Vec<f64>,
 ) {
     let deformation = gradient + Tensor::identity();
@@ -167,19 +150,18 @@ pub(crate) fn append_field<const D: usize>(
         let (stress, f): (Matrix3<f64>, _) = (law.law().stress(&all), all + Matrix3::identity());
         stress * f.transpose() / tensor::determinant(&f)
     };
-    match field {
-        "deformation_gradient" => append_rows(&deformation, values),
-        "stress" => append_rows(&law.stress(gradient), values),
-        "cauchy_stress" => {
+    match measure {
+        Measure::DeformationGradient => append_rows(&deformation, values),
+        Measure::Stress => append_rows(&law.stress(gradient), values),
+        Measure::CauchyStress => {
             let cauchy = cauchy();
             append_rows(&Tensor::<D>::from_fn(|i, j| cauchy[(i, j)]), values);
         }
-        "determinant" => values.push(tensor::determinant(&deformation)),
-        "von_mises" => {
+        Measure::Determinant => values.push(tensor::determinant(&deformation)),
+        Measure::VonMises => {
             let cauchy = cauchy();
             let deviator = cauchy - Matrix3::identity() * (cauchy.trace() / 3.0);
             values.push((1.5 * deviator.norm_squared()).sqrt());
         }
-        _ => {}
     }
 }

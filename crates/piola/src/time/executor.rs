@@ -11,7 +11,7 @@ use super::judgement::supersonic;
 use super::observer::{Moment, ObserveError, Observer};
 use super::step::{ChosenStep, StepControl};
 use super::summary::{Outcome, Progress, Retry, Summary};
-use crate::schemes::{Scheme, StepLimit};
+use crate::schemes::{Observation, Scheme, StepLimit};
 
 /// Owns a run: the clock, the state, the observers, and the reasons to stop.
 pub struct Executor {
@@ -320,19 +320,18 @@ impl Executor {
         let Run { clock, tally, state, due, .. } = run;
         let (scheme, observers) = (self.scheme.as_mut(), &mut self.observers);
         tally.watches.observe.time(|| {
+            let mut now = Observation::new(scheme, clock.time, state);
             for (observer, due) in observers.iter_mut().zip(due) {
                 let is_due = due.is_some_and(|due| due <= clock.time * (1.0 + 1e-12));
                 if !is_due && !last {
                     continue;
                 }
                 observer.observe(&mut Moment {
-                    time: clock.time,
                     step: clock.step,
                     step_size: clock.chosen.step,
                     limiter: clock.chosen.limiter,
                     health: &clock.health,
-                    scheme: &mut *scheme,
-                    state,
+                    now: &mut now,
                     last,
                 })?;
                 *due = observer.schedule().next_after(clock.time);

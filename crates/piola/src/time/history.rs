@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::{Clock, Tally};
 use super::integrator::Integrator;
-use crate::fields::component_name;
-use crate::schemes::Scheme;
+use crate::fields::{FieldDescription, component_name};
+use crate::schemes::{Observation, Scheme};
 
 /// A run at one instant in memory.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -140,7 +140,7 @@ impl Trace {
         let head = head.into_iter().chain([("is_bad", "1")]);
         let mut columns: Vec<_> = head.map(|(name, unit)| (name.to_owned(), unit)).collect();
         let dimension = scheme.dimension();
-        for field in scheme.description().fields {
+        for field in scheme.description().shown() {
             columns.extend((0..field.kind.components(dimension)).map(|number| {
                 let component = component_name(field.kind, number, dimension);
                 let dot = if component.is_empty() { "" } else { "." };
@@ -152,16 +152,14 @@ impl Trace {
 
     fn record(&mut self, scheme: &mut dyn Scheme, step: u64, time: f64, size: f64, state: &[f64]) {
         let dimension = scheme.dimension();
-        let fields: Vec<(usize, Vec<f64>)> = scheme
-            .description()
-            .fields
-            .iter()
-            .map(|field| {
-                let mut values = Vec::new();
-                scheme.sample(time, state, field.name, &self.particles, &mut values);
-                (field.kind.components(dimension), values)
-            })
-            .collect();
+        let shown = scheme.description().shown();
+        let mut observation = Observation::new(scheme, time, state);
+        let mut read = |field: &FieldDescription| {
+            let mut values = Vec::new();
+            observation.read(field, &self.particles, &mut values);
+            (field.kind.components(dimension), values)
+        };
+        let fields: Vec<(usize, Vec<f64>)> = shown.map(&mut read).collect();
         for (row, &particle) in self.particles.iter().enumerate() {
             let id = scheme.particle(particle as usize).id;
             let is_bad = f64::from(u8::from(particle == self.bad));

@@ -27,7 +27,7 @@ impl KickDriftKick {
         old: &[f64],
         new: &mut [f64],
     ) {
-        let (half, rows) = (0.5 * step, scheme.particle_count() * scheme.row_length());
+        let (half, rows) = (0.5 * step, scheme.particle_count() * scheme.width());
         // A run that is resumed finds the same accelerations anew: they depend on places only.
         if self.time != time || self.last != old {
             self.rate.resize(old.len(), 0.0);
@@ -102,5 +102,5 @@ impl Integrator for KickDriftKick {
 
 /// Whether there is nothing to move.
 fn is_still(scheme: &dyn Scheme) -> bool {
-    scheme.row_length() == 0
+    scheme.width() == 0
 }

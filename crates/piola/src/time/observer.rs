@@ -4,12 +4,10 @@ use thiserror::Error;
 
 use super::checkpoint::Misfit;
 use super::schedule::Schedule;
-use crate::schemes::{Health, Scheme};
+use crate::schemes::{Health, Observation};
 
 /// One instant of a run.
-pub struct Moment<'a> {
-    /// Simulated time in s.
-    pub time: f64,
+pub struct Moment<'a, 'b> {
     /// Steps taken.
     pub step: u64,
     /// Size of the last step in s, 0 at the start.
@@ -18,10 +16,8 @@ pub struct Moment<'a> {
     pub limiter: &'static str,
     /// Health of the state.
     pub health: &'a Health,
-    /// The formulation.
-    pub scheme: &'a mut dyn Scheme,
-    /// The state.
-    pub state: &'a [f64],
+    /// The formulation at the state.
+    pub now: &'a mut Observation<'b>,
     /// Whether it is the last one: the end, an interruption, or the last good state of a run
     /// that failed.
     pub last: bool,

@@ -4,10 +4,10 @@
 use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
-use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{
     Forces, Slip, SolidsInput, TransportVelocity, TransportVelocityInput, Wall,
 };
+use piola::schemes::{Observation, Scheme};
 
 use super::solids::{SETTINGS, SOLID};
 use super::support::{solids_in_box, unit_box};
@@ -60,8 +60,8 @@ fn between_platens(
         state[start + 9 * number..][..6].copy_from_slice(&deviator);
     }
     let terms = scheme.terms(0.0, &state);
-    let (numbers, mut masses): (Vec<u32>, _) = ((0..count as u32).collect(), Vec::new());
-    scheme.sample(0.0, &state, "mass", &numbers, &mut masses);
+    let numbers: Vec<u32> = (0..count as u32).collect();
+    let masses = Observation::new(&mut scheme, 0.0, &state).values("mass", &numbers);
     (kept, terms.into_iter().map(|(_, forces)| forces).zip(masses).collect())
 }
 

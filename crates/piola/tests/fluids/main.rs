@@ -5,6 +5,8 @@ mod bodies;
 mod clamps;
 mod edac;
 mod escapes;
+#[path = "../support/fields.rs"]
+mod fields;
 mod held;
 mod operators;
 mod runs;

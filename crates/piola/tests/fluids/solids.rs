@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use piola::geometry::Particles;
-use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Forces, Heat, PressureRule, Rates, Settings,
     Shifting, Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
+use piola::schemes::{Observation, Scheme};
 use piola::{Tensor, Vector};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 
@@ -271,9 +271,8 @@ pub fn two_blocks_with<const D: usize>(
 fn momentum_and_power<const D: usize>(contact: Contact, corrected: bool) {
     let (mut scheme, state, count) = two_blocks::<D>(contact, corrected, 0.7);
     let terms = scheme.terms(0.0, &state);
-    let mut masses = Vec::new();
     let numbers: Vec<u32> = (0..count as u32).collect();
-    scheme.sample(0.0, &state, "mass", &numbers, &mut masses);
+    let masses = Observation::new(&mut scheme, 0.0, &state).values("mass", &numbers);
     let (mut total, mut size) = (Vector::<D>::zeros(), 0.0);
     for ((_, forces), mass) in terms.iter().zip(&masses) {
         let force = (forces.pressure + forces.artificial_viscosity) * *mass;
@@ -302,11 +301,8 @@ fn conjugate<const D: usize>() {
     let terms = scheme.terms(0.0, &state);
     let rates = scheme.solid_rates();
     let numbers: Vec<u32> = (0..count as u32).collect();
-    let mut sampled = |name: &str| {
-        let mut values = Vec::new();
-        scheme.sample(0.0, &state, name, &numbers, &mut values);
-        values
-    };
+    let mut sampled =
+        |name: &str| Observation::new(&mut scheme, 0.0, &state).values(name, &numbers);
     let (masses, stresses) = (sampled("mass"), sampled("cauchy_stress"));
     let (mut power, mut taken, mut size) = (0.0, 0.0, 0.0);
     for number in 0..count {
@@ -360,8 +356,7 @@ fn bodies_push_and_never_pull() {
             }
             let terms = scheme.terms(0.0, &state);
             let numbers: Vec<u32> = (0..count as u32).collect();
-            let mut masses = Vec::new();
-            scheme.sample(0.0, &state, "mass", &numbers, &mut masses);
+            let masses = Observation::new(&mut scheme, 0.0, &state).values("mass", &numbers);
             let left = (0..count).filter(|&a| scheme.bodies()[a] == 0);
             left.map(|a| terms[a].1.pressure[0] * masses[a]).sum::<f64>()
         };

@@ -3,20 +3,29 @@
 use std::f64::consts::PI;
 
 use piola::Vector;
+use piola::boundaries::BodyForce;
 use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
     Fluid, Settings, TransportVelocity, TransportVelocityInput,
 };
-use piola::schemes::{Initial, Scheme};
+use piola::schemes::{Initial, Observation, Scheme};
 use piola_formulas::kernels::Kernel;
 
+use super::fields::{Counted, fields_are_complete};
 use super::support::SETTINGS;
 
 const SPACING: f64 = 0.1;
 
 /// A fluid at rest in open space.
 fn at_rest<const D: usize>(positions: Vec<Vector<D>>) -> TransportVelocity<D> {
+    under(positions, Vec::new())
+}
+
+fn under<const D: usize>(
+    positions: Vec<Vector<D>>,
+    body_forces: Vec<BodyForce<D>>,
+) -> TransportVelocity<D> {
     let count = positions.len();
     let particles = Particles {
         position: positions,
@@ -40,7 +49,7 @@ fn at_rest<const D: usize>(positions: Vec<Vector<D>>) -> TransportVelocity<D> {
         faces: vec![Faces::default(); count],
         motion: Vec::new(),
         sliding: Vec::new(),
-        body_forces: Vec::new(),
+        body_forces,
     })
     .expect("the fluid can be built")
 }
@@ -49,9 +58,15 @@ fn sample<const D: usize>(positions: Vec<Vector<D>>, field: &str) -> Vec<f64> {
     let all: Vec<u32> = (0..positions.len() as u32).collect();
     let mut scheme = at_rest(positions);
     let state = scheme.initial_state();
-    let mut values = Vec::new();
-    scheme.sample(0.0, &state, field, &all, &mut values);
-    values
+    Observation::new(&mut scheme, 0.0, &state).values(field, &all)
+}
+
+#[test]
+fn every_described_field_has_values() {
+    let counted = Counted::default();
+    let mut scheme = under(block::<2>(9), vec![counted.force()]);
+    let state = scheme.initial_state();
+    fields_are_complete(&mut scheme, &state, &counted);
 }
 
 fn is_found<const D: usize>(positions: &[Vector<D>]) -> Vec<bool> {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use piola::Vector;
 use piola::schemes::transport_velocity::{Corrections, Fluid, Settings, TransportVelocity};
-use piola::schemes::{Health, Scheme};
+use piola::schemes::{Health, Observation, Scheme};
 use piola::time::IntegratorKind;
 
 use super::support::{SETTINGS, fluid_in_box, unit_box};
@@ -45,9 +45,7 @@ fn run(scheme: &mut dyn Scheme, end: f64) -> Vec<f64> {
 
 fn all(scheme: &mut dyn Scheme, state: &[f64], field: &str) -> Vec<f64> {
     let particles: Vec<u32> = (0..scheme.particle_count() as u32).collect();
-    let mut values = Vec::new();
-    scheme.sample(0.0, state, field, &particles, &mut values);
-    values
+    Observation::new(scheme, 0.0, state).values(field, &particles)
 }
 
 /// L1 errors of speed, CTVF (66) with absolute values, and of pressure about its mean.

@@ -9,8 +9,8 @@ use num_dual::{Dual, Dual64, DualNum};
 use piola::Vector;
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
-use piola::schemes::Scheme;
 use piola::schemes::upwind::{BodyForce, Settings, Upwind};
+use piola::schemes::{Observation, Scheme};
 use piola_formulas::tensor::{cofactor, determinant};
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
@@ -118,10 +118,9 @@ fn walled(n: usize, settings: Settings) -> Upwind<2> {
 fn errors(mut scheme: Upwind<2>, steps: usize) -> [f64; 3] {
     const END: f64 = 0.4;
     let state = march(&mut scheme, END / steps as f64, steps);
-    let (count, length) = (scheme.particle_count(), scheme.row_length());
-    let mut volumes = Vec::new();
+    let (count, length) = (scheme.particle_count(), scheme.width());
     let all: Vec<u32> = (0..count as u32).collect();
-    scheme.sample(END, &state, "volume", &all, &mut volumes);
+    let volumes = Observation::new(&mut scheme, END, &state).values("volume", &all);
     let mut sums = [0.0; 3];
     for (a, volume) in volumes.iter().enumerate() {
         let reference = scheme.particle(a).reference;

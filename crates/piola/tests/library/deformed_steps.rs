@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::support::lattice;
+use crate::support::{lattice, place};
 use piola::boundaries::{PrescribedVelocity, SpaceTime};
 use piola::neighbors::Domain;
 use piola::operators::{Continuation, Mirror};
@@ -11,7 +11,7 @@ use piola::schemes::dual_support::Material;
 use piola::schemes::elastodynamics::{
     Configuration, Elastodynamics, ElastodynamicsInput, Form, Mixture, Settings,
 };
-use piola::schemes::{Ledger, Scheme, StepLimit};
+use piola::schemes::{Ledger, Observation, Scheme, StepLimit};
 use piola::time::IntegratorKind;
 use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
@@ -152,9 +152,9 @@ fn pull<const D: usize>(intervals: [usize; D], nu: f64) {
     let (state, names) = run(&mut scheme, stop);
     assert!(names.contains(&"dissipation"), "{names:?}");
     let all: Vec<u32> = (0..scheme.particle_count() as u32).collect();
-    let mut values = Vec::new();
-    scheme.sample(stop, &state, "deformation_gradient", &all, &mut values);
-    for gradient in values.chunks_exact(D * D) {
+    let gradients =
+        Observation::new(&mut scheme, stop, &state).values("deformation_gradient", &all);
+    for gradient in gradients.chunks_exact(D * D) {
         let gradient = Tensor::<D>::from_row_slice(gradient);
         for axis in 0..D {
             let along = if D == 1 { 1.0 + 5.0 * 1.017_973_483 } else { 6.0 };
@@ -192,8 +192,8 @@ fn undamped_blocks_are_pulled_near_the_limit() {
         let stop = 30.0 * 20.0 / (lambda + 2.0 * mu).sqrt();
         let mut scheme = block(intervals, nu, settings, (stretch - 1.0) * 20.0 / stop);
         let mut start = scheme.initial_state();
-        let rows = start.chunks_exact_mut(6).take(scheme.particle_count());
-        rows.for_each(|row| row[..2].fill(0.0));
+        let velocity = place(&scheme, "velocity", 0, 0);
+        start[velocity..][..2 * scheme.particle_count()].fill(0.0);
         scheme.constrain(0.0, &mut start);
         let (state, names) = run_at(&mut scheme, start, stop, share);
         assert_eq!(names, ["eigenvalue"]);
@@ -229,8 +229,8 @@ fn the_bound_is_that_of_the_deformed_body() {
         let at = |settings: Settings, pulled: f64| {
             let mut scheme = block([60], nu, settings, 0.0);
             let mut state = scheme.initial_state();
-            let rows = state.chunks_exact_mut(3).take(61).enumerate();
-            rows.for_each(|(a, row)| row[1] = (pulled - 1.0) * a as f64);
+            let displacement = place(&scheme, "displacement", 0, 0);
+            (0..61).for_each(|a| state[displacement + a] = (pulled - 1.0) * a as f64);
             limit(&mut scheme, &state)
         };
         let (rest, deformed) = (at(plain, 1.0), at(plain, pulled));

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::fields::{Counted, fields_are_complete};
 use crate::support::lattice;
 use piola::boundaries::{PrescribedVelocity, SpaceTime, Traction};
 use piola::neighbors::Domain;
@@ -11,7 +12,7 @@ use piola::schemes::dual_support::Material;
 use piola::schemes::elastodynamics::{
     Configuration, Elastodynamics, ElastodynamicsInput, Form, Mixture, Settings,
 };
-use piola::schemes::{Ledger, Scheme};
+use piola::schemes::{Ledger, Observation, Scheme};
 use piola::time::IntegratorKind;
 use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
@@ -210,11 +211,9 @@ fn ends_of_a_row_are_met_exactly() {
         let steps = 400;
         let end = march(&mut scheme, step, steps);
         let time = step * steps as f64;
-        let mut stress = Vec::new();
-        scheme.sample(time, &end, "stress", &[0], &mut stress);
+        let stress = Observation::new(&mut scheme, time, &end).values("stress", &[0]);
         assert_eq!(stress, [-Load.value([0.0; 3], time)]);
-        let mut held = Vec::new();
-        scheme.sample(time, &end, "displacement", &[120], &mut held);
+        let held = Observation::new(&mut scheme, time, &end).values("displacement", &[120]);
         assert_eq!(held, [0.0]);
         let work: f64 = Ledger::of(&scheme, &end).work.iter().sum();
         let energy = total(&scheme, &end);
@@ -246,9 +245,8 @@ fn rollers_hold_a_homogeneous_stretch() {
     let mut scheme = Elastodynamics::new(made).unwrap();
     let state = scheme.initial_state();
     let all: Vec<u32> = (0..positions.len() as u32).collect();
-    let (mut gradient, mut acceleration) = (Vec::new(), Vec::new());
-    scheme.sample(0.0, &state, "deformation_gradient", &all, &mut gradient);
-    scheme.sample(0.0, &state, "acceleration", &all, &mut acceleration);
+    let gradient = Observation::new(&mut scheme, 0.0, &state).values("deformation_gradient", &all);
+    let acceleration = Observation::new(&mut scheme, 0.0, &state).values("acceleration", &all);
     for gradient in gradient.chunks_exact(4) {
         let gradient = Tensor::<2>::from_row_slice(gradient);
         assert!((gradient - Tensor::<2>::new(1.5, 0.0, 0.0, 0.8)).amax() < 1e-12);
@@ -309,10 +307,9 @@ fn a_face_takes_its_traction_as_a_stress() {
         made.displacement = positions.iter().map(displaced).collect();
         let mut scheme = Elastodynamics::new(made).unwrap();
         let state = scheme.initial_state();
-        let (mut stress, mut acceleration) = (Vec::new(), Vec::new());
         let all: Vec<u32> = all().collect();
-        scheme.sample(0.0, &state, "stress", &all, &mut stress);
-        scheme.sample(0.0, &state, "acceleration", &all, &mut acceleration);
+        let stress = Observation::new(&mut scheme, 0.0, &state).values("stress", &all);
+        let acceleration = Observation::new(&mut scheme, 0.0, &state).values("acceleration", &all);
         for stress in stress.chunks_exact(D * D) {
             assert!((stress[0] / traction - 1.0).abs() < 1e-9);
         }
@@ -352,6 +349,22 @@ fn dissipation_is_in_the_ledger() {
     assert!(errors[2] < 0.6 * errors[1] && errors[1] < 0.6 * errors[0], "{errors:?}");
     let (change, _) = loss(&mut scheme, 0.98 * step, 1000);
     assert!(change < 0.0, "stable: {change}");
+}
+
+#[test]
+fn every_described_field_has_values() {
+    let viscous = Settings { viscosity: 1e5, damping: 1.0, ..PLAIN };
+    for settings in [PLAIN, viscous, strong()] {
+        let cover = (Kernel::ModifiedMollifier, 2.5);
+        let mut made = input([5, 8], HyperelasticLaw::neo_hookean_logarithmic, cover, settings);
+        let counted = Counted::default();
+        made.body_forces.push(counted.force());
+        made.velocity.iter_mut().enumerate().for_each(|(a, v)| v[0] = a as f64);
+        let mut scheme = Elastodynamics::new(made).unwrap();
+        let step = 0.5 * stable_step(&mut scheme);
+        let state = march(&mut scheme, step, 3);
+        fields_are_complete(&mut scheme, &state, &counted);
+    }
 }
 
 /// On one thread, which is the one that counts.

@@ -4,6 +4,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
+use piola::fields::FieldDescription;
 use piola::schemes::{Health, Missed, NoSolution, Particle, Scheme, SchemeDescription, StepLimit};
 use piola::time::{
     Executor, Failure, Integrator, IntegratorKind, Moment, ObserveError, Observer, Outcome,
@@ -38,7 +39,7 @@ impl Scheme for Pendulum {
         1
     }
 
-    fn row_length(&self) -> usize {
+    fn width(&self) -> usize {
         3
     }
 
@@ -65,7 +66,7 @@ impl Scheme for Pendulum {
 
     fn momentum(&self, _state: &[f64], _momentum: &mut [f64]) {}
 
-    fn sample(&mut self, _: f64, _: &[f64], _: &str, _: &[u32], _: &mut Vec<f64>) {}
+    fn derive(&self, _: &[f64], _: &FieldDescription, _: &[u32], _: &mut Vec<f64>) {}
 
     fn bodies(&self) -> &[u32] {
         &[0]
@@ -120,10 +121,10 @@ impl Observer for Witness {
 
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
         self.notes.lock().expect("no other thread").push(Shown {
-            time: moment.time,
+            time: moment.now.time(),
             step: moment.step,
             limiter: moment.limiter,
-            state: moment.state.to_vec(),
+            state: moment.now.state().to_vec(),
             last: moment.last,
         });
         Ok(())

@@ -180,7 +180,7 @@ fn momentum_changes_by_the_loads_alone() {
     let state = disturbed(&scheme, 0.05);
     let mut rate = vec![0.0; state.len()];
     scheme.rates(0.7, &state, &mut rate);
-    let length = scheme.row_length();
+    let length = scheme.width();
     assert_eq!(rate[held * length], 0.0);
     let forces = |k: usize| -> Vec<f64> {
         (0..volume.len()).map(|a| 1000.0 * volume[a] * rate[a * length + k]).collect()
@@ -204,7 +204,7 @@ fn a_uniform_body_force_moves_a_free_body_as_a_whole() {
     let acceleration = std::array::from_fn(|k| varying(move |_, t| pull(t)[k]));
     choice.body_forces.push(BodyForce { body: None, acceleration });
     let mut scheme = choice.build(|_| Vector::<2>::new(1.0, 2.0));
-    let (step, length) = (2e-3, scheme.row_length());
+    let (step, length) = (2e-3, scheme.width());
     let (mut expected, mut old) = ([1.0, 2.0], pull(0.0));
     let (count, start) = (scheme.particle_count(), scheme.initial_state());
     let begin = energy(&scheme, &start);
@@ -300,7 +300,7 @@ fn linear_prestress_balances_gravity_but_for_the_density() {
     let state = scheme.initial_state();
     let mut rate = vec![0.0; state.len()];
     scheme.rates(0.0, &state, &mut rate);
-    for (a, row) in rate.chunks_exact(scheme.row_length()).take(66).enumerate() {
+    for (a, row) in rate.chunks_exact(scheme.width()).take(66).enumerate() {
         let y = scheme.particle(a).reference[1];
         let ratio = gamma(50.0).volume_ratio_at_pressure(pressure(y)).expect("a ratio");
         let expected = if y < 1e-9 { 0.0 } else { GRAVITY * (ratio - 1.0) };

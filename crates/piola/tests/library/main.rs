@@ -8,6 +8,8 @@ mod deformed_steps;
 mod elastodynamics;
 mod executor;
 mod failures;
+#[path = "../support/fields.rs"]
+mod fields;
 mod fuzz;
 mod histories;
 mod integrators;

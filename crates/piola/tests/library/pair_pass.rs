@@ -129,7 +129,7 @@ fn compare<const D: usize>(
 
     let support = Support::new(&particles, Kernel::CubicSpline, smoothing_ratio, domain)
         .expect("the neighbours can be found");
-    let length = scheme.row_length();
+    let length = scheme.width();
     let rows = state.chunks_exact(length).take(particles.len());
     let parts = Parts {
         operator: GradientOperator::new(&particles, &support, settings.correction)

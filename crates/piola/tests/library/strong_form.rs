@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::support::lattice;
+use crate::support::{lattice, place};
 use piola::boundaries::{PrescribedVelocity, SpaceTime, Traction};
 use piola::neighbors::Domain;
 use piola::schemes::dual_support::Material;
 use piola::schemes::elastodynamics::{
     Configuration, Elastodynamics, ElastodynamicsInput, Form, Hole, Mixture, Settings,
 };
-use piola::schemes::{Ledger, Scheme};
+use piola::schemes::{Ledger, Observation, Scheme};
 use piola::time::IntegratorKind;
 use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
@@ -116,21 +116,22 @@ impl Sheet {
 
 /// `d(acceleration)/d(displacement)` about displacements, in columns.
 fn linearised(scheme: &mut Elastodynamics<2>, about: &[Vector<2>], size: f64) -> DMatrix<f64> {
-    let (length, count) = (scheme.row_length(), about.len());
+    let count = about.len();
+    let [moved, speed] = ["displacement", "velocity"].map(|field| place(scheme, field, 0, 0));
     let mut state = scheme.initial_state();
-    for (row, displacement) in state.chunks_exact_mut(length).zip(about) {
-        row[2..4].copy_from_slice(displacement.as_slice());
+    for (a, displacement) in about.iter().enumerate() {
+        state[moved + 2 * a..][..2].copy_from_slice(displacement.as_slice());
     }
     let mut rate = state.clone();
     let mut matrix = DMatrix::zeros(2 * count, 2 * count);
     for column in 0..2 * count {
-        let place = column / 2 * length + 2 + column % 2;
+        let place = moved + column;
         let before = state[place];
         for sign in [1.0, -1.0] {
             state[place] = before + sign * size;
             scheme.rates(0.0, &state, &mut rate);
             for row in 0..2 * count {
-                matrix[(row, column)] += sign * rate[row / 2 * length + row % 2] / (2.0 * size);
+                matrix[(row, column)] += sign * rate[speed + row] / (2.0 * size);
             }
         }
         state[place] = before;
@@ -353,9 +354,9 @@ fn a_sheet_with_free_sides_is_pulled_to_six_times_its_length() {
         let mut scheme = Elastodynamics::new(made).unwrap();
         let state = march(&mut scheme, end, |_, _, _| {});
         let middle = 15 + 31 * 2;
-        let (mut gradient, mut stress) = (Vec::new(), Vec::new());
-        scheme.sample(end, &state, "deformation_gradient", &[middle], &mut gradient);
-        scheme.sample(end, &state, "stress", &[middle], &mut stress);
+        let gradient =
+            Observation::new(&mut scheme, end, &state).values("deformation_gradient", &[middle]);
+        let stress = Observation::new(&mut scheme, end, &state).values("stress", &[middle]);
         let across = sheet.across(6.0);
         let expected = sheet.stress([6.0, across])[(0, 0)];
         assert!((gradient[3] / across - 1.0).abs() < 0.005, "{gradient:?}, not {across}");

@@ -10,7 +10,7 @@ use piola::output::{Compression, OutputError, pvd, vtp};
 use proptest::prelude::*;
 
 const fn description(name: &'static str, unit: &'static str, kind: FieldKind) -> FieldDescription {
-    FieldDescription { name, unit, kind, meaning: "" }
+    FieldDescription::new(name, unit, kind, "")
 }
 
 const PRESSURE: FieldDescription = description("pressure", "Pa", FieldKind::Scalar);

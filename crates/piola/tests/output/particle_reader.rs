@@ -9,9 +9,9 @@ use piola::output::{Compression, vtp};
 use proptest::prelude::*;
 
 const FIELDS: [FieldDescription; 3] = [
-    FieldDescription { name: "pressure", unit: "Pa", kind: FieldKind::Scalar, meaning: "" },
-    FieldDescription { name: "velocity", unit: "m/s", kind: FieldKind::Vector, meaning: "" },
-    FieldDescription { name: "F<\"&\">", unit: "1", kind: FieldKind::Tensor, meaning: "" },
+    FieldDescription::new("pressure", "Pa", FieldKind::Scalar, ""),
+    FieldDescription::new("velocity", "m/s", FieldKind::Vector, ""),
+    FieldDescription::new("F<\"&\">", "1", FieldKind::Tensor, ""),
 ];
 
 /// Numbers that all differ.

@@ -1,6 +1,8 @@
 //! Elastic solids by the dual-support formulation.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
+#[path = "../support/fields.rs"]
+mod fields;
 #[path = "../support/mod.rs"]
 mod support;
 

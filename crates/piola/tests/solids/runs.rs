@@ -7,12 +7,13 @@ use piola::boundaries::{FollowerPressure, PrescribedVelocity, Traction};
 use piola::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
 };
-use piola::schemes::{InputError, Scheme, momentum_components};
+use piola::schemes::{InputError, Observation, Scheme, momentum_components};
 use piola::time::IntegratorKind;
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
 use piola_formulas::volumetric::StressState;
 
 use crate::clouds::Cloud;
+use crate::fields::{Counted, fields_are_complete};
 use crate::support::{march, noise, varying, work};
 
 pub const DENSITY: f64 = 1000.0;
@@ -100,8 +101,8 @@ fn phase_error(intervals: usize) -> f64 {
     let mut scheme = build(input);
     let steps = 2000;
     let state = march(&mut scheme, period / f64::from(steps), steps as usize);
-    let mut displacement = Vec::new();
-    scheme.sample(period, &state, "displacement", &[intervals as u32], &mut displacement);
+    let displacement =
+        Observation::new(&mut scheme, period, &state).values("displacement", &[intervals as u32]);
     // What is left over the amplitude `v/omega` is the error of the phase in radians.
     let amplitude = 1e-3 * period / std::f64::consts::TAU;
     displacement[0] / amplitude / std::f64::consts::TAU
@@ -114,6 +115,20 @@ fn a_bar_has_the_period_of_its_length() {
     for (error, bound) in errors.into_iter().zip([1e-2, 5e-3, 2.5e-3]) {
         assert!(error.abs() < bound, "{errors:?}");
     }
+}
+
+#[test]
+fn every_described_field_has_values() {
+    let cloud = Cloud::simplices([1.0, 1.0], [8, 8], 0.25);
+    let turn = |x: &Vector<2>| Vector::from([-x[1], x[0]]);
+    let mut input = input(&cloud, HyperelasticLaw::neo_hookean, StressState::PlaneStrain, turn);
+    let counted = Counted::default();
+    input.body_forces.push(counted.force());
+    input.pressures.push(submersion(&cloud, 1e3));
+    let mut scheme = build(input);
+    let step = 0.5 * stable_step(&mut scheme);
+    let state = swing(&mut scheme, step, 3);
+    fields_are_complete(&mut scheme, &state, &counted);
 }
 
 /// A body that flies, turns and rings: with supports of different sizes nothing is lost.
@@ -250,8 +265,7 @@ fn kicks_account_for_all_energy() {
         let works = names.map(|name| work(&scheme, &state, name));
         assert!(works.iter().all(|work| work.abs() > 1e-3), "{works:?}");
         // What is held follows its value to the second order: here to the chord of its curve.
-        let mut moved = Vec::new();
-        scheme.sample(0.05, &state, "displacement", &[0], &mut moved);
+        let moved = Observation::new(&mut scheme, 0.05, &state).values("displacement", &[0]);
         let expected = 0.2 / 300.0 * (1.0 - (300.0_f64 * 0.05).cos());
         assert!((moved[0] / expected - 1.0).abs() < 1e-3, "{} of {expected} m", moved[0]);
         (total(&scheme, &state) - works.iter().sum::<f64>()) / total(&scheme, &state)

@@ -239,6 +239,12 @@ pub fn imbalance(scheme: &dyn Scheme, start: f64, state: &[f64]) -> f64 {
     energy(scheme, state) - start - Ledger::of(scheme, state).work.iter().sum::<f64>()
 }
 
+/// Where a component of a field of a particle stands in a state.
+pub fn place(scheme: &dyn Scheme, field: &str, particle: usize, component: usize) -> usize {
+    let field = scheme.description().field(field).expect("a known field");
+    scheme.column(field).start + particle * field.kind.components(scheme.dimension()) + component
+}
+
 /// A seeded number in (-1, 1) for each index: a hash, so that tests need no generator.
 pub fn noise(index: usize) -> f64 {
     let mut x = (index as u64).wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -250,7 +256,7 @@ pub fn noise(index: usize) -> f64 {
 /// A state with every unknown of every particle disturbed by up to `size`.
 pub fn disturbed<S: Scheme>(scheme: &S, size: f64) -> Vec<f64> {
     let mut state = scheme.initial_state();
-    let rows = scheme.particle_count() * scheme.row_length();
+    let rows = scheme.particle_count() * scheme.width();
     for (index, value) in state[..rows].iter_mut().enumerate() {
         *value += size * noise(index);
     }

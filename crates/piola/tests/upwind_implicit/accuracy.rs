@@ -23,7 +23,7 @@ impl Observer for Last {
     }
 
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
-        *self.0.lock().expect("no other thread") = moment.state.to_vec();
+        *self.0.lock().expect("no other thread") = moment.now.state().to_vec();
         Ok(())
     }
 }

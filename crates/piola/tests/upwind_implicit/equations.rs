@@ -96,7 +96,7 @@ fn consistent<const D: usize>(choice: Choice<D>, settings: Settings) {
     let (mut new, mut rate) = (old.clone(), vec![0.0; old.len()]);
     scheme.advance(&Theta::BACKWARD_EULER, 0.0, STEP, &old, &mut new).expect("a state exists");
     scheme.rates(STEP, &new, &mut rate);
-    let rows = scheme.particle_count() * scheme.row_length();
+    let rows = scheme.particle_count() * scheme.width();
     let largest = rate[..rows].iter().fold(0.0_f64, |most, r| most.max(r.abs()));
     for index in 0..rows {
         let error = (new[index] - old[index]) / STEP - rate[index];

@@ -86,7 +86,7 @@ pub fn walk<S: ThetaScheme>(
 
 /// The largest difference between rows of two states, over the largest number of the first.
 pub fn difference<S: Scheme>(scheme: &S, a: &[f64], b: &[f64]) -> f64 {
-    let rows = scheme.particle_count() * scheme.row_length();
+    let rows = scheme.particle_count() * scheme.width();
     let largest = a[..rows].iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     a[..rows].iter().zip(&b[..rows]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
 }

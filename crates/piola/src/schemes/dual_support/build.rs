@@ -4,15 +4,17 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use super::fields::Made;
 use super::stable_step::stable_step;
 use super::{
-    Discrete, DualSupport, Gradients, Material, Motion, Row, Settings, Side, Statics, StaticsError,
+    Discrete, DualSupport, Gradients, Material, Motion, Settings, Side, Statics, StaticsError,
     StaticsInput,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{
     BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedVelocity, Traction,
 };
+use crate::fields::width;
 use crate::geometry::Particles;
 use crate::operators::{DirectedSupport, DualGradient, OperatorError};
 use crate::schemes::InputError;
@@ -165,10 +167,10 @@ impl<const D: usize> DualSupport<D> {
             stiffest,
             body_forces: input.body_forces,
             initial_velocity: velocity,
-            displacement: vec![Vector::zeros(); count],
             sides: vec![Side::zero(); count],
             force: vec![Vector::zeros(); count],
-            rate: vec![0.0; count * Row::<D>::LENGTH + Self::tail_length()],
+            rate: vec![0.0; count * width(Made::FIELDS, D) + Self::tail_length()],
+            reaction: Vec::new(),
             mass,
             discrete,
         })

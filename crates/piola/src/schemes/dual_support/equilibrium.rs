@@ -1,9 +1,10 @@
 //! The formulation where there is no motion: states in equilibrium, with the work that led there.
 
+use super::fields::ColumnsMut;
 use super::statics::Known;
 use super::{
     ARC_SCALE, BODY_FORCE, BOUNDARY_MOTION, DualSupport, FIGURES, ITERATIONS, LOAD_FACTOR,
-    MECHANISMS, PRESSURE, Row, StaticState, Statics, StaticsError, TRACTION,
+    MECHANISMS, PRESSURE, StaticState, Statics, StaticsError, TRACTION,
 };
 use crate::boundaries::{pressure::Pressed, traction::Loaded};
 use crate::schemes::{Missed, NoSolution, Scheme, StaticScheme};
@@ -82,14 +83,12 @@ impl<const D: usize> DualSupport<D> {
         new: &mut [f64],
         find: impl FnOnce(&mut Statics<D>, &Known<D>) -> Result<StaticState<D>, NoSolution>,
     ) -> Result<(), NoSolution> {
-        let length = Row::<D>::LENGTH;
         new.copy_from_slice(old);
-        let count = self.mass.len();
-        let rows = || old.chunks_exact(length).take(count);
+        let at = self.columns(old);
         let known = Known {
             factor,
-            displacement: rows().map(Row::<D>::displacement).collect(),
-            rate: (from > 0.0).then(|| rows().map(Row::<D>::velocity).collect()),
+            displacement: at.displacement.to_vec(),
+            rate: (from > 0.0).then(|| at.velocity.to_vec()),
         };
         let Some(statics) = &mut self.statics else { return Ok(()) };
         let held_before = statics.support_forces(factor, &known.displacement);
@@ -99,15 +98,13 @@ impl<const D: usize> DualSupport<D> {
         }
         let moved: Vec<Vector<D>> =
             state.displacement.iter().zip(&known.displacement).map(|(u, last)| u - last).collect();
-        for (a, row) in new.chunks_exact_mut(length).take(count).enumerate() {
-            row[..D].copy_from_slice((moved[a] / (to - from)).as_slice());
-            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(state.displacement[a].as_slice());
-        }
+        let (own, tail) = ColumnsMut::<D>::of(new, self.mass.len());
+        own.displacement.copy_from_slice(&state.displacement);
+        own.velocity.iter_mut().zip(&moved).for_each(|(v, moved)| *v = moved / (to - from));
         let held = held_before.iter().zip(&state.support_force);
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
         let ends = [&*known.displacement, &*state.displacement];
         let work = self.work([factor, state.factor], ends, &held);
-        let tail = &mut new[count * length..];
         tail.iter_mut().zip(work).for_each(|(sum, work)| *sum += work);
         let figures = figures_of(tail);
         figures[ITERATIONS] = state.solved.iterations.len() as f64;
@@ -148,12 +145,21 @@ impl<const D: usize> DualSupport<D> {
 
     /// What supports and prescribed motions hold each particle with, N.
     pub(super) fn reactions(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
-        self.load(state);
-        if let (true, Some(statics)) = (self.is_static, &mut self.statics) {
-            return statics.support_forces(figures(state)[LOAD_FACTOR], &self.displacement);
+        if !self.is_static {
+            let mut rate = std::mem::take(&mut self.rate);
+            self.rates(time, state, &mut rate);
+            self.rate = rate;
         }
-        let mut rate = std::mem::take(&mut self.rate);
-        self.rates(time, state, &mut rate);
+        self.reactions_to(time, state)
+    }
+
+    /// As [`Self::reactions`], where the rates of `state` have just been found.
+    pub(super) fn reactions_to(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
+        let at = self.columns(state);
+        if let (true, Some(statics)) = (self.is_static, &mut self.statics) {
+            return statics.support_forces(figures(state)[LOAD_FACTOR], at.displacement);
+        }
+        let rate = self.columns(&self.rate);
         let mut loads = vec![Vector::zeros(); self.mass.len()];
         for load in &self.loaded {
             loads[load.particle] += load.force(time);
@@ -164,12 +170,11 @@ impl<const D: usize> DualSupport<D> {
         let mut reactions = vec![Vector::zeros(); self.mass.len()];
         for entry in self.prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);
-            let inertia = self.mass[a] * rate[a * Row::<D>::LENGTH + component];
+            let inertia = self.mass[a] * rate.velocity[a][component];
             let body = self.mass[a] * self.body_acceleration(a, time)[component];
             reactions[a][component] =
                 inertia - self.force[a][component] - loads[a][component] - body;
         }
-        self.rate = rate;
         reactions
     }
 }

@@ -1,7 +1,8 @@
 //! What acts on the body from outside, with the work and the momentum that enter with it.
 
+use super::fields::{Columns, ColumnsMut};
 use super::{
-    BODY_FORCE, BOUNDARY_MOTION, DualSupport, FIGURES, IMPULSES, MECHANISMS, PRESSURE, Row, Side,
+    BODY_FORCE, BOUNDARY_MOTION, DualSupport, FIGURES, IMPULSES, MECHANISMS, PRESSURE, Side,
     TRACTION,
 };
 use crate::boundaries::BodyForce;
@@ -24,10 +25,10 @@ impl<const D: usize> DualSupport<D> {
         2 * Self::ledger_length() + MECHANISMS.len() + FIGURES
     }
 
-    /// Current position of particle a in m, of its row of a state.
+    /// Current position of particle a in m.
     #[inline]
-    pub(super) fn position(&self, a: usize, row: &[f64]) -> Vector<D> {
-        self.discrete.particles.position[a] + Row::<D>::displacement(row)
+    pub(super) fn position(&self, a: usize, at: &Columns<'_, D>) -> Vector<D> {
+        self.discrete.particles.position[a] + at.displacement[a]
     }
 
     /// Body forces at particle a in m/s^2.
@@ -41,39 +42,38 @@ impl<const D: usize> DualSupport<D> {
     pub(super) fn external_pass(
         &self,
         time: f64,
-        state: &[f64],
+        at: &Columns<'_, D>,
         (internal, sides): (&[Vector<D>], &[Side<f64, D>]),
         rate: &mut [f64],
     ) {
-        let length = Row::<D>::LENGTH;
-        let (rows, tail) = rate.split_at_mut(self.mass.len() * length);
-        for (a, row) in rows.chunks_exact_mut(length).enumerate() {
-            let acceleration = internal[a] / self.mass[a] + self.body_acceleration(a, time);
-            row[..D].copy_from_slice(acceleration.as_slice());
-            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(&state[a * length..][..D]);
-            row[Row::<D>::ACCELERATION..].fill(0.0);
-        }
+        let (own, tail) = ColumnsMut::<D>::of(rate, self.mass.len());
+        parallel::for_each_chunk(own.velocity, |first, rows| {
+            for (a, acceleration) in (first..).zip(rows) {
+                *acceleration = internal[a] / self.mass[a] + self.body_acceleration(a, time);
+            }
+        });
+        parallel::copy(own.displacement, at.velocity);
+        parallel::for_each_chunk(own.kick, |_, kick| kick.fill(Vector::zeros()));
         let components = momentum_components(D).len();
         let (tail, kept) = tail.split_at_mut(Self::ledger_length());
         kept.fill(0.0);
         let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
         powers.fill(0.0);
         impulses.fill(0.0);
-        let of = |a: usize| &state[a * length..][..length];
         let body = parallel::sums::<BODY_SUMS>(self.mass.len(), |a, sums| {
             let force = self.body_acceleration(a, time) * self.mass[a];
-            sums[0] += force.dot(&Row::<D>::velocity(of(a)));
-            add_moments(&self.position(a, of(a)), &force, &mut sums[1..]);
+            sums[0] += force.dot(&at.velocity[a]);
+            add_moments(&self.position(a, at), &force, &mut sums[1..]);
         });
         powers[BODY_FORCE] = body[0];
         impulses[BODY_FORCE * components..][..components].copy_from_slice(&body[1..][..components]);
         let mut acts = |mechanism: usize, a: usize, force: Vector<D>| {
             for (component, force) in force.iter().enumerate() {
-                rows[a * length + component] += force / self.mass[a];
+                own.velocity[a][component] += force / self.mass[a];
             }
-            powers[mechanism] += force.dot(&Row::<D>::velocity(of(a)));
+            powers[mechanism] += force.dot(&at.velocity[a]);
             let impulse = &mut impulses[mechanism * components..][..components];
-            add_moments(&self.position(a, of(a)), &force, impulse);
+            add_moments(&self.position(a, at), &force, impulse);
         };
         for load in &self.loaded {
             acts(TRACTION, load.particle, load.force(time));
@@ -85,14 +85,14 @@ impl<const D: usize> DualSupport<D> {
         let boundary = &mut impulses[BOUNDARY_MOTION * components..];
         for entry in self.prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);
-            let acceleration = &mut rows[a * length + component];
+            let acceleration = &mut own.velocity[a][component];
             let wanted = entry.value.rate(entry.place, time);
             let reaction = self.mass[a] * (wanted - *acceleration);
             *acceleration = wanted;
             let mut force = Vector::<D>::zeros();
             force[component] = reaction;
-            powers[BOUNDARY_MOTION] += force.dot(&Row::<D>::velocity(of(a)));
-            add_moments(&self.position(a, of(a)), &force, boundary);
+            powers[BOUNDARY_MOTION] += force.dot(&at.velocity[a]);
+            add_moments(&self.position(a, at), &force, boundary);
         }
     }
 
@@ -101,10 +101,10 @@ impl<const D: usize> DualSupport<D> {
         if self.is_static {
             return [0.0; MOST_COMPONENTS];
         }
+        let at = self.columns(state);
         parallel::sums(self.mass.len(), |a, sum| {
-            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            let momentum = Row::<D>::velocity(row) * self.mass[a];
-            add_moments(&self.position(a, row), &momentum, sum);
+            let momentum = at.velocity[a] * self.mass[a];
+            add_moments(&self.position(a, &at), &momentum, sum);
         })
     }
 }

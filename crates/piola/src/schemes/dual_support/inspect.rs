@@ -1,6 +1,6 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
-use super::{DualSupport, Row};
+use super::DualSupport;
 use crate::schemes::look::{Deformed, look};
 use crate::schemes::solid::wave_moduli;
 use crate::schemes::{Health, StepLimit};
@@ -11,9 +11,9 @@ impl<const D: usize> DualSupport<D> {
     /// `eigenvalue`: `2/omega` with the largest frequency of the whole discrete body at rest,
     /// hourglass term included, over the largest stiffening of a particle since, theory (50).
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
-        self.load(state);
-        let figures = look(&state[..self.mass.len() * Row::<D>::LENGTH], |a| {
-            let gradient = self.discrete.displacement_gradient(&self.displacement, a);
+        let at = self.columns(state);
+        let figures = look([at.velocity, at.displacement, at.kick], |a| {
+            let gradient = self.discrete.displacement_gradient(at.displacement, a);
             let material = self.discrete.material(a);
             let at_rest = self.moduli_at_rest[self.discrete.particles.body[a] as usize];
             let moduli = match material.law.law().is_objective() {
@@ -23,7 +23,7 @@ impl<const D: usize> DualSupport<D> {
             Deformed { gradient, moduli, at_rest, density: material.density }
         });
         if let Some(a) = figures.not_convex() {
-            let gradient = self.discrete.displacement_gradient(&self.displacement, a);
+            let gradient = self.discrete.displacement_gradient(at.displacement, a);
             self.not_convex = Some((a, gradient));
         }
         limits.clear();

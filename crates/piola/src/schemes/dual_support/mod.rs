@@ -20,9 +20,9 @@ mod build;
 mod discrete;
 mod equilibrium;
 mod external;
+mod fields;
 mod inspect;
 mod newmark;
-mod sample;
 mod scheme;
 mod settings;
 mod split;
@@ -41,7 +41,6 @@ pub use statics::{
 use std::sync::Arc;
 
 pub use super::solid::Material;
-use super::solid::Row;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, pressure::Pressed, traction::Loaded};
 use crate::{Tensor, Vector};
@@ -69,11 +68,12 @@ pub struct DualSupport<const D: usize> {
     loaded: Vec<Loaded<D>>,
     pressed: Vec<Pressed<D>>,
     prescribed: PrescribedComponents,
-    displacement: Vec<Vector<D>>,
     sides: Vec<Side<f64, D>>,
     force: Vec<Vector<D>>,
     /// Scratch of the length of a state.
     rate: Vec<f64>,
+    /// What holds each particle in the last observation, N.
+    reaction: Vec<Vector<D>>,
 }
 
 /// The energies of the formulation.

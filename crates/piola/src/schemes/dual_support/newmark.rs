@@ -1,8 +1,9 @@
 //! The formulation in implicit steps.
 
 use super::equilibrium::{figures_of, kind};
+use super::fields::ColumnsMut;
 use super::statics::InertialStep;
-use super::{DualSupport, ITERATIONS, MECHANISMS, Row};
+use super::{DualSupport, ITERATIONS, MECHANISMS};
 use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Newmark, NewmarkScheme, NoSolution, Scheme};
 use crate::{Vector, parallel};
@@ -20,13 +21,13 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution> {
-        let (count, length, end) = (self.mass.len(), Row::<D>::LENGTH, time + step);
+        let (count, end, at) = (self.mass.len(), time + step, self.columns(old));
         new.copy_from_slice(old);
         let mut free = vec![Vector::zeros(); count];
         let (mut start, mut last) = (free.clone(), free.clone());
-        for (a, row) in old.chunks_exact(length).take(count).enumerate() {
-            let (v, acceleration) = (Row::<D>::velocity(row), Row::<D>::acceleration(row));
-            last[a] = Row::<D>::displacement(row);
+        for a in 0..count {
+            let (v, acceleration) = (at.velocity[a], at.kick[a]);
+            last[a] = at.displacement[a];
             free[a] = Vector::from_fn(|i, _| last[a][i] + rule.free(step, v[i], acceleration[i]));
             let predicted = v * step + acceleration * (0.5 * step * step);
             start[a] = last[a] + predicted * rule.reach();
@@ -57,19 +58,23 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
             })?;
         let moved: Vec<Vector<D>> =
             (0..count).map(|a| (displacement[a] - last[a]) / rule.reach()).collect();
-        parallel::for_each_row(&mut new[..count * length], length, |a, row| {
-            for i in 0..D {
-                let (v, at_start) = (row[i], row[Row::<D>::ACCELERATION + i]);
-                let at_end = rule.acceleration(step, moved[a][i], v, at_start);
-                row[i] = rule.velocity(step, v, at_start, at_end);
-                row[Row::<D>::DISPLACEMENT + i] += moved[a][i];
-                row[Row::<D>::ACCELERATION + i] = at_end;
+        let (own, _) = ColumnsMut::<D>::of(new, count);
+        parallel::for_each_part(count, own, |first, own| {
+            for (k, moved) in moved[first..].iter().take(own.velocity.len()).enumerate() {
+                let (v, before) = (own.velocity[k], own.kick[k]);
+                let acceleration = |i: usize| rule.acceleration(step, moved[i], v[i], before[i]);
+                let after = Vector::<D>::from_fn(|i, _| acceleration(i));
+                own.velocity[k] =
+                    Vector::from_fn(|i, _| rule.velocity(step, v[i], before[i], after[i]));
+                own.displacement[k] += moved;
+                own.kick[k] = after;
             }
         });
+        let (own, _) = ColumnsMut::<D>::of(new, count);
         for entry in self.prescribed.iter() {
-            let row = &mut new[entry.particle * length..][..length];
-            row[entry.component] = entry.value.value(entry.place, end);
-            row[Row::<D>::ACCELERATION + entry.component] = 0.0;
+            let (a, component) = (entry.particle, entry.component);
+            own.velocity[a][component] = entry.value.value(entry.place, end);
+            own.kick[a][component] = 0.0;
         }
         let held = held_before.into_iter().zip(self.held(end, new));
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
@@ -77,8 +82,8 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
         let work = self.work([time, end], [&last, &ends], &held);
         let mut rate = std::mem::take(&mut self.rate);
         self.rates(end, new, &mut rate);
-        let (ledger, tail) = (Self::ledger_length(), &mut new[count * length..]);
-        let rates = &rate[count * length..][..ledger];
+        let (ledger, (_, tail)) = (Self::ledger_length(), ColumnsMut::<D>::of(new, count));
+        let rates = &self.columns(&rate).tail[..ledger];
         for (sum, work) in tail.iter_mut().zip(work) {
             *sum += work;
         }
@@ -92,7 +97,8 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
     }
 
     fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64 {
-        kinetic_distance::<D>([one, other], Row::<D>::LENGTH, self.mass.len(), |a| self.mass[a])
+        let velocities = [one, other].map(|state| self.columns(state).velocity);
+        kinetic_distance(velocities, |a| self.mass[a])
     }
 }
 

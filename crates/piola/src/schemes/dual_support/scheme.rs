@@ -1,7 +1,8 @@
 //! The dual-support formulation as integrators, clock and output see it.
 
-use super::sample::FIELDS;
-use super::{DualSupport, ENERGIES, FIGURES, IMPULSES, MECHANISMS, Row, Side};
+use super::fields::{Columns, ColumnsMut, Made};
+use super::{DualSupport, ENERGIES, FIGURES, IMPULSES, MECHANISMS, Side};
+use crate::fields::FieldDescription;
 use crate::schemes::look::convexity_is_lost;
 use crate::schemes::{
     Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme,
@@ -10,7 +11,7 @@ use crate::schemes::{
 use crate::solve::Costs;
 use crate::{Vector, parallel};
 
-const COLUMNS: [(&str, &str); 2] = [(NEWTON_ITERATIONS, "1"), ("load_factor", "1")];
+const FIGURE_COLUMNS: [(&str, &str); 2] = [(NEWTON_ITERATIONS, "1"), ("load_factor", "1")];
 
 /// What to do about a body whose material has been seen to lose its convexity.
 const CONVEXITY: &str = "the material had lost its convexity before, which smaller steps do not bring \
@@ -19,11 +20,11 @@ const CONVEXITY: &str = "the material had lost its convexity before, which small
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "dual_support",
-    fields: &FIELDS,
+    fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,
     impulses: &IMPULSES,
-    figures: &COLUMNS,
+    figures: &FIGURE_COLUMNS,
 };
 
 impl<const D: usize> Scheme for DualSupport<D> {
@@ -39,36 +40,35 @@ impl<const D: usize> Scheme for DualSupport<D> {
         self.mass.len()
     }
 
-    fn row_length(&self) -> usize {
-        Row::<D>::LENGTH
-    }
-
     fn initial_state(&self) -> Vec<f64> {
-        let mut state = vec![0.0; self.mass.len() * Row::<D>::LENGTH + Self::tail_length()];
-        let rows = state.chunks_exact_mut(Row::<D>::LENGTH);
-        for (row, velocity) in rows.zip(&self.initial_velocity) {
-            row[..D].copy_from_slice(velocity.as_slice());
-        }
+        let mut state = vec![0.0; self.rate.len()];
+        let (own, _) = ColumnsMut::<D>::of(&mut state, self.mass.len());
+        own.velocity.copy_from_slice(&self.initial_velocity);
         self.constrain(0.0, &mut state);
         // Nothing is strained yet, so that no force comes from inside.
         let mut rate = vec![0.0; state.len()];
         let count = self.mass.len();
         let sides = vec![Side::zero(); count];
-        self.external_pass(0.0, &state, (&vec![Vector::zeros(); count], &sides), &mut rate);
+        self.external_pass(
+            0.0,
+            &self.columns(&state),
+            (&vec![Vector::zeros(); count], &sides),
+            &mut rate,
+        );
         self.store(0.0, &rate, &sides, &mut state);
         state
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        self.load(state);
-        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.force);
-        self.external_pass(time, state, (&self.force, &self.sides), rate);
+        let at = self.columns(state);
+        self.discrete.forces(at.displacement, &mut self.sides, &mut self.force);
+        self.external_pass(time, &at, (&self.force, &self.sides), rate);
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
+        let (own, _) = ColumnsMut::<D>::of(state, self.mass.len());
         for entry in self.prescribed.iter() {
-            state[entry.particle * Row::<D>::LENGTH + entry.component] =
-                entry.value.value(entry.place, time);
+            own.velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
         }
     }
 
@@ -77,7 +77,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
-        figures.extend_from_slice(&state[state.len() - FIGURES..][..COLUMNS.len()]);
+        figures.extend_from_slice(&state[state.len() - FIGURES..][..FIGURE_COLUMNS.len()]);
     }
 
     fn linear_costs(&self) -> Option<Costs> {
@@ -103,14 +103,12 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
-        let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-        let displacement: Vec<_> =
-            (0..self.mass.len()).map(|a| Row::<D>::displacement(row(a))).collect();
+        let at = self.columns(state);
         let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
             if !self.is_static {
-                sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
+                sums[0] += 0.5 * self.mass[a] * at.velocity[a].norm_squared();
             }
-            let [strain, hourglass] = self.discrete.energy_of(&displacement, a);
+            let [strain, hourglass] = self.discrete.energy_of(at.displacement, a);
             sums[1] += strain;
             sums[2] += hourglass;
         });
@@ -122,15 +120,19 @@ impl<const D: usize> Scheme for DualSupport<D> {
         momentum.copy_from_slice(&all[..momentum.len()]);
     }
 
-    fn sample(
-        &mut self,
-        time: f64,
+    fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
+        self.make_fields(stage, time, state);
+    }
+
+    fn derive(
+        &self,
         state: &[f64],
-        field: &str,
+        field: &FieldDescription,
         particles: &[u32],
         values: &mut Vec<f64>,
     ) {
-        self.sample_field(time, state, field, particles, values);
+        let (Some(made), at) = (Made::of(field), self.columns(state)) else { return };
+        particles.iter().for_each(|&a| self.push_field(made, &at, a as usize, values));
     }
 
     fn bodies(&self) -> &[u32] {
@@ -206,7 +208,6 @@ impl<const D: usize> Scheme for DualSupport<D> {
             + size_of_val(particles.id.as_slice())
             + size_of_val(self.mass.as_slice())
             + size_of_val(self.initial_velocity.as_slice())
-            + size_of_val(self.displacement.as_slice())
             + size_of_val(self.sides.as_slice())
             + size_of_val(self.force.as_slice())
             + size_of_val(self.rate.as_slice())
@@ -214,13 +215,8 @@ impl<const D: usize> Scheme for DualSupport<D> {
 }
 
 impl<const D: usize> DualSupport<D> {
-    /// Takes the displacements out of a state.
-    pub(super) fn load(&mut self, state: &[f64]) {
-        parallel::for_each_chunk(&mut self.displacement, |first, rows| {
-            for (offset, displacement) in rows.iter_mut().enumerate() {
-                let row = &state[(first + offset) * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-                *displacement = Row::<D>::displacement(row);
-            }
-        });
+    /// The columns of a state.
+    pub(super) fn columns<'a>(&self, state: &'a [f64]) -> Columns<'a, D> {
+        Columns::of(state, self.mass.len())
     }
 }

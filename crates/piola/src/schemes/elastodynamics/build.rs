@@ -4,11 +4,13 @@ use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
 use super::edges::{self, Edges};
+use super::fields::{ColumnsMut, Made};
 use super::holes::Hole;
 use super::tractions::Body;
 use super::{Configuration, Elastodynamics, Form, Mixture, Settings, stable_step::Bound};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
+use crate::fields::width;
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
 use crate::operators::{Cover, FoldedGradient, GradientForm, Mirror, OperatorError, images};
@@ -16,7 +18,6 @@ use crate::schemes::InputError;
 use crate::schemes::input::{
     check_conditions, check_index, check_lengths, check_particle, check_particles,
 };
-use crate::schemes::solid::Row;
 use crate::{Tensor, Vector};
 
 /// All that the formulation is bound to.
@@ -227,6 +228,8 @@ impl<const D: usize> Elastodynamics<D> {
         if settings.form == Form::Adjoint {
             loaded = input.tractions.iter().flat_map(|load| body.loads(load)).collect();
         }
+        let with_edges = if found.is_some() { count + data } else { 0 };
+        let length = count * width(Made::FIELDS, D) + Self::slopes_at() + D * data;
         let rate_length = if settings.is_viscous() { count } else { 0 };
         let mut scheme = Self {
             mirrors: input.mirrors.iter().map(|&(mirror, on)| (mirror, on as usize)).collect(),
@@ -241,14 +244,14 @@ impl<const D: usize> Elastodynamics<D> {
             body_forces: input.body_forces,
             is_evaluated: false,
             displacement: vec![Vector::zeros(); count + data],
-            velocity: vec![Vector::zeros(); count + data],
-            acceleration: vec![Vector::zeros(); count + data],
+            velocity: vec![Vector::zeros(); with_edges],
+            acceleration: vec![Vector::zeros(); with_edges],
             gradient: vec![Tensor::zeros(); count],
             gradient_rate: vec![Tensor::zeros(); rate_length],
             stress: vec![Tensor::zeros(); count],
             tension: vec![Tensor::zeros(); count],
             force: vec![Vector::zeros(); count],
-            rate: vec![0.0; count * Row::<D>::LENGTH + Self::slopes_at() + D * data],
+            rate: vec![0.0; length],
             initial: Vec::new(),
             mixtures: input.mixtures,
             mixture: input.mixture,
@@ -268,11 +271,9 @@ impl<const D: usize> Elastodynamics<D> {
     /// The state at the start, with the accelerations that belong to it.
     fn first_state(&mut self, displacement: &[Vector<D>], velocity: &[Vector<D>]) -> Vec<f64> {
         let mut state = vec![0.0; self.rate.len()];
-        let rows = state.chunks_exact_mut(Row::<D>::LENGTH);
-        for ((row, velocity), displacement) in rows.zip(velocity).zip(displacement) {
-            row[..D].copy_from_slice(velocity.as_slice());
-            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(displacement.as_slice());
-        }
+        let (own, _) = ColumnsMut::<D>::of(&mut state, self.mass.len());
+        own.velocity.copy_from_slice(velocity);
+        own.displacement.copy_from_slice(displacement);
         crate::schemes::Scheme::constrain(self, 0.0, &mut state);
         crate::schemes::SplitScheme::accelerate(self, 0.0, &mut state);
         state

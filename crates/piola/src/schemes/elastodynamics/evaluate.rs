@@ -1,10 +1,10 @@
 //! From displacements to forces: two products and what is between them.
 
 use super::edges;
+use super::fields::Columns;
 use super::settings::is_linear;
 use super::{Configuration, Elastodynamics};
 use crate::operators::{Cover, PlaneData};
-use crate::schemes::solid::Row;
 use crate::{Tensor, Vector, parallel};
 
 /// Powers in W that boundaries do on the strain energy through the ghosts.
@@ -17,32 +17,27 @@ pub(super) struct GhostPowers {
 }
 
 impl<const D: usize> Elastodynamics<D> {
-    /// Takes displacements and velocities out of a state.
-    pub(super) fn load(&mut self, state: &[f64]) {
-        let length = Row::<D>::LENGTH;
+    /// The columns of a state.
+    pub(super) fn columns<'a>(&self, state: &'a [f64]) -> Columns<'a, D> {
+        Columns::of(state, self.mass.len())
+    }
+
+    /// Takes displacements, and what edges need of velocities, out of a state.
+    pub(super) fn load(&mut self, at: &Columns<'_, D>) {
         self.is_evaluated = false;
         let count = self.mass.len();
-        parallel::for_each_chunk(&mut self.displacement[..count], |first, rows| {
-            for (offset, displacement) in rows.iter_mut().enumerate() {
-                *displacement =
-                    Row::<D>::displacement(&state[(first + offset) * length..][..length]);
-            }
-        });
-        parallel::for_each_chunk(&mut self.velocity[..count], |first, rows| {
-            for (offset, velocity) in rows.iter_mut().enumerate() {
-                *velocity = Row::<D>::velocity(&state[(first + offset) * length..][..length]);
-            }
-        });
+        parallel::copy(&mut self.displacement[..count], at.displacement);
         let mut displacement = std::mem::take(&mut self.displacement);
-        self.append_kept(&mut displacement, state);
+        self.append_kept(&mut displacement, at.tail);
         self.displacement = displacement;
         if let Some(edges) = &self.edges {
+            parallel::copy(&mut self.velocity[..count], at.velocity);
             edges.append_held(count, &mut self.velocity);
         }
     }
 
     /// Gradient, stress, tension and internal force of all particles at the loaded state.
-    pub(super) fn evaluate(&mut self, time: f64) {
+    pub(super) fn evaluate(&mut self, time: f64, at: &Columns<'_, D>) {
         if self.settings.configuration == Configuration::Updated && !self.rebuild() {
             // No matrices: two particles meet. The state that follows is refused as not finite.
             self.force.fill(Vector::from_element(f64::NAN));
@@ -53,8 +48,9 @@ impl<const D: usize> Elastodynamics<D> {
         self.matrix.gradient(&self.displacement, &data, &mut self.gradient);
         self.continue_velocity(time);
         if self.settings.is_viscous() {
-            let rates = self.plane_data(&self.velocity);
-            self.matrix.gradient(&self.velocity, &rates, &mut self.gradient_rate);
+            let velocity = if self.edges.is_some() { &self.velocity } else { at.velocity };
+            let rates = self.plane_data(velocity);
+            self.matrix.gradient(velocity, &rates, &mut self.gradient_rate);
         }
         if self.settings.configuration == Configuration::Updated {
             self.turn_to_reference();
@@ -105,11 +101,6 @@ impl<const D: usize> Elastodynamics<D> {
         self.is_evaluated = true;
     }
 
-    /// The data of displacements of a state in which these were found.
-    pub(super) fn data_of(&self, displacement: &[Vector<D>], _state: &[f64]) -> PlaneData<D> {
-        self.plane_data(displacement)
-    }
-
     /// Writes the data of edges behind the velocities, at the gradients of the moment.
     fn continue_velocity(&mut self, time: f64) {
         let Some(mut edges) = self.edges.take() else { return };
@@ -121,6 +112,11 @@ impl<const D: usize> Elastodynamics<D> {
         edges.continue_rates(&self.matrix, &mut velocity, tangents, |slot| slot.stress_rate(time));
         self.velocity = velocity;
         self.edges = Some(edges);
+    }
+
+    /// Velocities of a loaded state, with the data of edges behind.
+    pub(super) fn velocity<'a>(&'a self, at: &Columns<'a, D>) -> &'a [Vector<D>] {
+        if self.edges.is_some() { &self.velocity } else { at.velocity }
     }
 
     pub(super) fn plane_data(&self, field: &[Vector<D>]) -> PlaneData<D> {

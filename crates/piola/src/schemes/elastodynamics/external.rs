@@ -1,12 +1,12 @@
 //! What acts on the body from outside, with the work and the momentum that enter with it.
 
+use super::fields::{Columns, ColumnsMut};
 use super::{
     BODY_FORCE, BOUNDARY_MOTION, DAMPING, DAMPING_IMPULSE, Elastodynamics, IMPULSES, MECHANISMS,
     TRACTION, VISCOSITY,
 };
 use crate::boundaries::BodyForce;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
-use crate::schemes::solid::Row;
 use crate::{Vector, parallel};
 
 /// Power, and forces with their moments.
@@ -38,18 +38,19 @@ impl<const D: usize> Elastodynamics<D> {
     }
 
     /// Writes the rates of the loaded state, whose forces have been evaluated.
-    pub(super) fn external_pass(&mut self, time: f64, rate: &mut [f64]) {
-        let length = Row::<D>::LENGTH;
+    pub(super) fn external_pass(&self, time: f64, at: &Columns<'_, D>, rate: &mut [f64]) {
         let components = momentum_components(D).len();
         let damping = self.settings.damping;
-        let (rows, tail) = rate.split_at_mut(self.mass.len() * length);
-        parallel::for_each_row(rows, length, |a, row| {
-            let acceleration = self.force[a] / self.mass[a] + self.body_acceleration(a, time)
-                - self.velocity[a] * damping;
-            row[..D].copy_from_slice(acceleration.as_slice());
-            row[Row::<D>::DISPLACEMENT..][..D].copy_from_slice(self.velocity[a].as_slice());
-            row[Row::<D>::ACCELERATION..].fill(0.0);
+        let velocity = self.velocity(at);
+        let (own, tail) = ColumnsMut::<D>::of(rate, self.mass.len());
+        parallel::for_each_chunk(own.velocity, |first, rows| {
+            for (a, acceleration) in (first..).zip(rows) {
+                *acceleration = self.force[a] / self.mass[a] + self.body_acceleration(a, time)
+                    - velocity[a] * damping;
+            }
         });
+        parallel::copy(own.displacement, at.velocity);
+        parallel::for_each_chunk(own.kick, |_, kick| kick.fill(Vector::zeros()));
         let (tail, growths) = tail.split_at_mut(Self::ledger_length());
         growths.fill(0.0);
         let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
@@ -63,14 +64,14 @@ impl<const D: usize> Elastodynamics<D> {
         let over_all = |force: &(dyn Fn(usize) -> Vector<D> + Sync)| {
             parallel::sums::<SUMS>(self.mass.len(), |a, sums| {
                 let force = force(a);
-                sums[0] += force.dot(&self.velocity[a]);
+                sums[0] += force.dot(&velocity[a]);
                 add_moments(&self.position(a), &force, &mut sums[1..]);
             })
         };
         let body = |a: usize| self.body_acceleration(a, time) * self.mass[a];
         powers[BODY_FORCE] = enters(BODY_FORCE, over_all(&body));
         if damping > 0.0 {
-            let drag = |a: usize| self.velocity[a] * (-damping * self.mass[a]);
+            let drag = |a: usize| velocity[a] * (-damping * self.mass[a]);
             powers[DAMPING] = enters(DAMPING_IMPULSE, over_all(&drag));
         }
         if self.edges.is_some() || !self.mirrors.is_empty() {
@@ -82,29 +83,28 @@ impl<const D: usize> Elastodynamics<D> {
                 self.viscous_stress(a).dot(&self.gradient_rate[a]) * self.particles.volume[a]
             });
         }
-        let rates = self.plane_data(&self.velocity);
-        let ghosts = self.ghost_powers(&self.velocity, &rates);
+        let ghosts = self.ghost_powers(velocity, &self.plane_data(velocity));
         powers[TRACTION] = ghosts.traction;
         powers[BOUNDARY_MOTION] = ghosts.motion;
         for load in &self.loaded {
             let (a, force) = (load.particle, load.force(time));
             for (component, force) in force.iter().enumerate() {
-                rows[a * length + component] += force / self.mass[a];
+                own.velocity[a][component] += force / self.mass[a];
             }
             let mut sums = [0.0; SUMS];
-            sums[0] = force.dot(&self.velocity[a]);
+            sums[0] = force.dot(&velocity[a]);
             add_moments(&self.position(a), &force, &mut sums[1..]);
             powers[TRACTION] += enters(TRACTION, sums);
         }
         for entry in self.prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);
-            let acceleration = &mut rows[a * length + component];
+            let acceleration = &mut own.velocity[a][component];
             let wanted = entry.value.rate(entry.place, time);
             let mut force = Vector::<D>::zeros();
             force[component] = self.mass[a] * (wanted - *acceleration);
             *acceleration = wanted;
             let mut sums = [0.0; SUMS];
-            sums[0] = force.dot(&self.velocity[a]);
+            sums[0] = force.dot(&velocity[a]);
             add_moments(&self.position(a), &force, &mut sums[1..]);
             powers[BOUNDARY_MOTION] += enters(BOUNDARY_MOTION, sums);
         }
@@ -114,21 +114,14 @@ impl<const D: usize> Elastodynamics<D> {
     /// prescribed components zero; rates of the ledger; and how fast the powers grow, force times
     /// acceleration.
     pub(super) fn store(&mut self, time: f64, rate: &[f64], state: &mut [f64]) {
-        let length = Row::<D>::LENGTH;
-        let rows = self.mass.len() * length;
-        parallel::for_each_row(&mut state[..rows], length, |a, row| {
-            row[Row::<D>::ACCELERATION..].copy_from_slice(&rate[a * length..][..D]);
-        });
+        let rate = self.columns(rate);
+        let (own, tail) = ColumnsMut::<D>::of(state, self.mass.len());
+        parallel::copy(own.kick, rate.velocity);
         for entry in self.prescribed.iter() {
-            state[entry.particle * length + Row::<D>::ACCELERATION + entry.component] = 0.0;
+            own.kick[entry.particle][entry.component] = 0.0;
         }
-        let (rows, tail) = state.split_at_mut(rows);
-        let mut acceleration = std::mem::take(&mut self.acceleration);
-        for (acceleration, row) in acceleration.iter_mut().zip(rows.chunks_exact(length)) {
-            *acceleration = Row::<D>::acceleration(row);
-        }
-        let ledger = Self::ledger_length();
-        tail[ledger..2 * ledger].copy_from_slice(&rate[rows.len()..][..ledger]);
+        let (kick, ledger) = (&*own.kick, Self::ledger_length());
+        tail[ledger..2 * ledger].copy_from_slice(&rate.tail[..ledger]);
         let data = self.displacement[self.mass.len()..].iter();
         for (kept, datum) in tail[Self::slopes_at()..].chunks_exact_mut(D).zip(data) {
             kept.copy_from_slice(datum.as_slice());
@@ -136,32 +129,25 @@ impl<const D: usize> Elastodynamics<D> {
         let growths = &mut tail[2 * ledger..][..MECHANISMS.len()];
         growths.fill(0.0);
         growths[BODY_FORCE] = parallel::sum(self.mass.len(), |a| {
-            self.mass[a] * self.body_acceleration(a, time).dot(&acceleration[a])
+            self.mass[a] * self.body_acceleration(a, time).dot(&kick[a])
         });
         growths[DAMPING] = -2.0
             * self.settings.damping
-            * parallel::sum(self.mass.len(), |a| {
-                self.mass[a] * self.velocity[a].dot(&acceleration[a])
-            });
+            * parallel::sum(self.mass.len(), |a| self.mass[a] * own.velocity[a].dot(&kick[a]));
         let own = self.loaded.iter();
-        growths[TRACTION] =
-            own.map(|load| load.force(time).dot(&acceleration[load.particle])).sum();
+        growths[TRACTION] = own.map(|load| load.force(time).dot(&kick[load.particle])).sum();
         if self.edges.is_some() {
-            growths[TRACTION] += self.ghost_powers(&acceleration, &[[0.0; 2]; D]).traction;
+            self.acceleration[..kick.len()].copy_from_slice(kick);
+            growths[TRACTION] += self.ghost_powers(&self.acceleration, &[[0.0; 2]; D]).traction;
         }
-        self.acceleration = acceleration;
     }
 
     /// Momentum of all particles together.
     pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        let at = self.columns(state);
         parallel::sums(self.mass.len(), |a, sum| {
-            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            let momentum = Row::<D>::velocity(row) * self.mass[a];
-            add_moments(
-                &(self.particles.position[a] + Row::<D>::displacement(row)),
-                &momentum,
-                sum,
-            );
+            let momentum = at.velocity[a] * self.mass[a];
+            add_moments(&(self.particles.position[a] + at.displacement[a]), &momentum, sum);
         })
     }
 }

@@ -1,27 +1,27 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
+use super::fields::Columns;
 use super::settings::is_linear;
 use super::stable_step::Most;
 use super::{Configuration, Elastodynamics};
 use crate::schemes::look::{Deformed, look};
-use crate::schemes::solid::Row;
 use crate::schemes::{Health, StepLimit};
-use crate::{Tensor, parallel};
+use crate::{Tensor, Vector, parallel};
 
 impl<const D: usize> Elastodynamics<D> {
     /// The health of `state` and the bound on the step, theory (67), of the body as it is deformed:
     /// `eigenvalue`, from the largest frequency of the operator at rest times the largest stiffening
     /// of a particle since, or `dissipation`, where that of viscosity and damping is the larger part.
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
-        let known = self.is_evaluated_at(state);
-        self.load(state);
-        let data = self.data_of(&self.displacement, state);
+        let at = self.columns(state);
+        let known = self.is_evaluated_at(&at);
+        self.load(&at);
+        let data = self.plane_data(&self.displacement);
         let gradient_of = |a: usize| match known {
             true => self.gradient[a],
             false => self.matrix.gradient_at(&self.displacement, &data, a),
         };
-        let rows = &state[..self.mass.len() * Row::<D>::LENGTH];
-        let figures = look(rows, |a| {
+        let figures = look([at.velocity, at.displacement, at.kick], |a| {
             let gradient = gradient_of(a);
             let kind = self.mixture[a] as usize;
             let mixture = &self.mixtures[kind];
@@ -29,7 +29,7 @@ impl<const D: usize> Elastodynamics<D> {
             let (at_rest, density) = (self.moduli_at_rest[kind], mixture.density());
             Deformed { gradient, moduli, at_rest, density }
         });
-        let thickening = self.thickest(&gradient_of);
+        let thickening = self.thickest(self.velocity(&at), &gradient_of);
         let stiffening = Most { ratio: figures.stiffening, particle: figures.stiffest };
         if let Some(a) = figures.not_convex() {
             let gradient = gradient_of(a);
@@ -43,14 +43,18 @@ impl<const D: usize> Elastodynamics<D> {
     }
 
     /// The particle at which viscosity has grown most since rest.
-    fn thickest(&self, gradient_of: &(impl Fn(usize) -> Tensor<D> + Sync)) -> Most {
+    fn thickest(
+        &self,
+        velocity: &[Vector<D>],
+        gradient_of: &(impl Fn(usize) -> Tensor<D> + Sync),
+    ) -> Most {
         if !self.settings.is_viscous() {
             return Most::NONE;
         }
         let is_quadratic = self.settings.artificial_viscosity[1] > 0.0;
-        let rates = self.plane_data(&self.velocity);
+        let rates = self.plane_data(velocity);
         let of = |a: usize| {
-            let rate = is_quadratic.then(|| self.matrix.gradient_at(&self.velocity, &rates, a));
+            let rate = is_quadratic.then(|| self.matrix.gradient_at(velocity, &rates, a));
             let ratio = self.thickening(&gradient_of(a), rate.as_ref(), a);
             Most { ratio, particle: a }
         };
@@ -59,13 +63,9 @@ impl<const D: usize> Elastodynamics<D> {
 
     /// Whether the gradients at hand are those of the displacements of `state`: after a step they
     /// are, because forces have been taken there.
-    fn is_evaluated_at(&self, state: &[f64]) -> bool {
-        let known = &self.displacement[..self.mass.len()];
-        let mut rows = state.chunks_exact(Row::<D>::LENGTH).zip(known);
-        let is_same =
-            |(row, known): (&[f64], &crate::Vector<D>)| Row::<D>::displacement(row) == *known;
+    pub(super) fn is_evaluated_at(&self, at: &Columns<'_, D>) -> bool {
         self.is_evaluated
             && self.settings.configuration == Configuration::Total
-            && rows.all(is_same)
+            && self.displacement[..self.mass.len()] == *at.displacement
     }
 }

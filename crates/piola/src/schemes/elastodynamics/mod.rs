@@ -17,10 +17,10 @@ mod dissipation;
 mod edges;
 mod evaluate;
 mod external;
+mod fields;
 mod ghosts;
 mod holes;
 mod inspect;
-mod sample;
 mod scheme;
 mod settings;
 mod slopes;
@@ -60,8 +60,7 @@ pub struct Elastodynamics<const D: usize> {
     hourglass: Option<FoldedHourglass<D>>,
     /// Symmetry planes and rollers, each with a particle that lies on it.
     mirrors: Vec<(Mirror, usize)>,
-    /// The edges, in the strong form, whose data stand behind those of particles in displacements,
-    /// velocities and accelerations.
+    /// The edges, in the strong form, whose data stand behind those of particles.
     edges: Option<Edges<D>>,
     stable: stable_step::Bound,
     /// Moduli of the slowest and the fastest wave at rest of each mixture, Pa.
@@ -74,6 +73,7 @@ pub struct Elastodynamics<const D: usize> {
     /// Whether gradients and forces are those of the displacements at hand.
     is_evaluated: bool,
     displacement: Vec<Vector<D>>,
+    /// Velocities and accelerations with the data of edges behind; empty without edges.
     velocity: Vec<Vector<D>>,
     acceleration: Vec<Vector<D>>,
     gradient: Vec<Tensor<D>>,

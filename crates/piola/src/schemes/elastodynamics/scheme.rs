@@ -1,16 +1,16 @@
 //! The elastodynamics formulation as integrators, clock and output see it.
 
-use super::sample::FIELDS;
+use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, Elastodynamics, IMPULSES, MECHANISMS};
+use crate::fields::FieldDescription;
 use crate::parallel;
 use crate::schemes::look::convexity_is_lost;
-use crate::schemes::solid::Row;
 use crate::schemes::{Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "elastodynamics",
-    fields: &FIELDS,
+    fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,
     impulses: &IMPULSES,
@@ -30,24 +30,21 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
         self.mass.len()
     }
 
-    fn row_length(&self) -> usize {
-        Row::<D>::LENGTH
-    }
-
     fn initial_state(&self) -> Vec<f64> {
         self.initial.clone()
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        self.load(state);
-        self.evaluate(time);
-        self.external_pass(time, rate);
+        let at = self.columns(state);
+        self.load(&at);
+        self.evaluate(time, &at);
+        self.external_pass(time, &at, rate);
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
+        let (own, _) = ColumnsMut::<D>::of(state, self.mass.len());
         for entry in self.prescribed.iter() {
-            state[entry.particle * Row::<D>::LENGTH + entry.component] =
-                entry.value.value(entry.place, time);
+            own.velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
         }
     }
 
@@ -62,14 +59,13 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
-        let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-        let mut displacement: Vec<_> =
-            (0..self.mass.len()).map(|a| Row::<D>::displacement(row(a))).collect();
+        let at = self.columns(state);
+        let mut displacement = at.displacement.to_vec();
         displacement.resize(self.displacement.len(), crate::Vector::zeros());
-        self.append_kept(&mut displacement, state);
-        let data = self.data_of(&displacement, state);
+        self.append_kept(&mut displacement, at.tail);
+        let data = self.plane_data(&displacement);
         let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
-            sums[0] += 0.5 * self.mass[a] * Row::<D>::velocity(row(a)).norm_squared();
+            sums[0] += 0.5 * self.mass[a] * at.velocity[a].norm_squared();
             let gradient = self.matrix.gradient_at(&displacement, &data, a);
             let mixture = &self.mixtures[self.mixture[a] as usize];
             sums[1] += mixture.energy(&gradient) * self.particles.volume[a];
@@ -89,15 +85,19 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
         momentum.copy_from_slice(&all[..momentum.len()]);
     }
 
-    fn sample(
-        &mut self,
-        time: f64,
+    fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
+        self.make_fields(stage, time, state);
+    }
+
+    fn derive(
+        &self,
         state: &[f64],
-        field: &str,
+        field: &FieldDescription,
         particles: &[u32],
         values: &mut Vec<f64>,
     ) {
-        self.sample_field(time, state, field, particles, values);
+        let (Some(made), at) = (Made::of(field), self.columns(state)) else { return };
+        particles.iter().for_each(|&a| self.push_field(made, &at, a as usize, values));
     }
 
     fn bodies(&self) -> &[u32] {
@@ -156,8 +156,9 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
             + self.edges.as_ref().map_or(0, |edges| edges.divergence.memory())
             + self.hourglass.as_ref().map_or(0, |hourglass| hourglass.memory())
             + size_of_val(self.particles.position.as_slice())
-            + 2 * size_of_val(self.displacement.as_slice())
-            + 2 * size_of_val(self.force.as_slice())
+            + size_of_val(self.displacement.as_slice())
+            + 2 * size_of_val(self.velocity.as_slice())
+            + size_of_val(self.force.as_slice())
             + size_of_val(self.gradient.as_slice())
             + size_of_val(self.gradient_rate.as_slice())
             + size_of_val(self.stress.as_slice())

@@ -6,7 +6,6 @@ use super::Elastodynamics;
 use super::edges::{Edges, Slot};
 use super::settings::{Mixture, is_linear};
 use crate::operators::FoldedGradient;
-use crate::schemes::solid::Row;
 use crate::{Tensor, Vector};
 
 /// Steps of Newton's method.
@@ -163,11 +162,11 @@ impl<const D: usize> Edges<D> {
 }
 
 impl<const D: usize> Elastodynamics<D> {
-    /// Writes displacements of held components, and the slopes that `state` keeps, behind `field`, the
+    /// Writes displacements of held components, and the slopes that the `tail` of a state keeps, behind `field`, the
     /// displacements in a state.
-    pub(super) fn append_kept(&self, field: &mut [Vector<D>], state: &[f64]) {
+    pub(super) fn append_kept(&self, field: &mut [Vector<D>], tail: &[f64]) {
         let Some(edges) = &self.edges else { return };
-        let kept = &state[self.mass.len() * Row::<D>::LENGTH + Self::slopes_at()..];
+        let kept = &tail[Self::slopes_at()..];
         edges.append(self.mass.len(), field, |number, i| kept[number * D + i]);
     }
 

@@ -1,26 +1,25 @@
 //! The formulation as kick-drift-kick integrators see it: central differences.
 
+use super::fields::ColumnsMut;
 use super::{Elastodynamics, MECHANISMS};
-use crate::schemes::solid::Row;
-use crate::schemes::{SplitScheme, solid};
+use crate::schemes::{Scheme, SplitScheme, solid};
 
 impl<const D: usize> SplitScheme for Elastodynamics<D> {
     /// Two halves with the drift between are Elastodynamics (4.4), whose velocities are half way.
     fn kick(&mut self, duration: f64, state: &mut [f64]) {
-        let (rows, tail) = state.split_at_mut(self.mass.len() * Row::<D>::LENGTH);
-        solid::kick::<D>(rows, tail, (Self::ledger_length(), MECHANISMS.len()), duration);
+        let (own, tail) = ColumnsMut::<D>::of(state, self.mass.len());
+        let lengths = (Self::ledger_length(), MECHANISMS.len());
+        solid::kick(own.velocity, own.kick, tail, lengths, duration);
     }
 
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
-        let (rows, _) = state.split_at_mut(self.mass.len() * Row::<D>::LENGTH);
-        solid::drift::<D>(rows, &self.prescribed, time, step);
+        let (own, _) = ColumnsMut::<D>::of(state, self.mass.len());
+        solid::drift(own.displacement, own.velocity, &self.prescribed, time, step);
     }
 
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
-        self.load(state);
-        self.evaluate(time);
         let mut rate = std::mem::take(&mut self.rate);
-        self.external_pass(time, &mut rate);
+        self.rates(time, state, &mut rate);
         self.store(time, &rate, state);
         self.rate = rate;
     }

@@ -1,13 +1,13 @@
 //! The study as integrators, clock and output see it: nothing in it depends on time.
 
 use super::Interpolation;
-use crate::fields::{FieldDescription, FieldKind};
+use crate::fields::{FieldDescription, columns};
 use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit};
 
 /// What the study is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "interpolation",
-    fields: &FIELDS,
+    fields: Made::FIELDS,
     energies: &[],
     mechanisms: &[],
     impulses: &[],
@@ -20,26 +20,17 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     ],
 };
 
-const FIELDS: [FieldDescription; 8] = [
-    FieldDescription::new("position", "m", FieldKind::Vector, "position x"),
-    FieldDescription::new("function", "1", FieldKind::Scalar, "the function f"),
-    FieldDescription::new("approximation", "1", FieldKind::Scalar, "its interpolation <f> = W f"),
-    FieldDescription::new("error", "1", FieldKind::Scalar, "<f> - f"),
-    FieldDescription::new("gradient", "1/m", FieldKind::Vector, "the sum <grad f> = X f"),
-    FieldDescription::new(
-        "second_gradient",
-        "1/m2",
-        FieldKind::Tensor,
-        "the gradient of that, row by row",
-    ),
-    FieldDescription::new(
-        "neighbors",
-        "1",
-        FieldKind::Scalar,
-        "number of particles and ghosts in the support",
-    ),
-    FieldDescription::new("volume", "m3", FieldKind::Scalar, "quadrature volume V"),
-];
+columns! {
+    enum Made;
+    constant position: Vector, "m", "position x";
+    constant function: Scalar, "1", "the function f";
+    constant approximation: Scalar, "1", "its interpolation <f> = W f";
+    constant error: Scalar, "1", "<f> - f";
+    constant gradient: Vector, "1/m", "the sum <grad f> = X f";
+    constant second_gradient: Tensor, "1/m2", "the gradient of that, row by row";
+    constant neighbors: Scalar, "1", "number of particles and ghosts in the support";
+    constant volume: Scalar, "m3", "quadrature volume V";
+}
 
 impl<const D: usize> Scheme for Interpolation<D> {
     fn description(&self) -> &'static SchemeDescription {
@@ -52,11 +43,6 @@ impl<const D: usize> Scheme for Interpolation<D> {
 
     fn particle_count(&self) -> usize {
         self.particles.len()
-    }
-
-    /// There is no state.
-    fn row_length(&self) -> usize {
-        0
     }
 
     fn initial_state(&self) -> Vec<f64> {
@@ -84,28 +70,27 @@ impl<const D: usize> Scheme for Interpolation<D> {
         momentum.fill(0.0);
     }
 
-    fn sample(
-        &mut self,
-        _time: f64,
+    fn derive(
+        &self,
         _state: &[f64],
-        field: &str,
+        field: &FieldDescription,
         particles: &[u32],
         values: &mut Vec<f64>,
     ) {
+        let Some(made) = Made::of(field) else { return };
         for &particle in particles {
             let a = particle as usize;
-            match field {
-                "position" => values.extend_from_slice(self.particles.position[a].as_slice()),
-                "function" => values.push(self.function[a]),
-                "approximation" => values.push(self.approximation[a]),
-                "error" => values.push(self.approximation[a] - self.function[a]),
-                "gradient" => values.extend_from_slice(self.gradient[a].as_slice()),
-                "second_gradient" => {
+            match made {
+                Made::position => values.extend_from_slice(self.particles.position[a].as_slice()),
+                Made::function => values.push(self.function[a]),
+                Made::approximation => values.push(self.approximation[a]),
+                Made::error => values.push(self.approximation[a] - self.function[a]),
+                Made::gradient => values.extend_from_slice(self.gradient[a].as_slice()),
+                Made::second_gradient => {
                     values.extend(self.second_gradient[a].transpose().iter());
                 }
-                "neighbors" => values.push(self.value.row(a).count() as f64 - 1.0),
-                "volume" => values.push(self.particles.volume[a]),
-                _ => {}
+                Made::neighbors => values.push(self.value.row(a).count() as f64 - 1.0),
+                Made::volume => values.push(self.particles.volume[a]),
             }
         }
     }

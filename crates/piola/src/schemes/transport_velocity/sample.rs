@@ -1,5 +1,6 @@
 //! Fields of single particles.
 
+use super::scheme::Made;
 use super::{Forces, Rates, Row, TransportVelocity};
 use crate::Vector;
 use crate::geometry::Faces;
@@ -26,74 +27,65 @@ impl<const D: usize> TransportVelocity<D> {
         places.map(|&place| (self.rates[place as usize], self.forces[place as usize])).collect()
     }
 
-    pub(super) fn sample_field(
-        &mut self,
-        time: f64,
-        state: &[f64],
-        field: &str,
-        particles: &[u32],
-        values: &mut Vec<f64>,
-    ) {
-        if matches!(field, "summed_density" | "vorticity" | "divergence" | "neighbors") {
+    /// The stages of observation: what neighbours show, then free surfaces.
+    pub(super) fn make_fields(&mut self, stage: usize, time: f64, state: &[f64]) {
+        if stage == 1 {
             self.load(state);
             self.wall_pass(time);
-        }
-        if matches!(field, "surface" | "surface_normal") && self.settings.free_surface {
-            self.load(state);
-            self.wall_pass(time);
+        } else if self.settings.free_surface {
             self.opening_pass();
             self.find_surfaces();
-        }
-        for &number in particles {
-            let number = number as usize;
-            match field {
-                "cauchy_stress" | "von_mises" | "plastic_strain" | "temperature" => {
-                    self.push_solid_field(field, number, state, values);
-                }
-                _ => self.push_field(field, number, Row::<D>::of(state, number), values),
-            }
         }
     }
 
     /// Appends the components of one field of one particle.
-    fn push_field(&self, name: &str, number: usize, row: &[f64], values: &mut Vec<f64>) {
+    pub(super) fn push_field(
+        &self,
+        field: Made,
+        number: usize,
+        state: &[f64],
+        values: &mut Vec<f64>,
+    ) {
+        let row = Row::<D>::of(state, number);
         let velocity = Row::<D>::velocity(row);
         let place = self.support.list().places()[number] as usize;
-        match name {
-            "position" => values.extend_from_slice(&row[Row::<D>::POSITION..][..D]),
-            "velocity" => values.extend_from_slice(&row[..D]),
-            "transport_velocity" => {
+        match field {
+            Made::position => values.extend_from_slice(&row[Row::<D>::POSITION..][..D]),
+            Made::velocity => values.extend_from_slice(&row[..D]),
+            Made::transport_velocity => {
                 values.extend_from_slice((velocity + Row::<D>::deviation(row)).as_slice());
             }
-            "acceleration" => values.extend_from_slice(&row[Row::<D>::ACCELERATION..][..D]),
-            "force" => {
+            Made::acceleration => values.extend_from_slice(&row[Row::<D>::ACCELERATION..][..D]),
+            Made::force => {
                 let force = Row::<D>::acceleration(row) * self.mass[number];
                 values.extend_from_slice(force.as_slice());
             }
-            "pressure" => values.push(row[Row::<D>::PRESSURE]),
-            "density" => values.push(row[Row::<D>::DENSITY]),
-            "summed_density" => values.push(self.summed_density(place)),
-            "vorticity" => values.push(self.vorticity(place)),
-            "divergence" => values.push(self.velocity_gradient(place, |axis, i| axis == i)),
-            "surface" => {
+            Made::pressure => values.push(row[Row::<D>::PRESSURE]),
+            Made::density => values.push(row[Row::<D>::DENSITY]),
+            Made::summed_density => values.push(self.summed_density(place)),
+            Made::vorticity => values.push(self.vorticity(place)),
+            Made::divergence => values.push(self.velocity_gradient(place, |axis, i| axis == i)),
+            Made::surface => {
                 let is_surface = self.openings.get(place).is_some_and(|o| o.is_surface);
                 values.push(f64::from(is_surface && !self.is_wall[number]));
             }
-            "surface_normal" => {
+            Made::surface_normal => {
                 let normal = self.openings.get(place).map_or(Vector::zeros(), |o| o.normal);
                 values.extend_from_slice(normal.as_slice());
             }
-            "wall" => {
+            Made::wall => {
                 let is_wall = self.is_wall[number] && !Self::is_removed(row);
                 values.push(f64::from(is_wall));
             }
-            "normal" => {
+            Made::normal => {
                 let normal = self.faces(number).map_or(Vector::zeros(), Faces::between);
                 values.extend_from_slice(normal.as_slice());
             }
-            "neighbors" => values.push(self.neighbor_count(place) as f64),
-            "mass" => values.push(self.mass[number]),
-            _ => {}
+            Made::neighbors => values.push(self.neighbor_count(place) as f64),
+            Made::mass => values.push(self.mass[number]),
+            Made::cauchy_stress | Made::von_mises | Made::plastic_strain | Made::temperature => {
+                self.push_solid_field(field, number, state, values)
+            }
         }
     }
 

@@ -2,101 +2,34 @@
 
 use super::ledger::Tail;
 use super::{ENERGIES, IMPULSES, MECHANISMS, Row, TransportVelocity};
-use crate::fields::{FieldDescription, FieldKind};
+use crate::fields::{FieldDescription, columns};
 use crate::schemes::{Escape, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
 
-const FIELDS: [FieldDescription; 20] = [
-    FieldDescription::new(
-        "position",
-        "m",
-        FieldKind::Vector,
-        "current position, inside the periodic box",
-    ),
-    FieldDescription::new("velocity", "m/s", FieldKind::Vector, "momentum velocity u"),
-    FieldDescription::new(
-        "transport_velocity",
-        "m/s",
-        FieldKind::Vector,
-        "velocity uhat of the particle itself",
-    ),
-    FieldDescription::new(
-        "acceleration",
-        "m/s2",
-        FieldKind::Vector,
-        "rate of the momentum velocity",
-    ),
-    FieldDescription::new(
-        "force",
-        "N",
-        FieldKind::Vector,
-        "total force; on a wall that of the fluid",
-    ),
-    FieldDescription::new(
-        "pressure",
-        "Pa",
-        FieldKind::Scalar,
-        "pressure p, positive in compression",
-    ),
-    FieldDescription::new(
-        "density",
-        "kg/m3",
-        FieldKind::Scalar,
-        "density rho as the scheme has it",
-    ),
-    FieldDescription::new(
-        "summed_density",
-        "kg/m3",
-        FieldKind::Scalar,
-        "density as the sum over masses",
-    ),
-    FieldDescription::new("vorticity", "1/s", FieldKind::Scalar, "curl of u, in 3D its magnitude"),
-    FieldDescription::new("divergence", "1/s", FieldKind::Scalar, "divergence of u"),
-    FieldDescription::new(
-        "surface",
-        "1",
-        FieldKind::Scalar,
-        "1 on a free surface, if they are looked for",
-    ),
-    FieldDescription::new(
-        "surface_normal",
-        "1",
-        FieldKind::Vector,
-        "unit normal near a free surface",
-    ),
-    FieldDescription::new("wall", "1", FieldKind::Scalar, "1 for particles of walls, 0 for fluid"),
-    FieldDescription::new(
-        "normal",
-        "1",
-        FieldKind::Vector,
-        "unit normal of walls, towards the fluid",
-    ),
-    FieldDescription::new(
-        "cauchy_stress",
-        "Pa",
-        FieldKind::Tensor,
-        "Cauchy stress of solids, positive in tension; 0 for fluids",
-    ),
-    FieldDescription::new(
-        "von_mises",
-        "Pa",
-        FieldKind::Scalar,
-        "equivalent stress of von Mises of solids, with the stress across in plane strain",
-    ),
-    FieldDescription::new(
-        "plastic_strain",
-        "1",
-        FieldKind::Scalar,
-        "equivalent plastic strain of solids",
-    ),
-    FieldDescription::new("temperature", "K", FieldKind::Scalar, "temperature of solids"),
-    FieldDescription::new(
-        "neighbors",
-        "1",
-        FieldKind::Scalar,
-        "number of neighbours inside the support",
-    ),
-    FieldDescription::new("mass", "kg", FieldKind::Scalar, "mass, for 1 m in missing dimensions"),
-];
+columns! {
+    pub(super) enum Made;
+    derived(0) position: Vector, "m", "current position, inside the periodic box";
+    derived(0) velocity: Vector, "m/s", "momentum velocity u";
+    derived(0) transport_velocity: Vector, "m/s", "velocity uhat of the particle itself";
+    derived(0) acceleration: Vector, "m/s2", "rate of the momentum velocity";
+    derived(0) force: Vector, "N", "total force; on a wall that of the fluid";
+    derived(0) pressure: Scalar, "Pa", "pressure p, positive in compression";
+    derived(0) density: Scalar, "kg/m3", "density rho as the scheme has it";
+    derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
+    derived(1) vorticity: Scalar, "1/s", "curl of u, in 3D its magnitude";
+    derived(1) divergence: Scalar, "1/s", "divergence of u";
+    derived(2) surface: Scalar, "1", "1 on a free surface, if they are looked for";
+    derived(2) surface_normal: Vector, "1", "unit normal near a free surface";
+    derived(0) wall: Scalar, "1", "1 for particles of walls, 0 for fluid";
+    constant normal: Vector, "1", "unit normal of walls, towards the fluid";
+    derived(0) cauchy_stress: Tensor, "Pa",
+        "Cauchy stress of solids, positive in tension; 0 for fluids";
+    derived(0) von_mises: Scalar, "Pa",
+        "equivalent stress of von Mises of solids, with the stress across in plane strain";
+    derived(0) plastic_strain: Scalar, "1", "equivalent plastic strain of solids";
+    derived(0) temperature: Scalar, "K", "temperature of solids";
+    derived(1) neighbors: Scalar, "1", "number of neighbours inside the support";
+    constant mass: Scalar, "kg", "mass, for 1 m in missing dimensions";
+}
 
 /// Names and units of the figures of the formulation.
 const FIGURES: [(&str, &str); 5] =
@@ -105,7 +38,7 @@ const FIGURES: [(&str, &str); 5] =
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "transport_velocity",
-    fields: &FIELDS,
+    fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,
     impulses: &IMPULSES,
@@ -125,7 +58,7 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         self.particles.len()
     }
 
-    fn row_length(&self) -> usize {
+    fn width(&self) -> usize {
         Row::<D>::LENGTH
     }
 
@@ -195,15 +128,19 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         momentum.copy_from_slice(&self.momentum_of(state)[..count]);
     }
 
-    fn sample(
-        &mut self,
-        time: f64,
+    fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
+        self.make_fields(stage, time, state);
+    }
+
+    fn derive(
+        &self,
         state: &[f64],
-        field: &str,
+        field: &FieldDescription,
         particles: &[u32],
         values: &mut Vec<f64>,
     ) {
-        self.sample_field(time, state, field, particles, values);
+        let Some(made) = Made::of(field) else { return };
+        particles.iter().for_each(|&a| self.push_field(made, a as usize, state, values));
     }
 
     fn bodies(&self) -> &[u32] {

@@ -111,6 +111,7 @@ impl<const D: usize> Upwind<D> {
             slopes: vec![Slope::ZERO; if settings.reconstruction { count } else { 0 }],
             chunk_powers: vec![Powers::default(); chunks],
             chunk_figures: vec![ChunkFigures::NEUTRAL; chunks],
+            observed: Vec::new(),
             body_forces: input.body_forces,
             initial_velocity: initial.velocity,
             particles,

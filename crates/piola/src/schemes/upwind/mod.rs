@@ -83,6 +83,8 @@ pub struct Upwind<const D: usize> {
     slopes: Vec<Slope<f64, D>>,
     chunk_powers: Vec<Powers>,
     chunk_figures: Vec<ChunkFigures>,
+    /// Rates of the last observation that asked for them.
+    observed: Vec<f64>,
     /// What implicit steps need, if it was built for them.
     implicit: Option<Box<Implicit<D>>>,
 }

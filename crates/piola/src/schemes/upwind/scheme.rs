@@ -5,58 +5,34 @@ use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::local::deformation;
 use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Row, Upwind};
-use crate::fields::{FieldDescription, FieldKind};
+use crate::fields::{FieldDescription, columns};
 use crate::parallel;
 use crate::schemes::{
     Health, Particle, PartitionedScheme, Scheme, SchemeDescription, StepLimit, ThetaScheme,
 };
 use crate::solve::Costs;
 
-const FIELDS: [FieldDescription; 13] = [
-    FieldDescription::new("position", "m", FieldKind::Vector, "current position x"),
-    FieldDescription::new("displacement", "m", FieldKind::Vector, "x - X"),
-    FieldDescription::new("velocity", "m/s", FieldKind::Vector, "velocity v"),
-    FieldDescription::new("acceleration", "m/s2", FieldKind::Vector, "rate of the velocity"),
-    FieldDescription::new(
-        "pressure",
-        "Pa",
-        FieldKind::Scalar,
-        "pressure p(J), positive in compression",
-    ),
-    FieldDescription::new("volume_ratio", "1", FieldKind::Scalar, "volume ratio J as evolved"),
-    FieldDescription::new(
-        "determinant",
-        "1",
-        FieldKind::Scalar,
-        "determinant of the deformation gradient",
-    ),
-    FieldDescription::new(
-        "deformation_gradient",
-        "1",
-        FieldKind::Tensor,
-        "deformation gradient F, row by row",
-    ),
-    FieldDescription::new(
-        "density",
-        "kg/m3",
-        FieldKind::Scalar,
-        "current density, from the evolved J",
-    ),
-    FieldDescription::new(
-        "wave_speed",
-        "m/s",
-        FieldKind::Scalar,
-        "fastest wave, measured on the reference",
-    ),
-    FieldDescription::new("smoothing_length", "m", FieldKind::Scalar, "smoothing length h"),
-    FieldDescription::new("neighbors", "1", FieldKind::Scalar, "number of neighbours"),
-    FieldDescription::new("volume", "m3", FieldKind::Scalar, "reference quadrature volume V"),
-];
+columns! {
+    enum Made;
+    derived(0) position: Vector, "m", "current position x";
+    derived(0) displacement: Vector, "m", "x - X";
+    derived(0) velocity: Vector, "m/s", "velocity v";
+    derived(1) acceleration: Vector, "m/s2", "rate of the velocity";
+    derived(0) pressure: Scalar, "Pa", "pressure p(J), positive in compression";
+    derived(0) volume_ratio: Scalar, "1", "volume ratio J as evolved";
+    derived(0) determinant: Scalar, "1", "determinant of the deformation gradient";
+    derived(0) deformation_gradient: Tensor, "1", "deformation gradient F, row by row";
+    derived(0) density: Scalar, "kg/m3", "current density, from the evolved J";
+    derived(0) wave_speed: Scalar, "m/s", "fastest wave, measured on the reference";
+    constant smoothing_length: Scalar, "m", "smoothing length h";
+    constant neighbors: Scalar, "1", "number of neighbours";
+    constant volume: Scalar, "m3", "reference quadrature volume V";
+}
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "upwind",
-    fields: &FIELDS,
+    fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,
     impulses: &IMPULSES,
@@ -76,7 +52,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         self.particles.len()
     }
 
-    fn row_length(&self) -> usize {
+    fn width(&self) -> usize {
         Row::<D>::LENGTH
     }
 
@@ -133,23 +109,25 @@ impl<const D: usize> Scheme for Upwind<D> {
         momentum.copy_from_slice(&all[..momentum.len()]);
     }
 
-    fn sample(
-        &mut self,
-        time: f64,
+    fn observe(&mut self, _stage: usize, time: f64, state: &[f64]) {
+        let mut rate = std::mem::take(&mut self.observed);
+        rate.resize(state.len(), 0.0);
+        self.rates(time, state, &mut rate);
+        self.observed = rate;
+    }
+
+    fn derive(
+        &self,
         state: &[f64],
-        field: &str,
+        field: &FieldDescription,
         particles: &[u32],
         values: &mut Vec<f64>,
     ) {
-        let mut rate = Vec::new();
-        if field == "acceleration" {
-            rate.resize(state.len(), 0.0);
-            self.rates(time, state, &mut rate);
-        }
+        let Some(made) = Made::of(field) else { return };
         for &particle in particles {
             let a = particle as usize;
             let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            self.push_field(field, a, row, &rate, values);
+            self.push_field(made, a, row, values);
         }
     }
 
@@ -226,31 +204,30 @@ impl<const D: usize> Scheme for Upwind<D> {
 
 impl<const D: usize> Upwind<D> {
     /// Appends the components of one field of one particle.
-    fn push_field(&self, name: &str, a: usize, row: &[f64], rate: &[f64], values: &mut Vec<f64>) {
+    fn push_field(&self, made: Made, a: usize, row: &[f64], values: &mut Vec<f64>) {
         let position = &row[Row::<D>::POSITION..Row::<D>::DEFORMATION];
         let ratio = row[Row::<D>::VOLUME_RATIO];
-        match name {
-            "position" => values.extend_from_slice(position),
-            "displacement" => {
+        match made {
+            Made::position => values.extend_from_slice(position),
+            Made::displacement => {
                 let reference = self.particles.position[a].iter();
                 values.extend(position.iter().zip(reference).map(|(x, reference)| x - reference));
             }
-            "velocity" => values.extend_from_slice(&row[..D]),
-            "acceleration" => {
-                values.extend_from_slice(&rate[a * Row::<D>::LENGTH..][..D]);
+            Made::velocity => values.extend_from_slice(&row[..D]),
+            Made::acceleration => {
+                values.extend_from_slice(&self.observed[a * Row::<D>::LENGTH..][..D]);
             }
-            "pressure" => values.push(self.law(a).pressure(ratio)),
-            "volume_ratio" => values.push(ratio),
-            "determinant" => values.push(tensor::determinant(&deformation::<D>(row))),
-            "deformation_gradient" => {
+            Made::pressure => values.push(self.law(a).pressure(ratio)),
+            Made::volume_ratio => values.push(ratio),
+            Made::determinant => values.push(tensor::determinant(&deformation::<D>(row))),
+            Made::deformation_gradient => {
                 values.extend_from_slice(&row[Row::<D>::DEFORMATION..Row::<D>::LENGTH]);
             }
-            "density" => values.push(self.reference[a].density / ratio),
-            "wave_speed" => values.push(self.wave_speed(a, row)),
-            "smoothing_length" => values.push(self.support.smoothing_length[a]),
-            "neighbors" => values.push(self.support.list.row(a).len() as f64),
-            "volume" => values.push(self.particles.volume[a]),
-            _ => {}
+            Made::density => values.push(self.reference[a].density / ratio),
+            Made::wave_speed => values.push(self.wave_speed(a, row)),
+            Made::smoothing_length => values.push(self.support.smoothing_length[a]),
+            Made::neighbors => values.push(self.support.list.row(a).len() as f64),
+            Made::volume => values.push(self.particles.volume[a]),
         }
     }
 }

@@ -9,8 +9,7 @@ use super::*;
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 use crate::output::{Compression, vtp};
 
-const PRESSURE: FieldDescription =
-    FieldDescription { name: "pressure", unit: "Pa", kind: FieldKind::Scalar, meaning: "" };
+const PRESSURE: FieldDescription = FieldDescription::new("pressure", "Pa", FieldKind::Scalar, "");
 
 /// `instants` files of `count` particles in 2D; particle i stands at (i, -i), and its pressure is
 /// i + 1000 times the number of the file.

@@ -4,6 +4,7 @@ use piola_formulas::hypoelastic::{shear_energy, von_mises};
 
 use super::{ENERGY, MATTER, Matter, Solid, TEMPERATURE, entry, full};
 use crate::parallel;
+use crate::schemes::transport_velocity::scheme::Made;
 use crate::schemes::transport_velocity::{PressureRule, Row, Side, TransportVelocity};
 use crate::{Tensor, Vector};
 
@@ -144,7 +145,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// Appends a field of solids; fluids have zeros.
     pub(in super::super) fn push_solid_field(
         &self,
-        name: &str,
+        field: Made,
         number: usize,
         state: &[f64],
         values: &mut Vec<f64>,
@@ -152,18 +153,18 @@ impl<const D: usize> TransportVelocity<D> {
         let row = Row::<D>::of(state, number);
         let pressure = row[Row::<D>::PRESSURE];
         if self.solids.is_none() {
-            let count = if name == "cauchy_stress" { D * D } else { 1 };
+            let count = if field == Made::cauchy_stress { D * D } else { 1 };
             values.extend(std::iter::repeat_n(0.0, count));
             return;
         }
         let matter = self.matter_of(number, state);
-        match name {
-            "cauchy_stress" => values.extend((0..D * D).map(|k| {
+        match field {
+            Made::cauchy_stress => values.extend((0..D * D).map(|k| {
                 let (i, j) = (k / D, k % D);
                 matter[entry(i, j)] - if i == j { pressure } else { 0.0 }
             })),
-            "von_mises" => values.push(von_mises(&full(matter))),
-            "plastic_strain" => values.push(matter[super::PLASTIC]),
+            Made::von_mises => values.push(von_mises(&full(matter))),
+            Made::plastic_strain => values.push(matter[super::PLASTIC]),
             _ => values.push(matter[TEMPERATURE]),
         }
     }

@@ -310,7 +310,10 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
     }
 
     fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64 {
-        let count = self.particles.len();
-        kinetic_distance::<D>([one, other], Row::<D>::LENGTH, count, |a| self.mass(a))
+        let velocities = [one, other].map(|state| {
+            let rows = state.chunks_exact(Row::<D>::LENGTH).take(self.particles.len());
+            rows.map(|row| Vector::<D>::from_column_slice(&row[..D])).collect::<Vec<_>>()
+        });
+        kinetic_distance(velocities.each_ref().map(Vec::as_slice), |a| self.mass(a))
     }
 }

@@ -1,0 +1,93 @@
+//! A state as those see it who look at its fields.
+
+use super::Scheme;
+use crate::fields::{FieldDescription, FieldValues, Snapshot};
+
+/// A formulation at a state of a moment, whose fields can be read. The stages that make derived fields
+/// are run when the first field needs them, and once, whoever looks.
+pub struct Observation<'a> {
+    scheme: &'a mut dyn Scheme,
+    time: f64,
+    state: &'a [f64],
+    /// Stages that have been run.
+    stages: usize,
+}
+
+impl<'a> Observation<'a> {
+    /// Of `state` at `time` in s.
+    pub fn new(scheme: &'a mut dyn Scheme, time: f64, state: &'a [f64]) -> Self {
+        Self { scheme, time, state, stages: 0 }
+    }
+
+    /// The formulation.
+    pub fn scheme(&self) -> &dyn Scheme {
+        self.scheme
+    }
+
+    /// The formulation, to ask it for more than fields: stages are run again after this.
+    pub fn scheme_mut(&mut self) -> &mut (dyn Scheme + 'a) {
+        self.stages = 0;
+        self.scheme
+    }
+
+    /// Whether the time is a load factor.
+    pub fn is_static(&mut self) -> bool {
+        self.scheme.equilibrium().is_some()
+    }
+
+    /// Simulated time in s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The state.
+    pub fn state(&self) -> &'a [f64] {
+        self.state
+    }
+
+    /// Appends the components of one of the [`fields`](super::SchemeDescription::fields) for each of
+    /// `particles` (indices in memory) to `values`.
+    pub fn read(&mut self, field: &FieldDescription, particles: &[u32], values: &mut Vec<f64>) {
+        while self.stages < field.stages() {
+            self.stages += 1;
+            self.scheme.observe(self.stages, self.time, self.state);
+        }
+        if !field.is_stored() {
+            return self.scheme.derive(self.state, field, particles, values);
+        }
+        let column = self.scheme.column(field);
+        field.read(&self.state[column], self.scheme.dimension(), particles, values);
+    }
+
+    /// The components of the field called `name` for each of `particles`, nothing of a name that the
+    /// formulation does not have.
+    pub fn values(&mut self, name: &str, particles: &[u32]) -> Vec<f64> {
+        let mut values = Vec::new();
+        if let Some(field) = self.scheme.description().field(name) {
+            self.read(field, particles, &mut values);
+        }
+        values
+    }
+
+    /// Positions and the named fields of all particles, after `step` steps; names that the
+    /// formulation does not have are left out.
+    pub fn snapshot(&mut self, step: u64, names: &[&str]) -> Snapshot {
+        let particles: Vec<u32> = (0..self.scheme.particle_count() as u32).collect();
+        let fields = self.scheme.description().fields.iter();
+        let fields = fields.filter(|field| names.contains(&field.name)).map(|field| {
+            let mut values = Vec::new();
+            self.read(field, &particles, &mut values);
+            FieldValues { description: *field, values }
+        });
+        let fields = fields.collect();
+        Snapshot {
+            dimension: self.scheme.dimension(),
+            time: self.time,
+            step,
+            positions: self.values("position", &particles),
+            ids: self.scheme.ids().to_vec(),
+            bodies: self.scheme.bodies().to_vec(),
+            fields,
+        }
+    }
+}
