@@ -29,7 +29,7 @@ pub fn softening(smoothing_length: f64) -> f64 {
 }
 
 /// `1 / ((rho_a + rho_b) (r_ab^2 + 0.01 h^2))`, which the exchanges below share.
-#[inline]
+#[inline(always)]
 pub fn exchange_scale<T: Number>(densities: T, square: T, softening: f64) -> T {
     ((square + softening) * densities).recip()
 }
@@ -37,7 +37,7 @@ pub fn exchange_scale<T: Number>(densities: T, square: T, softening: f64) -> T {
 /// Diffusion between two particles: `4 nu (r_ab . grad W_ab) scale` with [`exchange_scale`],
 /// CTVF (26), (27), theory (23). Times `m_b` and the difference of a field between a and b it is the rate at
 /// a of `nu lap`. Negative: what is larger at a than around it falls.
-#[inline]
+#[inline(always)]
 pub fn diffusion<T: Number>(diffusivity: f64, square: T, slope: T, scale: T) -> T {
     square * slope * scale * (4.0 * diffusivity)
 }
@@ -46,14 +46,14 @@ pub fn diffusion<T: Number>(diffusivity: f64, square: T, slope: T, scale: T) -> 
 /// `approach = u_ab . r_ab` and [`exchange_scale`]; zero for those that part.
 ///
 /// It adds to the pressure: `- sum_b m_b Pi_ab grad W_ab`.
-#[inline]
-pub fn artificial_viscosity<T: Number>(strength: f64, approach: T, scale: T) -> T {
+#[inline(always)]
+pub fn artificial_viscosity<T: Number>(strength: T, approach: T, scale: T) -> T {
     // Pi = -alpha h c phi / mean density, phi = approach / (r^2 + 0.01 h^2).
-    T::select(approach.below(0.0), approach * scale * (-2.0 * strength), T::zero())
+    T::select(approach.below(0.0), approach * scale * (strength * -2.0), T::zero())
 }
 
 /// The factor `1 + R (W_ab / W(dx))^4` of CTVF (35), `ratio = W_ab / W(dx)`, with R = 0.2.
-#[inline]
+#[inline(always)]
 pub fn repulsion<T: Number>(ratio: T) -> T {
     let square = ratio * ratio;
     square * square * 0.2 + 1.0

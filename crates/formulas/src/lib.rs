@@ -10,10 +10,13 @@ mod frame;
 pub mod hyperelastic;
 pub mod hypoelastic;
 pub mod kernels;
+mod lanes;
 mod number;
+pub mod pairs;
 mod power;
 pub mod riemann;
 pub mod tensor;
 pub mod volumetric;
 
+pub use lanes::{Lanes, Lanes4, Mask4, WIDTH};
 pub use number::{Number, Scalar};

@@ -190,7 +190,9 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
             }
             let case = read(variant, *level).map_err(|fault| fault.report.trim_end().to_owned())?;
             let traits = base.traits_of(variant);
-            if traits.is_long && !arguments.is_long_wanted(variant) || only_paper && !traits.is_paper {
+            if traits.is_long && !arguments.is_long_wanted(variant)
+                || only_paper && !traits.is_paper
+            {
                 runs.push((variant.map(str::to_owned), case, None));
                 return Err("it takes long, and has not been run".to_owned());
             }

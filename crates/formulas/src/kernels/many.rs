@@ -4,6 +4,19 @@ use multiversion::multiversion;
 
 use super::{Kernel, KernelShape, KernelVisitor, ScaledKernel};
 
+/// What of a kernel a sum over neighbours needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// Neither value nor slope, only who is there.
+    Nothing,
+    /// `W`.
+    Value,
+    /// `W' / r`.
+    Slope,
+    /// Both.
+    Both,
+}
+
 /// A kernel of a smoothing length that fills arrays: one indirect call for many neighbours.
 ///
 /// Distances are given by their squares in m^2, all of them positive. Beyond the support

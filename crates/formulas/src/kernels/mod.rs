@@ -22,7 +22,7 @@ mod splines;
 mod wendland;
 
 pub use gaussian::Gaussian;
-pub use many::ManyDistances;
+pub use many::{ManyDistances, Needs};
 pub use mollifier::{ModifiedMollifier, Mollifier};
 pub use polynomial::{Linear, Lucy, Quadratic};
 pub use registry::{Kernel, KernelVisitor};

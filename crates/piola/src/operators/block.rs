@@ -1,7 +1,11 @@
 //! Neighbours of one particle in arrays, so that one operation acts on many of them.
 
+use nalgebra::{ArrayStorage, SVector};
+use piola_formulas::pairs::Moving;
+use piola_formulas::{Lanes, Lanes4, WIDTH};
+
+use super::LANES;
 use super::inside::Reach;
-use super::{LANES, Lanes};
 use crate::Vector;
 use crate::neighbors::shorter_way;
 
@@ -11,18 +15,22 @@ pub const BLOCK: usize = 128;
 /// Groups a block.
 const GROUPS: usize = BLOCK / LANES;
 
+/// Registers a block.
+const QUADS: usize = BLOCK / WIDTH;
+
 /// Some neighbours b of one particle a, all inside its support, in arrays over neighbours.
 ///
 /// The last group of [`LANES`] is filled up with its last neighbour, at a distance at which values
 /// and slopes are zero.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub struct NeighborBlock<const D: usize> {
-    length: usize,
-    places: [u32; BLOCK],
     separations: [[f64; BLOCK]; D],
     pub(super) squares: [f64; BLOCK],
     pub(super) values: [f64; BLOCK],
     pub(super) slopes: [f64; BLOCK],
+    places: [u32; BLOCK],
+    length: usize,
 }
 
 impl<const D: usize> Default for NeighborBlock<D> {
@@ -38,74 +46,41 @@ impl<const D: usize> Default for NeighborBlock<D> {
     }
 }
 
-/// One neighbour b of a particle a.
-#[derive(Clone, Copy, Debug)]
-pub struct Neighbor<const D: usize> {
-    /// Place of b in memory.
-    pub place: usize,
-    /// `r_ab = x_a - x_b` in m.
-    pub separation: Vector<D>,
-    /// `r_ab^2` in m^2.
-    pub square: f64,
-    /// `W_ab` in m^-D, if it was asked for.
-    pub value: f64,
-    /// `W'_ab / r_ab` in m^-(D+2), if it was asked for: the gradient `grad_a W_ab` is this times
-    /// the separation.
-    pub slope: f64,
-}
-
-/// Some neighbours of a block, one a lane.
-#[derive(Clone, Copy, Debug)]
-pub struct NeighborGroup<'a, const D: usize> {
-    /// Places in memory.
-    pub places: &'a [u32; LANES],
-    /// `r_ab = x_a - x_b` in m, component by component.
-    pub separations: [&'a Lanes; D],
-    /// `r_ab^2` in m^2.
-    pub squares: &'a Lanes,
-    /// `W_ab` in m^-D, if it was asked for.
-    pub values: &'a Lanes,
-    /// `W'_ab / r_ab` in m^-(D+2), if it was asked for.
-    pub slopes: &'a Lanes,
-}
-
-impl<const D: usize> NeighborGroup<'_, D> {
-    /// The neighbour of one lane.
-    #[inline(always)]
-    pub fn neighbor(&self, lane: usize) -> Neighbor<D> {
-        Neighbor {
-            place: self.places[lane] as usize,
-            separation: Vector::from_fn(|axis, _| self.separations[axis][lane]),
-            square: self.squares[lane],
-            value: self.values[lane],
-            slope: self.slopes[lane],
-        }
-    }
-}
-
 impl<const D: usize> NeighborBlock<D> {
-    /// The neighbours in order, by groups.
+    /// Number of neighbours, without what fills up the last group.
     #[inline(always)]
-    pub fn groups(&self) -> impl Iterator<Item = NeighborGroup<'_, D>> {
-        (0..self.length.min(BLOCK).div_ceil(LANES)).map(|group| NeighborGroup {
-            places: &self.places.as_chunks().0[group],
-            separations: std::array::from_fn(|axis| &self.separations[axis].as_chunks().0[group]),
-            squares: &self.squares.as_chunks().0[group],
-            values: &self.values.as_chunks().0[group],
-            slopes: &self.slopes.as_chunks().0[group],
-        })
+    pub(super) fn len(&self) -> usize {
+        self.length.min(BLOCK)
     }
 
-    /// The neighbours in order.
-    #[inline]
-    pub fn iter(&self) -> impl Iterator<Item = Neighbor<D>> {
-        (0..self.length.min(BLOCK)).map(|k| Neighbor {
-            place: self.places[k] as usize,
+    /// Slots and pairs of the four neighbours from the `first` on, a multiple of four.
+    #[inline(always)]
+    pub(super) fn four(&self, first: usize) -> ([u32; WIDTH], Moving<Lanes4, D>) {
+        let quad = first / WIDTH % QUADS;
+        let of = |numbers: &[f64; BLOCK]| Lanes4::load(numbers.as_chunks().0[quad]);
+        let mut separation = [Lanes4::from(0.0); D];
+        for (component, numbers) in separation.iter_mut().zip(&self.separations) {
+            *component = of(numbers);
+        }
+        let pair = Moving {
+            separation: SVector::from_array_storage(ArrayStorage([separation; 1])),
+            square: of(&self.squares),
+            value: of(&self.values),
+            slope: of(&self.slopes),
+        };
+        (self.places.as_chunks().0[quad], pair)
+    }
+
+    /// Slot and pair of neighbour `k`.
+    #[inline(always)]
+    pub(super) fn one(&self, k: usize) -> (usize, Moving<f64, D>) {
+        let pair = Moving {
             separation: Vector::from_fn(|axis, _| self.separations[axis][k]),
             square: self.squares[k],
             value: self.values[k],
             slope: self.slopes[k],
-        })
+        };
+        (self.places[k] as usize, pair)
     }
 
     /// Takes the first `length` of the neighbours at `places`, whole groups that are at most

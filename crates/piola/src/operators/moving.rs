@@ -1,9 +1,12 @@
 //! Neighbours of moving particles, gathered in blocks.
 
 use multiversion::multiversion;
-use piola_formulas::kernels::{Kernel, ManyDistances};
+use piola_formulas::kernels::{Kernel, ManyDistances, Needs};
+use piola_formulas::pairs::{Moving, MovingPair};
+use piola_formulas::{Lanes4, WIDTH};
 
 use super::block::{BLOCK, NeighborBlock};
+use super::gather::{Among, Pairs};
 use super::inside::{InsideRows, Reach};
 use crate::Vector;
 use crate::neighbors::{Domain, NeighborError, SkinList};
@@ -15,26 +18,6 @@ pub struct Remaining<'a> {
     /// Whole groups, and how many there are before they are filled up.
     row: (&'a [u32], usize),
     then: (&'a [u32], usize),
-}
-
-impl Remaining<'_> {
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.row.0.is_empty() && self.then.0.is_empty()
-    }
-}
-
-/// What of the kernel a sum needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Needs {
-    /// Neither value nor slope, only who is there.
-    Nothing,
-    /// `W`.
-    Value,
-    /// `W' / r`.
-    Slope,
-    /// Both.
-    Both,
 }
 
 /// The neighbours of moving particles that all have the same smoothing length.
@@ -139,25 +122,6 @@ impl<const D: usize> MovingSupport<D> {
         self.kernel.value(D, 0.0, self.smoothing_length)
     }
 
-    /// The neighbours of the particle at `place` that are not passive, before the first block.
-    #[inline]
-    pub fn active(&self, place: usize) -> Remaining<'_> {
-        Remaining { place, row: self.inside.active(place), then: (&[], 0) }
-    }
-
-    /// The passive neighbours of the particle at `place`, before the first block.
-    #[inline]
-    pub fn passive(&self, place: usize) -> Remaining<'_> {
-        Remaining { place, row: self.inside.passive(place), then: (&[], 0) }
-    }
-
-    /// All neighbours of the particle at `place`, the passive ones last, before the first block.
-    #[inline]
-    pub fn all(&self, place: usize) -> Remaining<'_> {
-        let (row, then) = (self.inside.active(place), self.inside.passive(place));
-        Remaining { place, row, then }
-    }
-
     /// The places of the neighbours of the particle at `place`: those that are not passive, and the
     /// passive ones.
     #[inline]
@@ -166,20 +130,35 @@ impl<const D: usize> MovingSupport<D> {
             .map(|(places, count)| &places[..count])
     }
 
-    /// Fills `block` with the next neighbours of a particle; false when there is none left.
+    /// Bytes of lists and positions.
+    pub fn memory(&self) -> usize {
+        self.list.memory() + self.inside.memory()
+    }
+}
+
+impl<const D: usize> Pairs for MovingSupport<D> {
+    type Pair = MovingPair<D>;
+    type Row<'a> = Remaining<'a>;
+    type Block = NeighborBlock<D>;
+
     #[inline]
-    pub fn fill(
-        &self,
-        rest: &mut Remaining<'_>,
-        needs: Needs,
-        block: &mut NeighborBlock<D>,
-    ) -> bool {
+    fn row(&self, place: usize, among: Among) -> Remaining<'_> {
+        let (row, then) = match among {
+            Among::Active => (self.inside.active(place), (&[][..], 0)),
+            Among::Passive => (self.inside.passive(place), (&[][..], 0)),
+            Among::All => (self.inside.active(place), self.inside.passive(place)),
+        };
+        Remaining { place, row, then }
+    }
+
+    #[inline]
+    fn next(&self, rest: &mut Remaining<'_>, needs: Needs, block: &mut NeighborBlock<D>) -> usize {
         if rest.row.0.is_empty() {
             rest.row = std::mem::take(&mut rest.then);
         }
         let (places, length) = rest.row;
         if places.is_empty() {
-            return false;
+            return 0;
         }
         let (places, left) = places.split_at(places.len().min(BLOCK));
         rest.row = (left, length.saturating_sub(BLOCK));
@@ -194,12 +173,17 @@ impl<const D: usize> MovingSupport<D> {
             Needs::Slope => self.many.slopes(squares, slopes),
             Needs::Both => self.many.both(squares, values, slopes),
         }
-        true
+        block.len()
     }
 
-    /// Bytes of lists and positions.
-    pub fn memory(&self) -> usize {
-        self.list.memory() + self.inside.memory()
+    #[inline(always)]
+    fn four(&self, block: &NeighborBlock<D>, first: usize) -> ([u32; WIDTH], Moving<Lanes4, D>) {
+        block.four(first)
+    }
+
+    #[inline(always)]
+    fn one(&self, block: &NeighborBlock<D>, k: usize) -> (usize, Moving<f64, D>) {
+        block.one(k)
     }
 }
 
@@ -224,19 +208,31 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
+    use super::super::LANES;
     use super::*;
+    use piola_formulas::Lanes;
 
     /// What [`MovingSupport`] shows of a particle: numbers in order, the passive ones last.
     fn shown<const D: usize>(support: &MovingSupport<D>, number: usize) -> Vec<u32> {
         let place = support.list().places()[number] as usize;
-        let (mut rest, mut block) = (support.all(place), NeighborBlock::default());
+        let (kernel, h) = (support.kernel(), support.smoothing_length());
+        let (mut row, mut block) = (support.row(place, Among::All), NeighborBlock::default());
         let mut numbers = Vec::new();
-        while support.fill(&mut rest, Needs::Both, &mut block) {
-            numbers.extend(block.iter().map(|b| support.list().numbers()[b.place]));
+        loop {
+            let count = support.next(&mut row, Needs::Both, &mut block);
+            if count == 0 {
+                break;
+            }
+            let (mut all, mut true_ones) = (0.0, 0.0);
+            for k in 0..count {
+                let (other, pair) = support.one(&block, k);
+                numbers.push(support.list().numbers()[other]);
+                true_ones += kernel.value(D, pair.square.sqrt(), h);
+            }
             // Lanes that are filled up add nothing.
-            let (kernel, h) = (support.kernel(), support.smoothing_length());
-            let all: f64 = block.groups().flat_map(|group| group.values.to_vec()).sum();
-            let true_ones: f64 = block.iter().map(|b| kernel.value(D, b.square.sqrt(), h)).sum();
+            for first in (0..count.next_multiple_of(LANES)).step_by(WIDTH) {
+                all += support.four(&block, first).1.value.store().iter().sum::<f64>();
+            }
             assert!((all - true_ones).abs() <= 1e-13 * all);
         }
         numbers

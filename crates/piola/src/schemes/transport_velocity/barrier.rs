@@ -1,7 +1,11 @@
 //! What keeps fluid in front of walls, theory (80).
 
+use std::ops::ControlFlow;
+
+use piola_formulas::kernels::Needs;
+
 use super::{Row, Shifting, TransportVelocity};
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{Among, NeighborBlock, visit};
 use crate::{Vector, parallel};
 
 /// What of a spacing in front of a face a particle touches it.
@@ -82,13 +86,15 @@ impl<const D: usize> TransportVelocity<D> {
                     row.walls += holds[place].acceleration;
                     continue;
                 }
-                let mut rest = self.support.active(place);
-                while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
-                    for neighbor in block.iter().filter(|b| holds[b.place].wall == place as u32) {
-                        let ratio = sides[neighbor.place].mass() / sides[place].mass();
-                        row.walls -= holds[neighbor.place].acceleration * ratio;
+                let add = |other: usize, _: &_| {
+                    if holds[other].wall == place as u32 {
+                        let ratio = sides[other].mass() / sides[place].mass();
+                        row.walls -= holds[other].acceleration * ratio;
                     }
-                }
+                    ControlFlow::<()>::Continue(())
+                };
+                let (pairs, needs) = (&self.support, Needs::Nothing);
+                let _ = visit(pairs, place, Among::Active, needs, &mut block, add);
             }
         });
         self.forces = forces;
@@ -97,38 +103,48 @@ impl<const D: usize> TransportVelocity<D> {
     /// What walls do to the particle at `place`. In a corner several faces do.
     fn hold_at(&self, place: usize, block: &mut NeighborBlock<D>) -> Hold<D> {
         let mut hold = Hold::default();
-        let mut rest = self.support.passive(place);
-        if rest.is_empty() {
+        let [_, walls] = self.support.places_of(place);
+        if walls.is_empty() {
             return hold;
         }
-        let (side, spacing) = (&self.sides[place], self.particles.spacing[0]);
         let load = self.forces[place].total();
-        while self.support.fill(&mut rest, Needs::Nothing, block) {
-            for neighbor in block.iter() {
-                let number = self.support.list().numbers()[neighbor.place];
-                let Some(index) = self.wall_of(number) else { continue };
-                let Some((height, normal)) = self.over(index, &neighbor.separation) else {
-                    continue;
-                };
-                if !(-spacing..TOUCH * spacing).contains(&height) {
-                    continue;
-                }
-                let motion = &self.wall_values[index].motion;
-                let shift = (side.deviation - hold.deviation).dot(normal).min(0.0);
-                let mut approach = (side.velocity - motion).dot(normal);
-                match self.settings.shifting {
-                    Shifting::Sun { .. } => hold.deviation += normal * shift,
-                    _ => approach += shift,
-                }
-                let rate = self.fluid.wave_speed / spacing;
-                let push = -(load + hold.acceleration).dot(normal) - approach * rate;
-                if push > 0.0 {
-                    hold.acceleration += normal * push;
-                    hold.wall = neighbor.place as u32;
-                }
-            }
-        }
+        let (pairs, needs) = (&self.support, Needs::Nothing);
+        let _ = visit(pairs, place, Among::Passive, needs, block, |wall, pair| {
+            self.hold_by(wall, &pair.separation, place, &load, &mut hold);
+            ControlFlow::<()>::Continue(())
+        });
         hold
+    }
+
+    /// Adds what the wall particle at `wall` does to the particle at `place`, which stands at a
+    /// `separation` from it under a `load` of m/s^2.
+    fn hold_by(
+        &self,
+        wall: usize,
+        separation: &Vector<D>,
+        place: usize,
+        load: &Vector<D>,
+        hold: &mut Hold<D>,
+    ) {
+        let (side, spacing) = (&self.sides[place], self.particles.spacing[0]);
+        let Some(index) = self.wall_of(self.support.list().numbers()[wall]) else { return };
+        let Some((height, normal)) = self.over(index, separation) else { return };
+        if !(-spacing..TOUCH * spacing).contains(&height) {
+            return;
+        }
+        let motion = &self.wall_values[index].motion;
+        let shift = (side.deviation - hold.deviation).dot(normal).min(0.0);
+        let mut approach = (side.velocity - motion).dot(normal);
+        match self.settings.shifting {
+            Shifting::Sun { .. } => hold.deviation += normal * shift,
+            _ => approach += shift,
+        }
+        let rate = self.fluid.wave_speed / spacing;
+        let push = -(load + hold.acceleration).dot(normal) - approach * rate;
+        if push > 0.0 {
+            hold.acceleration += normal * push;
+            hold.wall = wall as u32;
+        }
     }
 
     /// Which wall particle has a number.

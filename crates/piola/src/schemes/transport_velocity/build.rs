@@ -2,12 +2,14 @@
 
 use piola_formulas::fluid;
 use piola_formulas::kernels::Kernel;
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::fluid::FluidSide;
 use thiserror::Error;
 
 use super::inspect::ChunkFigures;
 use super::shifting::Iteration;
 use super::{
-    Continua, DensityRule, Fluid, Forces, Hold, Opening, Rates, Row, Settings, Side, Slip, Solids,
+    Continua, DensityRule, Fluid, Forces, Hold, Opening, Rates, Row, Settings, Slip, Solids,
     SolidsInput, TransportVelocity, WallParticle, WallValues,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -176,7 +178,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
         let mut scheme = Self {
             mass: mass.collect(),
-            sides: vec![Side::default(); count],
+            sides: vec![FluidSide::zero(); count],
             densities,
             rates: vec![Rates::default(); count],
             forces: vec![Forces::default(); count],

@@ -1,28 +1,25 @@
 //! The density as a sum over masses.
 
 use piola_formulas::fluid;
+use piola_formulas::pairs::sums::Density;
 
 use super::{DensityRule, PressureRule, Side, TransportVelocity};
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::parallel;
 
 impl<const D: usize> TransportVelocity<D> {
     /// Fills `densities` with `rho_a = sum_b m_b W_ab`, walls and a itself included.
     pub(super) fn sum_densities(&mut self) {
         let mut densities = std::mem::take(&mut self.densities);
-        let (support, sides, centre) = (&self.support, &self.sides, self.support.centre());
+        let (support, sides) = (&self.support, self.sides.as_slice());
+        let sum = Term { law: Density::<D>, source: sides, among: Among::All };
+        let centre = support.centre();
         parallel::for_each_chunk(&mut densities, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, density) in rows.iter_mut().enumerate() {
                 let place = first + offset;
-                let mut sum = sides[place].mass() * centre;
-                let mut rest = support.all(place);
-                while support.fill(&mut rest, Needs::Value, &mut block) {
-                    for neighbor in block.iter() {
-                        sum += sides[neighbor.place].mass() * neighbor.value;
-                    }
-                }
-                *density = sum;
+                *density = sides[place].mass() * centre;
+                add_at(support, &sum, place, &mut block, density);
             }
         });
         self.densities = densities;

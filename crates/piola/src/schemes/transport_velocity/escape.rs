@@ -1,9 +1,13 @@
 //! Particles of the fluid that leave it: through a wall, or out of the box around everything.
 
+use std::ops::ControlFlow;
+
+use piola_formulas::kernels::Needs;
+
 use super::ledger::Tail;
 use super::{BY_REMOVAL, Row, TransportVelocity};
 use crate::Vector;
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{Among, NeighborBlock, visit};
 use crate::parallel;
 use crate::schemes::Escape;
 
@@ -128,19 +132,15 @@ impl<const D: usize> TransportVelocity<D> {
         }) {
             return Some(None);
         }
-        let mut rest = self.support.passive(place);
-        if rest.is_empty() {
-            return None;
-        }
         let mut nearest = None::<(f64, Vector<D>, usize)>;
-        let mut block = NeighborBlock::default();
-        while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
-            for neighbor in block.iter() {
-                if nearest.is_none_or(|(square, ..)| neighbor.square < square) {
-                    nearest = Some((neighbor.square, neighbor.separation, neighbor.place));
+        let block = &mut NeighborBlock::default();
+        let _ =
+            visit(&self.support, place, Among::Passive, Needs::Nothing, block, |other, pair| {
+                if nearest.is_none_or(|(square, ..)| pair.square < square) {
+                    nearest = Some((pair.square, pair.separation, other));
                 }
-            }
-        }
+                ControlFlow::<()>::Continue(())
+            });
         let (_, separation, wall) = nearest?;
         let number = list.numbers()[wall];
         let (_, normal) = self.over(self.wall_of(number)?, &separation)?;

@@ -1,12 +1,13 @@
 //! The accelerations.
 
-use multiversion::multiversion;
 use piola_formulas::fluid;
+use piola_formulas::pairs::fluid::{
+    FULL, ForceConstants, ForceSums, Forces as Law, MIXED, NONE, Wall, WallForces,
+};
 
-use super::gather::{Constants, FULL, MIXED, NONE, kind_of, wall_force};
-use super::{Dilatation, Shifting, TransportVelocity};
-use crate::operators::{Needs, NeighborBlock};
-use crate::{Vector, parallel};
+use super::{Dilatation, Shifting, Side, TransportVelocity};
+use crate::Vector;
+use crate::operators::{Among, Term, gather};
 
 /// Accelerations of a particle in m/s^2, term by term, and sums that the same pass gathers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +73,22 @@ impl<const D: usize> Forces<D> {
     }
 }
 
+impl<const D: usize> Forces<D> {
+    /// The accelerations of a particle with these sums, without body forces.
+    fn new(sums: &ForceSums<f64, D>, me: &Side<D>) -> Self {
+        Self {
+            pressure: sums.pressure,
+            viscosity: sums.viscosity,
+            artificial_viscosity: sums.artificial_viscosity,
+            transport: me.velocity * sums.stretch + sums.carried,
+            walls: sums.walls,
+            body_force: Vector::zeros(),
+            crowding: sums.crowding,
+            opening: -sums.volume,
+        }
+    }
+}
+
 impl<const D: usize> TransportVelocity<D> {
     /// Fills `forces` from the sides, without body forces. On wall particles it is the reaction
     /// of the fluid.
@@ -88,72 +105,74 @@ impl<const D: usize> TransportVelocity<D> {
             Shifting::Sun { .. } => Some(1.0 / self.value_at_spacing(h)),
             _ => None,
         };
-        let constants = Constants {
+        let constants = ForceConstants {
             softening: fluid::softening(h),
             viscosity: self.fluid.viscosity,
             artificial: self.settings.artificial_viscosity * h * self.fluid.wave_speed,
             stress: one_if(corrections.stress),
-            deviation: one_if(corrections.dilatation == Dilatation::Deviation),
+            dilatation: one_if(corrections.dilatation == Dilatation::Deviation),
             transport: one_if(corrections.dilatation == Dilatation::Transport),
             crowding: crowding.unwrap_or(0.0),
         };
-        let fill = match (kind_of(corrections), constants.artificial > 0.0, crowding.is_some()) {
-            (NONE, false, false) => fill::<D, NONE, false, false>,
-            (NONE, false, true) => fill::<D, NONE, false, true>,
-            (NONE, true, false) => fill::<D, NONE, true, false>,
-            (NONE, true, true) => fill::<D, NONE, true, true>,
-            (FULL, false, false) => fill::<D, FULL, false, false>,
-            (FULL, false, true) => fill::<D, FULL, false, true>,
-            (FULL, true, false) => fill::<D, FULL, true, false>,
-            (FULL, true, true) => fill::<D, FULL, true, true>,
-            (_, false, false) => fill::<D, MIXED, false, false>,
-            (_, false, true) => fill::<D, MIXED, false, true>,
-            (_, true, false) => fill::<D, MIXED, true, false>,
-            (_, true, true) => fill::<D, MIXED, true, true>,
+        let kind = match (corrections.stress, corrections.dilatation) {
+            (false, Dilatation::None) => NONE,
+            (true, Dilatation::Deviation) => FULL,
+            _ => MIXED,
         };
-        parallel::for_each_chunk(&mut forces, |first, rows| fill(self, &constants, first, rows));
+        let fill = match (kind, constants.artificial > 0.0, crowding.is_some()) {
+            (NONE, false, false) => Self::gather_forces::<NONE, false, false>,
+            (NONE, false, true) => Self::gather_forces::<NONE, false, true>,
+            (NONE, true, false) => Self::gather_forces::<NONE, true, false>,
+            (NONE, true, true) => Self::gather_forces::<NONE, true, true>,
+            (FULL, false, false) => Self::gather_forces::<FULL, false, false>,
+            (FULL, false, true) => Self::gather_forces::<FULL, false, true>,
+            (FULL, true, false) => Self::gather_forces::<FULL, true, false>,
+            (FULL, true, true) => Self::gather_forces::<FULL, true, true>,
+            (_, false, false) => Self::gather_forces::<MIXED, false, false>,
+            (_, false, true) => Self::gather_forces::<MIXED, false, true>,
+            (_, true, false) => Self::gather_forces::<MIXED, true, false>,
+            (_, true, true) => Self::gather_forces::<MIXED, true, true>,
+        };
+        fill(self, constants, &mut forces);
+        if !self.walls.is_empty() {
+            self.react(&constants, &mut forces);
+        }
         self.forces = forces;
     }
 
-    /// The force of the fluid on a wall particle, over its mass: what it does to the fluid, turned
-    /// round.
-    fn reaction_at(
+    fn gather_forces<const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
         &self,
-        place: usize,
-        constants: &Constants,
-        block: &mut NeighborBlock<D>,
-    ) -> Forces<D> {
-        let (me, mut sum) = (&self.sides[place], Forces::default());
-        let mut rest = self.support.active(place);
-        while self.support.fill(&mut rest, Needs::Slope, block) {
-            for neighbor in block.iter() {
-                let other = &self.sides[neighbor.place];
-                let velocities = [&self.shear[place], &other.velocity];
-                sum.walls += wall_force([me, other], velocities, &neighbor, constants);
-            }
-        }
-        sum
+        constants: ForceConstants,
+        forces: &mut [Forces<D>],
+    ) {
+        let law = Law::<D, CORRECTS, ARTIFICIAL, CROWDING>(constants);
+        let (sides, shear) = (self.sides.as_slice(), self.shear.as_slice());
+        let fluid = Term { law, source: sides, among: Among::Active };
+        let walls = Term { law: WallForces(law), source: (sides, shear), among: Among::Passive };
+        let close = |place: usize, sums: &_, row: &mut _| *row = Forces::new(sums, &sides[place]);
+        gather(&self.support, &(fluid, walls), forces, |place| self.active(place), close);
     }
-}
 
-/// Fills some rows, with or without the terms of the corrections, the artificial viscosity and
-/// the shifting.
-#[multiversion(targets("x86_64+avx2"))]
-fn fill<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
-    scheme: &TransportVelocity<D>,
-    constants: &Constants,
-    first: usize,
-    rows: &mut [Forces<D>],
-) {
-    let mut block = NeighborBlock::default();
-    let has_walls = !scheme.walls.is_empty();
-    for (offset, row) in rows.iter_mut().enumerate() {
-        let place = first + offset;
-        if scheme.support.list().is_passive(place) {
-            *row = scheme.reaction_at(place, constants, &mut block);
-            continue;
-        }
-        let sums = scheme.gather::<CORRECTS, ARTIFICIAL, CROWDING>(place, constants, &mut block);
-        *row = sums.total::<ARTIFICIAL>(has_walls).forces(&scheme.sides[place]);
+    /// The forces of the fluid on wall particles, over their mass: what they do to the fluid, turned
+    /// round.
+    fn react(&self, constants: &ForceConstants, forces: &mut [Forces<D>]) {
+        let ForceConstants { softening, viscosity, .. } = *constants;
+        let law = Wall::<D> { softening, viscosity };
+        let source = (self.sides.as_slice(), self.shear.as_slice());
+        let sum = Term { law, source, among: Among::Active };
+        let close = |_: usize, walls: &Vector<D>, row: &mut _| {
+            *row = Forces { walls: *walls, ..Forces::default() };
+        };
+        gather(&self.support, &sum, forces, |place| self.passive(place), close);
+    }
+
+    /// A place, if the particle there is not passive.
+    pub(super) fn active(&self, place: usize) -> Option<usize> {
+        (!self.support.list().is_passive(place)).then_some(place)
+    }
+
+    /// A place, if the particle there is passive: of a wall, or removed.
+    pub(super) fn passive(&self, place: usize) -> Option<usize> {
+        self.support.list().is_passive(place).then_some(place)
     }
 }

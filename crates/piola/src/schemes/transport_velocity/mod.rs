@@ -35,7 +35,6 @@ mod density;
 mod drift;
 mod escape;
 mod forces;
-mod gather;
 mod inspect;
 mod ledger;
 mod sample;

@@ -1,10 +1,17 @@
 //! Fields of single particles.
 
+use std::ops::ControlFlow;
+
+use piola_formulas::kernels::Needs;
+use piola_formulas::pairs::fluid::FluidSide;
+use piola_formulas::pairs::sums::{Density, VelocityGradient};
+use piola_formulas::pairs::{MovingPair, Of, PairLaw};
+
 use super::scheme::Made;
 use super::{Forces, Rates, Row, TransportVelocity};
-use crate::Vector;
 use crate::geometry::Faces;
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{Among, NeighborBlock, Term, add_at, visit};
+use crate::{Tensor, Vector};
 
 impl<const D: usize> TransportVelocity<D> {
     /// All passes at a state as it is: sides, rates and forces are those of `state` afterwards.
@@ -24,7 +31,7 @@ impl<const D: usize> TransportVelocity<D> {
     pub fn terms(&mut self, time: f64, state: &[f64]) -> Vec<(Rates, Forces<D>)> {
         self.all_passes(time, state);
         let places = self.support.list().places().iter();
-        places.map(|&place| (self.rates[place as usize], self.forces[place as usize])).collect()
+        places.map(|&place| (*self.rates_at(place as usize), self.forces[place as usize])).collect()
     }
 
     /// The stages of observation: what neighbours show, then free surfaces.
@@ -64,7 +71,7 @@ impl<const D: usize> TransportVelocity<D> {
             Made::density => values.push(row[Row::<D>::DENSITY]),
             Made::summed_density => values.push(self.summed_density(place)),
             Made::vorticity => values.push(self.vorticity(place)),
-            Made::divergence => values.push(self.velocity_gradient(place, |axis, i| axis == i)),
+            Made::divergence => values.push(self.velocity_gradient(place).trace()),
             Made::surface => {
                 let is_surface = self.openings.get(place).is_some_and(|o| o.is_surface);
                 values.push(f64::from(is_surface && !self.is_wall[number]));
@@ -93,32 +100,40 @@ impl<const D: usize> TransportVelocity<D> {
     pub(super) fn neighbors_of(&self, number: usize) -> Vec<u32> {
         let list = self.support.list();
         let place = list.places()[number] as usize;
-        let (mut found, mut block) = (Vec::new(), NeighborBlock::default());
-        let mut rest = self.support.all(place);
-        while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
-            found.extend(block.iter().map(|neighbor| list.numbers()[neighbor.place]));
-        }
+        let mut found = Vec::new();
+        self.for_each_neighbor(place, |other| found.push(list.numbers()[other]));
         found
     }
 
     fn neighbor_count(&self, place: usize) -> usize {
         let mut count = 0;
-        let mut block = NeighborBlock::default();
-        let mut rest = self.support.all(place);
-        while self.support.fill(&mut rest, Needs::Nothing, &mut block) {
-            count += block.iter().count();
-        }
+        self.for_each_neighbor(place, |_| count += 1);
         count
+    }
+
+    fn for_each_neighbor(&self, place: usize, mut look: impl FnMut(usize)) {
+        let block = &mut NeighborBlock::default();
+        let _ = visit(&self.support, place, Among::All, Needs::Nothing, block, |other, _| {
+            look(other);
+            ControlFlow::<()>::Continue(())
+        });
+    }
+
+    /// A sum over all neighbours, added to `sums`.
+    fn add_all<L: PairLaw<Pair = MovingPair<D>, Side = FluidSide<D>>>(
+        &self,
+        law: L,
+        place: usize,
+        sums: &mut Of<L::Sums, f64>,
+    ) {
+        let sum = Term { law, source: self.sides.as_slice(), among: Among::All };
+        add_at(&self.support, &sum, place, &mut NeighborBlock::default(), sums);
     }
 
     /// The sum of masses, theory (26).
     fn summed_density(&self, place: usize) -> f64 {
         let mut sum = self.sides[place].mass() * self.support.centre();
-        let mut block = NeighborBlock::default();
-        let mut rest = self.support.all(place);
-        while self.support.fill(&mut rest, Needs::Value, &mut block) {
-            sum += block.iter().map(|b| self.sides[b.place].mass() * b.value).sum::<f64>();
-        }
+        self.add_all(Density, place, &mut sum);
         sum
     }
 
@@ -127,33 +142,17 @@ impl<const D: usize> TransportVelocity<D> {
         Some(&self.walls[self.wall_of(number as u32)?].faces)
     }
 
-    /// The sum of those `d u_i / d x_axis` for which `which(axis, i)` holds, CTVF (31).
-    fn velocity_gradient(&self, place: usize, which: impl Fn(usize, usize) -> bool) -> f64 {
-        let me = &self.sides[place];
-        let mut sum = 0.0;
-        let mut block = NeighborBlock::default();
-        let mut rest = self.support.all(place);
-        while self.support.fill(&mut rest, Needs::Slope, &mut block) {
-            for neighbor in block.iter() {
-                let other = &self.sides[neighbor.place];
-                let jump = me.velocity - other.velocity;
-                let gradient = neighbor.separation * neighbor.slope;
-                for axis in 0..D {
-                    for i in (0..D).filter(|&i| which(axis, i)) {
-                        sum -= other.volume * jump[i] * gradient[axis];
-                    }
-                }
-            }
-        }
-        sum
+    /// The velocity gradient `d u_i / d x_j` in 1/s, CTVF (31).
+    fn velocity_gradient(&self, place: usize) -> Tensor<D> {
+        let mut gradient = Tensor::zeros();
+        self.add_all(VelocityGradient, place, &mut gradient);
+        gradient
     }
 
     /// Curl of the velocity in 1/s: its component across the plane in 2D, its magnitude in 3D.
     fn vorticity(&self, place: usize) -> f64 {
-        let curl = |i: usize, j: usize| {
-            let one = self.velocity_gradient(place, |axis, k| (axis, k) == (i, j));
-            one - self.velocity_gradient(place, |axis, k| (axis, k) == (j, i))
-        };
+        let gradient = self.velocity_gradient(place);
+        let curl = |i: usize, j: usize| gradient[(j, i)] - gradient[(i, j)];
         match D {
             1 => 0.0,
             2 => curl(0, 1),

@@ -1,56 +1,19 @@
 //! What neighbours gather of a particle, filled from a state.
 
+use piola_formulas::pairs::fluid;
+
 use super::{Row, TransportVelocity};
-use crate::{Vector, parallel};
+use crate::parallel;
 
-/// A particle as its neighbours see it, in one place so that it costs one stretch of memory.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Side<const D: usize> {
-    /// Momentum velocity u in m/s; of a wall particle that of CTVF (48).
-    pub velocity: Vector<D>,
-    /// Deviation d = uhat - u of the transport velocity in m/s.
-    pub deviation: Vector<D>,
-    /// Density in kg/m^3.
-    pub density: f64,
-    /// Pressure in Pa.
-    pub pressure: f64,
-    /// `p / rho^2` in Pa m^6/kg^2.
-    pub load: f64,
-    /// `m / rho` in m^D.
-    pub volume: f64,
-}
+/// A particle as its neighbours see it.
+pub(super) type Side<const D: usize> = fluid::Side<f64, D>;
 
-impl<const D: usize> Default for Side<D> {
-    fn default() -> Self {
-        let zero = Vector::zeros();
-        let (velocity, deviation) = (zero, zero);
-        Self { velocity, deviation, density: 0.0, pressure: 0.0, load: 0.0, volume: 0.0 }
-    }
-}
-
-impl<const D: usize> Side<D> {
-    /// Mass in kg.
-    #[inline]
-    pub fn mass(&self) -> f64 {
-        self.volume * self.density
-    }
-
-    /// Takes what stands in a row of the state of a particle with a mass in kg.
-    #[inline]
-    fn take(&mut self, mass: f64, row: &[f64]) {
-        self.velocity = Row::<D>::velocity(row);
-        self.deviation = Row::<D>::deviation(row);
-        self.set(mass, row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
-    }
-
-    /// Sets density and pressure and what follows from them and the mass in kg.
-    #[inline]
-    pub fn set(&mut self, mass: f64, density: f64, pressure: f64) {
-        self.density = density;
-        self.pressure = pressure;
-        self.load = pressure / (density * density);
-        self.volume = mass / density;
-    }
+/// Takes what stands in a row of the state of a particle with a mass in kg.
+#[inline]
+fn take<const D: usize>(side: &mut Side<D>, mass: f64, row: &[f64]) {
+    side.velocity = Row::<D>::velocity(row);
+    side.deviation = Row::<D>::deviation(row);
+    side.set(mass, row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
 }
 
 impl<const D: usize> TransportVelocity<D> {
@@ -63,7 +26,7 @@ impl<const D: usize> TransportVelocity<D> {
         parallel::for_each_chunk(&mut self.sides, |first, sides| {
             for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
                 let row = Row::<D>::of(state, number as usize);
-                side.take(mass[number as usize], row);
+                take(side, mass[number as usize], row);
             }
         });
         self.load_matter(state);
@@ -78,7 +41,7 @@ impl<const D: usize> TransportVelocity<D> {
         let (mass, sides) = (&self.mass, &mut self.sides);
         let updated = self.support.update_with(sides, |number, side| {
             let row = Row::<D>::of(state, number);
-            side.take(mass[number], row);
+            take(side, mass[number], row);
             Row::<D>::position(row)
         });
         self.load_matter(state);

@@ -1,6 +1,6 @@
 //! The formulation as kick-drift-kick integrators see it, theory (33).
 
-use super::{DensityRule, PressureRule, Row, Shifting, TransportVelocity};
+use super::{DensityRule, PressureRule, Rates, Row, Shifting, TransportVelocity};
 use crate::boundaries::BodyForce;
 use crate::schemes::SplitScheme;
 use crate::{Vector, parallel};
@@ -106,12 +106,20 @@ impl<const D: usize> TransportVelocity<D> {
         }
     }
 
+    /// The rates that the last pass has found at a place.
+    pub(super) fn rates_at(&self, place: usize) -> &Rates {
+        match &self.solids {
+            Some(solids) => solids.rates_at(place),
+            None => &self.rates[place],
+        }
+    }
+
     /// Rate of the density in kg/(m^3 s) of the particle at `place`.
     ///
     /// A fluid's takes part in the exchange of its pressure, theory (20): the two have the same rates
     /// then, but for `c^2`, and stay what the law of state says.
     pub(super) fn density_rate(&self, place: usize) -> f64 {
-        let rates = &self.rates[place];
+        let rates = self.rates_at(place);
         let exchange = match self.solids {
             Some(_) => 0.0,
             None => rates.pressure_diffusion / self.fluid.wave_speed.powi(2),
@@ -122,7 +130,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// Rates of the pressure in Pa/s by compression, transport and diffusion.
     pub(super) fn pressure_rates(&self, place: usize) -> [f64; 3] {
         let number = self.support.list().numbers()[place] as usize;
-        let (rates, stiffness) = (&self.rates[place], self.reference_wave_speed(number).powi(2));
+        let (rates, stiffness) = (self.rates_at(place), self.reference_wave_speed(number).powi(2));
         let compression = -self.sides[place].density * stiffness * rates.divergence;
         [compression, rates.pressure_transport, rates.pressure_diffusion]
     }

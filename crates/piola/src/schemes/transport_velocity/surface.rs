@@ -1,8 +1,13 @@
 //! Free surfaces: normals, the particles on them, and how far they are, CTVF section 3.4.
 
+use std::ops::ControlFlow;
+
+use piola_formulas::kernels::Needs;
+use piola_formulas::pairs::sums;
+
 use super::TransportVelocity;
 use crate::geometry::ball_volume;
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{Among, NeighborBlock, OfOther, Term, add_at, visit};
 use crate::{Vector, parallel};
 
 /// Cosine of the half-angle of the cone around the outward normal in which a particle of the
@@ -53,22 +58,17 @@ impl<const D: usize> TransportVelocity<D> {
     /// Fills the sums of CTVF (42), theory (29), where no pass over forces has done so.
     pub(super) fn opening_pass(&mut self) {
         let mut forces = std::mem::take(&mut self.forces);
-        let (support, list, sides) = (&self.support, self.support.list(), &self.sides);
+        let (support, list) = (&self.support, self.support.list());
+        let source = (self.sides.as_slice(), &self.continua);
+        let sum = Term { law: sums::Opening::<D>, source, among: Among::All };
         parallel::for_each_chunk(&mut forces, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
-                if list.is_passive(place) {
-                    continue;
+                if !list.is_passive(place) {
+                    row.opening = Vector::zeros();
+                    add_at(support, &sum, place, &mut block, &mut row.opening);
                 }
-                let (mut sum, mut rest) = (Vector::zeros(), support.all(place));
-                while support.fill(&mut rest, Needs::Slope, &mut block) {
-                    for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
-                        let weight = sides[neighbor.place].volume * neighbor.slope;
-                        sum -= neighbor.separation * weight;
-                    }
-                }
-                row.opening = sum;
             }
         });
         self.forces = forces;
@@ -171,45 +171,39 @@ impl<const D: usize> TransportVelocity<D> {
         openings: &[Opening<D>],
         block: &mut NeighborBlock<D>,
     ) -> (Vector<D>, bool) {
-        let (support, me) = (&self.support, &self.sides[place]);
-        let mut density = me.mass() * support.centre();
-        let mut normal = openings[place].sharp * (me.volume * support.centre());
-        let mut rest = support.all(place);
-        while support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
-                let other = &self.sides[neighbor.place];
-                density += other.mass() * neighbor.value;
-                normal += openings[neighbor.place].sharp * (other.volume * neighbor.value);
-            }
-        }
+        let (support, me, centre) = (&self.support, &self.sides[place], self.support.centre());
+        let sharp = OfOther(|other: usize| openings[other].sharp);
+        let source = ((self.sides.as_slice(), &self.continua), sharp);
+        let sum = Term { law: sums::SurfaceNormal::<D>, source, among: Among::All };
+        let own = openings[place].sharp * (me.volume * centre);
+        let mut found = (me.mass() * centre, own);
+        add_at(support, &sum, place, block, &mut found);
+        let (density, mut normal) = found;
         let number = support.list().numbers()[place] as usize;
         let alone = density < 0.5 * self.reference_density(number);
         if normal.norm_squared() == 0.0 {
             return (normal, alone);
         }
         normal.normalize_mut();
-        let mut covered = false;
-        let mut rest = support.all(place);
-        while !covered && support.fill(&mut rest, Needs::Nothing, block) {
-            covered = block
-                .iter()
-                .filter(|neighbor| self.continua.is_own(place, neighbor.place))
-                .any(|neighbor| -neighbor.separation.dot(&normal) > CONE * neighbor.square.sqrt());
-        }
-        (normal, alone || !covered)
+        let covered = visit(support, place, Among::All, Needs::Nothing, block, |other, pair| {
+            let is_in_cone = -pair.separation.dot(&normal) > CONE * pair.square.sqrt();
+            match is_in_cone && self.continua.is_own(place, other) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        (normal, alone || covered.is_none())
     }
 
     /// `h_b` of CTVF algorithm 1, with the kernel's own support for the paper's 3.
     fn reach_at(&self, place: usize, surfaces: &[bool], block: &mut NeighborBlock<D>) -> f64 {
         let mut nearest = f64::INFINITY;
-        let mut rest = self.support.active(place);
-        while self.support.fill(&mut rest, Needs::Nothing, block) {
-            let near =
-                block.iter().filter(|b| surfaces[b.place] && self.continua.is_own(place, b.place));
-            for neighbor in near {
-                nearest = nearest.min(neighbor.square);
+        let _ = visit(&self.support, place, Among::Active, Needs::Nothing, block, |other, pair| {
+            if surfaces[other] && self.continua.is_own(place, other) {
+                nearest = nearest.min(pair.square);
             }
-        }
+            ControlFlow::<()>::Continue(())
+        });
         let factor = self.support.kernel().support_over_h();
         self.support.smoothing_length().min(nearest.sqrt() / factor)
     }

@@ -1,10 +1,12 @@
 //! Walls of ghost particles, CTVF (46) to (53), theory (31), (32), (72).
 
 use piola_formulas::fluid;
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::wall::{Around, Extrapolation, StressExtrapolation, Surroundings};
 
 use super::{Slip, TransportVelocity};
 use crate::geometry::Faces;
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::{Vector, parallel};
 
 /// A particle of a wall.
@@ -117,21 +119,25 @@ impl<const D: usize> TransportVelocity<D> {
         block: &mut NeighborBlock<D>,
     ) {
         let place = self.support.list().places()[wall.number as usize] as usize;
-        let (mut weight, mut pressure) = (0.0, 0.0);
-        let zero = Vector::zeros();
-        let (mut velocity, mut deviation, mut arm) = (zero, zero, zero);
-        let mut rest = self.support.active(place);
-        while self.support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter() {
-                let side = &self.sides[neighbor.place];
-                weight += neighbor.value;
-                velocity += side.velocity * neighbor.value;
-                deviation += side.deviation * neighbor.value;
-                pressure += side.pressure * neighbor.value;
-                arm += neighbor.separation * (side.density * neighbor.value);
-                self.add_deviator(neighbor.place, neighbor.value, &mut values.deviator);
+        let (support, sides) = (&self.support, self.sides.as_slice());
+        let among = Among::Active;
+        let around = match self.matter() {
+            None => {
+                let mut around = Surroundings::zero();
+                let sum = Term { law: Extrapolation::<D>, source: sides, among };
+                add_at(support, &sum, place, block, &mut around);
+                around
             }
-        }
+            Some(matter) => {
+                let mut both = (Surroundings::zero(), values.deviator);
+                let law = StressExtrapolation::<D>;
+                let sum = Term { law, source: (sides, matter), among };
+                add_at(support, &sum, place, block, &mut both);
+                values.deviator = both.1;
+                both.0
+            }
+        };
+        let Around { weight, velocity, deviation, pressure, arm } = around;
         let surface = values.motion + values.sliding;
         if !(weight > 0.0) {
             values.velocity = values.motion;

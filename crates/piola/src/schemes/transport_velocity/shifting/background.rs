@@ -1,6 +1,8 @@
 //! GTVF: a velocity deviation by a background pressure that each particle has of its own.
 
-use crate::operators::{Needs, NeighborBlock};
+use piola_formulas::pairs::sums::Background;
+
+use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::transport_velocity::{Row, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
@@ -43,18 +45,11 @@ impl<const D: usize> TransportVelocity<D> {
         if list.is_passive(place) || me.pressure == 0.0 || self.is_held(number) {
             return Vector::zeros();
         }
-        let (kernel, h) = (support.kernel(), NARROW * support.smoothing_length());
-        let reach = kernel.support_radius(h).powi(2);
-        let (mut sum, mut rest) = (Vector::zeros(), support.all(place));
-        let mut block = NeighborBlock::default();
-        while support.fill(&mut rest, Needs::Nothing, &mut block) {
-            let near =
-                block.iter().filter(|b| b.square < reach && self.continua.is_own(place, b.place));
-            for neighbor in near {
-                let slope = kernel.derivative_over_r(D, neighbor.square.sqrt(), h);
-                sum += neighbor.separation * (self.sides[neighbor.place].mass() * slope);
-            }
-        }
+        let smoothing_length = NARROW * support.smoothing_length();
+        let law = Background::<D> { kernel: support.kernel(), smoothing_length };
+        let source = (self.sides.as_slice(), &self.continua);
+        let (mut sum, block) = (Vector::zeros(), &mut NeighborBlock::default());
+        add_at(support, &Term { law, source, among: Among::All }, place, block, &mut sum);
         let stiffness = self.reference_density(number) * self.reference_wave_speed(number).powi(2);
         let background = (SHARE * me.pressure.abs()).min(most * stiffness);
         sum * (-background / (me.density * me.density))

@@ -1,6 +1,8 @@
 //! IPST: displacements iterated until particles are even.
 
-use crate::operators::{Needs, NeighborBlock};
+use piola_formulas::pairs::sums::Displacement;
+
+use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::transport_velocity::ledger::Tail;
 use crate::schemes::transport_velocity::{AtSurface, Opening, Row, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
@@ -122,34 +124,23 @@ impl<const D: usize> TransportVelocity<D> {
         let h = support.smoothing_length();
         let scale = h.powi(D as i32);
         let is_along = self.settings.at_surface == AtSurface::Along;
+        let source = (self.sides.as_slice(), &self.continua);
         parallel::for_each_chunk(found, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 *row = (Vector::zeros(), 0.0);
-                let (mut sum, mut direction) = (support.centre(), Vector::zeros());
+                if list.is_passive(place) {
+                    continue;
+                }
                 let opening = openings.get(list.numbers()[place] as usize);
                 let within = opening.map(|opening| opening.reach).filter(|&reach| reach < h);
-                let support_of = within.filter(|_| !is_along);
-                let mut rest = match list.is_passive(place) {
-                    true => continue,
-                    false => support.all(place),
-                };
-                while support.fill(&mut rest, Needs::Value, &mut block) {
-                    for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
-                        sum += neighbor.value;
-                        let distance = neighbor.square.sqrt();
-                        let value = match support_of {
-                            Some(h) if h > 0.0 => support.kernel().value(D, distance, h),
-                            Some(_) => 0.0,
-                            None => neighbor.value,
-                        };
-                        if distance > 0.0 {
-                            let weight = self.sides[neighbor.place].volume * value / distance;
-                            direction += neighbor.separation * weight;
-                        }
-                    }
-                }
+                let smoothing_length = within.filter(|_| !is_along);
+                let law = Displacement::<D> { kernel: support.kernel(), smoothing_length };
+                let sum = Term { law, source, among: Among::All };
+                let mut found = (support.centre(), Vector::zeros());
+                add_at(support, &sum, place, &mut block, &mut found);
+                let (sum, mut direction) = found;
                 if let (Some(opening), Some(_)) = (opening, within) {
                     direction = match is_along {
                         true => opening.tangential(direction, h),

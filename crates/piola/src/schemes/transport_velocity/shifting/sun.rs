@@ -1,8 +1,8 @@
 //! SPST: a velocity deviation from the crowding of neighbours.
 
-use piola_formulas::fluid;
+use piola_formulas::pairs::sums::CrowdingWithin;
 
-use crate::operators::{Needs, NeighborBlock};
+use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::transport_velocity::{AtSurface, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
@@ -75,16 +75,10 @@ impl<const D: usize> TransportVelocity<D> {
         let full = self.support.smoothing_length();
         let inverse = 1.0 / self.value_at_spacing(full);
         let size = (h / full).powi(D as i32 + 1);
-        let (mut sum, mut rest) = (Vector::zeros(), self.support.all(place));
-        while self.support.fill(&mut rest, Needs::Value, block) {
-            for neighbor in block.iter().filter(|b| self.continua.is_own(place, b.place)) {
-                let distance = neighbor.square.sqrt();
-                let weight = fluid::repulsion(neighbor.value * inverse)
-                    * (size * kernel.derivative_over_r(D, distance, h))
-                    * self.densities[neighbor.place];
-                sum += neighbor.separation * weight;
-            }
-        }
+        let law = CrowdingWithin::<D> { kernel, smoothing_length: h, size, crowding: inverse };
+        let source = (self.densities.as_slice(), &self.continua);
+        let mut sum = Vector::zeros();
+        add_at(&self.support, &Term { law, source, among: Among::All }, place, block, &mut sum);
         sum
     }
 

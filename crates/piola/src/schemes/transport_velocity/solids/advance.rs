@@ -36,7 +36,7 @@ impl<const D: usize> TransportVelocity<D> {
             let around = Surroundings {
                 density: side.density,
                 pressure: side.pressure,
-                divergence: scheme.rates[place].divergence,
+                divergence: scheme.rates_at(place).divergence,
                 step,
             };
             let energy = |row: &[f64], matter: &[f64]| {

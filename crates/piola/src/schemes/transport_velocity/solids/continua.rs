@@ -1,9 +1,12 @@
 //! Which particles are of one continuum, and which only touch.
 
+use piola_formulas::pairs::One;
+use piola_formulas::{Lanes, Lanes4, WIDTH};
+
 use super::{Contact, SolidsInput};
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
-use crate::operators::{LANES, Lanes, all_of};
+use crate::operators::Source;
 use crate::{Vector, parallel};
 
 /// The label of walls, which belong to every continuum.
@@ -81,27 +84,41 @@ impl<const D: usize> Continua<D> {
         *label == self.labels[place] && (self.starts.is_empty() || self.began_close(place, other))
     }
 
-    /// 1 for each of a group of places that is of the continuum of the particle at `place`, 0 for others.
-    #[inline(always)]
-    pub fn own(&self, place: usize, places: &[u32; LANES]) -> Lanes {
-        if !self.starts.is_empty() {
-            return self.own_by_starts(place, places);
-        }
-        let (mine, labels) = (self.labels[place], all_of(&self.labels, places));
-        let mut own = [0.0; LANES];
-        for (own, label) in own.iter_mut().zip(labels) {
-            *own = if *label == mine || *label == WALL { 1.0 } else { 0.0 };
-        }
-        own
-    }
-
-    #[inline(never)]
-    fn own_by_starts(&self, place: usize, places: &[u32; LANES]) -> Lanes {
-        places.map(|other| f64::from(u8::from(self.is_own(place, other as usize))))
-    }
-
     fn began_close(&self, place: usize, other: usize) -> bool {
         let apart = self.domain.separation(&self.starts[place], &self.starts[other]);
         apart.norm_squared() <= self.farthest * self.farthest
+    }
+}
+
+/// 1 for neighbours of the same continuum, 0 for others.
+impl<const D: usize> Source<One> for Continua<D> {
+    fn own(&self, _place: usize) -> f64 {
+        1.0
+    }
+
+    #[inline]
+    fn one(&self, place: usize, other: usize) -> f64 {
+        f64::from(u8::from(self.is_own(place, other)))
+    }
+
+    #[inline(always)]
+    fn four(&self, place: usize, others: &[u32; WIDTH]) -> Lanes4 {
+        if self.labels.is_empty() || !self.starts.is_empty() {
+            return self.four_by_one(place, others);
+        }
+        let mine = self.labels[place];
+        let own = |other: u32| {
+            let label = self.labels[other as usize];
+            if label == mine || label == WALL { 1.0 } else { 0.0 }
+        };
+        let [a, b, c, d] = *others;
+        Lanes4::load([own(a), own(b), own(c), own(d)])
+    }
+}
+
+impl<const D: usize> Continua<D> {
+    #[inline(never)]
+    fn four_by_one(&self, place: usize, others: &[u32; WIDTH]) -> Lanes4 {
+        Lanes4::load(others.map(|other| self.one(place, other as usize)))
     }
 }

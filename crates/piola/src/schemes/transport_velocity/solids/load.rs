@@ -92,20 +92,9 @@ impl<const D: usize> TransportVelocity<D> {
                     Some(correction) => (stress * correction, side.volume, 1.0 / side.density),
                     None => (stress / (side.density * side.density), side.mass(), 1.0),
                 };
-                row.tensor = std::array::from_fn(|i| std::array::from_fn(|j| tensor[(i, j)]));
-                (row.weight, row.share) = (weight, share);
+                (row.tensor, row.weight, row.share) = (tensor, weight, share);
             }
         });
-    }
-
-    /// Adds the deviatoric stress of a solid, at a place, to that of a wall, CTVF (53).
-    #[inline]
-    pub(in super::super) fn add_deviator(&self, place: usize, weight: f64, sum: &mut [f64; 6]) {
-        if let Some(solids) = &self.solids {
-            for (sum, stress) in sum.iter_mut().zip(&solids.matter[place]) {
-                *sum += weight * stress;
-            }
-        }
     }
 
     /// Gives the wall particle at a place its deviatoric stress. Of a wall that lets slide it is the

@@ -24,9 +24,12 @@ mod load;
 mod rates;
 
 use piola_formulas::hypoelastic::{EquationOfState, Strength};
+use piola_formulas::pairs::Record;
+pub(super) use piola_formulas::pairs::solid::MATTER;
+use piola_formulas::pairs::solid::SolidTension;
 
-use super::TransportVelocity;
 use super::ledger::Tail;
+use super::{Rates, TransportVelocity};
 use crate::boundaries::PrescribedVelocity;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::geometry::Particles;
@@ -105,39 +108,17 @@ pub struct SolidsInput {
     pub held: Vec<PrescribedVelocity>,
 }
 
-/// Numbers of a particle beside its row: the deviatoric stress in Pa as xx, yy, zz, yz, xz, xy, the
-/// plastic strain, the temperature in K and the specific internal energy in J/kg.
+/// The deviatoric stress in Pa as xx, yy, zz, yz, xz, xy, the plastic strain, the temperature in K and the
+/// specific internal energy in J/kg.
 pub(super) type Matter = [f64; MATTER];
 
-/// Numbers of [`Matter`].
-pub(super) const MATTER: usize = 9;
 const ZZ: usize = 2;
-const YZ: usize = 3;
-const XZ: usize = 4;
 const PLASTIC: usize = 6;
 const TEMPERATURE: usize = 7;
 const ENERGY: usize = 8;
 
 /// What forces gather of a particle of a solid beside its side.
-#[derive(Clone, Copy, Debug)]
-struct Tension<const D: usize> {
-    /// `sigma / rho^2`, with corrected gradients `sigma L`.
-    tensor: [[f64; D]; D],
-    /// What neighbours weigh it with: the mass in kg, with corrected gradients the volume.
-    weight: f64,
-    /// What makes an acceleration of the particle's own sum: 1, with corrected gradients `1 / rho`.
-    share: f64,
-    /// Bulk wave speed at rest in m/s.
-    wave_speed: f64,
-    /// Bulk modulus at rest in Pa.
-    stiffness: f64,
-}
-
-impl<const D: usize> Default for Tension<D> {
-    fn default() -> Self {
-        Self { tensor: [[0.0; D]; D], weight: 0.0, share: 0.0, wave_speed: 0.0, stiffness: 0.0 }
-    }
-}
+type Tension<const D: usize> = piola_formulas::pairs::solid::Tension<f64, D>;
 
 /// Solids bound to their particles, with scratch by place.
 pub(super) struct Solids<const D: usize> {
@@ -175,10 +156,15 @@ impl<const D: usize> Solids<D> {
             bonds: Bonds::new(particles, is_wall, domain)?,
             matter: vec![[0.0; MATTER]; count],
             builds: None,
-            tensions: vec![Tension::default(); count],
+            tensions: vec![SolidTension::zero(); count],
             rates: vec![SolidRates::default(); count],
             corrections: vec![Tensor::identity(); gradients],
         })
+    }
+
+    /// The rates that a fluid has, too, by place.
+    pub fn rates_at(&self, place: usize) -> &Rates {
+        &self.rates[place].common
     }
 
     /// Whether bulk waves are as fast in all solids.
@@ -209,6 +195,11 @@ impl<const D: usize> TransportVelocity<D> {
     /// Numbers of the matter of all particles.
     pub(super) fn matter_length(&self) -> usize {
         if self.solids.is_some() { MATTER * self.particles.len() } else { 0 }
+    }
+
+    /// The material states by place, of solids.
+    pub(super) fn matter(&self) -> Option<&[Matter]> {
+        Some(self.solids.as_ref()?.matter.as_slice())
     }
 
     /// The solid that a particle (number) is of, if it is one.

@@ -1,0 +1,375 @@
+//! Pair laws of the weakly compressible fluid of the transport-velocity formulation. Paper: CTVF.
+//!
+//! `r_ab = r_a - r_b`, `u_ab = u_a - u_b`, `V = m / rho`, and d is the shifting velocity by which
+//! the transport velocity differs from u.
+
+use super::{Components, MovingPair, Of, One, PairLaw, difference, dot, record};
+use crate::kernels::Needs;
+use crate::{Number, fluid};
+
+record! {
+    /// A particle as its neighbours see it, in one place so that it costs one stretch of memory.
+    pub struct Side<D> in FluidSide {
+        /// Momentum velocity u in m/s; of a wall particle that of CTVF (48).
+        pub velocity: Components<D>,
+        /// Deviation d = uhat - u of the transport velocity in m/s.
+        pub deviation: Components<D>,
+        /// Density in kg/m^3.
+        pub density: One,
+        /// Pressure in Pa.
+        pub pressure: One,
+        /// `p / rho^2` in Pa m^6/kg^2.
+        pub load: One,
+        /// `m / rho` in m^D.
+        pub volume: One,
+    }
+}
+
+impl<T: Number, const D: usize> Side<T, D> {
+    /// Mass in kg.
+    #[inline(always)]
+    pub fn mass(&self) -> T {
+        self.volume * self.density
+    }
+
+    /// Sets density and pressure and what follows from them and the mass in kg.
+    #[inline(always)]
+    pub fn set(&mut self, mass: T, density: T, pressure: T) {
+        self.density = density;
+        self.pressure = pressure;
+        self.load = pressure / (density * density);
+        self.volume = mass / density;
+    }
+}
+
+/// Which corrections of the momentum equation a law is made for: none of them,
+pub const NONE: u8 = 0;
+/// the stress with the dilatation of the deviation,
+pub const FULL: u8 = 1;
+/// or any of them, by the factors of [`ForceConstants`].
+pub const MIXED: u8 = 2;
+
+/// The constants of [`Forces`].
+#[derive(Clone, Copy, Debug)]
+pub struct ForceConstants {
+    /// `0.01 h^2` in m^2.
+    pub softening: f64,
+    /// Kinematic viscosity in m^2/s.
+    pub viscosity: f64,
+    /// `alpha h c` of CTVF (28) in m^2/s.
+    pub artificial: f64,
+    /// 1 where the correction of the stress is on, 0 otherwise.
+    pub stress: f64,
+    /// 1 where the dilatation of the deviation is on.
+    pub dilatation: f64,
+    /// 1 where that of the transport velocity is on.
+    pub transport: f64,
+    /// `1 / W(dx)` in m^D.
+    pub crowding: f64,
+}
+
+/// The accelerations of a fluid, CTVF (23), (27), (28), (35), theory (21) to (24): `CORRECTS` is one of
+/// [`NONE`], [`FULL`] and [`MIXED`], `ARTIFICIAL` says whether there is artificial viscosity, `CROWDING`
+/// whether particles are shifted by SPST.
+#[derive(Clone, Copy, Debug)]
+pub struct Forces<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
+    pub ForceConstants,
+);
+
+record! {
+    /// What [`Forces`] sums, in m/s^2 but for the last three.
+    pub struct ForceSums<D> in ForceSum {
+        /// `- sum m_b (p_a / rho_a^2 + p_b / rho_b^2) grad W_ab` among the fluid.
+        pub pressure: Components<D>,
+        /// Viscosity among the fluid.
+        pub viscosity: Components<D>,
+        /// Artificial viscosity.
+        pub artificial_viscosity: Components<D>,
+        /// Pressure and viscosity of walls.
+        pub walls: Components<D>,
+        /// `sum V_b u_b d_b . grad W_ab`.
+        pub carried: Components<D>,
+        /// What stands before `u_a` in the corrections, 1/s.
+        pub stretch: One,
+        /// `sum V_b grad W_ab` in 1/m.
+        pub volume: Components<D>,
+        /// `sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab` of CTVF (35) in 1/m.
+        pub crowding: Components<D>,
+    }
+}
+
+/// A particle of the fluid in the middle of its sums.
+#[derive(Clone, Copy, Debug)]
+pub struct Center<T: Number, const D: usize> {
+    side: Side<T, D>,
+    inverse_density: T,
+}
+
+impl<T: Number, const D: usize> Center<T, D> {
+    #[inline(always)]
+    fn new(side: &Side<T, D>) -> Self {
+        Self { side: *side, inverse_density: side.density.recip() }
+    }
+}
+
+impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>
+    Forces<D, CORRECTS, ARTIFICIAL, CROWDING>
+{
+    const NEEDS: Needs = if CROWDING { Needs::Both } else { Needs::Slope };
+
+    /// Adds what the corrections and the shifting need.
+    #[inline(always)]
+    fn carry<T: Number>(
+        &self,
+        me: &Center<T, D>,
+        other: &Side<T, D>,
+        pair: &Of<MovingPair<D>, T>,
+        sums: &mut ForceSums<T, D>,
+    ) {
+        let slope = other.volume * pair.slope;
+        if CORRECTS != NONE {
+            // V_b d_b . grad W_ab, and the same with the deviation of a.
+            let carried = dot(&other.deviation, &pair.separation) * slope;
+            let mine = dot(&me.side.deviation, &pair.separation) * slope;
+            let ratio = other.density * me.inverse_density;
+            if CORRECTS == FULL {
+                for i in 0..D {
+                    sums.carried[i] += other.velocity[i] * carried;
+                }
+                sums.stretch += mine + (mine - carried) * ratio;
+            } else {
+                let jump = difference(&me.side.velocity, &other.velocity);
+                let opening = dot(&jump, &pair.separation) * slope;
+                for i in 0..D {
+                    sums.carried[i] += other.velocity[i] * carried * self.0.stress;
+                }
+                sums.stretch += mine * ratio * self.0.stress
+                    + (mine - carried * ratio) * self.0.dilatation
+                    + (mine - carried + opening) * self.0.transport;
+            }
+        }
+        if CROWDING {
+            let factor = fluid::repulsion(pair.value * self.0.crowding);
+            for i in 0..D {
+                let area = pair.separation[i] * slope;
+                sums.volume[i] += area;
+                sums.crowding[i] += area * factor;
+            }
+        }
+    }
+}
+
+impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool> PairLaw
+    for Forces<D, CORRECTS, ARTIFICIAL, CROWDING>
+{
+    type Pair = MovingPair<D>;
+    type Side = FluidSide<D>;
+    type Sums = ForceSum<D>;
+    type Center<T: Number> = Center<T, D>;
+
+    const NEEDS: Needs = Self::NEEDS;
+
+    #[inline(always)]
+    fn center<T: Number>(&self, me: &Side<T, D>) -> Center<T, D> {
+        Center::new(me)
+    }
+
+    #[inline(always)]
+    fn add<T: Number>(
+        &self,
+        me: &Center<T, D>,
+        other: &Side<T, D>,
+        pair: &Of<MovingPair<D>, T>,
+        sums: &mut ForceSums<T, D>,
+    ) {
+        let slope = other.mass() * pair.slope;
+        let jump = difference(&me.side.velocity, &other.velocity);
+        let scale =
+            fluid::exchange_scale(me.side.density + other.density, pair.square, self.0.softening);
+        let exchange = fluid::diffusion(self.0.viscosity, pair.square, slope, scale);
+        let pressure = slope * (me.side.load + other.load);
+        for i in 0..D {
+            sums.pressure[i] -= pair.separation[i] * pressure;
+            sums.viscosity[i] += jump[i] * exchange;
+        }
+        if ARTIFICIAL {
+            let approach = dot(&jump, &pair.separation);
+            let strength = T::from(self.0.artificial);
+            let push = slope * fluid::artificial_viscosity(strength, approach, scale);
+            for i in 0..D {
+                sums.artificial_viscosity[i] -= pair.separation[i] * push;
+            }
+        }
+        self.carry(me, other, pair, sums);
+    }
+}
+
+/// What walls do to a fluid, in the sums of its [`Forces`]. A side has besides the velocity of the
+/// wall that viscous forces see.
+#[derive(Clone, Copy, Debug)]
+pub struct WallForces<L>(pub L);
+
+impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool> PairLaw
+    for WallForces<Forces<D, CORRECTS, ARTIFICIAL, CROWDING>>
+{
+    type Pair = MovingPair<D>;
+    type Side = (FluidSide<D>, Components<D>);
+    type Sums = ForceSum<D>;
+    type Center<T: Number> = Center<T, D>;
+
+    const NEEDS: Needs = Forces::<D, CORRECTS, ARTIFICIAL, CROWDING>::NEEDS;
+
+    #[inline(always)]
+    fn center<T: Number>(&self, (me, _): &Of<Self::Side, T>) -> Center<T, D> {
+        Center::new(me)
+    }
+
+    #[inline(always)]
+    fn add<T: Number>(
+        &self,
+        me: &Center<T, D>,
+        (other, shear): &Of<Self::Side, T>,
+        pair: &Of<MovingPair<D>, T>,
+        sums: &mut ForceSums<T, D>,
+    ) {
+        let ForceConstants { softening, viscosity, .. } = self.0.0;
+        let wall = Wall { softening, viscosity };
+        let jump = difference(&me.side.velocity, shear);
+        wall.push([&me.side, other], &jump, pair, &mut sums.walls);
+        self.0.carry(me, other, pair, sums);
+    }
+}
+
+/// What a fluid does to a wall particle: pressure and viscosity, in m/s^2. There is no artificial
+/// viscosity, which would hold back a fluid that slides.
+#[derive(Clone, Copy, Debug)]
+pub struct Wall<const D: usize> {
+    /// `0.01 h^2` in m^2.
+    pub softening: f64,
+    /// Kinematic viscosity in m^2/s.
+    pub viscosity: f64,
+}
+
+impl<const D: usize> Wall<D> {
+    #[inline(always)]
+    fn push<T: Number>(
+        &self,
+        [me, other]: [&Side<T, D>; 2],
+        jump: &Of<Components<D>, T>,
+        pair: &Of<MovingPair<D>, T>,
+        sum: &mut Of<Components<D>, T>,
+    ) {
+        let scale = fluid::exchange_scale(me.density + other.density, pair.square, self.softening);
+        let exchange = fluid::diffusion(self.viscosity, pair.square, pair.slope, scale);
+        let pressure = pair.slope * (me.load + other.load);
+        let mass = other.mass();
+        for i in 0..D {
+            sum[i] += (jump[i] * exchange - pair.separation[i] * pressure) * mass;
+        }
+    }
+}
+
+impl<const D: usize> PairLaw for Wall<D> {
+    type Pair = MovingPair<D>;
+    type Side = (FluidSide<D>, Components<D>);
+    type Sums = Components<D>;
+    type Center<T: Number> = Of<Self::Side, T>;
+
+    const NEEDS: Needs = Needs::Slope;
+
+    #[inline(always)]
+    fn center<T: Number>(&self, me: &Of<Self::Side, T>) -> Self::Center<T> {
+        *me
+    }
+
+    #[inline(always)]
+    fn add<T: Number>(
+        &self,
+        (me, shear): &Of<Self::Side, T>,
+        (other, _): &Of<Self::Side, T>,
+        pair: &Of<MovingPair<D>, T>,
+        sum: &mut Of<Components<D>, T>,
+    ) {
+        self.push([me, other], &difference(shear, &other.velocity), pair, sum);
+    }
+}
+
+/// The constants of [`Rates`].
+#[derive(Clone, Copy, Debug)]
+pub struct RateConstants {
+    /// `0.01 h^2` in m^2.
+    pub softening: f64,
+    /// `alpha h c / 8` of CTVF (24) in m^2/s.
+    pub diffusivity: f64,
+}
+
+/// The rates of density and pressure, CTVF (19), (23), (26), theory (20): `CORRECTS` says whether the
+/// deviation carries them, `MOVES` whether the divergence is that of the transport velocity, `FALLS`
+/// whether there are body forces. Beside a side stands half of the body force in m/s^2, which is
+/// read of the particle itself only.
+#[derive(Clone, Copy, Debug)]
+pub struct Rates<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(
+    pub RateConstants,
+);
+
+record! {
+    /// What [`Rates`] sums.
+    pub struct RateSums<D> in RateSum {
+        /// `div u` in 1/s, or `div uhat`.
+        pub divergence: One,
+        /// `d . grad rho` in kg/(m^3 s).
+        pub density_transport: One,
+        /// `d . grad p` in Pa/s.
+        pub pressure_transport: One,
+        /// Diffusion of the pressure in Pa/s.
+        pub pressure_diffusion: One,
+    }
+}
+
+impl<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool> PairLaw
+    for Rates<D, CORRECTS, MOVES, FALLS>
+{
+    type Pair = MovingPair<D>;
+    type Side = (FluidSide<D>, Components<D>);
+    type Sums = RateSum<D>;
+    type Center<T: Number> = Of<Self::Side, T>;
+
+    const NEEDS: Needs = Needs::Slope;
+
+    #[inline(always)]
+    fn center<T: Number>(&self, me: &Of<Self::Side, T>) -> Self::Center<T> {
+        *me
+    }
+
+    #[inline(always)]
+    fn add<T: Number>(
+        &self,
+        (me, half_force): &Of<Self::Side, T>,
+        (other, _): &Of<Self::Side, T>,
+        pair: &Of<MovingPair<D>, T>,
+        sums: &mut RateSums<T, D>,
+    ) {
+        let slope = other.volume * pair.slope;
+        let mut flow = difference(&me.velocity, &other.velocity);
+        if MOVES {
+            let apart = difference(&me.deviation, &other.deviation);
+            for i in 0..D {
+                flow[i] += apart[i];
+            }
+        }
+        sums.divergence -= dot(&flow, &pair.separation) * slope;
+        let jump = other.pressure - me.pressure;
+        if CORRECTS {
+            let carried = dot(&other.deviation, &pair.separation) * slope;
+            sums.density_transport += carried * (other.density - me.density);
+            sums.pressure_transport += carried * jump;
+        }
+        let densities = me.density + other.density;
+        let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);
+        let slope = other.mass() * pair.slope;
+        let exchange = fluid::diffusion(self.0.diffusivity, pair.square, slope, scale);
+        // In a fluid at rest this is the difference of pressure between the two, which must not diffuse.
+        let at_rest = if FALLS { dot(half_force, &pair.separation) * densities } else { T::zero() };
+        sums.pressure_diffusion -= exchange * (jump + at_rest);
+    }
+}

@@ -1,0 +1,212 @@
+//! Structs of numbers of any type.
+
+use std::fmt::Debug;
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::Number;
+
+/// A family of structs, one for each number type: what a particle shows, what is summed.
+///
+/// [`Record::map`] leads from one number type to another: four records of plain numbers make one of
+/// lanes, one makes one of lanes that are all the same.
+pub trait Record: Send + Sync + 'static {
+    /// The struct of numbers `T`.
+    type Of<T: Number>: Copy + Debug;
+
+    /// All numbers zero.
+    fn zero<T: Number>() -> Self::Of<T>;
+
+    /// The struct whose numbers are `f` of the same numbers of all of `from`.
+    fn map<S: Number, T: Number, const N: usize>(
+        from: [&Self::Of<S>; N],
+        f: &impl Fn([S; N]) -> T,
+    ) -> Self::Of<T>;
+}
+
+/// What is picked of each of some records.
+///
+/// A loop, because the methods of arrays that take functions stay calls in loops over neighbours.
+#[inline(always)]
+pub(crate) fn each<'a, S, T: Copy, const N: usize>(
+    from: [&'a S; N],
+    pick: impl Fn(&'a S) -> T,
+) -> [T; N] {
+    let mut picked = [pick(from[0]); N];
+    for k in 1..N {
+        picked[k] = pick(from[k]);
+    }
+    picked
+}
+
+/// The struct of a family for numbers `T`.
+pub type Of<R, T> = <R as Record>::Of<T>;
+
+/// No number.
+#[derive(Clone, Copy, Debug)]
+pub struct Nothing;
+
+impl Record for Nothing {
+    type Of<T: Number> = ();
+
+    #[inline(always)]
+    fn zero<T: Number>() {}
+
+    #[inline(always)]
+    fn map<S: Number, T: Number, const N: usize>(_: [&(); N], _: &impl Fn([S; N]) -> T) {}
+}
+
+/// One number.
+#[derive(Clone, Copy, Debug)]
+pub struct One;
+
+impl Record for One {
+    type Of<T: Number> = T;
+
+    #[inline(always)]
+    fn zero<T: Number>() -> T {
+        T::zero()
+    }
+
+    #[inline(always)]
+    fn map<S: Number, T: Number, const N: usize>(from: [&S; N], f: &impl Fn([S; N]) -> T) -> T {
+        f(each(from, |part| *part))
+    }
+}
+
+/// `N` numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Many<const N: usize>;
+
+impl<const M: usize> Record for Many<M> {
+    type Of<T: Number> = [T; M];
+
+    #[inline(always)]
+    fn zero<T: Number>() -> [T; M] {
+        [T::zero(); M]
+    }
+
+    #[inline(always)]
+    fn map<S: Number, T: Number, const N: usize>(
+        from: [&[S; M]; N],
+        f: &impl Fn([S; N]) -> T,
+    ) -> [T; M] {
+        let mut all = Self::zero();
+        for (i, number) in all.iter_mut().enumerate() {
+            *number = f(each(from, |part| part[i]));
+        }
+        all
+    }
+}
+
+/// A vector of `D` components.
+#[derive(Clone, Copy, Debug)]
+pub struct Components<const D: usize>;
+
+impl<const D: usize> Record for Components<D> {
+    type Of<T: Number> = SVector<T, D>;
+
+    #[inline(always)]
+    fn zero<T: Number>() -> SVector<T, D> {
+        SVector::from_array_storage(nalgebra::ArrayStorage([[T::zero(); D]; 1]))
+    }
+
+    #[inline(always)]
+    fn map<S: Number, T: Number, const N: usize>(
+        from: [&SVector<S, D>; N],
+        f: &impl Fn([S; N]) -> T,
+    ) -> SVector<T, D> {
+        let mut vector = Self::zero();
+        for i in 0..D {
+            vector[i] = f(each(from, |part| part[i]));
+        }
+        vector
+    }
+}
+
+/// A tensor of `D * D` components.
+#[derive(Clone, Copy, Debug)]
+pub struct Square<const D: usize>;
+
+impl<const D: usize> Record for Square<D> {
+    type Of<T: Number> = SMatrix<T, D, D>;
+
+    #[inline(always)]
+    fn zero<T: Number>() -> SMatrix<T, D, D> {
+        SMatrix::from_array_storage(nalgebra::ArrayStorage([[T::zero(); D]; D]))
+    }
+
+    #[inline(always)]
+    fn map<S: Number, T: Number, const N: usize>(
+        from: [&SMatrix<S, D, D>; N],
+        f: &impl Fn([S; N]) -> T,
+    ) -> SMatrix<T, D, D> {
+        let mut tensor = Self::zero();
+        for i in 0..D {
+            for j in 0..D {
+                tensor[(i, j)] = f(each(from, |part| part[(i, j)]));
+            }
+        }
+        tensor
+    }
+}
+
+impl<A: Record, B: Record> Record for (A, B) {
+    type Of<T: Number> = (A::Of<T>, B::Of<T>);
+
+    #[inline(always)]
+    fn zero<T: Number>() -> Self::Of<T> {
+        (A::zero(), B::zero())
+    }
+
+    #[inline(always)]
+    fn map<S: Number, T: Number, const N: usize>(
+        from: [&Self::Of<S>; N],
+        f: &impl Fn([S; N]) -> T,
+    ) -> Self::Of<T> {
+        (A::map(each(from, |part| &part.0), f), B::map(each(from, |part| &part.1), f))
+    }
+}
+
+/// Declares a struct of numbers and its family: `pub struct NAME<D> in FAMILY { FIELD: RECORD, ... }`.
+macro_rules! record {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident<$D:ident> in $family:ident {
+            $($(#[$field_meta:meta])* pub $field:ident: $kind:ty,)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name<T: $crate::Number, const $D: usize> {
+            $($(#[$field_meta])* pub $field: $crate::pairs::Of<$kind, T>,)*
+        }
+
+        #[doc = concat!("[`", stringify!($name), "`] for every number type.")]
+        #[derive(Clone, Copy, Debug)]
+        pub struct $family<const $D: usize>;
+
+        impl<const $D: usize> $crate::pairs::Record for $family<$D> {
+            type Of<T: $crate::Number> = $name<T, $D>;
+
+            #[inline(always)]
+            fn zero<T: $crate::Number>() -> Self::Of<T> {
+                $name { $($field: <$kind as $crate::pairs::Record>::zero()),* }
+            }
+
+            #[inline(always)]
+            fn map<S: $crate::Number, T: $crate::Number, const N: usize>(
+                from: [&Self::Of<S>; N],
+                f: &impl Fn([S; N]) -> T,
+            ) -> Self::Of<T> {
+                $name {
+                    $($field: <$kind as $crate::pairs::Record>::map(
+                        $crate::pairs::record::each(from, |part| &part.$field),
+                        f,
+                    )),*
+                }
+            }
+        }
+    };
+}
+pub(crate) use record;
