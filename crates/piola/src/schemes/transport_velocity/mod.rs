@@ -14,7 +14,7 @@
 //! ```
 //!
 //! with the exchange of pressure E, of momentum N and the artificial viscosity Pi of
-//! [`piola_formulas::fluid`]: theory (20) to (22), which say where the paper departs. They follow from CTVF (12), (19) and (23); the printed (25), (26),
+//! [`piola_formulas::pairs::fluid`]: theory (20) to (22), which say where the paper departs. They follow from CTVF (12), (19) and (23); the printed (25), (26),
 //! (27) have other signs. The first two lines are theirs with the terms of uhat collected:
 //! `rho_a uhat_ab - (rho d)_ab = rho_a u_ab + (rho_b - rho_a) d_b`, and likewise for p.
 //!
