@@ -69,7 +69,7 @@ impl Fluid {
         let approach = dot(&jump, &r);
         let scale = fluid::exchange_scale(a[6] + b[6], square, self.softening);
         let viscous = fluid::diffusion(self.viscosity, square, weighted, scale);
-        let artificial = fluid::artificial_viscosity(self.artificial, approach, scale);
+        let artificial = fluid::artificial_viscosity(T::from(self.artificial), approach, scale);
         let spread = fluid::diffusion(self.diffusivity, square, weighted, scale);
         let inverse = b[6].recip();
         let load = a[7] / (a[6] * a[6]) + b[7] * inverse * inverse + artificial;

@@ -1,7 +1,9 @@
 //! Pair laws of solids in the transport-velocity formulation. Paper: CTVF, sections 3.2 and 4.4 to 4.7.
 
 use super::fluid::{FluidSide, Side};
-use super::{Components, Many, MovingPair, Of, One, PairLaw, Square, difference, dot, record};
+use super::{
+    Components, Many, MovingPair, Of, One, PairLaw, Record, Square, difference, dot, record,
+};
 use crate::kernels::Needs;
 use crate::{Number, fluid};
 
@@ -91,16 +93,17 @@ fn pull<T: Number, const D: usize, const PLAIN: bool>(
     me: &Tension<T, D>,
     (side, tension): &Of<(FluidSide<D>, SolidTension<D>), T>,
     pair: &Of<MovingPair<D>, T>,
-) -> [T; D] {
+) -> Of<Components<D>, T> {
     let weight = if PLAIN { side.mass() } else { tension.weight };
     let slope = weight * pair.slope;
-    let mut force = [T::zero(); D];
-    for (i, force) in force.iter_mut().enumerate() {
+    let mut force = Components::<D>::zero();
+    for i in 0..D {
+        let mut sum = T::zero();
         for j in 0..D {
             let at = if PLAIN { (i.min(j), i.max(j)) } else { (i, j) };
-            *force += (me.tensor[at] + tension.tensor[at]) * pair.separation[j];
+            sum += (me.tensor[at] + tension.tensor[at]) * pair.separation[j];
         }
-        *force = *force * slope;
+        force[i] = sum * slope;
     }
     force
 }
