@@ -57,12 +57,6 @@ impl Lanes4 {
         let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
         Self([f(a, p), f(b, q), f(c, r), f(d, s)])
     }
-
-    #[inline(always)]
-    fn compare(self, other: Self, f: impl Fn(f64, f64) -> bool) -> Mask4 {
-        let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
-        Mask4([f(a, p), f(b, q), f(c, r), f(d, s)])
-    }
 }
 
 impl From<f64> for Lanes4 {
@@ -96,18 +90,22 @@ impl Neg for Lanes4 {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        self.each(|x| -x)
+        let [a, b, c, d] = self.0;
+        Self([-a, -b, -c, -d])
     }
 }
 
+// Written out lane by lane: functions that take functions are slow to compile, in loops that are made for
+// every kind of law.
 macro_rules! operator {
-    ($($operator:ident $method:ident $assign:ident $assign_method:ident $f:expr;)*) => {$(
+    ($($operator:ident $method:ident $assign:ident $assign_method:ident $op:tt;)*) => {$(
         impl $operator for Lanes4 {
             type Output = Self;
 
             #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                self.with(other, $f)
+            fn $method(self, Self([p, q, r, s]): Self) -> Self {
+                let [a, b, c, d] = self.0;
+                Self([a $op p, b $op q, c $op r, d $op s])
             }
         }
 
@@ -115,25 +113,27 @@ macro_rules! operator {
             type Output = Self;
 
             #[inline(always)]
-            fn $method(self, other: f64) -> Self {
-                self.with(Self::from(other), $f)
+            fn $method(self, x: f64) -> Self {
+                let [a, b, c, d] = self.0;
+                Self([a $op x, b $op x, c $op x, d $op x])
             }
         }
 
         impl $assign for Lanes4 {
             #[inline(always)]
-            fn $assign_method(&mut self, other: Self) {
-                *self = self.with(other, $f);
+            fn $assign_method(&mut self, Self([p, q, r, s]): Self) {
+                let [a, b, c, d] = self.0;
+                self.0 = [a $op p, b $op q, c $op r, d $op s];
             }
         }
     )*};
 }
 
 operator! {
-    Add add AddAssign add_assign |x, y| x + y;
-    Sub sub SubAssign sub_assign |x, y| x - y;
-    Mul mul MulAssign mul_assign |x, y| x * y;
-    Div div DivAssign div_assign |x, y| x / y;
+    Add add AddAssign add_assign +;
+    Sub sub SubAssign sub_assign -;
+    Mul mul MulAssign mul_assign *;
+    Div div DivAssign div_assign /;
 }
 
 impl BitAnd for Mask4 {
@@ -178,20 +178,23 @@ impl Number for Lanes4 {
     }
 
     #[inline(always)]
-    fn less(self, other: Self) -> Mask4 {
-        self.compare(other, |x, y| x < y)
+    fn less(self, Self([p, q, r, s]): Self) -> Mask4 {
+        let [a, b, c, d] = self.0;
+        Mask4([a < p, b < q, c < r, d < s])
     }
 
     #[inline(always)]
-    fn at_most(self, other: Self) -> Mask4 {
-        self.compare(other, |x, y| x <= y)
+    fn at_most(self, Self([p, q, r, s]): Self) -> Mask4 {
+        let [a, b, c, d] = self.0;
+        Mask4([a <= p, b <= q, c <= r, d <= s])
     }
 
     #[inline(always)]
     fn select(mask: Mask4, yes: Self, no: Self) -> Self {
-        let ([a, b, c, d], [p, q, r, s]) = (yes.0, no.0);
-        let pick = |lane: usize, yes: f64, no: f64| if mask.0[lane] { yes } else { no };
-        Self([pick(0, a, p), pick(1, b, q), pick(2, c, r), pick(3, d, s)])
+        let ([a, b, c, d], [p, q, r, s], [w, x, y, z]) = (yes.0, no.0, mask.0);
+        let (a, b) = (if w { a } else { p }, if x { b } else { q });
+        let (c, d) = (if y { c } else { r }, if z { d } else { s });
+        Self([a, b, c, d])
     }
 
     /// A lane that has done keeps its numbers while others go on.
@@ -215,7 +218,7 @@ impl Number for Lanes4 {
 
     #[inline(always)]
     fn recip(self) -> Self {
-        self.each(f64::recip)
+        Self::from(1.0) / self
     }
 
     #[inline(always)]
@@ -225,7 +228,8 @@ impl Number for Lanes4 {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self.each(f64::sqrt)
+        let [a, b, c, d] = self.0;
+        Self([a.sqrt(), b.sqrt(), c.sqrt(), d.sqrt()])
     }
 
     #[inline(always)]
