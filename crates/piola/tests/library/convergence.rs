@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::support::{Choice, Function, PLAIN, lattice, march, march_from, varying};
+use crate::support::{Choice, Function, PLAIN, lattice, march, march_from, places, rows, varying};
 use nalgebra::Matrix2;
 use num_dual::{Dual, Dual64, DualNum};
 use piola::Vector;
@@ -119,12 +119,13 @@ fn errors(mut scheme: Upwind<2>, steps: usize) -> [f64; 3] {
     const END: f64 = 0.4;
     let state = march(&mut scheme, END / steps as f64, steps);
     let (count, length) = (scheme.particle_count(), scheme.width());
+    let unknowns = rows(&places(&scheme), &state);
     let all: Vec<u32> = (0..count as u32).collect();
     let volumes = Observation::new(&mut scheme, END, &state).values("volume", &all);
     let mut sums = [0.0; 3];
     for (a, volume) in volumes.iter().enumerate() {
         let reference = scheme.particle(a).reference;
-        let (place, row) = ([reference[0], reference[1], 0.0], &state[a * length..][..length]);
+        let (place, row) = ([reference[0], reference[1], 0.0], &unknowns[a * length..][..length]);
         let dual = [reference[0], reference[1]].map(Dual64::from_re);
         let ratio = determinant(&deformation(dual, Dual64::from_re(END))).re;
         let position = motion([reference[0], reference[1]], END);
@@ -190,10 +191,11 @@ fn riemann_errors(n: usize) -> (f64, f64) {
     let mut scheme = choice.build(|_| Vector::<1>::zeros());
     let mut state = scheme.initial_state();
     let place = |a: usize| a as f64 / n as f64 - 0.5;
+    let places = places(&scheme);
     for a in 0..=n {
         let (velocity, pressure) = if place(a) < 0.0 { LEFT } else { RIGHT };
-        state[4 * a] = velocity;
-        state[4 * a + 1] = 1.0 - pressure;
+        state[places[4 * a]] = velocity;
+        state[places[4 * a + 1]] = 1.0 - pressure;
     }
     let (end, steps) = (0.2, n);
     let state = march_from(&mut scheme, state, end / steps as f64, steps, |_, _| {});
@@ -204,7 +206,8 @@ fn riemann_errors(n: usize) -> (f64, f64) {
             x if x > end => RIGHT,
             _ => STAR,
         };
-        let error = (state[4 * a] - exact.0).abs() + (1.0 - state[4 * a + 1] - exact.1).abs();
+        let [velocity, ratio] = [0, 1].map(|k| state[places[4 * a + k]]);
+        let error = (velocity - exact.0).abs() + (1.0 - ratio - exact.1).abs();
         sum += error / n as f64;
         if place(a).abs() < 0.05 {
             largest = largest.max(error);

@@ -1,7 +1,7 @@
 //! The rates of the upwind formulation against sums written out from the operators and the pair
 //! laws, particle by particle: theory (8) to (13) without anything that makes them fast.
 
-use crate::support::{Choice, disturbed, jittered, lattice};
+use crate::support::{Choice, disturbed, jittered, lattice, places, rows};
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{Correction, GradientOperator, LeastSquares, Support};
@@ -130,7 +130,9 @@ fn compare<const D: usize>(
     let support = Support::new(&particles, Kernel::CubicSpline, smoothing_ratio, domain)
         .expect("the neighbours can be found");
     let length = scheme.width();
-    let rows = state.chunks_exact(length).take(particles.len());
+    let places = places(&scheme);
+    let (state, rate) = (rows(&places, &state), rows(&places, &rate));
+    let rows = state.chunks_exact(length);
     let parts = Parts {
         operator: GradientOperator::new(&particles, &support, settings.correction)
             .expect("the gradient exists"),

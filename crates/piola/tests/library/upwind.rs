@@ -6,7 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use crate::fields::{Counted, fields_are_complete};
 use crate::support::{
-    Choice, PLAIN, disturbed, energy, jittered, lattice, march, march_from, noise, work,
+    Choice, PLAIN, disturbed, energy, jittered, lattice, march, march_from, noise, place, places,
+    rows, work,
 };
 use piola::neighbors::Domain;
 use piola::schemes::upwind::{Initial, Settings, Upwind, UpwindInput};
@@ -131,7 +132,7 @@ fn momentum_is_kept<const D: usize>(mut choice: Choice<D>) {
     let volume = choice.particles.volume.clone();
     let mut scheme = choice.build(|_| Vector::zeros());
     let state = disturbed(&scheme, 0.1);
-    let rate = rates(&mut scheme, &state);
+    let rate = rows(&places(&scheme), &rates(&mut scheme, &state));
     let length = scheme.width();
     for component in 0..D {
         let force = |a: usize| volume[a] * rate[a * length + component];
@@ -160,14 +161,16 @@ fn a_rigid_rotation_gives_no_force_and_no_volume_rate() {
     let spin = Vector::<3>::new(0.4, -0.2, 0.9);
     let mut state = scheme.initial_state();
     let length = scheme.width();
-    for (a, reference) in positions.iter().enumerate() {
-        let row = &mut state[a * length..][..length];
+    let places = places(&scheme);
+    let mut all = rows(&places, &state);
+    for (row, reference) in all.chunks_exact_mut(length).zip(&positions) {
         let position = rotation * reference;
         row[..3].copy_from_slice(spin.cross(&position).as_slice());
         row[4..7].copy_from_slice(position.as_slice());
         row[7..].copy_from_slice(rotation.transpose().as_slice());
     }
-    let rate = rates(&mut scheme, &state);
+    places.iter().zip(all).for_each(|(&place, number)| state[place] = number);
+    let rate = rows(&places, &rates(&mut scheme, &state));
     for row in rate.chunks_exact(length).take(positions.len()) {
         assert!(row[..4].iter().all(|value| value.abs() < 1e-10), "{:?}", &row[..4]);
         let expected: Tensor<3> = (spin.cross_matrix() * rotation).transpose();
@@ -194,15 +197,16 @@ fn angular_momentum_is_kept(settings: Settings) {
     // A smooth motion with F consistent with x; J is arbitrary, so that pressures are not small.
     let length = scheme.width();
     let mut state = scheme.initial_state();
-    for (a, x) in positions.iter().enumerate() {
-        state[a * length] += noise(3 * a);
-        state[a * length + 1] += noise(5 * a);
-        state[a * length + 2] += 0.1 * noise(a);
-        state[a * length + 3] += 0.1 * x[0] * x[1];
-        state[a * length + 4] += 0.05 * x[0] * x[0];
+    let places = places(&scheme);
+    for (row, (a, x)) in places.chunks_exact(length).zip(positions.iter().enumerate()) {
+        state[row[0]] += noise(3 * a);
+        state[row[1]] += noise(5 * a);
+        state[row[2]] += 0.1 * noise(a);
+        state[row[3]] += 0.1 * x[0] * x[1];
+        state[row[4]] += 0.05 * x[0] * x[0];
     }
     let field: Vec<Vector<2>> = (0..positions.len())
-        .map(|a| Vector::<2>::new(state[a * length + 3], state[a * length + 4]))
+        .map(|a| Vector::<2>::new(state[places[a * length + 3]], state[places[a * length + 4]]))
         .collect();
     let list = piola::operators::Support::new(
         &lattice([3.0, 5.0], [6, 8]),
@@ -218,9 +222,10 @@ fn angular_momentum_is_kept(settings: Settings) {
     )
     .expect("the operator exists");
     for (a, gradient) in operator.vector_gradient(&list, &field).iter().enumerate() {
-        state[a * length + 5..][..4].copy_from_slice(gradient.transpose().as_slice());
+        let own = &places[a * length + 5..][..4];
+        own.iter().zip(&gradient.transpose()).for_each(|(&place, f)| state[place] = *f);
     }
-    let rate = rates(&mut scheme, &state);
+    let rate = rows(&places, &rates(&mut scheme, &state));
     let torque = |a: usize| {
         let (x, f) = (&field[a], &rate[a * length..][..2]);
         volume[a] * (x[0] * f[1] - x[1] * f[0])
@@ -244,10 +249,10 @@ fn a_bar_vibrates_at_its_natural_frequency() {
     choice.smoothing_ratio = 1.0;
     let mut scheme = choice.build(|x| Vector::<1>::new((PI * x[0] / 20.0).sin()));
     let omega = PI * 1000.0_f64.sqrt() / 20.0;
-    let mut largest: f64 = 0.0;
+    let (mut largest, end) = (0.0_f64, place(&scheme, "position", 40, 0));
     let start = scheme.initial_state();
     march_from(&mut scheme, start, 1e-3, 6325, |time, state| {
-        let tip = state[40 * 4 + 2] - 10.0;
+        let tip = state[end] - 10.0;
         largest = largest.max((tip - (omega * time).sin() / omega).abs() * omega);
     });
     // Five periods: the phase error of 0.13 % of a period shows as 2 pi 0.0013 at most.
@@ -351,7 +356,9 @@ fn threads_do_not_change_a_bit() {
 fn inspection_finds_the_broken_particle() {
     let mut scheme =
         Choice::new(lattice([3.0, 5.0], [6, 8]), gamma()).build(|_| Vector::<2>::zeros());
-    let (length, mut limits) = (scheme.width(), Vec::new());
+    let mut limits = Vec::new();
+    let [broken, turned] = [("velocity", 17, 1), ("volume_ratio", 23, 0)]
+        .map(|(field, particle, component)| place(&scheme, field, particle, component));
     let mut inspect = |state: &[f64]| -> Health { scheme.inspect(state, &mut limits) };
     let sound = disturbed(
         &Choice::new(lattice([3.0, 5.0], [6, 8]), gamma()).build(|_| Vector::<2>::zeros()),
@@ -359,10 +366,10 @@ fn inspection_finds_the_broken_particle() {
     );
     assert_eq!(inspect(&sound).first_not_finite, None);
     let mut state = sound.clone();
-    state[17 * length + 1] = f64::NAN;
+    state[broken] = f64::NAN;
     assert_eq!(inspect(&state).first_not_finite, Some(17));
     let mut state = sound.clone();
-    state[23 * length + 2] = -0.25;
+    state[turned] = -0.25;
     let health = inspect(&state);
     assert_eq!((health.smallest_ratio, health.smallest_ratio_particle), (-0.25, 23));
 }

@@ -245,6 +245,33 @@ pub fn place(scheme: &dyn Scheme, field: &str, particle: usize, component: usize
     scheme.column(field).start + particle * field.kind.components(scheme.dimension()) + component
 }
 
+/// Where the unknowns of the upwind formulation stand in a state, particle by particle: v, J, x and F
+/// row by row.
+pub fn places(scheme: &dyn Scheme) -> Vec<usize> {
+    let dimension = scheme.dimension();
+    let fields = [
+        ("velocity", dimension),
+        ("volume_ratio", 1),
+        ("position", dimension),
+        ("deformation_gradient", dimension * dimension),
+    ];
+    let of = |a: usize| {
+        fields.into_iter().flat_map(move |(field, components)| {
+            (0..components).map(move |k| match components == dimension * dimension {
+                // Tensors stand in a state column by column.
+                true => place(scheme, field, a, k % dimension * dimension + k / dimension),
+                false => place(scheme, field, a, k),
+            })
+        })
+    };
+    (0..scheme.particle_count()).flat_map(of).collect()
+}
+
+/// The numbers of a state at such places.
+pub fn rows(places: &[usize], state: &[f64]) -> Vec<f64> {
+    places.iter().map(|&place| state[place]).collect()
+}
+
 /// A seeded number in (-1, 1) for each index: a hash, so that tests need no generator.
 pub fn noise(index: usize) -> f64 {
     let mut x = (index as u64).wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);

@@ -1,7 +1,8 @@
 //! What acts on the body from outside: tractions and prescribed motion, with the work and the
 //! momentum that enter with them.
 
-use super::{BOUNDARY_MOTION, IMPULSES, KEPT, MECHANISMS, Row, TRACTION, Upwind};
+use super::fields::ColumnsMut;
+use super::{BOUNDARY_MOTION, IMPULSES, KEPT, MECHANISMS, TRACTION, Upwind};
 use crate::Vector;
 use crate::parallel;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
@@ -16,7 +17,7 @@ impl<const D: usize> Upwind<D> {
     /// Adds tractions and replaces the acceleration of prescribed components by the rate of
     /// their value, with the power and the momentum of both.
     pub(super) fn boundary_pass(&mut self, time: f64, rate: &mut [f64]) {
-        let (rows, tail) = rate.split_at_mut(self.particles.len() * Row::<D>::LENGTH);
+        let (own, tail) = ColumnsMut::<D>::of(rate, self.particles.len());
         debug_assert_eq!(tail.len(), Self::tail_length());
         let (powers, impulses) = tail.split_at_mut(MECHANISMS.len());
         let components = momentum_components(D).len();
@@ -24,16 +25,15 @@ impl<const D: usize> Upwind<D> {
         let (traction, boundary) = impulses[components..].split_at_mut(components);
         for load in &self.loaded {
             let (a, force) = (load.particle, load.force(time));
-            let row = &mut rows[a * Row::<D>::LENGTH..][..D];
             for (component, force) in force.iter().enumerate() {
-                row[component] += force / self.mass(a);
+                own.velocity[a][component] += force / self.mass(a);
                 powers[TRACTION] += force * self.sides[a].velocity[component];
             }
             add_moments(&self.sides[a].position, &force, traction);
         }
         for entry in self.prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);
-            let acceleration = &mut rows[a * Row::<D>::LENGTH + component];
+            let acceleration = &mut own.velocity[a][component];
             let wanted = entry.value.rate(entry.place, time);
             let reaction = self.mass(a) * (wanted - *acceleration);
             powers[BOUNDARY_MOTION] += reaction * self.sides[a].velocity[component];
@@ -46,12 +46,9 @@ impl<const D: usize> Upwind<D> {
 
     /// Momentum of all particles together.
     pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        let at = self.columns(state);
         parallel::sums(self.particles.len(), |a, sum| {
-            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            let position =
-                Vector::from_column_slice(&row[Row::<D>::POSITION..Row::<D>::DEFORMATION]);
-            let velocity = Vector::<D>::from_column_slice(&row[..D]);
-            add_moments(&position, &(velocity * self.mass(a)), sum);
+            add_moments(&at.position[a], &(at.velocity[a] * self.mass(a)), sum);
         })
     }
 }

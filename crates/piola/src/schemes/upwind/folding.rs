@@ -2,7 +2,7 @@
 
 use piola_formulas::tensor::determinant;
 
-use super::{Row, Upwind};
+use super::Upwind;
 use crate::parallel;
 use crate::{Tensor, Vector};
 
@@ -18,21 +18,19 @@ impl<const D: usize> Upwind<D> {
     /// spans of a particle with D of its closest neighbours. Where it is negative, the lattice has
     /// folded and neighbouring columns overlap, whatever the evolved F and J are.
     pub(super) fn least_corner(&self, state: &[f64]) -> f64 {
-        let corner = |a: usize| self.least_corner_of(a, state);
+        let at = self.columns(state);
+        let corner = |a: usize| self.least_corner_of(a, at.position);
         -parallel::maximum(self.particles.len(), f64::NEG_INFINITY, |a| -corner(a))
     }
 
-    fn least_corner_of(&self, a: usize, state: &[f64]) -> f64 {
-        let place = |b: usize| {
-            Vector::<D>::from_column_slice(&state[b * Row::<D>::LENGTH + Row::<D>::POSITION..][..D])
-        };
+    fn least_corner_of(&self, a: usize, place: &[Vector<D>]) -> f64 {
         // Two a lattice axis; a cloud may have more, of which the first serve.
         let mut spans = [(Vector::<D>::zeros(), Vector::<D>::zeros()); 8];
         let mut count = 0;
         for &b in self.support.list.row(a) {
             let reference = self.support.separation(&self.particles.position, a, b);
             if count < spans.len() && reference.norm() < CLOSE * self.particles.spacing[a] {
-                let current = self.support.domain.separation(&place(a), &place(b as usize));
+                let current = self.support.domain.separation(&place[a], &place[b as usize]);
                 spans[count] = (reference, current);
                 count += 1;
             }

@@ -1,12 +1,13 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
+use std::ops::Range;
+
 use piola_formulas::volumetric::VolumetricResponse;
 use piola_formulas::{riemann, tensor};
-use rayon::prelude::*;
 
-use super::local::deformation;
-use super::{Row, Upwind};
-use crate::parallel::CHUNK;
+use super::Upwind;
+use super::fields::Columns;
+use crate::parallel::{self, CHUNK, PerChunk};
 use crate::schemes::{Health, StepLimit};
 
 /// Figures of one chunk of particles.
@@ -61,16 +62,10 @@ impl<const D: usize> Upwind<D> {
     ///   of the exchange coefficients, so `dt <= 1 / row sum`, theory (17); not scaled.
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let mut figures = std::mem::take(&mut self.chunk_figures);
-        let rows = &state[..self.particles.len() * Row::<D>::LENGTH];
-        let chunk_length = CHUNK * Row::<D>::LENGTH;
-        let body = |(chunk, (rows, figures)): (usize, (&[f64], &mut ChunkFigures))| {
-            *figures = self.look_at_rows(chunk * CHUNK, rows);
-        };
-        if figures.len() <= 1 {
-            rows.chunks(chunk_length).zip(&mut figures).enumerate().for_each(body);
-        } else {
-            rows.par_chunks(chunk_length).zip(&mut figures).enumerate().for_each(body);
-        }
+        let (count, at) = (self.particles.len(), self.columns(state));
+        parallel::for_each_part(count, PerChunk(&mut figures), |first, PerChunk(figures)| {
+            figures.fill(self.look_at_all(first..count.min(first + CHUNK), &at));
+        });
         let worst = figures.iter().copied().fold(ChunkFigures::NEUTRAL, ChunkFigures::worse);
         self.chunk_figures = figures;
 
@@ -103,25 +98,27 @@ impl<const D: usize> Upwind<D> {
         Health { largest_wave_speed: worst.fastest, ..worst.health }
     }
 
-    fn look_at_rows(&self, first: usize, rows: &[f64]) -> ChunkFigures {
+    fn look_at_all(&self, particles: Range<usize>, at: &Columns<'_, D>) -> ChunkFigures {
         let mut worst = ChunkFigures::NEUTRAL;
-        for (offset, row) in rows.chunks_exact(Row::<D>::LENGTH).enumerate() {
-            let a = first + offset;
-            if row.iter().any(|value| !value.is_finite()) {
+        for a in particles {
+            let is_finite = at.volume_ratio[a].is_finite()
+                && at.velocity[a].iter().all(|value| value.is_finite())
+                && at.position[a].iter().all(|value| value.is_finite())
+                && at.deformation_gradient[a].iter().all(|value| value.is_finite());
+            if !is_finite {
                 worst.health.first_not_finite.get_or_insert(a);
                 continue;
             }
-            worst = worst.worse(self.look_at_row(a, row));
+            worst = worst.worse(self.look_at(a, at));
         }
         worst
     }
 
     #[inline]
-    fn look_at_row(&self, a: usize, row: &[f64]) -> ChunkFigures {
-        let evolved = row[Row::<D>::VOLUME_RATIO];
-        let gradient = deformation::<D>(row);
-        let determinant = tensor::determinant(&gradient);
-        let speed = row[..D].iter().map(|v| v * v).sum::<f64>().sqrt();
+    fn look_at(&self, a: usize, at: &Columns<'_, D>) -> ChunkFigures {
+        let (evolved, gradient) = (at.volume_ratio[a], &at.deformation_gradient[a]);
+        let determinant = tensor::determinant(gradient);
+        let speed = at.velocity[a].iter().map(|v| v * v).sum::<f64>().sqrt();
         let health = Health {
             largest_speed: speed,
             largest_speed_particle: a,
@@ -135,7 +132,7 @@ impl<const D: usize> Upwind<D> {
         if !(health.smallest_ratio > 0.0) {
             return ChunkFigures { health, ..ChunkFigures::NEUTRAL };
         }
-        let smallest = tensor::smallest_eigenvalue(&tensor::right_cauchy_green(&gradient));
+        let smallest = tensor::smallest_eigenvalue(&tensor::right_cauchy_green(gradient));
         let reference = &self.reference[a];
         let acoustic = self.law(a).wave_speed(evolved, reference.density);
         let fastest = riemann::referential_wave_speed(acoustic, determinant, smallest);
@@ -154,7 +151,7 @@ impl<const D: usize> Upwind<D> {
     }
 
     /// Wave speed on the reference configuration of each particle in m/s, for output.
-    pub(super) fn wave_speed(&self, a: usize, row: &[f64]) -> f64 {
-        self.look_at_row(a, row).fastest
+    pub(super) fn wave_speed(&self, a: usize, at: &Columns<'_, D>) -> f64 {
+        self.look_at(a, at).fastest
     }
 }

@@ -4,8 +4,9 @@ use nalgebra::{SMatrix, SVector};
 use piola_formulas::volumetric::VolumetricResponse;
 use piola_formulas::{Number, riemann, tensor};
 
-use super::{Row, Upwind, WaveSpeed};
-use crate::{Tensor, Vector, parallel};
+use super::fields::Columns;
+use super::{Upwind, WaveSpeed};
+use crate::{Vector, parallel};
 
 /// What the pass over pairs gathers of a particle, in one place so that a neighbour costs one
 /// stretch of memory, which begins with a cache line so that it takes as few of them as can be.
@@ -56,33 +57,26 @@ pub(super) struct Unknowns<T, const D: usize> {
 }
 
 impl<const D: usize> Unknowns<f64, D> {
-    /// Those of a row of the state.
+    /// Those of particle a in a state.
     #[inline]
-    pub fn of_row(row: &[f64]) -> Self {
+    pub fn of(at: &Columns<'_, D>, a: usize) -> Self {
         Self {
-            velocity: Vector::from_column_slice(&row[..D]),
-            ratio: row[Row::<D>::VOLUME_RATIO],
-            position: Vector::from_column_slice(&row[Row::<D>::POSITION..Row::<D>::DEFORMATION]),
-            deformation: deformation(row),
+            velocity: at.velocity[a],
+            ratio: at.volume_ratio[a],
+            position: at.position[a],
+            deformation: at.deformation_gradient[a],
         }
     }
-}
-
-/// The deformation gradient of a row of the state.
-#[inline]
-pub(super) fn deformation<const D: usize>(row: &[f64]) -> Tensor<D> {
-    let stored = &row[Row::<D>::DEFORMATION..Row::<D>::LENGTH];
-    Tensor::from_fn(|i, j| stored[i * D + j])
 }
 
 impl<const D: usize> Upwind<D> {
     /// Fills [`Side`] for all particles from `state`.
     pub(super) fn local_pass(&mut self, state: &[f64]) {
+        let at = self.columns(state);
         let mut sides = std::mem::take(&mut self.sides);
         parallel::for_each_chunk(&mut sides, |first, sides| {
-            let rows = state[first * Row::<D>::LENGTH..].chunks_exact(Row::<D>::LENGTH);
-            for (offset, (side, row)) in sides.iter_mut().zip(rows).enumerate() {
-                *side = self.side(first + offset, &Unknowns::of_row(row));
+            for (a, side) in (first..).zip(sides) {
+                *side = self.side(a, &Unknowns::of(&at, a));
             }
         });
         self.sides = sides;

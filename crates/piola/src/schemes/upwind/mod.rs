@@ -18,6 +18,7 @@
 
 mod build;
 mod external;
+mod fields;
 mod folding;
 mod gather;
 mod implicit;
@@ -133,16 +134,6 @@ const TRACTION: usize = 1;
 const BOUNDARY_MOTION: usize = 2;
 const UPWIND_VELOCITY: usize = 3;
 const UPWIND_PRESSURE: usize = 4;
-
-/// Where the unknowns stand in a row of the state: v, J, x, F row by row.
-struct Row<const D: usize>;
-
-impl<const D: usize> Row<D> {
-    const VOLUME_RATIO: usize = D;
-    const POSITION: usize = D + 1;
-    const DEFORMATION: usize = 2 * D + 1;
-    const LENGTH: usize = 2 * D + 1 + D * D;
-}
 
 impl<const D: usize> Upwind<D> {
     /// The law of particle a with its prestress.

@@ -1,11 +1,11 @@
 //! The pass over pairs: forces, deformation rates and upwind dissipation in one gather.
 
 use multiversion::multiversion;
-use rayon::prelude::*;
 
+use super::fields::ColumnsMut;
 use super::gather::Sums;
-use super::{BODY_FORCE, MECHANISMS, Powers, Row, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
-use crate::parallel::CHUNK;
+use super::{BODY_FORCE, MECHANISMS, Powers, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
+use crate::parallel::{self, PerChunk};
 use crate::schemes::momentum::{add_moments, momentum_components};
 use crate::{Tensor, Vector};
 
@@ -23,17 +23,13 @@ impl<const D: usize> Upwind<D> {
             (false, true, true) => rate_rows::<D, false, true, true>,
             (true, true, true) => rate_rows::<D, true, true, true>,
         };
-        let (rows, tail) = rate.split_at_mut(self.particles.len() * Row::<D>::LENGTH);
+        let count = self.particles.len();
+        let (own, tail) = ColumnsMut::<D>::of(rate, count);
         let mut powers = std::mem::take(&mut self.chunk_powers);
-        let chunk_length = CHUNK * Row::<D>::LENGTH;
-        let body = |(chunk, (rows, powers)): (usize, (&mut [f64], &mut Powers))| {
-            *powers = rate_rows(self, chunk * CHUNK, rows);
-        };
-        if powers.len() <= 1 {
-            rows.chunks_mut(chunk_length).zip(&mut powers).enumerate().for_each(body);
-        } else {
-            rows.par_chunks_mut(chunk_length).zip(&mut powers).enumerate().for_each(body);
-        }
+        let parts = (own, PerChunk(&mut powers));
+        parallel::for_each_part(count, parts, |first, (mut own, PerChunk(powers))| {
+            powers.fill(rate_rows(self, first, &mut own));
+        });
         tail.fill(0.0);
         let (work, impulses) = tail.split_at_mut(MECHANISMS.len());
         let body_force = &mut impulses[..momentum_components(D).len()];
@@ -44,29 +40,31 @@ impl<const D: usize> Upwind<D> {
         self.chunk_powers = powers;
     }
 
-    /// Turns the sums of particle a into its rates.
+    /// Turns the sums of particle a into its rates, which stand at place k of their columns.
     #[inline]
-    fn write_row(&self, a: usize, sums: &Sums<f64, D>, row: &mut [f64], powers: &mut Powers) {
+    fn write_row(
+        &self,
+        [a, k]: [usize; 2],
+        sums: &Sums<f64, D>,
+        own: &mut ColumnsMut<'_, D>,
+        powers: &mut Powers,
+    ) {
         let me = &self.sides[a];
         let (settings, volume) = (&self.settings, self.particles.volume[a]);
-        let own = me.cofactor * self.areas.diagonal(a) * me.pressure;
+        let by_itself = me.cofactor * self.areas.diagonal(a) * me.pressure;
         let upwind_force = Vector::from(sums.upwind_force) * settings.tau_velocity;
         let upwind_volume_rate = sums.upwind_volume_rate * settings.tau_pressure;
         let gravity = self.body_acceleration[a];
         let mass = self.mass(a);
         let acceleration =
-            (Vector::from(sums.internal_force) + own + upwind_force) / mass + gravity;
-        row[..D].copy_from_slice(acceleration.as_slice());
+            (Vector::from(sums.internal_force) + by_itself + upwind_force) / mass + gravity;
+        own.velocity[k] = acceleration;
         let deformation_rate =
             Tensor::<D>::from_fn(|i, j| sums.volume_deformation_rate[i][j] / volume);
         let dilatation = me.cofactor.dot(&deformation_rate);
-        row[Row::<D>::VOLUME_RATIO] = dilatation + upwind_volume_rate / volume;
-        row[Row::<D>::POSITION..Row::<D>::DEFORMATION].copy_from_slice(me.velocity.as_slice());
-        for i in 0..D {
-            for j in 0..D {
-                row[Row::<D>::DEFORMATION + i * D + j] = deformation_rate[(i, j)];
-            }
-        }
+        own.volume_ratio[k] = dilatation + upwind_volume_rate / volume;
+        own.position[k] = me.velocity;
+        own.deformation_gradient[k] = deformation_rate;
         let weight = gravity * mass;
         powers.work[BODY_FORCE] += weight.dot(&me.velocity);
         powers.work[UPWIND_VELOCITY] += upwind_force.dot(&me.velocity);
@@ -84,13 +82,12 @@ fn rate_rows<
 >(
     scheme: &Upwind<D>,
     first: usize,
-    rows: &mut [f64],
+    own: &mut ColumnsMut<'_, D>,
 ) -> Powers {
     let mut powers = Powers::default();
-    for (offset, row) in rows.chunks_exact_mut(Row::<D>::LENGTH).enumerate() {
-        let a = first + offset;
-        let sums = scheme.gather::<VELOCITY, PRESSURE, RECONSTRUCTION>(a);
-        scheme.write_row(a, &sums.total(), row, &mut powers);
+    for k in 0..own.velocity.len() {
+        let sums = scheme.gather::<VELOCITY, PRESSURE, RECONSTRUCTION>(first + k);
+        scheme.write_row([first + k, k], &sums.total(), own, &mut powers);
     }
     powers
 }

@@ -3,8 +3,8 @@
 
 use piola_formulas::tensor;
 
-use super::local::deformation;
-use super::{Row, Upwind};
+use super::Upwind;
+use super::fields::ColumnsMut;
 use crate::parallel;
 use crate::schemes::{PartitionedScheme, Scheme};
 
@@ -24,7 +24,7 @@ impl<const D: usize> Upwind<D> {
     /// The largest frequency of small oscillations about `state` by the power method: a velocity
     /// field v makes the displacement `v dt`, and that the acceleration `-w^2 v dt` in a mode.
     pub(super) fn largest_frequency(&mut self, state: &[f64]) -> f64 {
-        let (count, length) = (self.particles.len(), Row::<D>::LENGTH);
+        let count = self.particles.len();
         let mut rate = vec![0.0; state.len()];
         self.rates(0.0, state, &mut rate);
         let rest = rate.clone();
@@ -48,18 +48,14 @@ impl<const D: usize> Upwind<D> {
             let spacing = self.nearest.iter().copied().fold(f64::INFINITY, f64::min);
             let duration = SMALL * spacing / largest;
             moved.copy_from_slice(state);
-            for (a, velocity) in mode.chunks_exact(D).enumerate() {
-                moved[a * length..][..D].copy_from_slice(velocity);
-            }
+            let (own, _) = ColumnsMut::<D>::of(&mut moved, count);
+            bytemuck::cast_slice_mut(own.velocity).copy_from_slice(&mode);
             self.rates(0.0, &moved, &mut rate);
             self.drift(duration, &rate, &mut moved);
             self.rates(0.0, &moved, &mut rate);
-            let response: Vec<f64> = (0..count * D)
-                .map(|i| {
-                    let place = i / D * length + i % D;
-                    (rest[place] - rate[place]) / duration
-                })
-                .collect();
+            let numbers = |rate| -> &[f64] { bytemuck::cast_slice(self.columns(rate).velocity) };
+            let pairs = numbers(&rest).iter().zip(numbers(&rate));
+            let response: Vec<f64> = pairs.map(|(rest, rate)| (rest - rate) / duration).collect();
             let product = parallel::sum(count, |a| {
                 let pairs = mode[a * D..][..D].iter().zip(&response[a * D..][..D]);
                 self.mass(a) * pairs.map(|(v, r)| v * r).sum::<f64>()
@@ -80,11 +76,11 @@ impl<const D: usize> Upwind<D> {
 
 impl<const D: usize> PartitionedScheme for Upwind<D> {
     fn kick(&self, duration: f64, rate: &[f64], state: &mut [f64]) {
-        let length = Row::<D>::LENGTH;
-        let rows = &mut state[..self.particles.len() * length];
-        parallel::for_each_row(rows, length, |a, row| {
-            for (velocity, acceleration) in row[..D].iter_mut().zip(&rate[a * length..]) {
-                *velocity += duration * acceleration;
+        let rate = self.columns(rate);
+        let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
+        parallel::for_each_chunk(own.velocity, |first, velocity| {
+            for (velocity, acceleration) in velocity.iter_mut().zip(&rate.velocity[first..]) {
+                *velocity += acceleration * duration;
             }
         });
     }
@@ -92,16 +88,15 @@ impl<const D: usize> PartitionedScheme for Upwind<D> {
     /// x and F are linear in time then, and J follows F: `dJ/dt = cof F : dF/dt` is the rate of the
     /// determinant, so that J takes its whole change without any error of the step.
     fn drift(&self, duration: f64, rate: &[f64], state: &mut [f64]) {
-        let length = Row::<D>::LENGTH;
-        let rows = &mut state[..self.particles.len() * length];
-        parallel::for_each_row(rows, length, |a, row| {
-            let before = tensor::determinant(&deformation::<D>(row));
-            let moving = row[Row::<D>::POSITION..].iter_mut();
-            for (value, rate) in moving.zip(&rate[a * length + Row::<D>::POSITION..]) {
-                *value += duration * rate;
+        let (count, rate) = (self.particles.len(), self.columns(rate));
+        let (own, _) = ColumnsMut::<D>::of(state, count);
+        parallel::for_each_part(count, own, |first, own| {
+            for (k, deformation) in own.deformation_gradient.iter_mut().enumerate() {
+                let before = tensor::determinant(deformation);
+                own.position[k] += rate.position[first + k] * duration;
+                *deformation += rate.deformation_gradient[first + k] * duration;
+                own.volume_ratio[k] += tensor::determinant(deformation) - before;
             }
-            let after = tensor::determinant(&deformation::<D>(row));
-            row[Row::<D>::VOLUME_RATIO] += after - before;
         });
     }
 }

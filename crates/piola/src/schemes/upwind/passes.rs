@@ -1,6 +1,6 @@
 //! One evaluation of the rates as a row of passes, and what they move through memory.
 
-use super::{Row, Side, Slope, Upwind};
+use super::{Side, Slope, Upwind};
 use crate::schemes::Scheme;
 use crate::{Tensor, Vector};
 
@@ -35,7 +35,7 @@ impl<const D: usize> Upwind<D> {
     /// touches few particles and counts as nothing.
     pub fn streamed_bytes(&self) -> [usize; PASSES.len()] {
         let (count, pairs) = (self.particle_count(), self.support.list.pairs());
-        let row = Row::<D>::LENGTH * size_of::<f64>();
+        let row = self.width() * size_of::<f64>();
         let vector = size_of::<Vector<D>>();
         let reference = size_of::<super::Reference>();
         let (side, slope) = (size_of::<Side<f64, D>>(), size_of::<Slope<f64, D>>());

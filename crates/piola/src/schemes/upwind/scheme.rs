@@ -1,33 +1,15 @@
 //! The upwind formulation as integrators, clock and output see it.
 
-use piola_formulas::tensor;
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
-use super::local::deformation;
-use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Row, Upwind};
-use crate::fields::{FieldDescription, columns};
-use crate::parallel;
+use super::fields::{ColumnsMut, Made};
+use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Upwind};
+use crate::fields::FieldDescription;
 use crate::schemes::{
     Health, Particle, PartitionedScheme, Scheme, SchemeDescription, StepLimit, ThetaScheme,
 };
 use crate::solve::Costs;
-
-columns! {
-    enum Made;
-    derived(0) position: Vector, "m", "current position x";
-    derived(0) displacement: Vector, "m", "x - X";
-    derived(0) velocity: Vector, "m/s", "velocity v";
-    derived(1) acceleration: Vector, "m/s2", "rate of the velocity";
-    derived(0) pressure: Scalar, "Pa", "pressure p(J), positive in compression";
-    derived(0) volume_ratio: Scalar, "1", "volume ratio J as evolved";
-    derived(0) determinant: Scalar, "1", "determinant of the deformation gradient";
-    derived(0) deformation_gradient: Tensor, "1", "deformation gradient F, row by row";
-    derived(0) density: Scalar, "kg/m3", "current density, from the evolved J";
-    derived(0) wave_speed: Scalar, "m/s", "fastest wave, measured on the reference";
-    constant smoothing_length: Scalar, "m", "smoothing length h";
-    constant neighbors: Scalar, "1", "number of neighbours";
-    constant volume: Scalar, "m3", "reference quadrature volume V";
-}
+use crate::{Tensor, parallel};
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
@@ -52,21 +34,14 @@ impl<const D: usize> Scheme for Upwind<D> {
         self.particles.len()
     }
 
-    fn width(&self) -> usize {
-        Row::<D>::LENGTH
-    }
-
     fn initial_state(&self) -> Vec<f64> {
-        let mut state = vec![0.0; self.particles.len() * Row::<D>::LENGTH + Self::tail_length()];
-        let (length, position) = (Row::<D>::LENGTH, Row::<D>::POSITION);
-        for (a, row) in state.chunks_exact_mut(length).take(self.particles.len()).enumerate() {
-            row[..D].copy_from_slice(self.initial_velocity[a].as_slice());
-            row[Row::<D>::VOLUME_RATIO] = 1.0;
-            row[position..position + D].copy_from_slice(self.particles.position[a].as_slice());
-            for i in 0..D {
-                row[Row::<D>::DEFORMATION + i * D + i] = 1.0;
-            }
-        }
+        let length = self.particles.len() * self.width() + Self::tail_length();
+        let mut state = vec![0.0; length];
+        let (own, _) = ColumnsMut::<D>::of(&mut state, self.particles.len());
+        own.position.copy_from_slice(&self.particles.position);
+        own.velocity.copy_from_slice(&self.initial_velocity);
+        own.volume_ratio.fill(1.0);
+        own.deformation_gradient.fill(Tensor::identity());
         state
     }
 
@@ -75,9 +50,9 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
+        let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
         for entry in self.prescribed.iter() {
-            state[entry.particle * Row::<D>::LENGTH + entry.component] =
-                entry.value.value(entry.place, time);
+            own.velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
         }
     }
 
@@ -95,12 +70,12 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
-        let row = |a: usize| &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
+        let at = self.columns(state);
         energies[0] = parallel::sum(self.particles.len(), |a| {
-            0.5 * self.mass(a) * row(a)[..D].iter().map(|v| v * v).sum::<f64>()
+            0.5 * self.mass(a) * at.velocity[a].iter().map(|v| v * v).sum::<f64>()
         });
         energies[1] = parallel::sum(self.particles.len(), |a| {
-            self.particles.volume[a] * self.law(a).energy(row(a)[Row::<D>::VOLUME_RATIO])
+            self.particles.volume[a] * self.law(a).energy(at.volume_ratio[a])
         });
     }
 
@@ -110,10 +85,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn observe(&mut self, _stage: usize, time: f64, state: &[f64]) {
-        let mut rate = std::mem::take(&mut self.observed);
-        rate.resize(state.len(), 0.0);
-        self.rates(time, state, &mut rate);
-        self.observed = rate;
+        self.make_fields(time, state);
     }
 
     fn derive(
@@ -123,12 +95,8 @@ impl<const D: usize> Scheme for Upwind<D> {
         particles: &[u32],
         values: &mut Vec<f64>,
     ) {
-        let Some(made) = Made::of(field) else { return };
-        for &particle in particles {
-            let a = particle as usize;
-            let row = &state[a * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            self.push_field(made, a, row, values);
-        }
+        let (Some(made), at) = (Made::of(field), self.columns(state)) else { return };
+        particles.iter().for_each(|&a| self.push_field(made, &at, a as usize, values));
     }
 
     fn bodies(&self) -> &[u32] {
@@ -199,35 +167,5 @@ impl<const D: usize> Scheme for Upwind<D> {
 
     fn undamped_frequency(&mut self, state: &[f64]) -> Option<f64> {
         self.is_conservative().then(|| self.largest_frequency(state))
-    }
-}
-
-impl<const D: usize> Upwind<D> {
-    /// Appends the components of one field of one particle.
-    fn push_field(&self, made: Made, a: usize, row: &[f64], values: &mut Vec<f64>) {
-        let position = &row[Row::<D>::POSITION..Row::<D>::DEFORMATION];
-        let ratio = row[Row::<D>::VOLUME_RATIO];
-        match made {
-            Made::position => values.extend_from_slice(position),
-            Made::displacement => {
-                let reference = self.particles.position[a].iter();
-                values.extend(position.iter().zip(reference).map(|(x, reference)| x - reference));
-            }
-            Made::velocity => values.extend_from_slice(&row[..D]),
-            Made::acceleration => {
-                values.extend_from_slice(&self.observed[a * Row::<D>::LENGTH..][..D]);
-            }
-            Made::pressure => values.push(self.law(a).pressure(ratio)),
-            Made::volume_ratio => values.push(ratio),
-            Made::determinant => values.push(tensor::determinant(&deformation::<D>(row))),
-            Made::deformation_gradient => {
-                values.extend_from_slice(&row[Row::<D>::DEFORMATION..Row::<D>::LENGTH]);
-            }
-            Made::density => values.push(self.reference[a].density / ratio),
-            Made::wave_speed => values.push(self.wave_speed(a, row)),
-            Made::smoothing_length => values.push(self.support.smoothing_length[a]),
-            Made::neighbors => values.push(self.support.list.row(a).len() as f64),
-            Made::volume => values.push(self.particles.volume[a]),
-        }
     }
 }

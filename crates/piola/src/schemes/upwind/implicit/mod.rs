@@ -11,8 +11,9 @@ mod taylor;
 
 use num_dual::Dual64;
 
+use super::fields::ColumnsMut;
 use super::local::Unknowns;
-use super::{KEPT, Row, Upwind};
+use super::{KEPT, Upwind};
 use crate::boundaries::BodyForce;
 use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Missed, NoSolution, Scheme, Theta, ThetaScheme};
@@ -105,7 +106,7 @@ impl<const D: usize> Implicit<D> {
         let solver = LinearSolver::new(settings.method, positions, &matrix, |order| {
             Reduction::new(frames.clone(), &held, &[], order)
         })?;
-        let length = count * Row::<D>::LENGTH + Upwind::<D>::tail_length();
+        let length = count * scheme.width() + Upwind::<D>::tail_length();
         let mut new = Self {
             settings,
             solver,
@@ -144,7 +145,7 @@ impl<const D: usize> Implicit<D> {
 
     /// Binds the equations to a step from `old`.
     fn bind(&mut self, scheme: &mut Upwind<D>, rule: &Theta, [time, step]: [f64; 2], old: &[f64]) {
-        let (length, instant) = (Row::<D>::LENGTH, time + rule.instant() * step);
+        let instant = time + rule.instant() * step;
         self.base_state.copy_from_slice(old);
         let share = rule.share_at_start() * step;
         if share > 0.0 {
@@ -154,8 +155,8 @@ impl<const D: usize> Implicit<D> {
         }
         self.weight = rule.weight() * step;
         self.base.clear();
-        let rows = self.base_state.chunks_exact(length).take(scheme.particles.len());
-        self.base.extend(rows.map(Unknowns::of_row));
+        let at = scheme.columns(&self.base_state);
+        self.base.extend((0..scheme.particles.len()).map(|a| Unknowns::of(&at, a)));
         for (a, outside) in self.outside.iter_mut().enumerate() {
             let (body, x) = (scheme.particles.body[a], &scheme.particles.position[a]);
             *outside = BodyForce::sum(&scheme.body_forces, body, x, instant) * scheme.mass(a);
@@ -196,10 +197,8 @@ impl<const D: usize> StepEquations<'_, D> {
     /// Chooses where to start: at the velocities of `old`, or at rest where they would turn a
     /// particle inside out within the step.
     fn prepare(&mut self, old: &[f64]) {
-        let rows = old.chunks_exact(Row::<D>::LENGTH).take(self.parts.held.len());
-        let velocity: Vec<Vector<D>> =
-            rows.map(|row| Vector::from_column_slice(&row[..D])).collect();
-        let mut start = self.start_at(&velocity);
+        let velocity = self.scheme.columns(old).velocity;
+        let mut start = self.start_at(velocity);
         if self.trial(0.0, &start).broken.is_some() {
             start = self.start_at(&vec![Vector::zeros(); velocity.len()]);
         }
@@ -208,7 +207,7 @@ impl<const D: usize> StepEquations<'_, D> {
         self.parts.start = start;
     }
 
-    /// Finds the stage and writes its rows to `new`; returns the iterations.
+    /// Finds the stage and writes its columns to `new`; returns the iterations.
     fn find(&mut self, new: &mut [f64]) -> Result<usize, NewtonError> {
         let (mut x, newton) = (self.start(), self.parts.settings.newton);
         if let Some(particle) = self.trial(0.0, &x).broken {
@@ -218,18 +217,13 @@ impl<const D: usize> StepEquations<'_, D> {
         self.evaluate(&x);
         let stage = self.parts.stage(self.scheme);
         let fields = &self.parts.fields;
-        let rows = new.chunks_exact_mut(Row::<D>::LENGTH).zip(&fields.locals);
-        for (a, (row, local)) in rows.enumerate() {
+        let (own, _) = ColumnsMut::<D>::of(new, fields.locals.len());
+        for (a, local) in fields.locals.iter().enumerate() {
             let (unknowns, _) = stage.unknowns(a, &fields.velocity[a], &local.gradient);
-            row[..D].copy_from_slice(unknowns.velocity.as_slice());
-            row[Row::<D>::VOLUME_RATIO] = local.ratio;
-            row[Row::<D>::POSITION..Row::<D>::DEFORMATION]
-                .copy_from_slice(unknowns.position.as_slice());
-            for i in 0..D {
-                for j in 0..D {
-                    row[Row::<D>::DEFORMATION + i * D + j] = unknowns.deformation[(i, j)];
-                }
-            }
+            own.velocity[a] = unknowns.velocity;
+            own.volume_ratio[a] = local.ratio;
+            own.position[a] = unknowns.position;
+            own.deformation_gradient[a] = unknowns.deformation;
         }
         Ok(iterations.len())
     }
@@ -279,11 +273,12 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
         let (iterations, linear_steps) = found.unwrap_or(Ok((0, 0)))?;
         let Some(mut parts) = self.implicit.take() else { return Ok(()) };
         // Work and impulses follow the same rule, by the rates of the explicit passes.
-        let rows = self.particles.len() * Row::<D>::LENGTH;
         let mut rate = std::mem::take(&mut parts.rate);
         self.rates(time + rule.instant() * step, new, &mut rate);
-        for (index, entry) in new.iter_mut().enumerate().skip(rows) {
-            *entry = parts.base_state[index] + parts.weight * rate[index];
+        let [base, rates] = [&parts.base_state, &rate].map(|state| self.columns(state).tail);
+        let (_, tail) = ColumnsMut::<D>::of(new, self.particles.len());
+        for (entry, (base, rate)) in tail.iter_mut().zip(base.iter().zip(rates)) {
+            *entry = base + parts.weight * rate;
         }
         parts.rate = rate;
         self.implicit = Some(parts);
@@ -310,10 +305,7 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
     }
 
     fn kinetic_distance(&self, one: &[f64], other: &[f64]) -> f64 {
-        let velocities = [one, other].map(|state| {
-            let rows = state.chunks_exact(Row::<D>::LENGTH).take(self.particles.len());
-            rows.map(|row| Vector::<D>::from_column_slice(&row[..D])).collect::<Vec<_>>()
-        });
-        kinetic_distance(velocities.each_ref().map(Vec::as_slice), |a| self.mass(a))
+        let velocities = [one, other].map(|state| self.columns(state).velocity);
+        kinetic_distance(velocities, |a| self.mass(a))
     }
 }
