@@ -6,6 +6,8 @@ use super::expression::{constants, functions};
 use super::outline::{Section, sections, table_of};
 use super::spec::{KeySpec, Kind, Length, Presence, Variables};
 use super::tables;
+use crate::fields::FieldDescription;
+use crate::schemes::SchemeDescription;
 
 /// All tables and keys with their units, defaults and meanings.
 pub fn markdown() -> String {
@@ -45,6 +47,7 @@ pub fn markdown() -> String {
             }
         }
     }
+    fields(&mut page);
     expressions(&mut page);
     page
 }
@@ -129,6 +132,21 @@ fn names(variables: Variables) -> &'static str {
     match variables {
         Variables::Position => "x, y, z",
         Variables::PositionAndTime => "x, y, z, t",
+    }
+}
+
+fn fields(page: &mut String) {
+    push(
+        page,
+        "\n## Fields\n\n\
+         What each scheme shows, to probes, lines, pictures and particle files.\n",
+    );
+    for scheme in SchemeDescription::ALL {
+        let head = "| field | kind | unit | meaning |\n|---|---|---|---|\n";
+        push(page, &format!("\n### Fields of `{}`\n\n{head}", scheme.name));
+        for FieldDescription { name, kind, unit, meaning, .. } in scheme.shown() {
+            push(page, &format!("| `{name}` | {} | {unit} | {meaning} |\n", kind.name()));
+        }
     }
 }
 

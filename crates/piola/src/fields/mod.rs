@@ -42,7 +42,7 @@ pub struct FieldDescription {
 pub enum Life {
     /// A column of the state that integrators advance.
     Evolved,
-    /// A column of the state that the next step needs as it is.
+    /// A column of the state that only the next step needs, and that is not shown.
     Kept,
     /// Made of the state, after this many stages of observation.
     Derived(usize),
@@ -73,6 +73,15 @@ impl FieldDescription {
 }
 
 impl FieldKind {
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Vector => "vector",
+            Self::Tensor => "tensor",
+        }
+    }
+
     /// Number of components a particle in `dimension` dimensions.
     pub fn components(self, dimension: usize) -> usize {
         match self {

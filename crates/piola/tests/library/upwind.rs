@@ -319,6 +319,7 @@ fn a_symmetric_impact_stays_symmetric() {
     choice.settings.reconstruction = true;
     let mut scheme = choice.build(|_| Vector::<2>::new(0.0, -1.0));
     let last = march(&mut scheme, 2e-3, 300);
+    let last = rows(&places(&scheme), &last);
     let row = |i: usize, j: usize| &last[9 * (i + (n + 1) * j)..][..9];
     for j in 0..=m {
         for i in 0..=n {
