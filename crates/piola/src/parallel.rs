@@ -174,77 +174,32 @@ pub fn join<T: Copy + Send + Sync>(
         .reduce(|| neutral, &join)
 }
 
-/// Calls `body(number, row)` for each row of `length` numbers, in chunks as [`for_each_chunk`].
-pub fn for_each_row<T: Send>(rows: &mut [T], length: usize, body: impl Fn(usize, &mut [T]) + Sync) {
-    let chunk = |first: usize, rows: &mut [T]| {
-        rows.chunks_exact_mut(length).enumerate().for_each(|(k, row)| body(first + k, row));
-    };
-    if rows.len() <= CHUNK * length {
-        return chunk(0, rows);
-    }
-    let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
-    chunks.for_each(|(number, rows)| chunk(number * CHUNK, rows));
-}
-
-/// Calls `body(number, row, sums)` for each row of `length` numbers, which changes the row and adds
-/// its terms to `N` sums, in the order of [`sums`].
-pub fn sums_over_rows<const N: usize, T: Send>(
-    rows: &mut [T],
-    length: usize,
-    body: impl Fn(usize, &mut [T], &mut [f64; N]) + Sync,
+/// Calls `body(first, parts, sums)` for chunks of the arrays of `count` particles, which changes them and
+/// adds its terms to `N` sums, in the order of [`sums`].
+pub fn sums_over_parts<const N: usize, P: Parts>(
+    count: usize,
+    parts: P,
+    body: impl Fn(usize, P, &mut [f64; N]) + Sync,
 ) -> [f64; N] {
-    let chunk = |first: usize, rows: &mut [T]| {
-        let mut sums = [0.0; N];
-        let rows = rows.chunks_exact_mut(length).enumerate();
-        rows.for_each(|(k, row)| body(first + k, row, &mut sums));
-        sums
-    };
-    if rows.len() <= CHUNK * length {
-        return chunk(0, rows);
+    let mut sums = [0.0; N];
+    if count <= CHUNK {
+        body(0, parts, &mut sums);
+        return sums;
     }
     let mut kept = [[0.0; N]; SIDE_BY_SIDE];
-    let mut sums = [0.0; N];
-    let side_by_side = SIDE_BY_SIDE * CHUNK;
-    for (block, rows) in rows.chunks_mut(side_by_side * length).enumerate() {
-        let chunks = rows.par_chunks_mut(CHUNK * length).enumerate();
-        let count = chunks.len();
-        chunks.zip(&mut kept[..count]).for_each(|((number, rows), part)| {
-            *part = chunk(block * side_by_side + number * CHUNK, rows);
+    let (mut first, mut rest) = (0, Some(parts));
+    while let Some(parts) = rest.take() {
+        let length = (SIDE_BY_SIDE * CHUNK).min(count - first);
+        let (block, later) = parts.split(length);
+        let kept = &mut kept[..length.div_ceil(CHUNK)];
+        for_each_part(length, (block, PerChunk(kept)), |offset, (parts, PerChunk(part))| {
+            let mut own = [0.0; N];
+            body(first + offset, parts, &mut own);
+            part.fill(own);
         });
-        add_to(&mut sums, &kept[..count]);
-    }
-    sums
-}
-
-/// As [`sums_over_rows`], over rows of two arrays beside each other, of `lengths` numbers each:
-/// `body(number, row, other, sums)`.
-pub fn sums_over_pairs_of_rows<const N: usize>(
-    [rows, others]: [&mut [f64]; 2],
-    lengths: [usize; 2],
-    body: impl Fn(usize, &mut [f64], &mut [f64], &mut [f64; N]) + Sync,
-) -> [f64; N] {
-    let chunk = |first: usize, rows: &mut [f64], others: &mut [f64]| {
-        let mut sums = [0.0; N];
-        let pairs = rows.chunks_exact_mut(lengths[0]).zip(others.chunks_exact_mut(lengths[1]));
-        pairs.enumerate().for_each(|(k, (row, other))| body(first + k, row, other, &mut sums));
-        sums
-    };
-    if rows.len() <= CHUNK * lengths[0] {
-        return chunk(0, rows, others);
-    }
-    let mut kept = [[0.0; N]; SIDE_BY_SIDE];
-    let mut sums = [0.0; N];
-    let side_by_side = SIDE_BY_SIDE * CHUNK;
-    let blocks = rows.chunks_mut(side_by_side * lengths[0]);
-    let blocks = blocks.zip(others.chunks_mut(side_by_side * lengths[1])).enumerate();
-    for (block, (rows, others)) in blocks {
-        let pairs = rows.par_chunks_mut(CHUNK * lengths[0]);
-        let pairs = pairs.zip(others.par_chunks_mut(CHUNK * lengths[1])).enumerate();
-        let count = pairs.len();
-        pairs.zip(&mut kept[..count]).for_each(|((number, (rows, others)), part)| {
-            *part = chunk(block * side_by_side + number * CHUNK, rows, others);
-        });
-        add_to(&mut sums, &kept[..count]);
+        add_to(&mut sums, kept);
+        first += length;
+        rest = (first < count).then_some(later);
     }
     sums
 }

@@ -139,13 +139,15 @@ fn fields(page: &mut String) {
     push(
         page,
         "\n## Fields\n\n\
-         What each scheme shows, to probes, lines, pictures and particle files.\n",
+         What each scheme shows, to probes, lines, pictures and particle files. Evolved fields are \
+         the state; derived ones are made of it when somebody looks.\n",
     );
     for scheme in SchemeDescription::ALL {
-        let head = "| field | kind | unit | meaning |\n|---|---|---|---|\n";
+        let head = "| field | kind | unit | life | meaning |\n|---|---|---|---|---|\n";
         push(page, &format!("\n### Fields of `{}`\n\n{head}", scheme.name));
-        for FieldDescription { name, kind, unit, meaning, .. } in scheme.shown() {
-            push(page, &format!("| `{name}` | {} | {unit} | {meaning} |\n", kind.name()));
+        for FieldDescription { name, kind, unit, life, meaning, .. } in scheme.shown() {
+            let (kind, life) = (kind.name(), life.name());
+            push(page, &format!("| `{name}` | {kind} | {unit} | {life} | {meaning} |\n"));
         }
     }
 }

@@ -50,6 +50,18 @@ pub enum Life {
     Constant,
 }
 
+impl Life {
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Evolved => "evolved",
+            Self::Kept => "kept",
+            Self::Derived(_) => "derived",
+            Self::Constant => "constant",
+        }
+    }
+}
+
 impl FieldDescription {
     /// A field that does not change, the first of its table.
     pub const fn new(

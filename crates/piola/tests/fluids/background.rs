@@ -13,7 +13,7 @@ use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 use piola_formulas::kernels::Kernel;
 
 use super::solids::{self, two_blocks_with};
-use super::support::{SETTINGS, fluid_in_box, solids_in_box, unit_box};
+use super::support::{SETTINGS, change_rows, deviations, fluid_in_box, solids_in_box, unit_box};
 
 const FLUID: Fluid = Fluid { density: 2.0, wave_speed: 10.0, viscosity: 0.0 };
 const MOST: f64 = 0.5;
@@ -30,14 +30,14 @@ fn noise(k: usize) -> f64 {
 }
 
 /// Puts densities and pressures at random into a state, some pressures zero, and returns both.
-fn scatter<const D: usize>(state: &mut [f64], count: usize) -> Vec<(f64, f64)> {
-    let rows = state.chunks_mut(4 * D + 2).take(count).enumerate();
-    rows.map(|(number, row)| {
+fn scatter<const D: usize>(scheme: &TransportVelocity<D>, state: &mut [f64]) -> Vec<(f64, f64)> {
+    let mut both = Vec::new();
+    change_rows(scheme, state, |number, row| {
         row[2 * D] *= 1.0 + 0.02 * noise(3 * number);
         row[2 * D + 1] = if number % 5 == 0 { 0.0 } else { 30.0 * noise(5 * number + 1) };
-        (row[2 * D], row[2 * D + 1])
-    })
-    .collect()
+        both.push((row[2 * D], row[2 * D + 1]));
+    });
+    both
 }
 
 /// The deviations that a drift of [`STEP`] is made with.
@@ -45,10 +45,8 @@ fn drifted<const D: usize>(
     scheme: &mut TransportVelocity<D>,
     mut state: Vec<f64>,
 ) -> Vec<Vector<D>> {
-    let count = scheme.particle_count();
     scheme.split().expect("it can be split").drift(0.0, STEP, &mut state);
-    let rows = state.chunks(4 * D + 2).take(count);
-    rows.map(|row| Vector::from_column_slice(&row[3 * D + 2..4 * D + 2])).collect()
+    deviations(scheme, &state)
 }
 
 /// `sum_b m_b grad W(r_ab, h/2)` over all other particles of the periodic unit box that are `own`.
@@ -91,7 +89,7 @@ fn is_that_of_all_pairs<const D: usize>(side: usize) {
     let start = |_: &Vector<D>| (Vector::zeros(), 0.0);
     let mut scheme = fluid_in_box(particles, background(SETTINGS), FLUID, h, start);
     let mut state = scheme.initial_state();
-    let values = scatter::<D>(&mut state, count);
+    let values = scatter(&scheme, &mut state);
     let found = drifted(&mut scheme, state);
     let masses = vec![FLUID.density * spacing.powi(D as i32); count];
     let sums = pushes(&positions, &masses, h * spacing, |_, _| true);
@@ -171,7 +169,7 @@ fn solids_are_pushed_by_their_own_body_and_walls() {
     };
     let mut scheme = TransportVelocity::new(input).expect("the solids can be built");
     let mut state = scheme.initial_state();
-    let values = scatter::<2>(&mut state, count);
+    let values = scatter(&scheme, &mut state);
     let found = drifted(&mut scheme, state);
     let material = |a: usize| materials[bodies[a] as usize].state;
     let masses: Vec<f64> = (0..count).map(|a| material(a).density * spacing * spacing).collect();
@@ -197,15 +195,14 @@ fn gradients_and_contact_of_solids_are_those_of_the_transport_velocity() {
     // Velocity and deviation, or their sum and no deviation.
     let rates = |corrections, apart: bool| {
         let settings = Settings { corrections, shifting: Shifting::None, ..solids::SETTINGS };
-        let (mut scheme, mut state, count) =
-            two_blocks_with::<2>(Contact::Repulsive, true, settings);
-        for row in state.chunks_mut(10).take(count) {
+        let (mut scheme, mut state, _) = two_blocks_with::<2>(Contact::Repulsive, true, settings);
+        change_rows(&scheme, &mut state, |_, row| {
             let (x, y) = (row[2], row[3]);
             for i in 0..2 {
                 let (u, d) = (at(gradient, x, y, i), at(carried, x, y, i));
                 (row[i], row[8 + i]) = if apart { (u, d) } else { (u + d, 0.0) };
             }
-        }
+        });
         let terms = scheme.terms(0.0, &state);
         let divergences: Vec<f64> = terms.iter().map(|(rates, _)| rates.divergence).collect();
         (scheme.solid_rates(), divergences)

@@ -10,7 +10,7 @@ use piola::schemes::transport_velocity::{
 use piola::schemes::{Observation, Scheme};
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{solids_in_box, unit_box};
+use super::support::{change_rows, solids_in_box, unit_box};
 
 const SIDE: usize = 16;
 /// Layers of each platen, as many as the support of the kernel reaches.
@@ -52,11 +52,13 @@ fn between_platens(
     let mut state = scheme.initial_state();
     let start = state.len() - 9 * count;
     let (pressure, deviator) = stress;
-    let blocks = (0..count).filter(|&a| kept.body[a] == 0);
-    for number in blocks {
-        let row = &mut state[10 * number..][..10];
-        row[4] = SOLID.state.density + pressure / SOLID.state.wave_speed.powi(2);
-        row[5] = pressure;
+    change_rows(&scheme, &mut state, |number, row| {
+        if kept.body[number] == 0 {
+            row[4] = SOLID.state.density + pressure / SOLID.state.wave_speed.powi(2);
+            row[5] = pressure;
+        }
+    });
+    for number in (0..count).filter(|&a| kept.body[a] == 0) {
         state[start + 9 * number..][..6].copy_from_slice(&deviator);
     }
     let terms = scheme.terms(0.0, &state);

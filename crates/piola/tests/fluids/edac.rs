@@ -12,7 +12,7 @@ use piola::schemes::transport_velocity::{
 use piola::time::IntegratorKind;
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{solids_in_box, unit_box};
+use super::support::{change_rows, rows, solids_in_box, unit_box};
 
 const SIDE: usize = 32;
 const STEP: f64 = 2e-3;
@@ -22,8 +22,8 @@ fn edac(alpha: f64) -> Settings {
 }
 
 /// Density and pressure, by number.
-fn pressures(state: &[f64], count: usize) -> Vec<(f64, f64)> {
-    state.chunks(10).take(count).map(|row| (row[4], row[5])).collect()
+fn pressures(scheme: &dyn Scheme, state: &[f64]) -> Vec<(f64, f64)> {
+    rows(scheme, state).iter().map(|row| (row[4], row[5])).collect()
 }
 
 /// Rings of a block that moves at random, after some steps.
@@ -31,12 +31,11 @@ fn moved(settings: Settings) -> Vec<(f64, f64)> {
     let particles = unit_box::<2>(12, 0.1, 3);
     let input = solids_in_box(particles, settings, vec![SOLID]);
     let mut scheme = TransportVelocity::new(input).expect("the solid can be built");
-    let count = scheme.particle_count();
     let mut state = scheme.initial_state();
-    for row in state.chunks_mut(10).take(count) {
+    change_rows(&scheme, &mut state, |_, row| {
         row[0] = 0.2 * (2.0 * PI * row[2]).sin();
         row[1] = 0.2 * (2.0 * PI * row[3]).cos();
-    }
+    });
     scheme.split().expect("it can be split").accelerate(0.0, &mut state);
     let mut new = state.clone();
     let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
@@ -45,7 +44,7 @@ fn moved(settings: Settings) -> Vec<(f64, f64)> {
         integrator.step(&mut scheme, time, 1e-3, &state, &mut new).expect("it is explicit");
         std::mem::swap(&mut state, &mut new);
     }
-    pressures(&state, count)
+    pressures(&scheme, &state)
 }
 
 #[test]
@@ -89,10 +88,8 @@ fn a_pressure_wave_in_a_solid_that_is_held_decays_as_diffusion_says() {
     let input = TransportVelocityInput { solids, ..input };
     let mut scheme = TransportVelocity::new(input).expect("the solid can be built");
     let mut state = scheme.initial_state();
-    for row in state.chunks_mut(10).take(count) {
-        row[5] = (2.0 * PI * row[2]).cos();
-    }
-    let before = pressures(&state, count);
+    change_rows(&scheme, &mut state, |_, row| row[5] = (2.0 * PI * row[2]).cos());
+    let before = pressures(&scheme, &state);
     let terms = scheme.terms(0.0, &state);
     // A wave is an eigenvector on a lattice: its rate there, and nu_e k^2 of theory (23).
     let rate = -terms[0].0.pressure_diffusion / before[0].1;
@@ -110,7 +107,7 @@ fn a_pressure_wave_in_a_solid_that_is_held_decays_as_diffusion_says() {
     }
     let decay = (1.0 - rate * STEP).powi(100);
     assert!(decay < 0.9);
-    for (found, start) in pressures(&state, count).iter().zip(&before) {
+    for (found, start) in pressures(&scheme, &state).iter().zip(&before) {
         assert!((found.1 - start.1 * decay).abs() < 1e-12, "{} for {}", found.1, start.1 * decay);
         assert_eq!(found.0, start.0, "what is held is not compressed");
     }

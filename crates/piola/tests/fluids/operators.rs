@@ -8,7 +8,7 @@ use piola::schemes::transport_velocity::{
     Corrections, DensityRule, Dilatation, Fluid, Forces, Rates, Settings, TransportVelocity,
 };
 
-use super::support::{SETTINGS, fluid_in_box, unit_box};
+use super::support::{SETTINGS, change_rows, fluid_in_box, unit_box};
 
 const K: f64 = 2.0 * PI;
 const FLUID: Fluid = Fluid { density: 2.0, wave_speed: 10.0, viscosity: 0.3 };
@@ -109,15 +109,14 @@ fn terms_of<const D: usize>(
     let settings = Settings { density: DensityRule::Continuity, ..settings };
     let mut scheme: TransportVelocity<D> =
         fluid_in_box(particles, settings, FLUID, 1.3, |_| (Vector::zeros(), 0.0));
-    // A row of the state is u, r, rho, p, du/dt, d.
     let mut state = scheme.initial_state();
-    for (row, x) in state.chunks_mut(4 * D + 2).zip(&positions) {
-        let sample = fields(x);
+    change_rows(&scheme, &mut state, |number, row| {
+        let sample = fields(&positions[number]);
         row[..D].copy_from_slice(sample.velocity.as_slice());
         row[2 * D] = sample.density;
         row[2 * D + 1] = sample.pressure;
         row[3 * D + 2..].copy_from_slice(sample.deviation.as_slice());
-    }
+    });
     let terms = scheme.terms(0.0, &state);
     positions.into_iter().zip(terms).map(|(x, (rates, forces))| (x, rates, forces)).collect()
 }

@@ -11,7 +11,7 @@ use piola::schemes::{Observation, Scheme};
 use piola::{Tensor, Vector};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 
-use super::support::{solids_in_box, unit_box};
+use super::support::{change_rows, rows, solids_in_box, unit_box};
 
 const K: f64 = 2.0 * PI;
 
@@ -123,14 +123,15 @@ fn terms<const D: usize>(side: usize, jitter: f64, solid: Solid, corrected: bool
     let mut scheme = build(solid, particles, settings, Contact::Repulsive, corrected);
     let mut state = scheme.initial_state();
     let start = state.len() - 9 * count;
-    for (row, x) in state.chunks_mut(4 * D + 2).zip(&positions) {
+    change_rows(&scheme, &mut state, |number, row| {
+        let x = &positions[number];
         for i in 0..D {
             row[i] = velocity(i).value(x);
             row[3 * D + 2 + i] = deviation(i).value(x);
         }
         row[2 * D] = DENSITY.value(x);
         row[2 * D + 1] = PRESSURE.value(x);
-    }
+    });
     for (row, x) in state[start..].chunks_mut(9).zip(&positions) {
         row.iter_mut().enumerate().for_each(|(k, value)| *value = matter(k).value(x));
     }
@@ -257,11 +258,11 @@ pub fn two_blocks_with<const D: usize>(
     let start = state.len() - 9 * count;
     // Any numbers that are no function of place.
     let noise = |k: usize| (k as f64 * 12.9898).sin();
-    for (number, row) in state[..start].chunks_mut(4 * D + 2).take(count).enumerate() {
+    change_rows(&scheme, &mut state, |number, row| {
         row[..D].iter_mut().enumerate().for_each(|(i, u)| *u = noise(7 * number + i));
         row[2 * D] *= 1.0 + 0.02 * noise(3 * number);
         row[2 * D + 1] = 5.0 * noise(5 * number + 1);
-    }
+    });
     for (number, row) in state[start..].chunks_mut(9).enumerate() {
         (0..6).for_each(|k| row[k] = 4.0 * noise(11 * number + k));
     }
@@ -305,8 +306,7 @@ fn conjugate<const D: usize>() {
         |name: &str| Observation::new(&mut scheme, 0.0, &state).values(name, &numbers);
     let (masses, stresses) = (sampled("mass"), sampled("cauchy_stress"));
     let (mut power, mut taken, mut size) = (0.0, 0.0, 0.0);
-    for number in 0..count {
-        let row = &state[number * (4 * D + 2)..];
+    for (number, row) in rows(&scheme, &state).iter().enumerate() {
         let acceleration = terms[number].1.pressure;
         let mine: f64 = (0..D).map(|i| masses[number] * acceleration[i] * row[i]).sum();
         let volume = masses[number] / row[2 * D];
@@ -328,13 +328,13 @@ fn corrected_forces_are_conjugate_to_corrected_gradients() {
 
 #[test]
 fn corrected_gradients_are_exact_for_linear_fields() {
-    let (mut scheme, mut state, count) = two_blocks::<2>(Contact::Repulsive, true, 0.0);
+    let (mut scheme, mut state, _) = two_blocks::<2>(Contact::Repulsive, true, 0.0);
     let gradient = [[0.3, -0.7], [1.1, 0.4]];
-    for row in state.chunks_mut(10).take(count) {
+    change_rows(&scheme, &mut state, |_, row| {
         let (x, y) = (row[2], row[3]);
         row[0] = gradient[0][0] * x + gradient[0][1] * y;
         row[1] = gradient[1][0] * x + gradient[1][1] * y;
-    }
+    });
     scheme.terms(0.0, &state);
     // At the faces of each of the bodies too, whatever the other one does.
     for rates in scheme.solid_rates() {
@@ -351,9 +351,7 @@ fn bodies_push_and_never_pull() {
         state[start..].fill(0.0);
         // Tension in both: each pulls itself together, and none the other.
         let mut force_on_the_left = |pressure: f64| {
-            for row in state.chunks_mut(10).take(count) {
-                row[5] = pressure;
-            }
+            change_rows(&scheme, &mut state, |_, row| row[5] = pressure);
             let terms = scheme.terms(0.0, &state);
             let numbers: Vec<u32> = (0..count as u32).collect();
             let masses = Observation::new(&mut scheme, 0.0, &state).values("mass", &numbers);

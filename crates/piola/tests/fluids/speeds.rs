@@ -5,7 +5,7 @@ use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{PressureRule, Settings, Shifting, TransportVelocity};
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{solids_in_box, unit_box};
+use super::support::{self, change_rows, solids_in_box, unit_box};
 
 /// In m/s, a twentieth of the wave speed.
 const SPEED: f64 = 0.5;
@@ -34,9 +34,12 @@ fn deviations<const D: usize>(shifting: Shifting, some: &[(usize, Has)]) -> Vec<
     let matter = state.len() - 9 * count;
     let (density, wave_speed) = (SOLID.state.density, SOLID.state.wave_speed);
     for (number, has) in some {
-        let row = &mut state[number * (4 * D + 2)..];
-        row[D - 1] = SPEED * has.velocity;
-        row[2 * D + 1] = -density * wave_speed * SPEED * has.pressure;
+        change_rows(&scheme, &mut state, |other, row| {
+            if other == *number {
+                row[D - 1] = SPEED * has.velocity;
+                row[2 * D + 1] = -density * wave_speed * SPEED * has.pressure;
+            }
+        });
         // s : s = 2 G rho u^2, half of it by two normal components and half by shear.
         let stress = has.shear * SPEED * (2.0 * SOLID.shear_modulus * density).sqrt();
         let row = &mut state[matter + 9 * number..];
@@ -47,8 +50,7 @@ fn deviations<const D: usize>(shifting: Shifting, some: &[(usize, Has)]) -> Vec<
         Shifting::Sun { .. } => split.accelerate(0.0, &mut state),
         _ => split.drift(0.0, STEP, &mut state),
     }
-    let rows = state.chunks(4 * D + 2).take(count);
-    rows.map(|row| Vector::from_column_slice(&row[3 * D + 2..4 * D + 2])).collect()
+    support::deviations(&scheme, &state)
 }
 
 /// The deviations of particles 100 on.

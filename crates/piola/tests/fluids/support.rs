@@ -3,11 +3,11 @@
 use piola::Vector;
 use piola::geometry::{Faces, LatticeSpec, Particles, Placement, Shape, fill};
 use piola::neighbors::Domain;
-use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, Solid,
     SolidsInput, TransportVelocity, TransportVelocityInput,
 };
+use piola::schemes::{Initial, Scheme};
 use piola_formulas::kernels::Kernel;
 
 /// The settings of CTVF section 4.1.
@@ -91,4 +91,39 @@ pub fn solids_in_box<const D: usize>(
         sliding: Vec::new(),
         body_forces: Vec::new(),
     }
+}
+
+/// Where the columns of a state have a particle: u, r, rho, p, du/dt, d.
+fn places(scheme: &dyn Scheme, number: usize) -> impl Iterator<Item = usize> {
+    let names = ["velocity", "position", "density", "pressure", "kick", "deviation"];
+    names.into_iter().flat_map(move |name| {
+        let field = scheme.description().field(name).expect("a known field");
+        let components = field.kind.components(scheme.dimension());
+        let start = scheme.column(field).start + number * components;
+        start..start + components
+    })
+}
+
+/// What a state says of each particle: u, r, rho, p, du/dt, d.
+pub fn rows(scheme: &dyn Scheme, state: &[f64]) -> Vec<Vec<f64>> {
+    let row = |number| places(scheme, number).map(|place| state[place]).collect();
+    (0..scheme.particle_count()).map(row).collect()
+}
+
+/// Lets `change` change that, particle by particle.
+pub fn change_rows(
+    scheme: &dyn Scheme,
+    state: &mut [f64],
+    mut change: impl FnMut(usize, &mut [f64]),
+) {
+    for (number, row) in rows(scheme, state).iter_mut().enumerate() {
+        change(number, row);
+        places(scheme, number).zip(row).for_each(|(place, value)| state[place] = *value);
+    }
+}
+
+/// The deviations in a state.
+pub fn deviations<const D: usize>(scheme: &dyn Scheme, state: &[f64]) -> Vec<Vector<D>> {
+    let of = |row: &Vec<f64>| Vector::from_column_slice(&row[3 * D + 2..]);
+    rows(scheme, state).iter().map(of).collect()
 }

@@ -13,7 +13,7 @@ use piola::schemes::{Initial, Observation, Scheme};
 use piola_formulas::kernels::Kernel;
 
 use super::fields::{Counted, fields_are_complete};
-use super::support::SETTINGS;
+use super::support::{SETTINGS, change_rows, rows};
 
 const SPACING: f64 = 0.1;
 
@@ -169,15 +169,12 @@ fn a_particle_alone_is_its_own_surface() {
 fn the_block_at_rest_is_not_shifted_at_its_surface() {
     // A speed somewhere makes the deviation of SPST work; on the surface there must be none.
     let positions = block::<2>(16);
-    let count = positions.len();
     let mut scheme = at_rest(positions);
     let mut state = scheme.initial_state();
-    for row in state.chunks_exact_mut(10).take(count) {
-        row[0] = 1.0;
-    }
+    change_rows(&scheme, &mut state, |_, row| row[0] = 1.0);
     let split = scheme.split().expect("it can be split");
     split.accelerate(0.0, &mut state);
-    for row in state.chunks_exact(10).take(count) {
+    for row in rows(&scheme, &state) {
         let on = |x: f64| !(0.5 * SPACING..14.5 * SPACING).contains(&x);
         let deviation = row[8].hypot(row[9]);
         assert!(deviation < 1e-12 || !(on(row[2]) || on(row[3])), "{row:?}");

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use piola_formulas::kernels::Needs;
 
-use super::{Row, Shifting, TransportVelocity};
+use super::{Shifting, TransportVelocity};
 use crate::operators::{Among, NeighborBlock, visit};
 use crate::{Vector, parallel};
 
@@ -175,8 +175,8 @@ impl<const D: usize> TransportVelocity<D> {
     /// Whether the particle at `place` is behind the face of the wall particle that is nearest.
     fn is_behind(&self, place: usize, state: &[f64]) -> bool {
         let list = self.support.list();
-        let position =
-            |place: usize| Row::<D>::position(Row::<D>::of(state, list.numbers()[place] as usize));
+        let at = self.columns(state);
+        let position = |place: usize| at.position[list.numbers()[place] as usize];
         let (me, mut nearest) = (position(place), None::<(f64, usize)>);
         // Candidates of the list are all that are near, at any state since it was made.
         for &other in list.passive_row(place) {

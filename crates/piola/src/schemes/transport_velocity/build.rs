@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::inspect::ChunkFigures;
 use super::shifting::Iteration;
 use super::{
-    Continua, DensityRule, Fluid, Forces, Hold, Opening, Rates, Row, Settings, Slip, Solids,
+    Continua, DensityRule, Fluid, Forces, Hold, Opening, Rates, Settings, Slip, Solids,
     SolidsInput, TransportVelocity, WallParticle, WallValues,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -219,7 +219,8 @@ impl<const D: usize> TransportVelocity<D> {
         let mut state = vec![0.0; self.matter_start() + self.matter_length()];
         let matter = self.matter_start();
         self.begin_matter(&mut state[matter..]);
-        for (number, row) in state.chunks_exact_mut(Row::<D>::LENGTH).take(count).enumerate() {
+        let (own, _) = self.parts(&mut state);
+        for number in 0..count {
             let position = self.particles.position[number];
             let (velocity, pressure) = (initial.velocity[number], initial.pressure[number]);
             let usable = velocity.iter().all(|v| v.is_finite())
@@ -231,18 +232,17 @@ impl<const D: usize> TransportVelocity<D> {
                 return Err(TransportVelocityError::Start { id, position });
             }
             if !self.is_wall[number] {
-                row[..D].copy_from_slice(velocity.as_slice());
-                row[Row::<D>::PRESSURE] = pressure;
+                own.velocity[number] = velocity;
+                own.pressure[number] = pressure;
             }
-            let position = self.support.list().domain().wrap(&position);
-            row[Row::<D>::POSITION..][..D].copy_from_slice(position.as_slice());
-            row[Row::<D>::DENSITY] = self.densities[number];
+            own.position[number] = self.support.list().domain().wrap(&position);
+            own.density[number] = self.densities[number];
         }
         self.hold_velocities(0.0, &mut state);
         self.load(&state);
         self.note_evenness();
         self.accelerate(0.0, &mut state);
-        Self::clear_bookings(&mut state[count * Row::<D>::LENGTH..]);
+        Self::clear_bookings(self.parts(&mut state).1);
         self.start = state;
         Ok(())
     }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use piola_formulas::kernels::Needs;
 
 use super::ledger::Tail;
-use super::{BY_REMOVAL, Row, TransportVelocity};
+use super::{BY_REMOVAL, TransportVelocity};
 use crate::Vector;
 use crate::operators::{Among, NeighborBlock, visit};
 use crate::parallel;
@@ -24,7 +24,7 @@ pub struct Guard {
 /// the wall's face, which the fluid touches up to round-off.
 const TOLERANCE: f64 = 0.1;
 
-/// The density in a row that says that its particle has been removed.
+/// The density that says that its particle has been removed.
 const REMOVED: f64 = 0.0;
 
 /// What to change where particles escape.
@@ -50,22 +50,21 @@ impl<const D: usize> TransportVelocity<D> {
         self.guard = Some((guard, (high - low).max()));
     }
 
-    /// Whether a row is of a particle that has been removed.
-    pub(super) fn is_removed(row: &[f64]) -> bool {
-        row[Row::<D>::DENSITY] == REMOVED
+    /// Whether a density is that of a particle that has been removed.
+    pub(super) fn is_removed(density: f64) -> bool {
+        density == REMOVED
     }
 
     /// Takes particles out of the interaction, or back into it, as `state` has them.
     pub(super) fn follow_removals(&mut self, state: &[f64]) {
-        let removed = &self.removed;
-        let differs = |number: usize| {
-            f64::from(Self::is_removed(Row::<D>::of(state, number)) != removed[number])
-        };
+        let (removed, density) = (&self.removed, self.columns(state).density);
+        let differs =
+            |number: usize| f64::from(Self::is_removed(density[number]) != removed[number]);
         if parallel::maximum(removed.len(), 0.0, differs) == 0.0 {
             return;
         }
-        for number in 0..self.removed.len() {
-            let is_removed = Self::is_removed(Row::<D>::of(state, number));
+        for (number, density) in density.iter().enumerate() {
+            let is_removed = Self::is_removed(*density);
             if is_removed != self.removed[number] {
                 (self.removed[number], self.is_wall[number]) = (is_removed, is_removed);
             }
@@ -95,11 +94,11 @@ impl<const D: usize> TransportVelocity<D> {
     pub(super) fn escape_of(&self, number: usize, state: &[f64]) -> Option<Escape> {
         let (guard, bounds) = (&self.guard.as_ref()?.0, self.bounds(state)?);
         let wall = self.escape_at(self.support.list().places()[number] as usize, &bounds)?;
-        let row = Row::<D>::of(state, number);
+        let at = self.columns(state);
         let name = |wall: u32| guard.bodies.get(self.particles.body[wall as usize] as usize);
         Some(Escape {
-            position: Row::<D>::position(row).iter().copied().collect(),
-            speed: Row::<D>::velocity(row).norm(),
+            position: at.position[number].iter().copied().collect(),
+            speed: at.velocity[number].norm(),
             wall: wall.map(|wall| name(wall).cloned().unwrap_or_default()),
             advice: ADVICE,
         })
@@ -109,8 +108,9 @@ impl<const D: usize> TransportVelocity<D> {
     fn bounds(&self, state: &[f64]) -> Option<(Vector<D>, Vector<D>)> {
         let reach = Vector::repeat(self.guard.as_ref()?.1);
         let mut bounds: Option<(Vector<D>, Vector<D>)> = None;
+        let at = self.columns(state);
         for wall in &self.walls {
-            let position = Row::<D>::position(Row::<D>::of(state, wall.number as usize));
+            let position = at.position[wall.number as usize];
             let (low, high) = bounds.unwrap_or((position, position));
             bounds = Some((low.inf(&position), high.sup(&position)));
         }
@@ -161,25 +161,24 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let layout = Tail::new(D);
         let compliance = self.compliance();
-        let (rows, tail) = self.parts(state);
+        let (own, tail) = self.parts(state);
         for number in escaped {
             let mass = self.mass[number];
-            let row = &mut rows[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            let (velocity, pressure) = (Row::<D>::velocity(row), row[Row::<D>::PRESSURE]);
+            let (velocity, pressure) = (own.velocity[number], own.pressure[number]);
             let energy = velocity.norm_squared() + compliance * pressure * pressure;
-            let position = Row::<D>::position(row);
+            let position = own.position[number];
             let taken = (super::REMOVED, -0.5 * mass * energy);
             layout.book(taken, BY_REMOVAL, &position, &(velocity * -mass), tail);
-            row.fill(0.0);
-            row[Row::<D>::POSITION..][..D].copy_from_slice(position.as_slice());
-            row[Row::<D>::DENSITY] = REMOVED;
+            for column in [&mut *own.velocity, own.deviation, own.kick] {
+                column[number] = Vector::zeros();
+            }
+            (own.pressure[number], own.density[number]) = (0.0, REMOVED);
         }
     }
 
     /// Number of particles that have been removed in `state`.
     pub(super) fn removed_count(&self, state: &[f64]) -> f64 {
-        parallel::sum(self.removed.len(), |number| {
-            f64::from(Self::is_removed(Row::<D>::of(state, number)))
-        })
+        let density = self.columns(state).density;
+        parallel::sum(self.removed.len(), |number| f64::from(Self::is_removed(density[number])))
     }
 }

@@ -1,9 +1,9 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
-use rayon::prelude::*;
+use std::ops::Range;
 
-use super::{Row, TransportVelocity};
-use crate::parallel::CHUNK;
+use super::TransportVelocity;
+use crate::parallel::{self, CHUNK, PerChunk};
 use crate::schemes::{Health, StepLimit};
 
 /// Figures of one chunk of particles.
@@ -47,12 +47,10 @@ impl<const D: usize> TransportVelocity<D> {
             self.load(state);
         }
         let mut figures = std::mem::take(&mut self.chunk_figures);
-        let rows = &state[..self.particles.len() * Row::<D>::LENGTH];
-        rows.par_chunks(CHUNK * Row::<D>::LENGTH).zip(&mut figures).enumerate().for_each(
-            |(chunk, (rows, figures))| {
-                *figures = self.look_at_rows(chunk * CHUNK, rows, state);
-            },
-        );
+        let count = self.particles.len();
+        parallel::for_each_part(count, PerChunk(&mut figures), |first, PerChunk(figures)| {
+            figures.fill(self.look_at(first..count.min(first + CHUNK), state));
+        });
         let worst = figures.iter().copied().fold(ChunkFigures::NEUTRAL, ChunkFigures::worse);
         self.chunk_figures = figures;
 
@@ -82,19 +80,23 @@ impl<const D: usize> TransportVelocity<D> {
         health
     }
 
-    fn look_at_rows(&self, first: usize, rows: &[f64], state: &[f64]) -> ChunkFigures {
-        let mut worst = ChunkFigures::NEUTRAL;
-        for (offset, row) in rows.chunks_exact(Row::<D>::LENGTH).enumerate() {
-            let number = first + offset;
+    fn look_at(&self, numbers: Range<usize>, state: &[f64]) -> ChunkFigures {
+        let (mut worst, at) = (ChunkFigures::NEUTRAL, self.columns(state));
+        for number in numbers {
             let matter = match self.solids {
                 Some(_) => self.matter_of(number, state),
                 None => &[],
             };
-            if row.iter().chain(matter).any(|value| !value.is_finite()) {
+            let vectors = [&at.position, &at.velocity, &at.deviation, &at.kick];
+            let mut numbers = vectors.iter().flat_map(|column| column[number].iter());
+            let scalars = [at.density[number], at.pressure[number]];
+            if numbers.any(|value| !value.is_finite())
+                || scalars.iter().chain(matter).any(|value| !value.is_finite())
+            {
                 worst.health.first_not_finite.get_or_insert(number);
                 continue;
             }
-            let speed = Row::<D>::velocity(row).norm_squared();
+            let speed = at.velocity[number].norm_squared();
             if speed > worst.speed.0 {
                 worst.speed = (speed, number);
             }
@@ -102,7 +104,7 @@ impl<const D: usize> TransportVelocity<D> {
                 continue;
             }
             // The inverse has the sign of the density, and is the volume ratio.
-            let ratio = self.reference_density(number) / row[Row::<D>::DENSITY];
+            let ratio = self.reference_density(number) / at.density[number];
             if ratio < worst.health.smallest_ratio {
                 worst.health.smallest_ratio = ratio;
                 worst.health.smallest_ratio_particle = number;
@@ -114,7 +116,7 @@ impl<const D: usize> TransportVelocity<D> {
                 }
                 worst.health.largest_wave_speed = worst.health.largest_wave_speed.max(wave_speed);
             }
-            let acceleration = Row::<D>::acceleration(row).norm_squared();
+            let acceleration = at.kick[number].norm_squared();
             if acceleration > worst.acceleration.0 {
                 worst.acceleration = (acceleration, number);
             }

@@ -7,14 +7,14 @@
 use std::ops::Range;
 
 use super::{
-    ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PLASTICITY, PRESSURE, PRESSURE_DIFFUSION, Row,
+    ACCELERATING, ENTERING, IMPULSES, MECHANISMS, PLASTICITY, PRESSURE, PRESSURE_DIFFUSION,
     TRANSPORT, TransportVelocity,
 };
 use crate::schemes::momentum::{self, MOST_COMPONENTS};
 use crate::schemes::momentum_components;
 use crate::{Vector, parallel};
 
-/// Where the sums over all particles stand behind the rows of a state.
+/// Where the sums over all particles stand behind the columns of a state.
 pub(super) struct Tail {
     /// Components of momentum.
     components: usize,
@@ -54,7 +54,7 @@ impl Tail {
         self.kick().end
     }
 
-    /// Numbers behind the rows.
+    /// Numbers behind the columns.
     pub fn length(&self) -> usize {
         self.passes() + 1
     }
@@ -78,22 +78,20 @@ impl Tail {
 impl<const D: usize> TransportVelocity<D> {
     /// Kinetic energy of the fluid in J.
     pub(super) fn kinetic_energy(&self, state: &[f64]) -> f64 {
+        let at = self.columns(state);
         parallel::sum(self.particles.len(), |number| match self.is_wall[number] {
             true => 0.0,
-            false => {
-                let velocity = Row::<D>::velocity(Row::<D>::of(state, number));
-                0.5 * self.mass[number] * velocity.norm_squared()
-            }
+            false => 0.5 * self.mass[number] * at.velocity[number].norm_squared(),
         })
     }
 
     /// Energy of compression in J: `sum m p^2 / (2 rho0^2 c^2)`.
     pub(super) fn compression_energy(&self, state: &[f64]) -> f64 {
-        let stiffness = self.compliance();
+        let (stiffness, at) = (self.compliance(), self.columns(state));
         parallel::sum(self.particles.len(), |number| match self.is_wall[number] {
             true => 0.0,
             false => {
-                let pressure = Row::<D>::of(state, number)[Row::<D>::PRESSURE];
+                let pressure = at.pressure[number];
                 0.5 * self.mass[number] * stiffness * pressure * pressure
             }
         })
@@ -101,11 +99,11 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Momentum of the fluid, by component.
     pub(super) fn momentum_of(&self, state: &[f64]) -> [f64; MOST_COMPONENTS] {
+        let at = self.columns(state);
         parallel::sums(self.particles.len(), |number, sums| {
             if !self.is_wall[number] {
-                let row = Row::<D>::of(state, number);
-                let momentum = Row::<D>::velocity(row) * self.mass[number];
-                momentum::add_moments(&Row::<D>::position(row), &momentum, sums);
+                let momentum = at.velocity[number] * self.mass[number];
+                momentum::add_moments(&at.position[number], &momentum, sums);
             }
         })
     }
@@ -134,21 +132,25 @@ impl<const D: usize> TransportVelocity<D> {
     /// Adds power and force of the accelerations of a particle of the fluid, at a place, to sums
     /// for [`Self::book_powers`].
     #[inline]
-    pub(super) fn add_powers(&self, number: usize, place: usize, row: &[f64], sums: &mut Kick) {
+    pub(super) fn add_powers(
+        &self,
+        (number, place): (usize, usize),
+        [position, velocity]: [&Vector<D>; 2],
+        sums: &mut Kick,
+    ) {
         let (forces, mass) = (&self.forces[place], self.mass[number]);
-        let (velocity, position) = (Row::<D>::velocity(row), Row::<D>::position(row));
         let (total, zero) = (forces.total(), Vector::<D>::zeros());
         // What acts nowhere costs nothing.
         for (k, term) in forces.terms().into_iter().enumerate() {
             if *term != zero {
-                sums[k] += mass * term.dot(&velocity);
+                sums[k] += mass * term.dot(velocity);
                 sums[ACCELERATING + k] += mass * term.dot(&total);
             }
         }
         let ways = sums[2 * ACCELERATING..].chunks_exact_mut(MOST_COMPONENTS);
         for (way, term) in ways.zip(forces.ways_in()) {
             if *term != zero {
-                momentum::add_moments(&position, &(term * mass), way);
+                momentum::add_moments(position, &(term * mass), way);
             }
         }
     }
@@ -165,25 +167,26 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Adds what a drift of `step` s does to a particle of the fluid, at a place, to sums for
-    /// [`Self::book_drift`]: `row` is as it was before, `diffuses` says whether the pressure drifts.
+    /// [`Self::book_drift`]. Pressure, velocity and deviation are as before; `diffuses` says whether the
+    /// pressure drifts.
     #[inline]
     pub(super) fn add_drift(
         &self,
         (number, place): (usize, usize),
         (step, diffuses): (f64, bool),
-        row: &[f64],
+        (pressure, velocity, deviation): (f64, &Vector<D>, &Vector<D>),
         sums: &mut Drift,
     ) {
         let mass = self.mass[number];
         if diffuses {
             let (rates, compliance) = (self.pressure_rates(place), self.compliance());
-            let mean = row[Row::<D>::PRESSURE] + 0.5 * step * rates.iter().sum::<f64>();
+            let mean = pressure + 0.5 * step * rates.iter().sum::<f64>();
             for (sum, rate) in sums.iter_mut().zip(rates) {
                 *sum += step * mass * compliance * mean * rate;
             }
         }
-        let momentum = Row::<D>::velocity(row) * (step * mass);
-        let (moments, count) = momentum::moments(&Row::<D>::deviation(row), &momentum);
+        let momentum = velocity * (step * mass);
+        let (moments, count) = momentum::moments(deviation, &momentum);
         for component in D..count {
             sums[DRIFTING + component] += moments[component];
         }

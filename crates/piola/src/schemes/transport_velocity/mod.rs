@@ -27,13 +27,14 @@
 //! fluid of neighbours, walls, surfaces, shifting and time holds for them.
 //!
 //! Walls are layers of ghost particles, CTVF (46) to (52). Everything that a state needs to go on
-//! is in its rows: u, r, rho, p, du/dt and d of each particle.
+//! is in its columns: r, u, rho, p, du/dt and d.
 
 mod barrier;
 mod build;
 mod density;
 mod drift;
 mod escape;
+mod fields;
 mod forces;
 mod inspect;
 mod ledger;
@@ -64,6 +65,7 @@ pub use settings::{
 pub use solids::{Contact, Heat, Solid, SolidRates, SolidsInput};
 
 use barrier::Hold;
+use fields::{Columns, ColumnsMut};
 use inspect::ChunkFigures;
 use shifting::Iteration;
 use sides::Side;
@@ -155,44 +157,6 @@ const ACCELERATING: usize = 6;
 /// The ways in of accelerations, which stand first.
 const ENTERING: usize = 4;
 
-/// Where the unknowns stand in a row of the state.
-struct Row<const D: usize>;
-
-impl<const D: usize> Row<D> {
-    const POSITION: usize = D;
-    const DENSITY: usize = 2 * D;
-    const PRESSURE: usize = 2 * D + 1;
-    const ACCELERATION: usize = 2 * D + 2;
-    const DEVIATION: usize = 3 * D + 2;
-    const LENGTH: usize = 4 * D + 2;
-
-    #[inline]
-    fn velocity(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[..D])
-    }
-
-    #[inline]
-    fn position(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::POSITION..Self::POSITION + D])
-    }
-
-    #[inline]
-    fn acceleration(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::ACCELERATION..Self::ACCELERATION + D])
-    }
-
-    #[inline]
-    fn deviation(row: &[f64]) -> Vector<D> {
-        Vector::from_column_slice(&row[Self::DEVIATION..Self::DEVIATION + D])
-    }
-
-    /// Row `number` of a state.
-    #[inline]
-    fn of(state: &[f64], number: usize) -> &[f64] {
-        &state[number * Self::LENGTH..][..Self::LENGTH]
-    }
-}
-
 impl<const D: usize> TransportVelocity<D> {
     /// How often the neighbour list has been made, for those who watch its cost.
     pub fn list_builds(&self) -> u64 {
@@ -204,8 +168,13 @@ impl<const D: usize> TransportVelocity<D> {
         self.is_wall.get(index as usize).copied().unwrap_or(false)
     }
 
-    /// Splits a state into its rows and its tail.
-    fn parts<'a>(&self, state: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
-        state.split_at_mut(self.particles.len() * Row::<D>::LENGTH)
+    /// The columns of a state, and its tail.
+    fn columns<'a>(&self, state: &'a [f64]) -> Columns<'a, D> {
+        Columns::of(state, self.particles.len())
+    }
+
+    /// The same, to be changed.
+    fn parts<'a>(&self, state: &'a mut [f64]) -> (ColumnsMut<'a, D>, &'a mut [f64]) {
+        ColumnsMut::of(state, self.particles.len())
     }
 }

@@ -7,8 +7,8 @@ use piola_formulas::pairs::fluid::FluidSide;
 use piola_formulas::pairs::sums::{Density, VelocityGradient};
 use piola_formulas::pairs::{MovingPair, Of, PairLaw};
 
-use super::scheme::Made;
-use super::{Forces, Rates, Row, TransportVelocity};
+use super::fields::Made;
+use super::{Columns, Forces, Rates, TransportVelocity};
 use crate::geometry::Faces;
 use crate::operators::{Among, NeighborBlock, Term, add_at, visit};
 use crate::{Tensor, Vector};
@@ -50,25 +50,20 @@ impl<const D: usize> TransportVelocity<D> {
         &self,
         field: Made,
         number: usize,
-        state: &[f64],
+        (at, state): (&Columns<'_, D>, &[f64]),
         values: &mut Vec<f64>,
     ) {
-        let row = Row::<D>::of(state, number);
-        let velocity = Row::<D>::velocity(row);
         let place = self.support.list().places()[number] as usize;
         match field {
-            Made::position => values.extend_from_slice(&row[Row::<D>::POSITION..][..D]),
-            Made::velocity => values.extend_from_slice(&row[..D]),
             Made::transport_velocity => {
-                values.extend_from_slice((velocity + Row::<D>::deviation(row)).as_slice());
+                let velocity = at.velocity[number] + at.deviation[number];
+                values.extend_from_slice(velocity.as_slice());
             }
-            Made::acceleration => values.extend_from_slice(&row[Row::<D>::ACCELERATION..][..D]),
+            Made::acceleration => values.extend_from_slice(at.kick[number].as_slice()),
             Made::force => {
-                let force = Row::<D>::acceleration(row) * self.mass[number];
+                let force = at.kick[number] * self.mass[number];
                 values.extend_from_slice(force.as_slice());
             }
-            Made::pressure => values.push(row[Row::<D>::PRESSURE]),
-            Made::density => values.push(row[Row::<D>::DENSITY]),
             Made::summed_density => values.push(self.summed_density(place)),
             Made::vorticity => values.push(self.vorticity(place)),
             Made::divergence => values.push(self.velocity_gradient(place).trace()),
@@ -81,7 +76,7 @@ impl<const D: usize> TransportVelocity<D> {
                 values.extend_from_slice(normal.as_slice());
             }
             Made::wall => {
-                let is_wall = self.is_wall[number] && !Self::is_removed(row);
+                let is_wall = self.is_wall[number] && !Self::is_removed(at.density[number]);
                 values.push(f64::from(is_wall));
             }
             Made::normal => {
@@ -91,7 +86,7 @@ impl<const D: usize> TransportVelocity<D> {
             Made::neighbors => values.push(self.neighbor_count(place) as f64),
             Made::mass => values.push(self.mass[number]),
             Made::cauchy_stress | Made::von_mises | Made::plastic_strain | Made::temperature => {
-                self.push_solid_field(field, number, state, values)
+                self.push_solid_field(field, number, (at, state), values)
             }
         }
     }

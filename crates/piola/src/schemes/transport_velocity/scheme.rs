@@ -1,35 +1,10 @@
 //! The transport-velocity formulation as integrators, clock and output see it.
 
+use super::fields::{ColumnsMut, Made};
 use super::ledger::Tail;
-use super::{ENERGIES, IMPULSES, MECHANISMS, Row, TransportVelocity};
-use crate::fields::{FieldDescription, columns};
+use super::{ENERGIES, IMPULSES, MECHANISMS, TransportVelocity};
+use crate::fields::FieldDescription;
 use crate::schemes::{Escape, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
-
-columns! {
-    pub(super) enum Made;
-    derived(0) position: Vector, "m", "current position, inside the periodic box";
-    derived(0) velocity: Vector, "m/s", "momentum velocity u";
-    derived(0) transport_velocity: Vector, "m/s", "velocity uhat of the particle itself";
-    derived(0) acceleration: Vector, "m/s2", "rate of the momentum velocity";
-    derived(0) force: Vector, "N", "total force; on a wall that of the fluid";
-    derived(0) pressure: Scalar, "Pa", "pressure p, positive in compression";
-    derived(0) density: Scalar, "kg/m3", "density rho as the scheme has it";
-    derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
-    derived(1) vorticity: Scalar, "1/s", "curl of u, in 3D its magnitude";
-    derived(1) divergence: Scalar, "1/s", "divergence of u";
-    derived(2) surface: Scalar, "1", "1 on a free surface, if they are looked for";
-    derived(2) surface_normal: Vector, "1", "unit normal near a free surface";
-    derived(0) wall: Scalar, "1", "1 for particles of walls, 0 for fluid";
-    constant normal: Vector, "1", "unit normal of walls, towards the fluid";
-    derived(0) cauchy_stress: Tensor, "Pa",
-        "Cauchy stress of solids, positive in tension; 0 for fluids";
-    derived(0) von_mises: Scalar, "Pa",
-        "equivalent stress of von Mises of solids, with the stress across in plane strain";
-    derived(0) plastic_strain: Scalar, "1", "equivalent plastic strain of solids";
-    derived(0) temperature: Scalar, "K", "temperature of solids";
-    derived(1) neighbors: Scalar, "1", "number of neighbours inside the support";
-    constant mass: Scalar, "kg", "mass, for 1 m in missing dimensions";
-}
 
 /// Names and units of the figures of the formulation.
 const FIGURES: [(&str, &str); 5] =
@@ -58,10 +33,6 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         self.particles.len()
     }
 
-    fn width(&self) -> usize {
-        Row::<D>::LENGTH
-    }
-
     fn initial_state(&self) -> Vec<f64> {
         self.start().to_vec()
     }
@@ -72,27 +43,26 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         self.all_passes(time, state);
         rate.fill(0.0);
+        let (own, _) = ColumnsMut::<D>::of(rate, self.particles.len());
         for number in 0..self.particles.len() {
             let place = self.support.list().places()[number] as usize;
-            let row = &mut rate[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
             let side = &self.sides[place];
             if self.is_wall[number] {
                 continue;
             }
-            row[..D].copy_from_slice(self.forces[place].total().as_slice());
-            let moving = side.velocity + side.deviation;
-            row[Row::<D>::POSITION..][..D].copy_from_slice(moving.as_slice());
-            row[Row::<D>::DENSITY] = self.density_rate(place);
-            row[Row::<D>::PRESSURE] = self.pressure_rates(place).iter().sum();
+            own.velocity[number] = self.forces[place].total();
+            own.position[number] = side.velocity + side.deviation;
+            own.density[number] = self.density_rate(place);
+            own.pressure[number] = self.pressure_rates(place).iter().sum();
         }
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
         self.hold_velocities(time, state);
+        let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
         for entry in self.motion.iter() {
             let number = self.walls[entry.particle].number as usize;
-            state[number * Row::<D>::LENGTH + entry.component] =
-                entry.value.value(entry.place, time);
+            own.velocity[number][entry.component] = entry.value.value(entry.place, time);
         }
     }
 
@@ -105,7 +75,7 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
-        let tail = &state[self.particles.len() * Row::<D>::LENGTH..];
+        let tail = self.columns(state).tail;
         figures.extend([
             tail[Tail::new(D).passes()],
             self.removed_count(state),
@@ -140,7 +110,8 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         values: &mut Vec<f64>,
     ) {
         let Some(made) = Made::of(field) else { return };
-        particles.iter().for_each(|&a| self.push_field(made, a as usize, state, values));
+        let at = self.columns(state);
+        particles.iter().for_each(|&a| self.push_field(made, a as usize, (&at, state), values));
     }
 
     fn bodies(&self) -> &[u32] {

@@ -2,18 +2,18 @@
 
 use piola_formulas::pairs::fluid;
 
-use super::{Row, TransportVelocity};
-use crate::parallel;
+use super::{Columns, TransportVelocity};
+use crate::{Vector, parallel};
 
 /// A particle as its neighbours see it.
 pub(super) type Side<const D: usize> = fluid::Side<f64, D>;
 
-/// Takes what stands in a row of the state of a particle with a mass in kg.
+/// Takes what a state says of a particle (number) with a mass in kg.
 #[inline]
-fn take<const D: usize>(side: &mut Side<D>, mass: f64, row: &[f64]) {
-    side.velocity = Row::<D>::velocity(row);
-    side.deviation = Row::<D>::deviation(row);
-    side.set(mass, row[Row::<D>::DENSITY], row[Row::<D>::PRESSURE]);
+fn take<const D: usize>(side: &mut Side<D>, mass: f64, at: &Columns<'_, D>, number: usize) {
+    side.velocity = at.velocity[number];
+    side.deviation = at.deviation[number];
+    side.set(mass, at.density[number], at.pressure[number]);
 }
 
 impl<const D: usize> TransportVelocity<D> {
@@ -22,11 +22,10 @@ impl<const D: usize> TransportVelocity<D> {
         if self.support.list().builds() == builds {
             return;
         }
-        let (list, mass) = (self.support.list(), &self.mass);
+        let (list, mass, at) = (self.support.list(), &self.mass, self.columns(state));
         parallel::for_each_chunk(&mut self.sides, |first, sides| {
             for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
-                let row = Row::<D>::of(state, number as usize);
-                take(side, mass[number as usize], row);
+                take(side, mass[number as usize], &at, number as usize);
             }
         });
         self.load_matter(state);
@@ -38,16 +37,16 @@ impl<const D: usize> TransportVelocity<D> {
         if !self.removed.is_empty() {
             self.follow_removals(state);
         }
+        let at = self.columns(state);
         let (mass, sides) = (&self.mass, &mut self.sides);
         let updated = self.support.update_with(sides, |number, side| {
-            let row = Row::<D>::of(state, number);
-            take(side, mass[number], row);
-            Row::<D>::position(row)
+            take(side, mass[number], &at, number);
+            at.position[number]
         });
         self.load_matter(state);
         self.lost = updated.is_err().then(|| {
-            let lost = |row: &[f64]| !Row::<D>::position(row).iter().all(|x| x.is_finite());
-            state.chunks_exact(Row::<D>::LENGTH).position(lost).unwrap_or(0)
+            let lost = |position: &Vector<D>| !position.iter().all(|x| x.is_finite());
+            at.position.iter().position(lost).unwrap_or(0)
         });
     }
 }

@@ -1,18 +1,18 @@
 //! The formulation as kick-drift-kick integrators see it, theory (33).
 
-use super::{DensityRule, PressureRule, Rates, Row, Shifting, TransportVelocity};
+use super::{ColumnsMut, DensityRule, PressureRule, Rates, Shifting, TransportVelocity};
 use crate::boundaries::BodyForce;
 use crate::schemes::SplitScheme;
 use crate::{Vector, parallel};
 
 impl<const D: usize> SplitScheme for TransportVelocity<D> {
     fn kick(&mut self, duration: f64, state: &mut [f64]) {
-        let (rows, tail) = self.parts(state);
-        let is_wall = &self.is_wall;
-        parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
-            if !is_wall[number] {
-                for axis in 0..D {
-                    row[axis] += duration * row[Row::<D>::ACCELERATION + axis];
+        let (own, tail) = self.parts(state);
+        let (is_wall, kick) = (&self.is_wall, own.kick);
+        parallel::for_each_chunk(own.velocity, |first, velocity| {
+            for (number, velocity) in (first..).zip(velocity) {
+                if !is_wall[number] {
+                    *velocity += kick[number] * duration;
                 }
             }
         });
@@ -38,21 +38,27 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         if evolves || diffuses {
             self.rate_pass(middle);
         }
-        let (rows, tail) = self.parts(state);
+        let (own, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
-        let sums = parallel::sums_over_rows(rows, Row::<D>::LENGTH, |number, row, sums| {
-            if scheme.is_wall[number] {
-                return;
+        let count = places.len();
+        let sums = parallel::sums_over_parts(count, own, |first, own, sums| {
+            let moving = own.position.iter_mut().zip(own.velocity.iter().zip(&*own.deviation));
+            for (k, (position, (velocity, deviation))) in moving.enumerate() {
+                let number = first + k;
+                if scheme.is_wall[number] {
+                    continue;
+                }
+                let place = places[number] as usize;
+                let before = (own.pressure[k], velocity, deviation);
+                scheme.add_drift((number, place), (step, diffuses), before, sums);
+                if evolves {
+                    own.density[k] += step * scheme.density_rate(place);
+                }
+                if diffuses {
+                    own.pressure[k] += step * scheme.pressure_rates(place).iter().sum::<f64>();
+                }
+                scheme.advect(step, position, velocity + deviation);
             }
-            let place = places[number] as usize;
-            scheme.add_drift((number, place), (step, diffuses), row, sums);
-            if evolves {
-                row[Row::<D>::DENSITY] += step * scheme.density_rate(place);
-            }
-            if diffuses {
-                row[Row::<D>::PRESSURE] += step * scheme.pressure_rates(place).iter().sum::<f64>();
-            }
-            scheme.move_row(step, row);
         });
         Self::book_drift(&sums, tail);
         self.move_walls(step, middle, state);
@@ -72,18 +78,21 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         self.hold_accelerations();
         self.shift(fastest);
         self.hold_off();
-        let (rows, tail) = self.parts(state);
+        let (own, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
-        let sums = parallel::sums_over_rows(rows, Row::<D>::LENGTH, |number, row, sums| {
-            let place = places[number] as usize;
-            scheme.store(number, place, row);
-            if !scheme.is_wall[number] {
-                scheme.add_powers(number, place, row, sums);
+        let sums = parallel::sums_over_parts(places.len(), own, |first, mut own, sums| {
+            for k in 0..own.position.len() {
+                let (number, place) = (first + k, places[first + k] as usize);
+                scheme.store([number, place, k], &mut own);
+                if !scheme.is_wall[number] {
+                    let at = [&own.position[k], &own.velocity[k]];
+                    scheme.add_powers((number, place), at, sums);
+                }
             }
         });
         Self::book_powers(&sums, tail);
         if let Some(number) = self.lost {
-            state[number * Row::<D>::LENGTH + Row::<D>::ACCELERATION] = f64::NAN;
+            self.parts(state).0.kick[number][0] = f64::NAN;
         }
         if algebraic {
             let gained = self.compression_energy(state) - before;
@@ -94,15 +103,13 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// Writes what the passes have found of a particle to its row.
-    fn store(&self, number: usize, place: usize, row: &mut [f64]) {
+    /// Writes what the passes have found of a particle to entry k of columns.
+    fn store(&self, [number, place, k]: [usize; 3], own: &mut ColumnsMut<'_, D>) {
         let (side, forces) = (&self.sides[place], &self.forces[place]);
-        row[Row::<D>::DENSITY] = side.density;
-        row[Row::<D>::PRESSURE] = side.pressure;
-        let acceleration = forces.total();
-        row[Row::<D>::ACCELERATION..][..D].copy_from_slice(acceleration.as_slice());
+        (own.density[k], own.pressure[k]) = (side.density, side.pressure);
+        own.kick[k] = forces.total();
         if let (Shifting::Sun { .. }, false) = (self.settings.shifting, self.is_wall[number]) {
-            row[Row::<D>::DEVIATION..][..D].copy_from_slice(side.deviation.as_slice());
+            own.deviation[k] = side.deviation;
         }
     }
 
@@ -161,30 +168,20 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Moves walls as prescribed for a `step` in s with the velocities half way.
-    pub(super) fn move_walls(&self, step: f64, middle: f64, rows: &mut [f64]) {
+    pub(super) fn move_walls(&self, step: f64, middle: f64, state: &mut [f64]) {
+        let (own, _) = self.parts(state);
         for entry in self.motion.iter() {
             let number = self.walls[entry.particle].number as usize;
-            let row = &mut rows[number * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            row[Row::<D>::POSITION + entry.component] +=
-                step * entry.value.value(entry.place, middle);
+            own.position[number][entry.component] += step * entry.value.value(entry.place, middle);
         }
     }
 
-    /// Moves the particle of a row along its transport velocity.
-    pub(super) fn move_row(&self, step: f64, row: &mut [f64]) {
-        for axis in 0..D {
-            let velocity = row[axis] + row[Row::<D>::DEVIATION + axis];
-            row[Row::<D>::POSITION + axis] += step * velocity;
-        }
-        self.wrap(row);
-    }
-
-    /// Moves the position of a row into the bounds of the domain.
-    fn wrap(&self, row: &mut [f64]) {
+    /// Moves a particle with a velocity, inside of the bounds of the domain.
+    pub(super) fn advect(&self, step: f64, position: &mut Vector<D>, velocity: Vector<D>) {
+        *position += velocity * step;
         let domain = self.support.list().domain();
         if !domain.is_open() {
-            let wrapped = domain.wrap(&Row::<D>::position(row));
-            row[Row::<D>::POSITION..][..D].copy_from_slice(wrapped.as_slice());
+            *position = domain.wrap(position);
         }
     }
 }

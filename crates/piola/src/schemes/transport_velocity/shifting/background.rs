@@ -3,7 +3,7 @@
 use piola_formulas::pairs::sums::Background;
 
 use crate::operators::{Among, NeighborBlock, Term, add_at};
-use crate::schemes::transport_velocity::{Row, Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
 /// Smoothing length of the push in units of that of the forces: it sees the nearest neighbours alone.
@@ -22,16 +22,17 @@ impl<const D: usize> TransportVelocity<D> {
     /// the own body and walls. What moves as prescribed is not pushed.
     pub(in super::super) fn push_apart(&mut self, step: f64, state: &mut [f64]) {
         let Shifting::Background { most } = self.settings.shifting else { return };
-        let (rows, _) = self.parts(state);
+        let (own, _) = self.parts(state);
         let scheme = &*self;
-        parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
-            let deviation = scheme.background_push(number, most) * (0.5 * step);
-            row[Row::<D>::DEVIATION..][..D].copy_from_slice(deviation.as_slice());
+        parallel::for_each_chunk(own.deviation, |first, deviation| {
+            for (number, deviation) in (first..).zip(deviation) {
+                *deviation = scheme.background_push(number, most) * (0.5 * step);
+            }
         });
-        let (list, rows) = (self.support.list(), &*rows);
+        let (list, deviation) = (self.support.list(), &*own.deviation);
         parallel::for_each_chunk(&mut self.sides, |first, sides| {
             for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
-                side.deviation = Row::<D>::deviation(Row::<D>::of(rows, number as usize));
+                side.deviation = deviation[number as usize];
             }
         });
     }

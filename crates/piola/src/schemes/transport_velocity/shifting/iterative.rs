@@ -4,7 +4,7 @@ use piola_formulas::pairs::sums::Displacement;
 
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::transport_velocity::ledger::Tail;
-use crate::schemes::transport_velocity::{AtSurface, Opening, Row, Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{AtSurface, Opening, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
 /// Scratch and figures of the iteration.
@@ -38,10 +38,8 @@ impl<const D: usize> TransportVelocity<D> {
     pub(in super::super) fn iterate_positions(&mut self, step: f64, state: &mut [f64]) {
         let Shifting::Iterative { tolerance, most_passes } = self.settings.shifting else { return };
         let mut iteration = std::mem::take(&mut self.iteration);
-        let count = self.particles.len();
-        let rows = |number| Row::<D>::of(state, number);
         iteration.positions.clear();
-        iteration.positions.extend((0..count).map(|number| Row::<D>::position(rows(number))));
+        iteration.positions.extend_from_slice(self.columns(state).position);
         self.load(state);
         let reach = self.largest_speed() * step;
         if self.settings.free_surface {
@@ -75,12 +73,14 @@ impl<const D: usize> TransportVelocity<D> {
             });
         }
         let positions = &iteration.positions;
-        let rows = &mut state[..count * Row::<D>::LENGTH];
-        parallel::for_each_row(rows, Row::<D>::LENGTH, |number, row| {
-            let deviation = (positions[number] - Row::<D>::position(row)) / step;
-            row[Row::<D>::DEVIATION..][..D].copy_from_slice(deviation.as_slice());
+        let (own, tail) = self.parts(state);
+        let places = own.position;
+        parallel::for_each_chunk(own.deviation, |first, deviation| {
+            for (number, deviation) in (first..).zip(deviation) {
+                *deviation = (positions[number] - places[number]) / step;
+            }
         });
-        state[count * Row::<D>::LENGTH + Tail::new(D).passes()] = passes;
+        tail[Tail::new(D).passes()] = passes;
         self.iteration = iteration;
     }
 

@@ -2,11 +2,11 @@
 
 use piola_formulas::hypoelastic::{Strength, advance, shear_energy, von_mises};
 
-use super::{ENERGY, MATTER, PLASTIC, Solid, SolidRates, TEMPERATURE, full, store};
+use super::{ENERGY, Matter, PLASTIC, Solid, SolidRates, TEMPERATURE, full, store};
 use crate::Tensor;
 use crate::parallel;
 use crate::schemes::transport_velocity::ledger::Drift;
-use crate::schemes::transport_velocity::{PressureRule, Row, TransportVelocity};
+use crate::schemes::transport_velocity::{ColumnsMut, PressureRule, TransportVelocity};
 
 /// What a step brings to the matter of a particle besides its own rates.
 struct Surroundings {
@@ -21,12 +21,16 @@ impl<const D: usize> TransportVelocity<D> {
     /// The drift of solids, CTVF (56) to (59), with the rates of the last pass: theory (33), (69) to (71).
     pub(in super::super) fn drift_solids(&mut self, step: f64, middle: f64, state: &mut [f64]) {
         let (front, matter) = state.split_at_mut(self.matter_start());
-        let (rows, tail) = front.split_at_mut(self.particles.len() * Row::<D>::LENGTH);
+        let matter: &mut [Matter] = bytemuck::cast_slice_mut(matter);
+        let (own, tail) = self.parts(front);
         let scheme = &*self;
         let Some(solids) = &scheme.solids else { return };
         let (places, rates) = (scheme.support.list().places(), &solids.rates);
         let evolves = matches!(scheme.settings.pressure, PressureRule::Edac { .. });
-        let drift = |number: usize, row: &mut [f64], matter: &mut [f64], sums: &mut Drift| {
+        let drift = |[number, k]: [usize; 2],
+                     own: &mut ColumnsMut<'_, D>,
+                     matter: &mut Matter,
+                     sums: &mut Drift| {
             if scheme.is_wall[number] {
                 return;
             }
@@ -39,36 +43,42 @@ impl<const D: usize> TransportVelocity<D> {
                 divergence: scheme.rates_at(place).divergence,
                 step,
             };
-            let energy = |row: &[f64], matter: &[f64]| {
-                let [compression, shear] = material.energies(row[Row::<D>::DENSITY], matter);
+            let energy = |density: f64, matter: &Matter| {
+                let [compression, shear] = material.energies(density, matter);
                 scheme.mass[number] * (compression + shear)
             };
-            let before = energy(row, matter);
+            let before = energy(own.density[k], matter);
             let work = side.volume * material.advance(&rates[place], &around, matter);
-            scheme.add_drift((number, place), (step, false), row, sums);
-            row[Row::<D>::DENSITY] += step * scheme.density_rate(place);
+            let (velocity, deviation) = (&own.velocity[k], &own.deviation[k]);
+            let moving = (own.pressure[k], velocity, deviation);
+            scheme.add_drift((number, place), (step, false), moving, sums);
+            own.density[k] += step * scheme.density_rate(place);
             if evolves {
                 let rate = scheme.pressure_rates(place).iter().sum::<f64>();
-                let pressure = &mut row[Row::<D>::PRESSURE];
+                let pressure = &mut own.pressure[k];
                 *pressure = (*pressure + step * rate).max(-material.state.spall_strength);
             }
-            scheme.move_row(step, row);
-            sums[0] += energy(row, matter) - before + work;
+            scheme.advect(step, &mut own.position[k], velocity + deviation);
+            sums[0] += energy(own.density[k], matter) - before + work;
             sums[3] -= work;
         };
-        let lengths = [Row::<D>::LENGTH, MATTER];
-        let sums = parallel::sums_over_pairs_of_rows([rows, matter], lengths, drift);
+        let parts = (own, matter);
+        let sums = parallel::sums_over_parts(places.len(), parts, |first, (mut own, all), sums| {
+            for (k, matter) in all.iter_mut().enumerate() {
+                drift([first + k, k], &mut own, matter, sums);
+            }
+        });
         Self::book_drift(&sums, tail);
         self.move_walls(step, middle, front);
     }
 
     /// Energies of compression and shear in J.
     pub(in super::super) fn energies_of_solids(&self, state: &[f64]) -> [f64; 2] {
+        let at = self.columns(state);
         parallel::sums(self.particles.len(), |number, sums: &mut [f64; 2]| {
             if !self.is_wall[number] {
                 let Some(solid) = self.solid(number) else { return };
-                let density = Row::<D>::of(state, number)[Row::<D>::DENSITY];
-                let energies = solid.energies(density, self.matter_of(number, state));
+                let energies = solid.energies(at.density[number], self.matter_of(number, state));
                 for (sum, energy) in sums.iter_mut().zip(energies) {
                     *sum += self.mass[number] * energy;
                 }

@@ -3,7 +3,6 @@
 use super::TransportVelocity;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, search};
-use crate::schemes::transport_velocity::Row;
 
 /// First neighbours of the start are those within so many spacings, and particles hang together
 /// within that.
@@ -46,7 +45,8 @@ impl<const D: usize> TransportVelocity<D> {
         let Some(solids) = &self.solids else { return 0.0 };
         let list = self.support.list();
         let reach = self.support.kernel().support_radius(self.support.smoothing_length()).powi(2);
-        let position = |a: u32| Row::<D>::position(Row::<D>::of(state, a as usize));
+        let at = self.columns(state);
+        let position = |a: u32| at.position[a as usize];
         let largest = solids.bonds.pairs.iter().fold(0.0, |largest: f64, &[a, b]| {
             let across = list.domain().separation(&position(a), &position(b));
             let square = across.norm_squared();
@@ -82,7 +82,8 @@ impl<const D: usize> TransportVelocity<D> {
             return 0.0;
         }
         let list = self.support.list();
-        let position = |a: usize| Row::<D>::position(Row::<D>::of(state, a));
+        let at = self.columns(state);
+        let position = |a: usize| at.position[a];
         let square = (LINK * self.particles.spacing[0]).powi(2);
         let mut root: Vec<u32> = (0..self.particles.len() as u32).collect();
         let mut pieces = self.is_wall.iter().filter(|is_wall| !**is_wall).count();

@@ -3,25 +3,25 @@
 use super::Solids;
 use crate::Vector;
 use crate::schemes::transport_velocity::ledger::Tail;
-use crate::schemes::transport_velocity::{BY_WALLS, Row, TransportVelocity, WALLS};
+use crate::schemes::transport_velocity::{BY_WALLS, TransportVelocity, WALLS};
 
 impl<const D: usize> TransportVelocity<D> {
     /// Sets prescribed velocities of solids in a state at a time in s. What that takes, of energy and of
     /// momentum, is booked as from walls, so that the ledger is exact for velocities that change.
     pub(in super::super) fn hold_velocities(&self, time: f64, state: &mut [f64]) {
         let Some(Solids { held, .. }) = self.solids.as_deref() else { return };
-        let (layout, (rows, tail)) = (Tail::new(D), self.parts(state));
+        let (layout, (own, tail)) = (Tail::new(D), self.parts(state));
         for entry in held.iter() {
-            let row = &mut rows[entry.particle * Row::<D>::LENGTH..][..Row::<D>::LENGTH];
-            let (mass, old) = (self.mass[entry.particle], row[entry.component]);
+            let velocity = &mut own.velocity[entry.particle][entry.component];
+            let (mass, old) = (self.mass[entry.particle], *velocity);
             let new = entry.value.value(entry.place, time);
             if new != old {
-                row[entry.component] = new;
+                *velocity = new;
                 let energy = 0.5 * mass * (new - old) * (new + old);
                 let mut momentum = Vector::zeros();
                 momentum[entry.component] = mass * (new - old);
-                let position = Row::<D>::position(row);
-                layout.book((WALLS, energy), BY_WALLS, &position, &momentum, tail);
+                let position = &own.position[entry.particle];
+                layout.book((WALLS, energy), BY_WALLS, position, &momentum, tail);
             }
         }
     }

@@ -4,8 +4,8 @@ use piola_formulas::hypoelastic::{shear_energy, von_mises};
 
 use super::{ENERGY, MATTER, Matter, Solid, TEMPERATURE, entry, full};
 use crate::parallel;
-use crate::schemes::transport_velocity::scheme::Made;
-use crate::schemes::transport_velocity::{PressureRule, Row, Side, TransportVelocity};
+use crate::schemes::transport_velocity::fields::Made;
+use crate::schemes::transport_velocity::{Columns, PressureRule, Side, TransportVelocity};
 use crate::{Tensor, Vector};
 
 impl<const D: usize> TransportVelocity<D> {
@@ -125,7 +125,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// Speed of longitudinal waves in a solid (number) in m/s.
     pub(in super::super) fn signal_speed(&self, number: usize, state: &[f64]) -> Option<f64> {
         let solid = self.solid(number)?;
-        let density = Row::<D>::of(state, number)[Row::<D>::DENSITY];
+        let density = self.columns(state).density[number];
         let energy = self.matter_of(number, state)[ENERGY];
         let bulk = solid.state.wave_speed_squared(density, energy);
         Some((bulk + 4.0 / 3.0 * solid.shear_modulus / density).sqrt())
@@ -136,11 +136,10 @@ impl<const D: usize> TransportVelocity<D> {
         &self,
         field: Made,
         number: usize,
-        state: &[f64],
+        (at, state): (&Columns<'_, D>, &[f64]),
         values: &mut Vec<f64>,
     ) {
-        let row = Row::<D>::of(state, number);
-        let pressure = row[Row::<D>::PRESSURE];
+        let pressure = at.pressure[number];
         if self.solids.is_none() {
             let count = if field == Made::cauchy_stress { D * D } else { 1 };
             values.extend(std::iter::repeat_n(0.0, count));

@@ -28,10 +28,12 @@ use piola_formulas::pairs::Record;
 pub(super) use piola_formulas::pairs::solid::MATTER;
 use piola_formulas::pairs::solid::SolidTension;
 
+use super::fields::Made;
 use super::ledger::Tail;
 use super::{Rates, TransportVelocity};
 use crate::boundaries::PrescribedVelocity;
 use crate::boundaries::prescribed::PrescribedComponents;
+use crate::fields::width;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError};
 use crate::{Tensor, Vector};
@@ -189,7 +191,7 @@ impl<const D: usize> Solids<D> {
 impl<const D: usize> TransportVelocity<D> {
     /// Where the matter of solids begins in a state.
     pub(super) fn matter_start(&self) -> usize {
-        self.particles.len() * super::Row::<D>::LENGTH + Tail::new(D).length()
+        self.particles.len() * width(Made::FIELDS, D) + Tail::new(D).length()
     }
 
     /// Numbers of the matter of all particles.
