@@ -101,7 +101,7 @@ fn on_lists(particles: Particles<2>) -> DualSupport<2> {
 fn measure(name: &str, scheme: &mut dyn Scheme) {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it has kicks");
     let particles = scheme.particle_count();
     let step = 0.01 / (particles as f64).sqrt() / 40.0;
     let seconds = clock::best_time(|| {

@@ -37,7 +37,7 @@ fn check<const D: usize>(lengths: [f64; D], intervals: [usize; D], settings: Set
     choice.smoothing_ratio = 1.2;
     choice.settings = settings;
     let mut scheme = choice.build(|_| Vector::zeros());
-    let mut integrator = IntegratorKind::TvdRk2.build(scheme.initial_state().len());
+    let mut integrator = IntegratorKind::TvdRk2.build(&mut scheme).expect("it has rates");
     let count = allocations(&mut scheme, &mut *integrator);
     assert_eq!(count, 0, "{D}D {settings:?}");
 }
@@ -84,7 +84,7 @@ fn of_case(name: &str, overrides: &[&str]) -> u64 {
     assert!(count > 3 * piola::parallel::CHUNK, "{name}: {count}");
     let kind = IntegratorKind::from_name(&case.time.integrator).expect("a known integrator");
     let mut state = scheme.initial_state();
-    let mut integrator = kind.build(state.len());
+    let mut integrator = kind.build(scheme).expect("it moves the scheme");
     let (mut new, mut limits) = (state.clone(), Vec::with_capacity(8));
     let mut time = 0.0;
     let mut step = || {

@@ -86,7 +86,7 @@ pub fn measure<const D: usize>(
 ) {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator = IntegratorKind::KickDriftKick.build(&mut scheme).expect("it has kicks");
     let mut limits = Vec::new();
     let least = clock::best_time(|| {
         for _ in 0..STEPS {

@@ -65,7 +65,7 @@ pub(super) fn case(
     reader.names.scheme = described.kind;
     reader.names.dissipates = match scheme.as_ref().map(|scheme| &scheme.value) {
         Some(Scheme::Upwind(upwind)) => upwind.tau_velocity > 0.0 || upwind.tau_pressure > 0.0,
-        _ => true,
+        _ => false,
     };
     let domain = reader.domain(record.record("domain"));
     let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();

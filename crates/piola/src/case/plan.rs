@@ -119,7 +119,7 @@ impl Simulation {
         let start = Instant::now();
         scheme.rates(0.0, &state, &mut rate);
         let evaluation = start.elapsed().as_secs_f64().max(1e-9);
-        let integrator = build::integrator(&self.case, state.len());
+        let integrator = self.integrator.as_ref();
         // An end that is a multiple of the step up to round-off takes no step more.
         let steps = (*self.case.time.end / step - 1e-9).ceil().max(0.0) as u64;
         let count = scheme.particle_count();

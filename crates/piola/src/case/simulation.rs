@@ -15,14 +15,15 @@ use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::Scheme;
 use crate::solve::Costs;
 use crate::time::{
-    Checkpoints, Executor, IntegratorKind, Misfit, ObserveError, Progress, Schedule, Summary,
-    Unserved,
+    Checkpoints, Executor, Integrator, IntegratorKind, Misfit, ObserveError, Progress, Schedule,
+    Summary,
 };
 
 /// A case with its particles, lists and scheme.
 pub struct Simulation {
     pub(super) case: Case,
     pub(super) built: Built,
+    pub(super) integrator: Box<dyn Integrator>,
     /// Wall time of building in s.
     pub(super) build_seconds: f64,
 }
@@ -54,9 +55,6 @@ pub enum RunError {
     /// A file during the run.
     #[error(transparent)]
     Observe(#[from] ObserveError),
-    /// The integrator cannot move the scheme.
-    #[error(transparent)]
-    Unserved(#[from] Unserved),
     /// There are checkpoints, and none of them is any good for this run.
     #[error("{newest}\nno checkpoint of this run is sound; nothing was changed")]
     NoCheckpoint {
@@ -69,8 +67,8 @@ pub enum RunError {
 }
 
 impl Simulation {
-    pub(super) fn new(case: &Case, built: Built) -> Self {
-        Self { case: case.clone(), built, build_seconds: 0.0 }
+    pub(super) fn new(case: &Case, built: Built, integrator: Box<dyn Integrator>) -> Self {
+        Self { case: case.clone(), built, integrator, build_seconds: 0.0 }
     }
 
     /// The case it was built from.
@@ -119,7 +117,7 @@ impl Simulation {
         stop: &AtomicBool,
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Finished, RunError> {
-        let Self { case, built, build_seconds } = self;
+        let Self { case, built, integrator, build_seconds } = self;
         let particles = built.scheme.particle_count();
         let length = built.scheme.initial_state().len();
         let identity = resume::identity(&case, built.scheme.as_ref());
@@ -155,9 +153,8 @@ impl Simulation {
         if let Some(outputs) = &outputs {
             observers.extend(outputs.observers(&case, &built.bodies));
         }
-        let integrator = build::integrator(&case, length);
         let control = build::step_control(&case);
-        let mut executor = Executor::new(built.scheme, integrator, control, *case.time.end)?;
+        let mut executor = Executor::new(built.scheme, integrator, control, *case.time.end);
         executor.max_steps = case.time.max_steps.unwrap_or(u64::MAX);
         executor.min_step = case.time.min_step;
         executor.max_speed = case.time.max_speed;

@@ -9,6 +9,7 @@ use super::*;
 mod faults;
 mod hostile;
 mod implicit;
+mod integrators;
 mod overrides;
 mod solids;
 mod sweeps;

@@ -1,16 +1,49 @@
 //! What a formulation is called and what it shows, known before one is built.
 
-use super::{dual_support, elastodynamics, interpolation, transport_velocity, upwind};
+use super::{Scheme, dual_support, elastodynamics, interpolation, transport_velocity, upwind};
 use crate::fields::{FieldDescription, Life};
 
 /// The figure of formulations that solve for a state: how many iterations the last step took.
 pub const NEWTON_ITERATIONS: &str = "newton_iterations";
+
+/// What a formulation can offer to the methods that move it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Capability {
+    /// Rates of its whole state: [`Scheme::has_rates`].
+    Rates,
+    /// Velocities and places in turn: [`Scheme::split`] or [`Scheme::partitioned`].
+    Kicks,
+    /// Implicit steps of masses and accelerations: [`Scheme::newmark`].
+    Newmark,
+    /// Implicit steps of a state and its rates: [`Scheme::theta`].
+    Theta,
+    /// Equilibria: [`Scheme::equilibrium`].
+    Statics,
+}
+
+impl Capability {
+    /// Whether `scheme` offers it as it is built.
+    pub fn is_offered_by(self, scheme: &mut dyn Scheme) -> bool {
+        match self {
+            Self::Rates => scheme.has_rates(),
+            // Where there is nothing to move, that is done.
+            Self::Kicks => {
+                scheme.width() == 0 || scheme.split().is_some() || scheme.partitioned().is_some()
+            }
+            Self::Newmark => scheme.newmark().is_some(),
+            Self::Theta => scheme.theta().is_some(),
+            Self::Statics => scheme.equilibrium().is_some(),
+        }
+    }
+}
 
 /// The names of a formulation and of all that it shows, in the order in which it shows them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SchemeDescription {
     /// Name in a case file.
     pub name: &'static str,
+    /// What it offers where it is built for that.
+    pub offers: &'static [Capability],
     /// The columns of its state and all that an [`Observation`](super::Observation) can show.
     pub fields: &'static [FieldDescription],
     /// The energies of [`Scheme::energies`](super::Scheme::energies).

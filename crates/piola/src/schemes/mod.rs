@@ -19,7 +19,7 @@ mod theta;
 pub mod transport_velocity;
 pub mod upwind;
 
-pub use description::{NEWTON_ITERATIONS, SchemeDescription};
+pub use description::{Capability, NEWTON_ITERATIONS, SchemeDescription};
 pub use equilibrium::{Missed, NoSolution, StaticScheme};
 pub use initial::Initial;
 pub use input::InputError;

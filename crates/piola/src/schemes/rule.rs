@@ -1,6 +1,6 @@
 //! The rules of implicit steps, of whichever kind of formulation.
 
-use super::{Newmark, Theta};
+use super::{Capability, Newmark, Theta};
 
 /// How an implicit step is made from old and new values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +14,14 @@ pub enum ImplicitRule {
 }
 
 impl ImplicitRule {
+    /// What it needs of a scheme.
+    pub fn needs(&self) -> Capability {
+        match self {
+            Self::Newmark(_) => Capability::Newmark,
+            Self::Theta(_) => Capability::Theta,
+        }
+    }
+
     /// Whether it takes energy from periods that are short against its steps.
     pub fn damps(&self) -> bool {
         match self {

@@ -6,7 +6,7 @@ use super::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use super::clock::{Clock, Tally};
 use super::failure::Failure;
 use super::history::{History, Mark};
-use super::integrator::{Integrator, Unserved};
+use super::integrator::Integrator;
 use super::judgement::supersonic;
 use super::observer::{Moment, ObserveError, Observer};
 use super::step::{ChosenStep, StepControl};
@@ -76,19 +76,13 @@ impl Executor {
     pub const ACCURACY: &str = "accuracy";
 
     /// A run without observers and checkpoints, with as many steps as it takes and no retries.
-    ///
-    /// # Errors
-    /// The integrator cannot move the scheme.
     pub fn new(
-        mut scheme: Box<dyn Scheme>,
+        scheme: Box<dyn Scheme>,
         integrator: Box<dyn Integrator>,
         control: StepControl,
         end: f64,
-    ) -> Result<Self, Unserved> {
-        if !integrator.serves(scheme.as_mut()) {
-            return Err(Unserved::new(integrator.name(), scheme.as_mut()));
-        }
-        Ok(Self {
+    ) -> Self {
+        Self {
             scheme,
             integrator,
             control,
@@ -100,7 +94,7 @@ impl Executor {
             observers: Vec::new(),
             checkpoints: None,
             resume: None,
-        })
+        }
     }
 
     /// The formulation that it moves.

@@ -100,13 +100,6 @@ impl Integrator for ImplicitStepping {
         100
     }
 
-    fn serves(&self, scheme: &mut dyn Scheme) -> bool {
-        match self.rule {
-            ImplicitRule::Newmark(_) => scheme.newmark().is_some(),
-            ImplicitRule::Theta(_) => scheme.theta().is_some(),
-        }
-    }
-
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

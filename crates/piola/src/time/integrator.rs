@@ -9,7 +9,7 @@ use super::implicit::ImplicitStepping;
 use super::kick_drift_kick::KickDriftKick;
 use super::load_steps::LoadStepping;
 use super::runge_kutta::RungeKutta;
-use crate::schemes::{ImplicitRule, NEWTON_ITERATIONS, Newmark, Scheme, Theta};
+use crate::schemes::{Capability, ImplicitRule, NEWTON_ITERATIONS, Newmark, Scheme, Theta};
 
 /// A method that takes a state one step further.
 pub trait Integrator: Send {
@@ -18,9 +18,6 @@ pub trait Integrator: Send {
 
     /// Evaluations of the rates of `scheme` a step.
     fn evaluations(&self, scheme: &mut dyn Scheme) -> u64;
-
-    /// Whether it can move `scheme` as it is built.
-    fn serves(&self, scheme: &mut dyn Scheme) -> bool;
 
     /// What a step multiplies the energy of an undamped mode by that turns by `phase`, its angular
     /// frequency times the step; `None` where that is not known.
@@ -32,8 +29,8 @@ pub trait Integrator: Send {
     /// the scheme's state; `old` satisfies the constraints at `time`.
     ///
     /// # Errors
-    /// There is no such state, as far as was looked, or the integrator does not serve the scheme.
-    /// Explicit methods that do always find one.
+    /// There is no such state, as far as was looked, or the scheme is not the one that the integrator
+    /// was built for and does not offer what it needs. Explicit methods always find one.
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,
@@ -89,8 +86,9 @@ impl Unserved {
     /// That of an integrator of this name.
     pub fn new(integrator: &'static str, scheme: &mut dyn Scheme) -> Self {
         let all = IntegratorKind::ALL.into_iter();
-        let able = all.filter(|kind| kind.build(0).serves(scheme)).map(IntegratorKind::name);
-        Self { integrator, able: able.collect(), scheme: scheme.description().name }
+        let able = all.filter(|kind| kind.needs().is_offered_by(scheme));
+        let able = able.map(IntegratorKind::name).collect();
+        Self { integrator, able, scheme: scheme.description().name }
     }
 }
 
@@ -176,36 +174,69 @@ impl IntegratorKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// An integrator for states of `length` numbers, with its usual weights.
-    pub fn build(self, length: usize) -> Box<dyn Integrator> {
+    /// What it needs of a scheme.
+    pub fn needs(self) -> Capability {
         match self {
+            Self::TvdRk2 | Self::SspRk3 => Capability::Rates,
+            Self::KickDriftKick => Capability::Kicks,
+            Self::Newmark | Self::HhtAlpha | Self::GeneralisedAlpha => Capability::Newmark,
+            Self::Static | Self::ArcLength => Capability::Statics,
+            Self::BackwardEuler | Self::CrankNicolson | Self::Theta | Self::ImplicitMidpoint => {
+                Capability::Theta
+            }
+        }
+    }
+
+    /// An integrator for `scheme`, with its usual weights.
+    ///
+    /// # Errors
+    /// The scheme, as it is built, does not offer what the integrator needs.
+    pub fn build(self, scheme: &mut dyn Scheme) -> Result<Box<dyn Integrator>, Unserved> {
+        if !self.needs().is_offered_by(scheme) {
+            return Err(Unserved::new(self.name(), scheme));
+        }
+        let length = scheme.initial_state().len();
+        let theta = |rule| self.implicit(ImplicitRule::Theta(rule));
+        let newmark = |rule| self.implicit(ImplicitRule::Newmark(rule));
+        Ok(match self {
             Self::TvdRk2 => Box::new(RungeKutta::tvd_rk2(length)),
             Self::SspRk3 => Box::new(RungeKutta::ssp_rk3(length)),
             Self::KickDriftKick => Box::new(KickDriftKick::default()),
             Self::Static => Box::new(LoadStepping { by_arc_length: false }),
             Self::ArcLength => Box::new(LoadStepping { by_arc_length: true }),
-            Self::Newmark => self.with(ImplicitRule::Newmark(Newmark::AVERAGE_ACCELERATION), None),
-            Self::HhtAlpha => {
-                self.with(ImplicitRule::Newmark(Newmark::hilber_hughes_taylor(Self::ALPHA)), None)
-            }
-            Self::GeneralisedAlpha => {
-                let rule = Newmark::generalised_alpha(Self::SPECTRAL_RADIUS);
-                self.with(ImplicitRule::Newmark(rule), None)
-            }
-            Self::BackwardEuler => self.with(ImplicitRule::Theta(Theta::BACKWARD_EULER), None),
-            Self::CrankNicolson => self.with(ImplicitRule::Theta(Theta::CRANK_NICOLSON), None),
-            Self::Theta => self.with(ImplicitRule::Theta(Theta::DAMPED), None),
-            Self::ImplicitMidpoint => self.with(ImplicitRule::Theta(Theta::MIDPOINT), None),
-        }
+            Self::Newmark => newmark(Newmark::AVERAGE_ACCELERATION),
+            Self::HhtAlpha => newmark(Newmark::hilber_hughes_taylor(Self::ALPHA)),
+            Self::GeneralisedAlpha => newmark(Newmark::generalised_alpha(Self::SPECTRAL_RADIUS)),
+            Self::BackwardEuler => theta(Theta::BACKWARD_EULER),
+            Self::CrankNicolson => theta(Theta::CRANK_NICOLSON),
+            Self::Theta => theta(Theta::DAMPED),
+            Self::ImplicitMidpoint => theta(Theta::MIDPOINT),
+        })
     }
 
-    /// An integrator of implicit steps with a rule of one's own, and with the largest error of a step
-    /// and the length of states, if errors are to be kept below one.
-    pub fn with(self, rule: ImplicitRule, error: Option<(f64, usize)>) -> Box<dyn Integrator> {
+    /// An integrator for `scheme` that takes implicit steps with a rule of one's own, and keeps their
+    /// errors below `error` if there is one.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub fn build_with(
+        self,
+        rule: ImplicitRule,
+        error: Option<f64>,
+        scheme: &mut dyn Scheme,
+    ) -> Result<Box<dyn Integrator>, Unserved> {
+        if !rule.needs().is_offered_by(scheme) {
+            return Err(Unserved::new(self.name(), scheme));
+        }
         let plain = ImplicitStepping::new(self.name(), rule);
-        Box::new(match error {
-            Some((largest, length)) => plain.with_error(largest, length),
+        let length = scheme.initial_state().len();
+        Ok(Box::new(match error {
+            Some(largest) => plain.with_error(largest, length),
             None => plain,
-        })
+        }))
+    }
+
+    fn implicit(self, rule: ImplicitRule) -> Box<dyn Integrator> {
+        Box::new(ImplicitStepping::new(self.name(), rule))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::integrator::{Integrator, Unserved};
-use crate::schemes::{PartitionedScheme, Scheme};
+use crate::schemes::{Capability, PartitionedScheme, Scheme};
 
 /// Half a kick, a drift, and half a kick with the accelerations at its end, CTVF (54) to (60).
 ///
@@ -62,10 +62,6 @@ impl Integrator for KickDriftKick {
         if scheme.split().is_some() { 1 } else { 2 }
     }
 
-    fn serves(&self, scheme: &mut dyn Scheme) -> bool {
-        is_still(scheme) || scheme.split().is_some() || scheme.partitioned().is_some()
-    }
-
     fn energy_factor(&self, phase: f64) -> Option<f64> {
         // The larger of the two factors of the amplitude, squared: above 2 they are real.
         let half = 0.5 * phase * phase - 1.0;
@@ -93,14 +89,10 @@ impl Integrator for KickDriftKick {
             self.partitioned(scheme, [time, step], old, new);
             return Ok(());
         }
-        match is_still(scheme) {
+        match Capability::Kicks.is_offered_by(scheme) {
+            // There is nothing to move.
             true => Ok(()),
             false => Err(Unserved::new(self.name(), scheme).into()),
         }
     }
-}
-
-/// Whether there is nothing to move.
-fn is_still(scheme: &dyn Scheme) -> bool {
-    scheme.width() == 0
 }

@@ -22,10 +22,6 @@ impl Integrator for LoadStepping {
         300
     }
 
-    fn serves(&self, scheme: &mut dyn Scheme) -> bool {
-        scheme.equilibrium().is_some()
-    }
-
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

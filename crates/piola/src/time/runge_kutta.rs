@@ -95,10 +95,6 @@ impl Integrator for RungeKutta {
         self.stages.len() as u64
     }
 
-    fn serves(&self, scheme: &mut dyn Scheme) -> bool {
-        scheme.has_rates()
-    }
-
     fn energy_factor(&self, phase: f64) -> Option<f64> {
         Some((self.energy)(phase * phase))
     }

@@ -132,7 +132,8 @@ fn advanced(set: &[&str], steps: usize, every: usize) -> Vec<u64> {
     let mut simulation = fresh();
     let mut state = simulation.scheme().initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator =
+        IntegratorKind::KickDriftKick.build(simulation.scheme()).expect("it moves the scheme");
     for count in 0..steps {
         if count > 0 && count % every == 0 {
             simulation = fresh();

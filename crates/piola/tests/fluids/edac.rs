@@ -38,7 +38,8 @@ fn moved(settings: Settings) -> Vec<(f64, f64)> {
     });
     scheme.split().expect("it can be split").accelerate(0.0, &mut state);
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator =
+        IntegratorKind::KickDriftKick.build(&mut scheme).expect("it moves the scheme");
     for k in 0..60 {
         let time = 1e-3 * f64::from(k);
         integrator.step(&mut scheme, time, 1e-3, &state, &mut new).expect("it is explicit");
@@ -99,7 +100,8 @@ fn a_pressure_wave_in_a_solid_that_is_held_decays_as_diffusion_says() {
         assert!((rates.pressure_diffusion + rate * pressure).abs() < 1e-12 * rate);
     }
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator =
+        IntegratorKind::KickDriftKick.build(&mut scheme).expect("it moves the scheme");
     for k in 0..100 {
         let time = STEP * f64::from(k);
         integrator.step(&mut scheme, time, STEP, &state, &mut new).expect("it is explicit");

@@ -14,7 +14,7 @@ const STEP: f64 = 4e-4;
 /// Takes `steps` steps from a state at `first` steps.
 fn advance(scheme: &mut dyn Scheme, mut state: Vec<f64>, first: usize, steps: usize) -> Vec<f64> {
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it moves the scheme");
     for count in first..first + steps {
         integrator
             .step(scheme, count as f64 * STEP, STEP, &state, &mut new)

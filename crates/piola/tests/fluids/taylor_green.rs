@@ -28,7 +28,7 @@ pub fn vortices(side: usize, reynolds: f64, settings: Settings, seed: u64) -> Tr
 fn run(scheme: &mut dyn Scheme, end: f64) -> Vec<f64> {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it moves the scheme");
     let (mut limits, mut time) = (Vec::new(), 0.0);
     while time < end * (1.0 - 1e-12) {
         let health: Health = scheme.inspect(&state, &mut limits);

@@ -99,7 +99,7 @@ fn run_at(
     end: f64,
     share: f64,
 ) -> (Vec<f64>, Vec<&'static str>) {
-    let mut integrator = IntegratorKind::KickDriftKick.build(0);
+    let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it moves the scheme");
     let (mut new, mut names, mut time) = (state.clone(), Vec::new(), 0.0);
     let mut wanted = f64::INFINITY;
     while time < end {

@@ -75,7 +75,7 @@ fn strong() -> Settings {
 }
 
 fn march(scheme: &mut dyn Scheme, step: f64, steps: usize) -> Vec<f64> {
-    let mut integrator = IntegratorKind::KickDriftKick.build(0);
+    let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it moves the scheme");
     let mut state = scheme.initial_state();
     let mut new = state.clone();
     for number in 0..steps {
@@ -372,7 +372,8 @@ fn every_described_field_has_values() {
 fn steps_after_the_first_allocate_nothing() {
     fn check<const D: usize>(made: ElastodynamicsInput<D>) {
         let mut scheme = Elastodynamics::new(made).unwrap();
-        let mut integrator = IntegratorKind::KickDriftKick.build(0);
+        let mut integrator =
+            IntegratorKind::KickDriftKick.build(&mut scheme).expect("it moves the scheme");
         let state = scheme.initial_state();
         let (mut new, mut limits) = (state.clone(), Vec::with_capacity(4));
         let step = 0.1 * stable_step(&mut scheme);

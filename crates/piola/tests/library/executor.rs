@@ -22,6 +22,7 @@ const PENDULUM: Pendulum = Pendulum { limit: |_| 0.1, ratio: |_| 1.0 };
 impl Scheme for Pendulum {
     fn description(&self) -> &'static SchemeDescription {
         &SchemeDescription {
+            offers: &[piola::schemes::Capability::Rates],
             name: "pendulum",
             fields: &[],
             energies: &[],
@@ -131,10 +132,9 @@ impl Observer for Witness {
     }
 }
 
-fn executor(scheme: Pendulum, control: StepControl, end: f64) -> Executor {
-    let integrator = IntegratorKind::TvdRk2.build(3);
-    let mut executor = Executor::new(Box::new(scheme), integrator, control, end)
-        .expect("a Runge-Kutta method serves it");
+fn executor(mut scheme: Pendulum, control: StepControl, end: f64) -> Executor {
+    let integrator = IntegratorKind::TvdRk2.build(&mut scheme).expect("it has rates");
+    let mut executor = Executor::new(Box::new(scheme), integrator, control, end);
     executor.max_steps = 100_000;
     executor
 }
@@ -397,10 +397,6 @@ struct Picky;
 impl Integrator for Picky {
     fn name(&self) -> &'static str {
         "picky"
-    }
-
-    fn serves(&self, _scheme: &mut dyn Scheme) -> bool {
-        true
     }
 
     fn evaluations(&self, _scheme: &mut dyn Scheme) -> u64 {

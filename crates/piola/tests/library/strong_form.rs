@@ -280,7 +280,7 @@ fn march(
     end: f64,
     mut show: impl FnMut(&dyn Scheme, f64, &[f64]),
 ) -> Vec<f64> {
-    let mut integrator = IntegratorKind::KickDriftKick.build(0);
+    let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it moves the scheme");
     let (mut state, mut limits, mut time) = (scheme.initial_state(), Vec::new(), 0.0);
     let mut new = state.clone();
     while time < end {

@@ -235,10 +235,9 @@ fn angular_momentum_is_kept(settings: Settings) {
     assert!(total.abs() < 1e-12 * size, "{total} of {size}");
 }
 
-fn executor<S: Scheme + 'static>(scheme: S, control: StepControl, end: f64) -> Executor {
-    let length = scheme.initial_state().len();
-    let integrator = IntegratorKind::TvdRk2.build(length);
-    Executor::new(Box::new(scheme), integrator, control, end).expect("it serves the scheme")
+fn executor<S: Scheme + 'static>(mut scheme: S, control: StepControl, end: f64) -> Executor {
+    let integrator = IntegratorKind::TvdRk2.build(&mut scheme).expect("it has rates");
+    Executor::new(Box::new(scheme), integrator, control, end)
 }
 
 /// U1: a bar with one mode follows u(L, t) = sin(w t) / w, w = pi c / 2L.

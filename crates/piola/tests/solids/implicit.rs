@@ -49,7 +49,9 @@ fn march<const D: usize>(
 ) -> Vec<f64> {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::Newmark.with(ImplicitRule::Newmark(rule), None);
+    let rule = ImplicitRule::Newmark(rule);
+    let mut integrator =
+        IntegratorKind::Newmark.build_with(rule, None, scheme).expect("it moves the scheme");
     for count in 0..steps {
         integrator.step(scheme, count as f64 * step, step, &state, &mut new).unwrap();
         std::mem::swap(&mut state, &mut new);
@@ -99,7 +101,8 @@ fn rules_meet_central_differences_to_the_second_order() {
     let steps = (end / (0.01 * stable_step(&mut explicit))).ceil() as usize;
     let mut reference = explicit.initial_state();
     let mut new = reference.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(reference.len());
+    let mut integrator =
+        IntegratorKind::KickDriftKick.build(&mut explicit).expect("it moves the scheme");
     let step = end / steps as f64;
     for count in 0..steps {
         integrator.step(&mut explicit, count as f64 * step, step, &reference, &mut new).unwrap();
@@ -224,7 +227,7 @@ fn a_step_without_an_end_is_named() {
     let mut scheme = DualSupport::new(input(&cloud, law, LinearMethod::Direct, crushed)).unwrap();
     let state = scheme.initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::Newmark.build(state.len());
+    let mut integrator = IntegratorKind::Newmark.build(&mut scheme).expect("it moves the scheme");
     let failed = integrator.step(&mut scheme, 0.0, 0.01, &state, &mut new).unwrap_err();
     let Failure::NoSolution(missed) = &failed else { panic!("{failed}") };
     assert_ne!(missed.kind, Missed::Unstable);

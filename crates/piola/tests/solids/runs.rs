@@ -73,7 +73,7 @@ pub fn stable_step(scheme: &mut dyn Scheme) -> f64 {
 fn swing<const D: usize>(scheme: &mut DualSupport<D>, step: f64, steps: usize) -> Vec<f64> {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::KickDriftKick.build(state.len());
+    let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it moves the scheme");
     for count in 0..steps {
         integrator
             .step(scheme, count as f64 * step, step, &state, &mut new)

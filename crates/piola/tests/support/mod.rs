@@ -203,7 +203,7 @@ pub fn march_from(
 ) -> Vec<f64> {
     scheme.constrain(0.0, &mut state);
     let mut new = state.clone();
-    let mut integrator = IntegratorKind::TvdRk2.build(state.len());
+    let mut integrator = IntegratorKind::TvdRk2.build(scheme).expect("it has rates");
     for count in 1..=steps {
         integrator
             .step(scheme, (count - 1) as f64 * step, step, &state, &mut new)

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use piola::Vector;
-use piola::schemes::{ImplicitRule, Scheme, Theta};
+use piola::schemes::{ImplicitRule, Theta};
 use piola::time::{
     Executor, IntegratorKind, Moment, ObserveError, Observer, Outcome, Schedule, StepControl,
     Summary,
@@ -31,13 +31,14 @@ impl Observer for Last {
 /// A bar of the gamma law that swings in its first mode, with errors of steps below `error`.
 fn swing(rule: Theta, kind: IntegratorKind, error: f64) -> (Summary, Vec<f64>) {
     let choice = Choice::new(lattice([10.0], [20]), gamma()).fix(0, |x| x[0] < 1e-9);
-    let scheme = implicit(choice, PLAIN).build(|x| Vector::<1>::new(0.4 * (0.157 * x[0]).sin()));
-    let length = scheme.initial_state().len();
-    let integrator = kind.with(ImplicitRule::Theta(rule), Some((error, length)));
+    let mut scheme =
+        implicit(choice, PLAIN).build(|x| Vector::<1>::new(0.4 * (0.157 * x[0]).sin()));
+    let rule = ImplicitRule::Theta(rule);
+    let integrator =
+        kind.build_with(rule, Some(error), &mut scheme).expect("it was built for that");
     let last = Last::default();
     let control = StepControl::AtMost(10.0);
-    let mut executor =
-        Executor::new(Box::new(scheme), integrator, control, 4.0).expect("it was built for that");
+    let mut executor = Executor::new(Box::new(scheme), integrator, control, 4.0);
     executor.observers = vec![Box::new(last.clone())];
     let summary =
         executor.run(&AtomicBool::new(false), &mut |_| {}).expect("nothing is written anywhere");

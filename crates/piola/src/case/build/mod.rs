@@ -86,7 +86,8 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
     built.warnings.extend(far);
     built.warnings.extend(uneven_steps(case));
     built.warnings.extend(beyond_stable(case));
-    Ok(Simulation::new(case, built))
+    let integrator = integrator(case, built.scheme.as_mut())?;
+    Ok(Simulation::new(case, built, integrator))
 }
 
 /// Central differences whose steps are as long as is stable one by one may grow when long and short ones
@@ -385,11 +386,15 @@ fn integrator_kind(case: &Case) -> IntegratorKind {
     IntegratorKind::from_name(&case.time.integrator).unwrap_or(IntegratorKind::TvdRk2)
 }
 
-/// The integrator of a case, for states of `length` numbers.
-pub(super) fn integrator(case: &Case, length: usize) -> Box<dyn Integrator> {
-    let kind = integrator_kind(case);
-    match case.time.rule {
-        Some(rule) => kind.with(rule, case.time.error.map(|error| (error, length))),
-        None => kind.build(length),
-    }
+/// The integrator of a case for its scheme, or a problem at its name.
+fn integrator(case: &Case, scheme: &mut dyn Scheme) -> Result<Box<dyn Integrator>, Vec<Problem>> {
+    let (kind, time) = (integrator_kind(case), &case.time);
+    let built = match time.rule {
+        Some(rule) => kind.build_with(rule, time.error, scheme),
+        None => kind.build(scheme),
+    };
+    built.map_err(|unserved| {
+        let place = time.integrator.place;
+        vec![case.problem_at(place, unserved.to_string(), "this integrator", None)]
+    })
 }

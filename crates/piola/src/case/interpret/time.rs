@@ -1,62 +1,35 @@
 //! Clock and integrator.
 
 use super::*;
-use crate::schemes::{ImplicitRule, Newmark, Theta};
+use crate::case::suggest::one_of;
+use crate::schemes::{Capability, ImplicitRule, Newmark, SchemeDescription, Theta};
 use crate::solve::LinearMethod;
 
-/// The kinds of integrator that the rest of the case depends on.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum March {
-    Explicit,
-    /// Newmark's method and its like.
-    Implicit,
-    /// The theta method and its like.
-    Theta,
-    Static,
-}
-
-impl March {
-    fn of(kind: Option<IntegratorKind>) -> Self {
-        match kind {
-            Some(
-                IntegratorKind::Newmark
-                | IntegratorKind::HhtAlpha
-                | IntegratorKind::GeneralisedAlpha,
-            ) => Self::Implicit,
-            Some(
-                IntegratorKind::BackwardEuler
-                | IntegratorKind::CrankNicolson
-                | IntegratorKind::Theta
-                | IntegratorKind::ImplicitMidpoint,
-            ) => Self::Theta,
-            Some(IntegratorKind::Static | IntegratorKind::ArcLength) => Self::Static,
-            Some(
-                IntegratorKind::TvdRk2 | IntegratorKind::SspRk3 | IntegratorKind::KickDriftKick,
-            )
-            | None => Self::Explicit,
-        }
-    }
+/// Whether steps are found without solving equations.
+fn is_explicit(needs: Capability) -> bool {
+    matches!(needs, Capability::Rates | Capability::Kicks)
 }
 
 impl Reader<'_, '_> {
     pub(super) fn time(&mut self, record: &Record) -> Option<Time> {
-        let natural = match self.names.scheme {
-            "upwind" if self.names.dissipates => IntegratorKind::TvdRk2,
-            _ => IntegratorKind::KickDriftKick,
+        let natural = match self.names.dissipates {
+            true => IntegratorKind::TvdRk2,
+            false => IntegratorKind::KickDriftKick,
         };
         let integrator = match record.text("integrator") {
             Some(name) => name,
             None => Located::new(natural.name().to_owned(), record.place),
         };
         let kind = IntegratorKind::from_name(&integrator);
-        let march = March::of(kind);
-        self.suits_scheme(&integrator, march, natural);
-        let step = self.step(record, march);
+        let needs = kind.unwrap_or(natural).needs();
+        self.suits_scheme(&integrator, needs);
+        let step = self.step(record, needs);
         let rule = self.rule(record, kind);
-        if !matches!(march, March::Implicit | March::Theta) {
+        if !matches!(needs, Capability::Newmark | Capability::Theta) {
             self.meaningless(record, "error", "without implicit steps in time");
         }
-        if march == March::Explicit {
+        let is_explicit = is_explicit(needs);
+        if is_explicit {
             for key in ["tolerance", "linear_solver"] {
                 self.meaningless(record, key, "with this integrator, which solves no equations");
             }
@@ -76,60 +49,44 @@ impl Reader<'_, '_> {
             max_steps: record.whole("max_steps").map(|steps| steps.value),
             min_step: record.number("min_step").map(|step| step.value),
             max_speed: record.number("max_speed").map(|speed| speed.value),
-            retries: self.retries(record, march == March::Explicit)?,
+            retries: self.retries(record, is_explicit)?,
         })
     }
 
-    /// Reports an integrator that the scheme does not work with.
-    fn suits_scheme(
-        &mut self,
-        integrator: &Located<String>,
-        march: March,
-        natural: IntegratorKind,
-    ) {
-        let scheme = self.names.scheme;
-        let (name, place) = (&integrator.value, integrator.place);
-        let kicks = IntegratorKind::KickDriftKick.name();
-        let (message, help) = match march {
-            March::Static | March::Implicit if scheme != "dual_support" => {
-                let what = match march {
-                    March::Static => "statics",
-                    _ if scheme == "upwind" => "implicit steps of this kind",
-                    _ => "implicit steps",
-                };
-                let others = if scheme == "upwind" { " or `crank_nicolson`" } else { "" };
-                (
-                    format!("the scheme `{scheme}` knows no {what}"),
-                    format!("use `{}`{others}, or the scheme `dual_support`", natural.name()),
-                )
-            }
-            March::Theta if scheme != "upwind" => (
-                format!("the scheme `{scheme}` knows no implicit steps of this kind"),
-                match scheme {
-                    "dual_support" => "use `newmark` or `generalised_alpha`".into(),
-                    _ => format!("use `{}`", natural.name()),
-                },
-            ),
-            March::Explicit
-                if scheme == "upwind" && *name == kicks && self.names.dissipates =>
-            (
-                "forces of this scheme depend on velocities where it dissipates, and this integrator \
-                 takes those that do not"
-                    .into(),
-                "use `tvd_rk2` or `ssp_rk3`, or set `scheme.tau_velocity` and `scheme.tau_pressure` to 0"
-                    .into(),
-            ),
-            March::Explicit if !["dual_support", "upwind"].contains(&scheme) && *name != kicks => (
-                format!("the scheme `{scheme}` keeps its accelerations in its state"),
-                "use `kick_drift_kick`".into(),
-            ),
-            _ => return,
+    /// Reports an integrator that the scheme does not work with, with those that do.
+    fn suits_scheme(&mut self, integrator: &Located<String>, needs: Capability) {
+        let (name, scheme, dissipates) =
+            (&integrator.value, self.names.scheme, self.names.dissipates);
+        let Some(offers) = SchemeDescription::of(scheme).map(|scheme| scheme.offers) else {
+            return;
         };
-        self.report(Problem::new(place, message, "of another scheme").help(help));
+        let is_offered = |needs: Capability| {
+            offers.contains(&needs) && !(dissipates && needs == Capability::Kicks)
+        };
+        if is_offered(needs) {
+            return;
+        }
+        let all = IntegratorKind::ALL.into_iter();
+        let able = one_of(all.filter(|kind| is_offered(kind.needs())).map(IntegratorKind::name));
+        let (why, other) = match offers.contains(&needs) {
+            true => (
+                " where it dissipates: its forces depend on velocities there",
+                "set `scheme.tau_velocity` and `scheme.tau_pressure` to 0".to_owned(),
+            ),
+            false => {
+                let others = SchemeDescription::ALL.into_iter();
+                let others = others.filter(|other| other.offers.contains(&needs));
+                let others = one_of(others.map(|scheme| scheme.name));
+                ("", format!("for `{name}` a scheme that it moves: {others}"))
+            }
+        };
+        let message = format!("the integrator `{name}` cannot move the scheme `{scheme}`{why}");
+        let help = format!("use one of those that can: {able}; or {other}");
+        self.report(Problem::new(integrator.place, message, "of another scheme").help(help));
     }
 
     /// How the step is chosen.
-    fn step(&mut self, record: &Record, march: March) -> Option<Located<StepControl>> {
+    fn step(&mut self, record: &Record, needs: Capability) -> Option<Located<StepControl>> {
         let (cfl, step) = (record.number("cfl"), record.number("step"));
         if let (Some(_), Some(place)) = (record.key_place("cfl"), record.key_place("step")) {
             let message = "`cfl` and `step` cannot be given both";
@@ -138,16 +95,16 @@ impl Reader<'_, '_> {
                     .help("`cfl` follows the stable step, `step` is fixed: remove one of them"),
             );
         }
-        match (march, cfl, step) {
-            (March::Explicit, _, Some(step)) => Some(step.map(StepControl::Fixed)),
+        match (needs, cfl, step) {
+            (needs, _, Some(step)) if is_explicit(needs) => Some(step.map(StepControl::Fixed)),
             (_, _, Some(step)) => Some(step.map(StepControl::AtMost)),
-            (March::Static, _, None) => {
+            (Capability::Statics, _, None) => {
                 self.meaningless(record, "cfl", "in statics");
                 let end = record.number("end")?;
                 Some(Located::new(StepControl::AtMost(0.1 * *end), record.place))
             }
             (_, Some(cfl), None) => Some(cfl.map(StepControl::Cfl)),
-            (March::Explicit, None, None) => {
+            (Capability::Rates | Capability::Kicks, None, None) => {
                 let cfl = match self.names.scheme {
                     "transport_velocity" => 0.25,
                     "dual_support" => 0.8,
@@ -156,7 +113,7 @@ impl Reader<'_, '_> {
                 };
                 Some(Located::new(StepControl::Cfl(cfl), record.place))
             }
-            (March::Implicit | March::Theta, None, None) => {
+            (Capability::Newmark | Capability::Theta, None, None) => {
                 let message = "an implicit integrator needs the key `step`";
                 let problem = Problem::new(record.place, message, "`step` is missing").help(
                     "any size is stable, so that accuracy decides: about a twentieth of the shortest \

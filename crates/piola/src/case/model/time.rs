@@ -59,7 +59,7 @@ impl Time {
     pub fn none(place: Place) -> Self {
         Self {
             end: Located::new(0.0, place),
-            integrator: Located::new(IntegratorKind::TvdRk2.name().to_owned(), place),
+            integrator: Located::new(IntegratorKind::KickDriftKick.name().to_owned(), place),
             rule: None,
             error: None,
             tolerance: None,

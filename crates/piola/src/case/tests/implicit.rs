@@ -56,7 +56,7 @@ fn what_has_no_meaning_is_refused() {
         ("cfl = 0.3\ntheta = 0.6", ["`theta` has no meaning", "with this integrator"]),
         (
             "integrator = \"newmark\"\nstep = 0.1",
-            ["implicit steps of this kind", "`crank_nicolson`"],
+            ["cannot move the scheme `upwind`", "`crank_nicolson`"],
         ),
     ] {
         let message = read(time).expect_err(time);

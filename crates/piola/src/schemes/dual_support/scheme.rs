@@ -5,8 +5,8 @@ use super::{DualSupport, ENERGIES, FIGURES, IMPULSES, MECHANISMS, Side};
 use crate::fields::FieldDescription;
 use crate::schemes::look::convexity_is_lost;
 use crate::schemes::{
-    Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription, SplitScheme,
-    StaticScheme, StepLimit,
+    Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription,
+    SplitScheme, StaticScheme, StepLimit,
 };
 use crate::solve::Costs;
 use crate::{Vector, parallel};
@@ -20,6 +20,7 @@ const CONVEXITY: &str = "the material had lost its convexity before, which small
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "dual_support",
+    offers: &[Capability::Rates, Capability::Kicks, Capability::Newmark, Capability::Statics],
     fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,

@@ -5,11 +5,14 @@ use super::{ENERGIES, Elastodynamics, IMPULSES, MECHANISMS};
 use crate::fields::FieldDescription;
 use crate::parallel;
 use crate::schemes::look::convexity_is_lost;
-use crate::schemes::{Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
+use crate::schemes::{
+    Capability, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit,
+};
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "elastodynamics",
+    offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,

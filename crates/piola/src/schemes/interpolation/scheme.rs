@@ -2,11 +2,12 @@
 
 use super::Interpolation;
 use crate::fields::{FieldDescription, columns};
-use crate::schemes::{Health, Particle, Scheme, SchemeDescription, StepLimit};
+use crate::schemes::{Capability, Health, Particle, Scheme, SchemeDescription, StepLimit};
 
 /// What the study is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "interpolation",
+    offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &[],
     mechanisms: &[],
@@ -50,6 +51,10 @@ impl<const D: usize> Scheme for Interpolation<D> {
     }
 
     fn rates(&mut self, _time: f64, _state: &[f64], _rate: &mut [f64]) {}
+
+    fn has_rates(&self) -> bool {
+        false
+    }
 
     fn constrain(&self, _time: f64, _state: &mut [f64]) {}
 

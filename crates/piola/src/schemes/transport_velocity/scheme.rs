@@ -4,7 +4,9 @@ use super::fields::{ColumnsMut, Made};
 use super::ledger::Tail;
 use super::{ENERGIES, IMPULSES, MECHANISMS, TransportVelocity};
 use crate::fields::FieldDescription;
-use crate::schemes::{Escape, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
+use crate::schemes::{
+    Capability, Escape, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit,
+};
 
 /// Names and units of the figures of the formulation.
 const FIGURES: [(&str, &str); 5] =
@@ -13,6 +15,7 @@ const FIGURES: [(&str, &str); 5] =
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "transport_velocity",
+    offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,

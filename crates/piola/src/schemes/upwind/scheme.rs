@@ -6,7 +6,8 @@ use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Upwind};
 use crate::fields::FieldDescription;
 use crate::schemes::{
-    Health, Particle, PartitionedScheme, Scheme, SchemeDescription, StepLimit, ThetaScheme,
+    Capability, Health, Particle, PartitionedScheme, Scheme, SchemeDescription, StepLimit,
+    ThetaScheme,
 };
 use crate::solve::Costs;
 use crate::{Tensor, parallel};
@@ -14,6 +15,7 @@ use crate::{Tensor, parallel};
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "upwind",
+    offers: &[Capability::Rates, Capability::Kicks, Capability::Theta],
     fields: Made::FIELDS,
     energies: &ENERGIES,
     mechanisms: &MECHANISMS,
