@@ -328,9 +328,9 @@ impl<const D: usize> LinearSolver<D> {
         right: &[f64],
         tolerance: f64,
     ) -> Outcome {
-        let rows = self.reduction.rows();
+        let Self { reduction, direct, jacobi, coarse, costs, .. } = self;
+        let rows = reduction.rows();
         let (mut full, mut image) = (vec![Vector::zeros(); rows], vec![Vector::zeros(); rows]);
-        let reduction = self.reduction.clone();
         let symmetric = tangent.is_symmetric();
         let product = |direction: &[f64], product: &mut [f64]| {
             reduction.expand_free(direction, &mut full);
@@ -338,27 +338,39 @@ impl<const D: usize> LinearSolver<D> {
             reduction.restrict(&image, product);
         };
         let precondition = |residual: &[f64], scaled: &mut [f64]| {
-            self.precondition(residual, scaled);
+            precondition(reduction, direct, jacobi, coarse, residual, scaled);
         };
         let most = most_steps(right.len());
         let outcome = match symmetric {
             true => conjugate_gradients(product, precondition, right, tolerance, most),
             false => gmres(product, precondition, right, tolerance, most),
         };
-        self.costs.steps += outcome.steps as u64;
+        costs.steps += outcome.steps as u64;
         outcome
     }
 
     /// Solves roughly with the tangent that was loaded last where it iterates, and exactly with its
     /// symmetric half where it factorises: what a Krylov method of one's own is preconditioned with.
     pub fn precondition(&mut self, residual: &[f64], scaled: &mut [f64]) {
-        scaled.copy_from_slice(residual);
-        if let Some((_, factor)) = &mut self.direct {
-            return factor.solve(scaled);
-        }
-        self.jacobi.apply(&self.reduction, scaled);
-        if let Some(coarse) = &mut self.coarse {
-            coarse.add(residual, scaled);
-        }
+        let Self { reduction, direct, jacobi, coarse, .. } = self;
+        precondition(reduction, direct, jacobi, coarse, residual, scaled);
+    }
+}
+
+fn precondition<const D: usize>(
+    reduction: &Reduction<D>,
+    direct: &mut Option<(SparseMatrix, Factor)>,
+    jacobi: &BlockJacobi<D>,
+    coarse: &mut Option<Coarse<D>>,
+    residual: &[f64],
+    scaled: &mut [f64],
+) {
+    scaled.copy_from_slice(residual);
+    if let Some((_, factor)) = direct {
+        return factor.solve(scaled);
+    }
+    jacobi.apply(reduction, scaled);
+    if let Some(coarse) = coarse {
+        coarse.add(residual, scaled);
     }
 }
