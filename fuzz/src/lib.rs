@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use piola::case::model::{Case, Shape};
-use piola::case::{self, LoadOptions, RunError};
+use piola::case::{self, LoadOptions, RunError, Session};
 use piola::geometry::{self, CloudPoints, CloudSpec, CloudVolumes};
 use piola::output::checkpoint;
 use piola::time::Progress;
@@ -22,9 +22,9 @@ pub fn case_file(data: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(data) else { return false };
     let Ok(case) = case::parse(text, "case.toml", &LoadOptions::default()) else { return false };
     if is_small(&case)
-        && let Ok(mut simulation) = case::build(&case)
+        && let Ok(mut session) = Session::new(&case)
     {
-        simulation.plan();
+        session.plan();
     }
     true
 }
@@ -120,17 +120,17 @@ fn broken_off(folder: &Path) -> PathBuf {
 
 fn run(folder: &Path, resume: bool, steps: u64) -> Result<(), RunError> {
     let case = case::parse(BAR, "case.toml", &LoadOptions::default()).expect("the seed is good");
-    let simulation = case::build(&case).expect("the seed can be built");
+    let mut session = Session::new(&case).expect("the seed can be built");
     let (stop, mut taken) = (AtomicBool::new(false), 0);
     let mut progress = |_: &Progress| {
         taken += 1;
         stop.store(taken >= steps, Ordering::Relaxed);
     };
     match resume {
-        true => simulation.resume(folder, &stop, &mut progress),
-        false => simulation.run(Some(folder), &stop, &mut progress),
+        true => session.resume_from(folder)?,
+        false => session.write_to(folder)?,
     }
-    .map(|_| ())
+    session.run(&stop, &mut progress).map(|_| ())
 }
 
 /// A folder of this process, in memory where the system has such.

@@ -16,8 +16,8 @@ const LISTED: usize = 10;
 pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
     use_threads(arguments.case.threads);
     let case = read(&arguments.case)?;
-    let mut simulation = assemble(&arguments.case.case, &case)?;
-    let plan = simulation.plan();
+    let mut session = assemble(&arguments.case.case, &case)?;
+    let plan = session.plan();
     terminal::print(&report(&case, &plan))?;
     Ok(Exit::Success)
 }

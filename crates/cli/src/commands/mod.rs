@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use piola::case::build;
-use piola::case::{Case, Level, LoadOptions, Problems, Simulation, load};
+use piola::case::{Case, Level, LoadOptions, Problems, Session, load};
 
 use crate::arguments::CaseArguments;
 use crate::exit::{Exit, Fault};
@@ -39,8 +38,8 @@ fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
 }
 
 /// Builds what was read from `path`.
-fn assemble(path: &Path, case: &Case) -> Result<Simulation, Fault> {
-    build(case).map_err(|problems| refusal(path, &problems))
+fn assemble(path: &Path, case: &Case) -> Result<Session, Fault> {
+    Session::new(case).map_err(|problems| refusal(path, &problems))
 }
 
 /// All problems of the case file `path`, with their number.

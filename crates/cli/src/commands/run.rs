@@ -39,7 +39,7 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
         (false, false) => Audience::Person,
     };
     let stop = interrupt::listen();
-    let simulation = assemble(path, &case)?;
+    let mut session = assemble(path, &case)?;
     let end = *case.time.end;
     if audience == Audience::Program {
         events::start(path, &folder, end);
@@ -48,11 +48,12 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
     let mut display = Display::new("", audience);
     let start = Instant::now();
     let mut update = |progress: &Progress| display.update(progress);
-    let finished = match arguments.resume {
-        true => simulation.resume(&folder, &stop, &mut update),
-        false => simulation.run(Some(&folder), &stop, &mut update),
-    }
-    .map_err(|error| Fault::new(code(&error), error))?;
+    let place = match arguments.resume {
+        true => session.resume_from(&folder),
+        false => session.write_to(&folder),
+    };
+    let finished = place.and_then(|()| session.run(&stop, &mut update));
+    let finished = finished.map_err(|error| Fault::new(code(&error), error))?;
     drop(display);
     let seconds = start.elapsed().as_secs_f64();
     match audience {

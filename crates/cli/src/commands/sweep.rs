@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use piola::case::sweep::{Comparison, MemberResult};
-use piola::case::{Case, build};
+use piola::case::{Case, Session};
 use piola::output::OutputError;
 use piola::time::Outcome;
 
@@ -128,8 +128,8 @@ impl Sweep {
             self.trouble(Trouble { member: index, exit, report });
             MemberResult { outcome: word.to_owned(), ..member.waiting() }
         };
-        let simulation = match build(&member.case) {
-            Ok(simulation) => simulation,
+        let mut session = match Session::new(&member.case) {
+            Ok(session) => session,
             Err(problems) => {
                 return failed(Exit::BadCase, "refused", problems.to_string());
             }
@@ -138,7 +138,8 @@ impl Sweep {
         let mut watch = |progress: &piola::time::Progress| {
             self.progress.update(index, &member.name, progress, self.members.len());
         };
-        match simulation.run(Some(&folder), stop, &mut watch) {
+        let place = session.write_to(&folder);
+        match place.and_then(|()| session.run(stop, &mut watch)) {
             Ok(finished) => {
                 let outcome = &finished.summary.outcome;
                 if let Outcome::Failed(failure) = outcome {

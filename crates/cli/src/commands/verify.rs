@@ -5,10 +5,9 @@ use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use piola::case::build;
 use piola::case::page::{PageCase, Row, SettingRuns};
 use piola::case::verify::{VariantRun, needed_variants, verify as evaluate};
-use piola::case::{Case, Finished, Level, LoadOptions, load};
+use piola::case::{Case, Finished, Level, LoadOptions, Session, load};
 
 use super::{refusal, use_threads};
 use crate::arguments::VerifyArguments;
@@ -232,9 +231,10 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
 
 /// Runs a case without files.
 fn run_quietly(case: &Case, label: &str, stop: &AtomicBool) -> Result<Finished, String> {
-    let simulation = build(case).map_err(|problems| problems.to_string().trim_end().to_owned())?;
+    let session =
+        Session::new(case).map_err(|problems| problems.to_string().trim_end().to_owned())?;
     let mut display = Display::new(label, Audience::Person);
-    let finished = simulation.run(None, stop, &mut |progress| display.update(progress));
+    let finished = session.run(stop, &mut |progress| display.update(progress));
     finished.map_err(|error| error.to_string())
 }
 

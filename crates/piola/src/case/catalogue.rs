@@ -4,7 +4,7 @@
 
 use piola_formulas::kernels::Kernel;
 
-use super::simulation;
+use super::finished;
 use super::spec::Choice;
 use crate::fields::FieldDescription;
 use crate::observe;
@@ -96,4 +96,4 @@ pub fn step_columns(scheme: &str) -> Vec<&'static str> {
 }
 
 /// Numbers of the run as a whole, after `run.`.
-pub const RUN_COLUMNS: &[&str] = &simulation::RUN_QUANTITIES;
+pub const RUN_COLUMNS: &[&str] = &finished::RUN_QUANTITIES;

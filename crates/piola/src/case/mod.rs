@@ -7,10 +7,12 @@
 
 pub mod build;
 pub mod catalogue;
+mod columns;
 mod decode;
 pub mod diagnostics;
 mod document;
 pub mod expression;
+mod finished;
 mod interpret;
 pub mod model;
 
@@ -25,8 +27,8 @@ mod render;
 pub mod report;
 mod resume;
 pub mod schema;
+mod session;
 mod settings;
-mod simulation;
 pub mod source;
 pub mod spec;
 mod suggest;
@@ -38,16 +40,17 @@ pub mod verify;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use build::build;
+pub use columns::ColumnError;
 use decode::{Context, evaluate_parameters};
 pub use diagnostics::{Problem, Problems};
 use document::{Node, Table, Value};
 pub use expression::Expression;
+pub use finished::Finished;
 use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
 pub use plan::{Plan, PlannedLimit, Undamped};
-pub use simulation::{Finished, RunError, Simulation};
+pub use session::{RunError, Session};
 pub use source::{Located, Place, SourceText};
 
 /// What is said on the command line in front of an override.

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use super::build::{Built, bodies::BodyReport};
+use super::finished::{Finished, RUN_QUANTITIES};
 use super::model::{self, Case};
 use super::report::charts;
 use super::resume::{Resumed, Store};
-use super::simulation::{Finished, RUN_QUANTITIES, RunError};
+use super::session::RunError;
 use crate::observe::{
     FrameWriter, PictureRequest, PictureWriter, Series, SpaceTime, Tables, WrittenFiles,
 };
@@ -55,6 +56,11 @@ impl Outputs {
         folder.go_on(record, &resumed.files)?;
         resumed.files.iter().for_each(|file| written.push(folder.path().join(file)));
         Ok(())
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
     }
 
     /// Where the checkpoints of the run `identity` go.

@@ -7,8 +7,8 @@
 use std::fmt::Write;
 use std::rc::Rc;
 
+use super::finished::Finished;
 use super::model::{Against, Case, Level};
-use super::simulation::Finished;
 use super::verify::CheckRow;
 use crate::output::Plot;
 pub use reproduction::{Met, Reproduction};

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::build::{self, bodies::BodyReport};
 use super::model;
-use super::simulation::Simulation;
+use super::session::Session;
 use crate::neighbors::NeighborStatistics;
 use crate::schemes::Particle;
 use crate::time::{StepControl, supersonic};
@@ -83,11 +83,11 @@ pub struct PlannedLimit {
 /// back to, and a rate.
 const STATES: usize = 6;
 
-impl Simulation {
+impl Session {
     /// Looks at the initial state and times two evaluations of the rates.
     pub fn plan(&mut self) -> Plan {
         let control = build::step_control(&self.case);
-        let scheme = self.built.scheme.as_mut();
+        let scheme = self.executor.scheme.as_mut();
         let mut state = scheme.initial_state();
         scheme.constrain(0.0, &mut state);
         let mut found = Vec::new();
@@ -119,7 +119,7 @@ impl Simulation {
         let start = Instant::now();
         scheme.rates(0.0, &state, &mut rate);
         let evaluation = start.elapsed().as_secs_f64().max(1e-9);
-        let integrator = self.integrator.as_ref();
+        let integrator = self.executor.integrator.as_ref();
         // An end that is a multiple of the step up to round-off takes no step more.
         let steps = (*self.case.time.end / step - 1e-9).ceil().max(0.0) as u64;
         let count = scheme.particle_count();

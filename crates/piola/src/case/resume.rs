@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::document::{self, Node, Table, Value};
 use super::model::Case;
-use super::simulation::RunError;
+use super::session::RunError;
 use crate::observe::{Tables, WrittenFiles};
 use crate::output::ResultsFolder;
 use crate::output::checkpoint::{self, CheckpointError, Identity};

@@ -3,8 +3,8 @@
 use std::io;
 use std::path::Path;
 
+use super::finished::Finished;
 use super::model::Case;
-use super::simulation::Finished;
 use crate::observe::Series;
 use crate::output::{self, Column, OutputError, Plot, Style, atomic};
 

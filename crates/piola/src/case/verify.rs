@@ -6,8 +6,8 @@
 use std::fmt;
 use std::rc::Rc;
 
+use super::finished::Finished;
 use super::model::{Against, Case, Check, Expectation, Level};
-use super::simulation::Finished;
 use crate::observe::Series;
 use crate::time::Outcome;
 pub use format::significant;

@@ -146,6 +146,12 @@ pub trait Scheme: Send {
         true
     }
 
+    /// The columns of its state that may be set from outside: those that nothing else in the state has to
+    /// follow but accelerations.
+    fn settable(&self) -> &'static [&'static str] {
+        &["velocity"]
+    }
+
     /// The largest angular frequency of small oscillations about `state` in rad/s that nothing
     /// damps; `None` where all of them are damped, or it is not known.
     fn undamped_frequency(&mut self, _state: &[f64]) -> Option<f64> {

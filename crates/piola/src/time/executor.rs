@@ -1,4 +1,4 @@
-//! The loop over steps.
+//! A run, a step at a time.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,7 +9,8 @@ use super::history::{History, Mark};
 use super::integrator::Integrator;
 use super::judgement::supersonic;
 use super::observer::{Moment, ObserveError, Observer};
-use super::step::{ChosenStep, StepControl};
+use super::run::Run;
+use super::step::StepControl;
 use super::summary::{Outcome, Progress, Retry, Summary};
 use crate::schemes::{Observation, Scheme, StepLimit};
 
@@ -33,29 +34,21 @@ pub struct Executor {
     /// How often a run that goes wrong may go back and try with half the step. A fixed step is
     /// never changed.
     pub retries: usize,
-    /// Who looks.
-    pub observers: Vec<Box<dyn Observer>>,
-    /// When and where checkpoints are taken.
-    pub checkpoints: Option<Checkpoints>,
-    resume: Option<Checkpoint>,
-}
-
-/// A run between two steps.
-struct Run {
-    clock: Clock,
-    tally: Tally,
-    state: Vec<f64>,
-    /// When each observer is due next.
-    due: Vec<Option<f64>>,
-    history: History,
-    resumed: Option<(f64, u64)>,
-}
-
-/// What a look at a state leads to.
-enum Verdict {
-    Sound,
-    Back,
-    End(Outcome),
+    observers: Vec<Box<dyn Observer>>,
+    checkpoints: Option<Checkpoints>,
+    run: Run,
+    /// Evaluations of the rates times particles a step.
+    evaluations: u64,
+    /// Where the next state is made.
+    next: Vec<f64>,
+    /// The state before the last step, which a run that fails ends with.
+    previous: (Clock, Vec<f64>),
+    limits: Vec<StepLimit>,
+    /// Whether the state has been judged, shown and saved where that was due.
+    is_seen: bool,
+    outcome: Option<Outcome>,
+    /// Whether the outcome is a failure that the last step led to.
+    is_broken: bool,
 }
 
 impl Executor {
@@ -75,16 +68,18 @@ impl Executor {
     /// What limits a step that the error of longer ones would be too large for.
     pub const ACCURACY: &str = "accuracy";
 
-    /// A run without observers and checkpoints, with as many steps as it takes and no retries.
+    /// A run at its start, without observers and checkpoints, with as many steps as it takes and no
+    /// retries.
     pub fn new(
-        scheme: Box<dyn Scheme>,
+        mut scheme: Box<dyn Scheme>,
         integrator: Box<dyn Integrator>,
         control: StepControl,
         end: f64,
     ) -> Self {
+        let mut state = scheme.initial_state();
+        scheme.constrain(0.0, &mut state);
+        let evaluations = integrator.evaluations(scheme.as_mut()) * scheme.particle_count() as u64;
         Self {
-            scheme,
-            integrator,
             control,
             end,
             max_steps: u64::MAX,
@@ -93,31 +88,142 @@ impl Executor {
             retries: 0,
             observers: Vec::new(),
             checkpoints: None,
-            resume: None,
+            evaluations,
+            next: state.clone(),
+            previous: (Clock::START, state.clone()),
+            limits: Vec::with_capacity(8),
+            is_seen: false,
+            outcome: None,
+            is_broken: false,
+            run: Run::at(Clock::START, Tally::START, state, Vec::new()),
+            scheme,
+            integrator,
         }
     }
 
-    /// The formulation that it moves.
-    pub fn scheme(&self) -> &dyn Scheme {
-        self.scheme.as_ref()
+    /// Simulated time in s.
+    pub fn time(&self) -> f64 {
+        self.run.clock.time
     }
 
-    /// Lets the run go on from `checkpoint` instead of the start. Scheme, integrator, settings and
-    /// observers have to be those of the run that it was taken from.
+    /// The state as it is between two steps.
+    pub fn state(&self) -> &[f64] {
+        &self.run.state
+    }
+
+    /// Where the run stands.
+    pub fn progress(&self) -> Progress {
+        let Run { clock, tally, .. } = &self.run;
+        Progress {
+            time: clock.time,
+            end: self.end,
+            step: clock.step,
+            step_size: clock.chosen.step,
+            limiter: clock.chosen.limiter,
+            evaluations: self.evaluations * clock.step,
+            retries: tally.retries.len(),
+        }
+    }
+
+    /// Lets `observer` look from now on, at the moment as it is if that is the start.
+    pub fn observe(&mut self, observer: Box<dyn Observer>) {
+        let (schedule, time) = (observer.schedule(), self.run.clock.time);
+        let is_now = self.run.clock.step == 0 && schedule.includes_start();
+        let due = if is_now { Some(0.0) } else { schedule.next_after(time) };
+        self.observers.push(observer);
+        self.run.due.push(due);
+        self.run.history.add_output(due);
+        self.is_seen = false;
+    }
+
+    /// Its observers, who are shown nothing any more.
+    pub fn take_observers(&mut self) -> Vec<Box<dyn Observer>> {
+        self.run.due.clear();
+        self.run.history.remove_outputs();
+        std::mem::take(&mut self.observers)
+    }
+
+    /// Takes checkpoints when they are due from now on.
+    pub fn keep(&mut self, mut checkpoints: Checkpoints) {
+        checkpoints.start(&self.run.clock);
+        self.checkpoints = Some(checkpoints);
+    }
+
+    /// All that the steps to come depend on.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let Run { clock, tally, state, due, history, .. } = &self.run;
+        Checkpoint {
+            clock: *clock,
+            tally: tally.clone(),
+            state: state.clone(),
+            due: due.clone(),
+            observers: self.observers.iter().map(|observer| observer.save()).collect(),
+            history: (self.retries > 0).then(|| history.clone()),
+        }
+    }
+
+    /// Goes on from `checkpoint`. Scheme, integrator, settings and observers have to be those of the
+    /// run that it was taken from.
     ///
     /// # Errors
     /// It cannot be a checkpoint of this run.
     pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), Misfit> {
-        let length = self.scheme.initial_state().len();
-        checkpoint.check(length, self.observers.len(), self.end)?;
+        checkpoint.check(self.run.state.len(), self.observers.len(), self.end)?;
         for (observer, saved) in self.observers.iter_mut().zip(&checkpoint.observers) {
             observer.restore(saved)?;
         }
-        self.resume = Some(checkpoint);
+        let Checkpoint { clock, tally, state, due, history, .. } = checkpoint;
+        self.run = Run::at(clock, tally, state, due);
+        self.run.resumed = Some((clock.time, clock.step));
+        if let Some(history) = history {
+            self.run.history = history;
+        }
+        self.previous.0 = clock;
+        if let Some(checkpoints) = &mut self.checkpoints {
+            checkpoints.start(&clock);
+        }
+        (self.is_seen, self.outcome, self.is_broken) = (false, None, false);
         Ok(())
     }
 
-    /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` each step.
+    /// Changes the state between two steps; what is prescribed stays as it is, and accelerations that
+    /// the state holds follow. The run cannot go back to before it, and what it does to energy and
+    /// momentum is in no ledger.
+    pub fn change(&mut self, change: impl FnOnce(&mut [f64])) {
+        let Run { clock, tally, state, due, history, .. } = &mut self.run;
+        change(state);
+        self.scheme.constrain(clock.time, state);
+        if let Some(scheme) = self.scheme.split() {
+            scheme.accelerate(clock.time, state);
+        }
+        *history = History::new(Mark::of(clock, tally, due, state));
+        self.is_seen = false;
+    }
+
+    /// The formulation at the moment.
+    pub fn now(&mut self) -> Observation<'_> {
+        let Run { clock, state, .. } = &self.run;
+        Observation::new(self.scheme.as_mut(), clock.time, state)
+    }
+
+    /// Takes a step, and lets the observers look for whom the moment after it is due. Before the first
+    /// step they are shown the start. Whether the run goes on: it does not where it has come to its end
+    /// or has failed, and is where it was then.
+    ///
+    /// A run that may retry may find itself at an earlier moment after a step.
+    ///
+    /// # Errors
+    /// A fault of an observer. What was observed before stays.
+    pub fn step(&mut self) -> Result<bool, ObserveError> {
+        self.look()?;
+        while self.outcome.is_none() && !self.advance() {
+            self.look()?;
+        }
+        self.look()?;
+        Ok(self.outcome.is_none())
+    }
+
+    /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` after each step.
     ///
     /// # Errors
     /// A fault of an observer. What was observed before stays.
@@ -126,150 +232,98 @@ impl Executor {
         stop: &AtomicBool,
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Summary, ObserveError> {
-        let mut run = self.start();
-        if let Some(checkpoints) = &mut self.checkpoints {
-            checkpoints.start(&run.clock);
+        while !stop.load(Ordering::Relaxed) && self.outcome.is_none() {
+            let before = self.run.clock.step;
+            self.step()?;
+            if self.run.clock.step != before {
+                progress(&self.progress());
+            }
         }
-        let mut next = run.state.clone();
-        // The state before the last step: where a run goes back to when a step fails for good.
-        let mut previous = (run.clock, run.state.clone());
-        let mut limits: Vec<StepLimit> = Vec::with_capacity(8);
-        let evaluations =
-            self.integrator.evaluations(self.scheme.as_mut()) * self.scheme.particle_count() as u64;
-        let mut failed_in_step = false;
+        self.finish()
+    }
 
-        let outcome = loop {
-            match self.judge(&mut run, &mut limits)? {
-                Verdict::Sound => {}
-                Verdict::Back => continue,
-                Verdict::End(outcome) => {
-                    failed_in_step = matches!(outcome, Outcome::Failed(_));
-                    break outcome;
-                }
-            }
-            self.show(&mut run, false)?;
-            run.history.mark(&run.clock, &run.tally, &run.due, &run.state);
-            self.save_if_due(&mut run);
-            if stop.load(Ordering::Relaxed) {
-                break Outcome::Interrupted;
-            }
-            let chosen = match self.choose(&limits, &run.clock, &run.tally) {
-                Ok(chosen) => chosen,
-                Err(failure) => break Outcome::Failed(failure),
-            };
-            if run.clock.step == 0 {
-                run.tally.first_step = chosen.step;
-            }
-            let soonest = run.due.iter().flatten().copied().fold(self.end, f64::min);
-            let met = self.control.meet(chosen, run.clock.time, soonest);
-            let (scheme, integrator) = (self.scheme.as_mut(), self.integrator.as_mut());
-            let taken =
-                run.tally.watches.step.time(|| {
-                    integrator.step(scheme, run.clock.time, met.step, &run.state, &mut next)
-                });
-            let growth = self.integrator.growth();
-            if let (Err(Failure::Inaccurate { .. }), Some(growth), true) =
-                (&taken, growth, self.control.adapts())
-            {
-                run.tally.factor *= growth * met.step / chosen.step;
-                continue;
-            }
-            if let Err(failure) = taken {
-                if run.tally.retries.len() < self.retries && self.control.adapts() {
-                    run.shorten(&failure);
-                    continue;
-                }
-                break Outcome::Failed(failure);
-            }
-            previous.0 = run.clock;
-            std::mem::swap(&mut previous.1, &mut run.state);
-            std::mem::swap(&mut run.state, &mut next);
-            run.tally.wanted = chosen.step / run.tally.factor;
-            run.advance(self.control, met, soonest);
-            run.lengthen(self.integrator.as_ref(), self.scheme.as_ref(), chosen, met);
-            progress(&Progress {
-                time: run.clock.time,
-                end: self.end,
-                step: run.clock.step,
-                step_size: met.step,
-                limiter: met.limiter,
-                evaluations: evaluations * run.clock.step,
-                retries: run.tally.retries.len(),
-            });
-        };
+    /// Ends the run where it is, and shows this moment to all observers as the last.
+    ///
+    /// # Errors
+    /// A fault of an observer. What was observed before stays.
+    pub fn finish(&mut self) -> Result<Summary, ObserveError> {
+        self.look()?;
+        let outcome = self.outcome.get_or_insert(Outcome::Interrupted).clone();
         let trace = match &outcome {
-            Outcome::Failed(failure) => self.trace(&run.history, failure),
+            Outcome::Failed(failure) => failure.particle().map(|index| {
+                let (scheme, integrator) = (self.scheme.as_mut(), self.integrator.as_mut());
+                self.run.history.trace(scheme, integrator, index)
+            }),
             _ => None,
         };
-        if failed_in_step && run.clock.step > previous.0.step {
-            (run.clock, run.state) = previous;
+        if self.is_broken && self.run.clock.step > self.previous.0.step {
+            self.run.clock = self.previous.0;
+            self.run.state.copy_from_slice(&self.previous.1);
         }
-        self.save_at_end(&mut run, &outcome);
-        self.show(&mut run, true)?;
+        self.save_at_end(&outcome);
+        self.show(true)?;
+        let Run { clock, tally, resumed, .. } = &self.run;
         Ok(Summary {
             outcome,
-            time: run.clock.time,
-            steps: run.clock.step,
-            first_step: run.tally.first_step,
-            step_range: run.tally.step_range,
-            worst: run.tally.worst,
-            evaluations: evaluations * run.clock.step,
-            timings: run.tally.watches.timings(),
-            retries: run.tally.retries,
+            time: clock.time,
+            steps: clock.step,
+            first_step: tally.first_step,
+            step_range: tally.step_range,
+            worst: tally.worst,
+            evaluations: self.evaluations * clock.step,
+            timings: tally.watches.timings(),
+            retries: tally.retries.clone(),
             trace,
-            resumed: run.resumed,
-            warnings: run.tally.warnings,
+            resumed: *resumed,
+            warnings: tally.warnings.clone(),
         })
     }
 
-    /// The run at its first instant, or at that of the checkpoint to resume from.
-    fn start(&mut self) -> Run {
-        if let Some(checkpoint) = self.resume.take() {
-            let Checkpoint { clock, tally, state, due, history, .. } = checkpoint;
-            let mark =
-                || Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
-            let history = history.unwrap_or_else(|| History::new(mark()));
-            let resumed = Some((clock.time, clock.step));
-            return Run { clock, tally, state, due, history, resumed };
+    /// Judges the state, shows it and saves it where that is due, once a state. Where it is broken the
+    /// run goes back as long as it may.
+    fn look(&mut self) -> Result<(), ObserveError> {
+        while !self.is_seen && self.outcome.is_none() {
+            match self.judge() {
+                None if self.run.clock.time >= self.end * (1.0 - 1e-12) => {
+                    self.outcome = Some(Outcome::Completed);
+                }
+                None => {
+                    self.show(false)?;
+                    let Run { clock, tally, state, due, history, .. } = &mut self.run;
+                    history.mark(clock, tally, due, state);
+                    if self.checkpoints.as_ref().is_some_and(|it| it.due(&self.run.clock)) {
+                        self.save();
+                    }
+                    self.is_seen = true;
+                }
+                Some(failure) if self.run.clock.step > 0 && self.may_retry() => {
+                    self.go_back(&failure)?;
+                }
+                Some(failure) => {
+                    self.outcome = Some(Outcome::Failed(failure));
+                    self.is_broken = true;
+                }
+            }
         }
-        let mut state = self.scheme.initial_state();
-        self.scheme.constrain(0.0, &mut state);
-        let due: Vec<Option<f64>> = self
-            .observers
-            .iter()
-            .map(|observer| match observer.schedule() {
-                schedule if schedule.includes_start() => Some(0.0),
-                schedule => schedule.next_after(0.0),
-            })
-            .collect();
-        let (clock, tally) = (Clock::START, Tally::START);
-        let mark = Mark { clock, tally: tally.clone(), due: due.clone(), state: state.clone() };
-        let history = History::new(mark);
-        Run { clock, tally, state, due, history, resumed: None }
+        Ok(())
     }
 
-    /// Looks at the state: it is sound, or the run ends, or it goes back.
-    fn judge(
-        &mut self,
-        run: &mut Run,
-        limits: &mut Vec<StepLimit>,
-    ) -> Result<Verdict, ObserveError> {
-        let Run { clock, tally, state, .. } = run;
-        let scheme = self.scheme.as_mut();
+    /// Looks for what is wrong with the state, and how far the next step may go.
+    fn judge(&mut self) -> Option<Failure> {
+        let Run { clock, tally, state, .. } = &mut self.run;
+        let (scheme, limits) = (self.scheme.as_mut(), &mut self.limits);
         let health = tally.watches.inspect.time(|| scheme.inspect(state, limits));
         if clock.step == 0 {
             tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
-            tally.warnings.extend(supersonic(tally.start_speeds));
+            let warning = supersonic(tally.start_speeds);
+            tally.warnings.extend(warning.filter(|warning| !tally.warnings.contains(warning)));
         }
-        if let Some(failure) = self.broken(&health, state, clock, tally.start_speeds) {
-            let may_retry =
-                run.tally.retries.len() < self.retries && clock.step > 0 && self.control.adapts();
-            if !may_retry {
-                return Ok(Verdict::End(Outcome::Failed(failure)));
-            }
-            self.go_back(run, &failure)?;
-            return Ok(Verdict::Back);
+        let speeds = tally.start_speeds;
+        let broken = self.broken(&health, &self.run.state, &self.run.clock, speeds);
+        if broken.is_some() {
+            return broken;
         }
+        let Run { clock, tally, .. } = &mut self.run;
         if let (false, Some(warning)) = (tally.warned, self.scheme.warning()) {
             let Clock { step, time, .. } = *clock;
             tally.warnings.push(format!("{warning}; seen first at t = {time:e} s, step {step}"));
@@ -277,13 +331,58 @@ impl Executor {
         }
         clock.health = health;
         tally.worst = tally.worst.worse(health);
-        let ended = clock.time >= self.end * (1.0 - 1e-12);
-        Ok(if ended { Verdict::End(Outcome::Completed) } else { Verdict::Sound })
+        None
+    }
+
+    fn may_retry(&self) -> bool {
+        self.run.tally.retries.len() < self.retries && self.control.adapts()
+    }
+
+    /// Goes on by one step. Where there is none the run ends, or is to try a shorter one.
+    fn advance(&mut self) -> bool {
+        let chosen = match self.choose(&self.limits, &self.run.clock, &self.run.tally) {
+            Ok(chosen) => chosen,
+            Err(failure) => {
+                self.outcome = Some(Outcome::Failed(failure));
+                return false;
+            }
+        };
+        let may_retry = self.may_retry();
+        let Self { run, scheme, integrator, next, .. } = self;
+        if run.clock.step == 0 {
+            run.tally.first_step = chosen.step;
+        }
+        let soonest = run.due.iter().flatten().copied().fold(self.end, f64::min);
+        let met = self.control.meet(chosen, run.clock.time, soonest);
+        let taken =
+            run.tally.watches.step.time(|| {
+                integrator.step(scheme.as_mut(), run.clock.time, met.step, &run.state, next)
+            });
+        let growth = integrator.growth();
+        if let Err(failure) = taken {
+            self.is_seen = false;
+            match (&failure, growth) {
+                (Failure::Inaccurate { .. }, Some(growth)) if self.control.adapts() => {
+                    run.tally.factor *= growth * met.step / chosen.step;
+                }
+                _ if may_retry => run.shorten(&failure),
+                _ => self.outcome = Some(Outcome::Failed(failure)),
+            }
+            return false;
+        }
+        self.previous.0 = run.clock;
+        std::mem::swap(&mut self.previous.1, &mut run.state);
+        std::mem::swap(&mut run.state, next);
+        run.tally.wanted = chosen.step / run.tally.factor;
+        run.advance(self.control, met, soonest);
+        run.lengthen(integrator.as_ref(), scheme.as_ref(), chosen, met);
+        self.is_seen = false;
+        true
     }
 
     /// Goes back to the older mark, with half the step from there on.
-    fn go_back(&mut self, run: &mut Run, failure: &Failure) -> Result<(), ObserveError> {
-        let Run { clock, tally, state, due, history, .. } = run;
+    fn go_back(&mut self, failure: &Failure) -> Result<(), ObserveError> {
+        let Run { clock, tally, state, due, history, .. } = &mut self.run;
         let (step, time) = (clock.step, clock.time);
         let mark = history.go_back();
         // What the failed attempt took of wall time, that it was made, and its warnings are not forgotten.
@@ -303,15 +402,9 @@ impl Executor {
         Ok(())
     }
 
-    /// What happened around the particle of `failure`.
-    fn trace(&mut self, history: &History, failure: &Failure) -> Option<super::Trace> {
-        let index = failure.particle()?;
-        Some(history.trace(self.scheme.as_mut(), self.integrator.as_mut(), index))
-    }
-
     /// Shows the moment to the observers for whom it is due, or to all if it is the last.
-    fn show(&mut self, run: &mut Run, last: bool) -> Result<(), ObserveError> {
-        let Run { clock, tally, state, due, .. } = run;
+    fn show(&mut self, last: bool) -> Result<(), ObserveError> {
+        let Run { clock, tally, state, due, .. } = &mut self.run;
         let (scheme, observers) = (self.scheme.as_mut(), &mut self.observers);
         tally.watches.observe.time(|| {
             let mut now = Observation::new(scheme, clock.time, state);
@@ -334,18 +427,12 @@ impl Executor {
         })
     }
 
-    fn save_if_due(&mut self, run: &mut Run) {
-        if self.checkpoints.as_ref().is_some_and(|checkpoints| checkpoints.due(&run.clock)) {
-            self.save(run);
-        }
-    }
-
     /// Takes a checkpoint of a run that was interrupted, or that is to be gone on with later. It
     /// is taken before the observers are shown the last moment, which another end would not have.
-    fn save_at_end(&mut self, run: &mut Run, outcome: &Outcome) {
+    fn save_at_end(&mut self, outcome: &Outcome) {
         let wanted = |completed| {
             let checkpoints = self.checkpoints.as_ref();
-            checkpoints.is_some_and(|checkpoints| checkpoints.wanted_at(completed, &run.clock))
+            checkpoints.is_some_and(|it| it.wanted_at(completed, &self.run.clock))
         };
         let take = match outcome {
             Outcome::Completed => wanted(true),
@@ -353,72 +440,15 @@ impl Executor {
             Outcome::Failed(_) => false,
         };
         if take {
-            self.save(run);
+            self.save();
         }
     }
 
-    fn save(&mut self, run: &mut Run) {
-        let checkpoint = Checkpoint {
-            clock: run.clock,
-            tally: run.tally.clone(),
-            state: run.state.clone(),
-            due: run.due.clone(),
-            observers: self.observers.iter().map(|observer| observer.save()).collect(),
-            history: (self.retries > 0).then(|| run.history.clone()),
-        };
+    fn save(&mut self) {
+        let checkpoint = self.checkpoint();
         let Some(checkpoints) = &mut self.checkpoints else { return };
-        let kept = run.tally.watches.checkpoint.time(|| checkpoints.keep(&checkpoint));
-        run.tally.warnings.extend(kept.err());
-    }
-}
-
-impl Run {
-    /// Halves the steps from here on, after one that did not end anywhere.
-    fn shorten(&mut self, failure: &Failure) {
-        let Clock { step, time, .. } = self.clock;
-        self.tally.factor *= Executor::RETRY_FACTOR;
-        let factor = self.tally.factor;
-        let kind = failure.kind().to_owned();
-        let failure = failure.to_string();
-        self.tally.retries.push(Retry { kind, failure, step, time, back_to: time, factor });
-    }
-
-    /// Lets the next step be longer, or shorter, by what is known of the step `met`, which is
-    /// `chosen` or was shortened to meet a due time.
-    fn lengthen(
-        &mut self,
-        integrator: &dyn Integrator,
-        scheme: &dyn Scheme,
-        chosen: ChosenStep,
-        met: ChosenStep,
-    ) {
-        let factor = self.tally.factor;
-        let next = match integrator.growth() {
-            Some(growth) => {
-                let wanted = factor * growth * met.step / chosen.step;
-                // What is good enough for a short step says little of one that was to be longer.
-                if met.step < chosen.step && growth > 1.0 { wanted.max(factor) } else { wanted }
-            }
-            None if factor < 1.0 && integrator.was_quick(scheme, &self.state) => {
-                factor * Executor::GROWTH_FACTOR
-            }
-            None => factor,
-        };
-        self.tally.factor = next.min(1.0);
-    }
-
-    /// Moves the clock on by the step `met`, which ends at `soonest` if it was shortened to.
-    fn advance(&mut self, control: StepControl, met: ChosenStep, soonest: f64) {
-        let Self { clock, tally, history, .. } = self;
-        history.step(clock.time, met.step);
-        clock.step += 1;
-        clock.time = match control {
-            StepControl::Fixed(step) => clock.step as f64 * step,
-            _ if met.step == soonest - clock.time => soonest,
-            _ => clock.time + met.step,
-        };
-        clock.chosen = met;
-        let [smallest, largest] = tally.step_range;
-        tally.step_range = [smallest.min(met.step), largest.max(met.step)];
+        let tally = &mut self.run.tally;
+        let kept = tally.watches.checkpoint.time(|| checkpoints.keep(&checkpoint));
+        tally.warnings.extend(kept.err());
     }
 }

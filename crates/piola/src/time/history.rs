@@ -28,6 +28,12 @@ pub(super) struct History {
 }
 
 impl Mark {
+    /// The instant of a run.
+    pub fn of(clock: &Clock, tally: &Tally, due: &[Option<f64>], state: &[f64]) -> Self {
+        let (clock, tally) = (*clock, tally.clone());
+        Self { clock, tally, due: due.to_vec(), state: state.to_vec() }
+    }
+
     fn set(&mut self, clock: &Clock, tally: &Tally, due: &[Option<f64>], state: &[f64]) {
         self.clock = *clock;
         self.tally.clone_from(tally);
@@ -69,6 +75,16 @@ impl History {
         let Mark { clock, tally, due, state } = &self.older;
         self.newer.set(clock, tally, due, state);
         &self.older
+    }
+
+    /// Takes note of another output, which is due at this time.
+    pub fn add_output(&mut self, due: Option<f64>) {
+        [&mut self.older, &mut self.newer].into_iter().for_each(|mark| mark.due.push(due));
+    }
+
+    /// Forgets all outputs.
+    pub fn remove_outputs(&mut self) {
+        [&mut self.older, &mut self.newer].into_iter().for_each(|mark| mark.due.clear());
     }
 
     /// Lengths of all states in it.

@@ -1,4 +1,4 @@
-//! The clock: integrators, step control, and the executor that owns a run.
+//! The clock: integrators, step control, and the executor that takes the steps of a run.
 
 mod checkpoint;
 mod clock;
@@ -11,6 +11,7 @@ mod judgement;
 mod kick_drift_kick;
 mod load_steps;
 mod observer;
+mod run;
 pub mod runge_kutta;
 mod schedule;
 mod step;

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use piola::case::{self, LoadOptions};
+use piola::case::{self, LoadOptions, Session};
 
 use crate::data;
 
@@ -60,8 +60,8 @@ const SIDE: &str = "[[boundary]]\nname = \"side\"\ndisplacement = { z = \"0\" }\
 /// The last number of a column.
 fn run(text: &str) -> impl Fn(&str) -> f64 + use<> {
     let case = case::parse(text, "case.toml", &LoadOptions::default()).unwrap();
-    let simulation = case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
-    let finished = simulation.run(None, &AtomicBool::new(false), &mut |_| {}).unwrap();
+    let session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let finished = session.run(&AtomicBool::new(false), &mut |_| {}).unwrap();
     move |name: &str| *finished.tables.probes.values(name).unwrap().last().unwrap()
 }
 
@@ -108,8 +108,8 @@ fn faces_of_cells_react_and_work() {
     let mut text = text;
     text.replace_range(bounds, moved);
     let case = case::parse(&text, "case.toml", &LoadOptions::default()).unwrap();
-    let simulation = case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
-    let finished = simulation.run(None, &AtomicBool::new(false), &mut |_| {}).unwrap();
+    let session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let finished = session.run(&AtomicBool::new(false), &mut |_| {}).unwrap();
     let last = |name: &str| *finished.tables.energy.values(name).unwrap().last().unwrap();
     assert!((last("boundary_motion") / 1e-4 - 1.0).abs() < 1e-8, "{}", last("boundary_motion"));
     assert!(last("balance").abs() < 1e-12, "{}", last("balance"));
@@ -121,7 +121,7 @@ fn sets_that_are_not_there_are_named() {
     let wrong = |from: &str, to: &str| {
         let text = text.replacen(from, to, 1);
         let problems = match case::parse(&text, "case.toml", &LoadOptions::default()) {
-            Ok(case) => case::build(&case).err().unwrap(),
+            Ok(case) => Session::new(&case).err().unwrap(),
             Err(problems) => problems,
         };
         format!("{problems}")

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use piola::case::{LoadOptions, build, parse};
+use piola::case::{LoadOptions, Session, parse};
 
 use super::pages::{below, page, root};
 
@@ -61,6 +61,6 @@ fn the_case_in_the_readme_is_a_good_one() {
     let text = case.expect("the README shows a case file");
     let case = parse(text, "README.md", &LoadOptions::default());
     let case = case.unwrap_or_else(|problems| panic!("{problems}"));
-    let built = build(&case).unwrap_or_else(|problems| panic!("{problems}"));
-    assert!(!built.case().probes.is_empty());
+    let session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(!session.case().probes.is_empty());
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use piola::case::page::{Reproduction, Results, Row};
 use piola::case::verify::{CheckRow, Ending, RunResults, VariantRun, verify};
-use piola::case::{Case, Level, LoadOptions, build, load};
+use piola::case::{Case, Level, LoadOptions, Session, load};
 use piola::observe::Series;
 use piola::time::Outcome;
 use rand::SeedableRng;
@@ -152,8 +152,8 @@ fn a_sample_of_the_results_comes_out_again() {
                 return Err("no run of this row".to_owned());
             }
             let case = read(&path, name, row.read_at);
-            let simulation = build(&case).map_err(|problems| problems.to_string())?;
-            let run = simulation.run(None, &Default::default(), &mut |_| {});
+            let session = Session::new(&case).map_err(|problems| problems.to_string())?;
+            let run = session.run(&Default::default(), &mut |_| {});
             Ok(VariantRun { case, run: run.map_err(|error| error.to_string())? })
         });
         let again = again.iter().find(|again| is_of(row, again)).expect("the check is there");

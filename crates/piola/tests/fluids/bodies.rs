@@ -1,6 +1,6 @@
 //! Runs of solids as a whole: what they conserve, what they do not depend on, what they come to.
 
-use piola::case::{self, Case, LoadOptions};
+use piola::case::{self, Case, LoadOptions, Session};
 use piola::time::{IntegratorKind, Outcome};
 
 use super::escapes::{run, values};
@@ -128,17 +128,17 @@ fn bits(state: &[f64]) -> Vec<u64> {
 /// The state after so many steps, with a scheme made anew after each `every` of them.
 fn advanced(set: &[&str], steps: usize, every: usize) -> Vec<u64> {
     let step = 1.5e-4;
-    let fresh = || case::build(&read(DISCS, set)).unwrap_or_else(|problems| panic!("{problems}"));
-    let mut simulation = fresh();
-    let mut state = simulation.scheme().initial_state();
+    let fresh = || Session::new(&read(DISCS, set)).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut session = fresh();
+    let mut state = session.scheme().initial_state();
     let mut new = state.clone();
     let mut integrator =
-        IntegratorKind::KickDriftKick.build(simulation.scheme()).expect("it moves the scheme");
+        IntegratorKind::KickDriftKick.build(session.scheme()).expect("it moves the scheme");
     for count in 0..steps {
         if count > 0 && count % every == 0 {
-            simulation = fresh();
+            session = fresh();
         }
-        let scheme = simulation.scheme();
+        let scheme = session.scheme();
         integrator
             .step(scheme, count as f64 * step, step, &state, &mut new)
             .expect("it is explicit");

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use piola::case::{self, Case, Finished, LoadOptions};
+use piola::case::{self, Case, Finished, LoadOptions, Session};
 use piola::observe::Series;
 use piola::time::{Failure, Outcome};
 
@@ -54,8 +54,8 @@ fn read(text: &str, set: &[&str]) -> Case {
 }
 
 pub fn run(text: &str, set: &[&str]) -> Finished {
-    let simulation = case::build(&read(text, set)).unwrap_or_else(|problems| panic!("{problems}"));
-    simulation.run(None, &AtomicBool::new(false), &mut |_| {}).expect("no files are written")
+    let session = Session::new(&read(text, set)).unwrap_or_else(|problems| panic!("{problems}"));
+    session.run(&AtomicBool::new(false), &mut |_| {}).expect("no files are written")
 }
 
 fn failure(finished: &Finished) -> &Failure {
@@ -167,8 +167,8 @@ fn passes_of_the_iterated_shifting_are_counted() {
 #[test]
 fn walls_that_will_not_hold_are_warned_of() {
     let warnings = |set: &[&str]| {
-        let mut simulation = case::build(&read(BULLET, set)).expect("the case can be built");
-        simulation.plan().warnings
+        let mut session = Session::new(&read(BULLET, set)).expect("the case can be built");
+        session.plan().warnings
     };
     let has = |warnings: &[String], part: &str| warnings.iter().any(|text| text.contains(part));
     let sound = warnings(&["parameters.speed=0.2"]);

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use piola::case::{self, Case, Finished, LoadOptions};
+use piola::case::{self, Case, Finished, LoadOptions, Session};
 use piola::observe::Series;
 use piola::time::{Failure, Outcome, Progress};
 
@@ -21,8 +21,9 @@ fn load_of(scheme: &str, name: &str, set: &[&str]) -> Case {
 }
 
 fn run(case: &Case, folder: Option<&Path>) -> Finished {
-    let simulation = case::build(case).unwrap_or_else(|problems| panic!("{problems}"));
-    simulation.run(folder, &AtomicBool::new(false), &mut |_| {}).unwrap()
+    let mut session = Session::new(case).unwrap_or_else(|problems| panic!("{problems}"));
+    folder.into_iter().for_each(|folder| session.write_to(folder).unwrap());
+    session.run(&AtomicBool::new(false), &mut |_| {}).unwrap()
 }
 
 fn failure(finished: &Finished) -> &Failure {
@@ -115,7 +116,7 @@ fn the_trace_is_what_happened() {
 #[test]
 fn a_kernel_that_is_too_narrow() {
     let case = load("column-impact", &["scheme.smoothing_length=0.3"]);
-    let problems = case::build(&case).err().unwrap().to_string();
+    let problems = Session::new(&case).err().unwrap().to_string();
     for part in ["has 0 neighbours", "enlarge the smoothing length", "with this smoothing length"] {
         assert!(problems.contains(part), "{problems}");
     }
@@ -126,7 +127,7 @@ fn a_kernel_that_is_too_narrow() {
 fn a_self_contact_within_the_support() {
     let case =
         load_of("ctvf", "rings", &["scheme.self_contact=2.9", "scheme.smoothing_length=1.0"]);
-    let problems = case::build(&case).err().unwrap().to_string();
+    let problems = Session::new(&case).err().unwrap().to_string();
     for part in
         ["began 2.900e-3 m apart", "reaches 3.000e-3 m", "self_contact=2.9", "make it larger"]
     {
@@ -149,7 +150,7 @@ fn the_linear_law_under_collapse() {
 #[test]
 fn a_parameter_that_is_wrong_by_a_thousand() {
     let case = load("piston", &["parameters.E=1e2"]);
-    let plan = case::build(&case).unwrap().plan();
+    let plan = Session::new(&case).unwrap().plan();
     let is_told = |texts: &[String]| texts.iter().any(|text| text.contains("check the stiffness"));
     assert!(is_told(&plan.warnings), "{:?}", plan.warnings);
     let finished = run(&case, None);
@@ -157,7 +158,7 @@ fn a_parameter_that_is_wrong_by_a_thousand() {
     let text = failure(&finished).to_string();
     assert!(text.contains("is above the wave speed of the material, 2.673e-1 m/s"), "{text}");
     // At the right stiffness nothing of this is said.
-    assert!(!is_told(&case::build(&load("piston", &[])).unwrap().plan().warnings));
+    assert!(!is_told(&Session::new(&load("piston", &[])).unwrap().plan().warnings));
 }
 
 /// Upwinding bounds the column's ratios while it is torn apart: what shows is the speed.
@@ -273,11 +274,15 @@ fn a_retried_run_resumes_to_the_bit() {
     let mut until = |progress: &Progress| {
         stop.store(progress.step + 2 >= retry.step, Ordering::Relaxed);
     };
-    let first = case::build(&case).unwrap().run(Some(&out), &stop, &mut until).unwrap();
+    let mut session = Session::new(&case).unwrap();
+    session.write_to(&out).unwrap();
+    let first = session.run(&stop, &mut until).unwrap();
     assert_eq!(first.summary.outcome, Outcome::Interrupted);
     assert!(first.summary.retries.is_empty() && first.summary.time > retry.back_to);
     stop.store(false, Ordering::Relaxed);
-    let last = case::build(&case).unwrap().resume(&out, &stop, &mut |_| {}).unwrap();
+    let mut session = Session::new(&case).unwrap();
+    session.resume_from(&out).unwrap();
+    let last = session.run(&stop, &mut |_| {}).unwrap();
     assert_eq!(last.tables, whole.tables);
     assert_eq!(last.summary.retries, whole.summary.retries);
 }
@@ -334,7 +339,7 @@ fn a_material_that_loses_its_convexity_is_named_once() {
 /// run, and nothing is of the case as it stands.
 #[test]
 fn steps_and_probes_that_are_far_off_are_told() {
-    let told = |set: &[&str]| case::build(&load("piston", set)).unwrap().plan().warnings;
+    let told = |set: &[&str]| Session::new(&load("piston", set)).unwrap().plan().warnings;
     let step = told(&["time.cfl=5"]);
     assert!(step.iter().any(|text| text.contains("steps 5 times as long")), "{step:?}");
     let probe = told(&["probe.0.at=[10.0, 2.5]"]);

@@ -4,7 +4,7 @@
 use std::fs;
 use std::sync::atomic::AtomicBool;
 
-use piola::case::{self, LoadOptions};
+use piola::case::{self, LoadOptions, Session};
 
 /// A free block under a body force.
 const CASE: &str = r#"
@@ -38,8 +38,8 @@ fn end(more: &str, table: &str) -> [f64; 4] {
     fs::write(&file, format!("{CASE}{more}")).unwrap();
     fs::write(folder.path().join("table.csv"), table).unwrap();
     let case = case::load(&file, &LoadOptions::default());
-    let simulation = case::build(&case.unwrap_or_else(|problems| panic!("{problems}"))).unwrap();
-    let finished = simulation.run(None, &AtomicBool::new(false), &mut |_| {}).unwrap();
+    let session = Session::new(&case.unwrap_or_else(|problems| panic!("{problems}"))).unwrap();
+    let finished = session.run(&AtomicBool::new(false), &mut |_| {}).unwrap();
     let last = finished.tables.probes.rows().last().unwrap().to_vec();
     last[1..].try_into().unwrap()
 }

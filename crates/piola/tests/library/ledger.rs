@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use piola::case::{self, Finished, LoadOptions};
+use piola::case::{self, Finished, LoadOptions, Session};
 
 /// A block of 2 by 1 m in free flight, with a weight, a dead traction on its top, and dissipation.
 const FLIGHT: &str = r#"
@@ -47,8 +47,8 @@ fn run(text: &str, set: &[&str]) -> Finished {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
     let options = LoadOptions { overrides, ..LoadOptions::default() };
     let case = case::parse(text, "case.toml", &options).unwrap_or_else(|it| panic!("{it}"));
-    let simulation = case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
-    simulation.run(None, &AtomicBool::new(false), &mut |_| {}).unwrap()
+    let session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    session.run(&AtomicBool::new(false), &mut |_| {}).unwrap()
 }
 
 fn last(finished: &Finished, name: &str) -> f64 {

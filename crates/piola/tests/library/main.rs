@@ -20,6 +20,7 @@ mod operators;
 mod pair_pass;
 mod profiles;
 mod resume;
+mod session;
 mod strong_form;
 #[path = "../support/mod.rs"]
 mod support;

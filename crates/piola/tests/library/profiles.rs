@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use piola::case::verify::{self, CheckRow, Got, VariantRun};
-use piola::case::{self, Case, Finished, Level, LoadOptions};
+use piola::case::{self, Case, Finished, Level, LoadOptions, Session};
 use piola::observe::Series;
 use piola::output::Table;
 use piola::time::{Outcome, Progress};
@@ -77,7 +77,9 @@ fn parse(text: &str, folder: Option<&Path>) -> Case {
 }
 
 fn run(case: &Case, folder: Option<&Path>) -> Finished {
-    case::build(case).unwrap().run(folder, &AtomicBool::new(false), &mut |_| {}).unwrap()
+    let mut session = Session::new(case).unwrap();
+    folder.into_iter().for_each(|folder| session.write_to(folder).unwrap());
+    session.run(&AtomicBool::new(false), &mut |_| {}).unwrap()
 }
 
 /// The files of a line in the results, with their tables.
@@ -233,10 +235,14 @@ fn a_run_that_goes_back_or_is_resumed_keeps_its_profiles() {
         stop.store(progress.step + 2 >= retry.step, Ordering::Relaxed);
     };
     let broken = folder.path().join("broken");
-    let first = case::build(&case).unwrap().run(Some(&broken), &stop, &mut until).unwrap();
+    let mut session = Session::new(&case).unwrap();
+    session.write_to(&broken).unwrap();
+    let first = session.run(&stop, &mut until).unwrap();
     assert_eq!(first.summary.outcome, Outcome::Interrupted);
     stop.store(false, Ordering::Relaxed);
-    let last = case::build(&case).unwrap().resume(&broken, &stop, &mut |_| {}).unwrap();
+    let mut session = Session::new(&case).unwrap();
+    session.resume_from(&broken).unwrap();
+    let last = session.run(&stop, &mut |_| {}).unwrap();
     assert_eq!(last.tables, whole.tables);
     assert_eq!(profiles(&broken, "level"), profiles(&out, "level"));
 }

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use piola::case::{self, Case, Finished, Level, LoadOptions, RunError};
+use piola::case::{self, Case, Finished, Level, LoadOptions, RunError, Session};
 use piola::output::checkpoint;
 use piola::time::{Outcome, Progress};
 use rayon::prelude::*;
@@ -32,15 +32,16 @@ fn try_run(
 ) -> Result<Finished, RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
-        let simulation = case::build(case).unwrap_or_else(|problems| panic!("{problems}"));
+        let mut session = Session::new(case).unwrap_or_else(|problems| panic!("{problems}"));
         let stop = AtomicBool::new(false);
         let mut progress = |progress: &Progress| {
             stop.store(progress.step >= last, Ordering::Relaxed);
         };
         match resume {
-            true => simulation.resume(folder, &stop, &mut progress),
-            false => simulation.run(Some(folder), &stop, &mut progress),
+            true => session.resume_from(folder)?,
+            false => session.write_to(folder)?,
         }
+        session.run(&stop, &mut progress)
     })
 }
 

@@ -39,7 +39,7 @@ fn swing(rule: Theta, kind: IntegratorKind, error: f64) -> (Summary, Vec<f64>) {
     let last = Last::default();
     let control = StepControl::AtMost(10.0);
     let mut executor = Executor::new(Box::new(scheme), integrator, control, 4.0);
-    executor.observers = vec![Box::new(last.clone())];
+    executor.observe(Box::new(last.clone()));
     let summary =
         executor.run(&AtomicBool::new(false), &mut |_| {}).expect("nothing is written anywhere");
     assert_eq!(summary.outcome, Outcome::Completed);

@@ -8,11 +8,11 @@ use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::geometry::{Faces, Particles, Shape};
 use crate::neighbors::{Domain, spatial_order};
-use crate::schemes::Initial;
 use crate::schemes::transport_velocity::{
     Fluid, Guard, Solid, SolidsInput, TransportVelocity, TransportVelocityError,
     TransportVelocityInput, Wall,
 };
+use crate::schemes::{Initial, Scheme};
 
 /// Builds the scheme `transport_velocity`.
 pub(super) fn build<const D: usize>(
@@ -21,7 +21,7 @@ pub(super) fn build<const D: usize>(
     mut particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
-) -> Result<Built, Vec<Problem>> {
+) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
     let smoothing_length = *settings.smoothing_length * spacing;
@@ -110,15 +110,10 @@ pub(super) fn build<const D: usize>(
     });
     // Particles deep in a wall may be alone.
     let (neighbors, poorly_supported) = row_statistics(&scheme, |a| !scheme.is_wall(a));
-    Ok(Built {
-        scheme: Box::new(scheme),
-        probes,
-        lines,
-        bodies: reports,
-        neighbors,
-        poorly_supported,
-        warnings,
-    })
+    Ok((
+        Box::new(scheme),
+        Built { probes, lines, bodies: reports, neighbors, poorly_supported, warnings },
+    ))
 }
 
 /// What of its density a fluid may be compressed by at the start without a warning: that of speeds of a

@@ -7,6 +7,7 @@ use crate::case::model::{self, Case};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::POOR_CONDITION;
+use crate::schemes::Scheme;
 use crate::schemes::interpolation::{
     Boundary, Interpolation, InterpolationError, InterpolationInput,
 };
@@ -18,7 +19,7 @@ pub(super) fn build<const D: usize>(
     mut particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
-) -> Result<Built, Vec<Problem>> {
+) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     if settings.weights == model::Weights::Volume {
         particles.weight.clone_from(&particles.volume);
@@ -66,13 +67,15 @@ pub(super) fn build<const D: usize>(
         )
     });
     let (neighbors, poorly_supported) = row_statistics(&scheme, |_| true);
-    Ok(Built {
-        poorly_supported,
-        scheme: Box::new(scheme),
-        probes,
-        lines,
-        bodies: reports,
-        neighbors,
-        warnings: warnings.into_iter().collect(),
-    })
+    Ok((
+        Box::new(scheme),
+        Built {
+            poorly_supported,
+            probes,
+            lines,
+            bodies: reports,
+            neighbors,
+            warnings: warnings.into_iter().collect(),
+        },
+    ))
 }

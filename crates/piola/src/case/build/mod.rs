@@ -12,7 +12,7 @@ mod solids;
 mod tanks;
 mod waves;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::VolumetricLaw;
@@ -20,7 +20,6 @@ use piola_formulas::volumetric::VolumetricLaw;
 use self::loads::LoadedSurface;
 use super::diagnostics::{Problem, Problems};
 use super::model::{self, Case};
-use super::simulation::Simulation;
 use super::source::Located;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, NeighborStatistics, spatial_order};
@@ -34,26 +33,21 @@ use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
 
 use bodies::BodyReport;
 
-/// Builds particles, lists and scheme of a case.
-///
-/// # Errors
-/// Everything that only shows when particles exist: a body without particles, a selection that
-/// selects nothing, a particle without a gradient, a prestress that the material cannot carry.
-pub fn build(case: &Case) -> Result<Simulation, Problems> {
-    let start = Instant::now();
-    let mut simulation = match case.dimension {
+/// Builds particles, lists, scheme and integrator of a case.
+pub(super) fn build(case: &Case) -> Result<Parts, Problems> {
+    match case.dimension {
         1 => build_in::<1>(case),
         2 => build_in::<2>(case),
         _ => build_in::<3>(case),
     }
-    .map_err(|problems| case.refuse(problems))?;
-    simulation.build_seconds = start.elapsed().as_secs_f64();
-    Ok(simulation)
+    .map_err(|problems| case.refuse(problems))
 }
 
-/// The built parts that do not depend on the dimension.
+/// A formulation with the integrator that was built for it, and what else was built.
+pub(super) type Parts = (Box<dyn Scheme>, Box<dyn Integrator>, Built);
+
+/// The built parts that do not depend on the dimension, beside the scheme.
 pub(super) struct Built {
-    pub scheme: Box<dyn Scheme>,
     pub probes: Vec<Probe>,
     pub lines: Vec<Line>,
     pub bodies: Vec<BodyReport>,
@@ -63,11 +57,11 @@ pub(super) struct Built {
     pub warnings: Vec<String>,
 }
 
-fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
+fn build_in<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
     let domain = domain::<D>(case)?;
     let (particles, bodies) = bodies::particles::<D>(case, &domain)?;
     let far = probes::far(case, &particles);
-    let mut built = match &case.scheme.value {
+    let (mut scheme, mut built) = match &case.scheme.value {
         model::Scheme::Upwind(settings) => build_upwind(case, settings, particles, bodies, domain)?,
         model::Scheme::TransportVelocity(settings) => {
             fluids::build(case, settings, particles, bodies, domain)?
@@ -86,8 +80,8 @@ fn build_in<const D: usize>(case: &Case) -> Result<Simulation, Vec<Problem>> {
     built.warnings.extend(far);
     built.warnings.extend(uneven_steps(case));
     built.warnings.extend(beyond_stable(case));
-    let integrator = integrator(case, built.scheme.as_mut())?;
-    Ok(Simulation::new(case, built, integrator))
+    let integrator = integrator(case, scheme.as_mut())?;
+    Ok((scheme, integrator, built))
 }
 
 /// Central differences whose steps are as long as is stable one by one may grow when long and short ones
@@ -147,7 +141,7 @@ fn build_upwind<const D: usize>(
     mut particles: Particles<D>,
     bodies: Vec<BodyReport>,
     domain: Domain<D>,
-) -> Result<Built, Vec<Problem>> {
+) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     let ratio = *settings.smoothing_length;
     if settings.weights == model::Weights::Volume {
@@ -173,15 +167,10 @@ fn build_upwind<const D: usize>(
     let lines = probes::lines(case, &particles);
     let scheme = upwind(case, settings, particles, support, &mut problems);
     match scheme {
-        Some(scheme) if problems.is_empty() => Ok(Built {
-            scheme: Box::new(scheme),
-            probes,
-            lines,
-            bodies,
-            neighbors,
-            poorly_supported,
-            warnings,
-        }),
+        Some(scheme) if problems.is_empty() => Ok((
+            Box::new(scheme),
+            Built { probes, lines, bodies, neighbors, poorly_supported, warnings },
+        )),
         _ => Err(problems),
     }
 }

@@ -12,11 +12,11 @@ use crate::case::model::{self, Case, GradientKind, SupportSize};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::{DirectedSupport, DualGradient, Face, Trace, lattice_areas, nearest_radii};
-use crate::schemes::InputError;
 use crate::schemes::dual_support::{
     DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
     StaticsError, StaticsInput, free_to_move,
 };
+use crate::schemes::{InputError, Scheme};
 use crate::solve::Newton;
 
 /// Builds the scheme `dual_support`.
@@ -26,7 +26,7 @@ pub(super) fn build<const D: usize>(
     mut particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
-) -> Result<Built, Vec<Problem>> {
+) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     if settings.weights == model::Weights::Volume {
         particles.weight.clone_from(&particles.volume);
@@ -137,15 +137,10 @@ pub(super) fn build<const D: usize>(
         };
         vec![case.problem_at(place, message, label, None)]
     })?;
-    Ok(Built {
-        scheme: Box::new(scheme),
-        probes,
-        lines,
-        bodies: reports,
-        neighbors,
-        poorly_supported,
-        warnings,
-    })
+    Ok((
+        Box::new(scheme),
+        Built { probes, lines, bodies: reports, neighbors, poorly_supported, warnings },
+    ))
 }
 
 /// The boundary as centres of cells see it, where a body has such particles.

@@ -10,10 +10,10 @@ use crate::case::model::{self, Case};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, search, spatial_order};
 use crate::operators::{Continuation, Mirror};
-use crate::schemes::InputError;
 use crate::schemes::elastodynamics::{
     Elastodynamics, ElastodynamicsError, ElastodynamicsInput, Form, Hole, Mixture,
 };
+use crate::schemes::{InputError, Scheme};
 
 /// Particles of two bodies that are closer than this share of their spacing are one.
 const JOINED: f64 = 1e-6;
@@ -25,7 +25,7 @@ pub(super) fn build<const D: usize>(
     mut particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
-) -> Result<Built, Vec<Problem>> {
+) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     if settings.weights == model::Weights::Volume {
         particles.weight.clone_from(&particles.volume);
@@ -101,15 +101,10 @@ pub(super) fn build<const D: usize>(
         vec![case.problem_at(place, error.to_string(), label, None)]
     })?;
     let (neighbors, poorly_supported) = row_statistics(&scheme, |_| true);
-    Ok(Built {
-        poorly_supported,
-        scheme: Box::new(scheme),
-        probes,
-        lines,
-        bodies: reports,
-        neighbors,
-        warnings: Vec::new(),
-    })
+    Ok((
+        Box::new(scheme),
+        Built { poorly_supported, probes, lines, bodies: reports, neighbors, warnings: Vec::new() },
+    ))
 }
 
 /// The discs that are cut out of bodies.

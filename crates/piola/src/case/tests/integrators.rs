@@ -65,10 +65,10 @@ fn every_pair_is_served_or_refused_in_its_place() {
             match read_with(&text, &[]) {
                 Ok(case) => {
                     served.push(kind.name());
-                    let built = crate::case::build(&case);
+                    let built = Session::new(&case);
                     let built =
                         built.unwrap_or_else(|problems| panic!("{scheme}, {kind:?}: {problems}"));
-                    let run = built.run(None, &Default::default(), &mut |_| {}).unwrap();
+                    let run = built.run(&Default::default(), &mut |_| {}).unwrap();
                     assert_eq!(run.summary.outcome.summary(), "completed", "{scheme}, {kind:?}");
                     assert!(run.summary.steps > 0, "{scheme}, {kind:?}");
                 }

@@ -102,10 +102,10 @@ fn what_does_not_fit_is_refused_with_what_does() {
 fn a_lattice_has_the_areas_of_its_box() {
     let text = GOOD.replace("spacing = 0.1", "spacing = [0.1, 0.2]");
     let case = read_with(&text, &["body.block.lattice={jitter=0.3}"]).expect("a good case");
-    let mut simulation = crate::case::build(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
     // A cloud whose areas did not close its volume would have been refused; particles that carry
     // areas are on their sites, and corrected gradients exist.
-    assert!(simulation.plan().warnings.is_empty());
+    assert!(session.plan().warnings.is_empty());
 }
 
 /// The block, held at its left side, in statics.
@@ -200,7 +200,7 @@ fn implicit_steps_are_of_any_size_and_take_their_own_weights() {
 fn a_body_that_is_free_to_move_is_refused_where_statics_is_asked_for() {
     let text = in_statics().replace("x = \"0\", y = \"0\"", "x = \"0\"");
     let case = read_with(&text, &[]).unwrap_or_else(|problems| panic!("{problems}"));
-    let Err(problems) = crate::case::build(&case) else { panic!("it can shift along y") };
+    let Err(problems) = Session::new(&case) else { panic!("it can shift along y") };
     let message = problems.to_string();
     for part in ["shift along y", "statics needs a body that is held", "\"static\""] {
         assert!(message.contains(part), "{message}");
@@ -218,10 +218,10 @@ fn a_body_that_is_free_to_move_is_refused_where_statics_is_asked_for() {
     }
 }
 
-/// The case as a simulation that is ready to run, or what is wrong with it.
-fn built(text: &str) -> Result<Box<crate::case::Simulation>, String> {
+/// The case as a session that is ready to run, or what is wrong with it.
+fn built(text: &str) -> Result<Box<Session>, String> {
     let case = read_with(text, &[]).map_err(|problems| problems.to_string())?;
-    crate::case::build(&case).map(Box::new).map_err(|problems| problems.to_string())
+    Session::new(&case).map(Box::new).map_err(|problems| problems.to_string())
 }
 
 #[test]
@@ -270,9 +270,9 @@ fn loads_are_those_of_the_surface_on_any_lattice() {
             let text = linear
                 .replace("spacing = 0.1", &format!("spacing = 0.1\nlattice.on = \"{lattice}\""));
             let text = text + &format!("\n[[load]]\n{top}\n{load}\n");
-            let simulation = built(&text).unwrap_or_else(|message| panic!("{message}"));
+            let session = built(&text).unwrap_or_else(|message| panic!("{message}"));
             let stop = std::sync::atomic::AtomicBool::new(false);
-            let finished = simulation.run(None, &stop, &mut |_| {}).expect("nothing is written");
+            let finished = session.run(&stop, &mut |_| {}).expect("nothing is written");
             let Some(crate::observe::Series::Curve { values, .. }) =
                 finished.quantity("hold.reaction.y")
             else {

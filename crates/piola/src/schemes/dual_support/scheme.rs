@@ -161,6 +161,11 @@ impl<const D: usize> Scheme for DualSupport<D> {
         all
     }
 
+    /// What is in equilibrium has no other state to be set to.
+    fn settable(&self) -> &'static [&'static str] {
+        if self.is_static { &[] } else { &["velocity", "displacement"] }
+    }
+
     fn equilibrium(&mut self) -> Option<&mut dyn StaticScheme> {
         if self.is_static { Some(self) } else { None }
     }

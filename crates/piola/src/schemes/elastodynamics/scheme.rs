@@ -127,6 +127,10 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
         false
     }
 
+    fn settable(&self) -> &'static [&'static str] {
+        &["velocity", "displacement"]
+    }
+
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {
         Some(self)
     }

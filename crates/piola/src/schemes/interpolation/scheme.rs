@@ -56,6 +56,10 @@ impl<const D: usize> Scheme for Interpolation<D> {
         false
     }
 
+    fn settable(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     fn constrain(&self, _time: f64, _state: &mut [f64]) {}
 
     fn inspect(&mut self, _state: &[f64], limits: &mut Vec<StepLimit>) -> Health {

@@ -1,0 +1,120 @@
+//! The columns of a session: what they are, what they hold at the moment, and which can be set.
+
+use thiserror::Error;
+
+use super::session::Session;
+use super::suggest::one_of;
+use crate::fields::{FieldDescription, FieldValues};
+
+/// A column that cannot be read or set.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ColumnError {
+    /// The formulation has none of this name.
+    #[error("the scheme `{scheme}` has no column `{name}`; expected {known}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Those that it has.
+        known: String,
+    },
+    /// It follows from others, or others would have to follow it.
+    #[error(
+        "the column `{name}` of the scheme `{scheme}` cannot be set; those that can: {settable}"
+    )]
+    NotSettable {
+        /// The name.
+        name: &'static str,
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Those that can be.
+        settable: String,
+    },
+    /// Too few numbers, or too many.
+    #[error("the column `{name}` has {expected} numbers, not {got}")]
+    Length {
+        /// The name.
+        name: &'static str,
+        /// As many as it has.
+        expected: usize,
+        /// As many as were given.
+        got: usize,
+    },
+    /// A value that is not finite.
+    #[error("value {index} for the column `{name}` is {value}")]
+    NotFinite {
+        /// The name.
+        name: &'static str,
+        /// Which of the values.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+}
+
+impl Session {
+    /// Number of each particle in the order of creation, in the order of all columns.
+    pub fn ids(&self) -> &[u32] {
+        self.executor.scheme.ids()
+    }
+
+    /// What [`Session::column`] has.
+    pub fn columns(&self) -> &'static [FieldDescription] {
+        self.executor.scheme.description().fields
+    }
+
+    /// The values of a column at the moment, particle by particle.
+    ///
+    /// # Errors
+    /// [`ColumnError::Unknown`].
+    pub fn column(&mut self, name: &str) -> Result<FieldValues, ColumnError> {
+        let (description, mut values) = (self.described(name)?, Vec::new());
+        let particles: Vec<u32> = (0..self.ids().len() as u32).collect();
+        self.executor.now().read(description, &particles, &mut values);
+        Ok(FieldValues { description: *description, values })
+    }
+
+    /// Gives a column other values, particle by particle, before the first step or between two.
+    /// Accelerations follow, and what is prescribed stays as it is. What that adds to energy and
+    /// momentum of a run that has begun is in no ledger: their balance is off by it from there on. Values
+    /// that it has already change nothing.
+    ///
+    /// # Errors
+    /// There is no such column, it cannot be set, or the values are too few, too many or not finite;
+    /// then nothing is changed.
+    pub fn set(&mut self, name: &str, values: &[f64]) -> Result<(), ColumnError> {
+        let field = self.described(name)?;
+        let (name, scheme) = (field.name, self.executor.scheme.as_ref());
+        let (settable, column) = (scheme.settable(), scheme.column(field));
+        if !settable.contains(&name) || column.is_empty() {
+            let settable = match settable {
+                [] => "none".to_owned(),
+                names => one_of(names.iter().copied()),
+            };
+            let scheme = scheme.description().name;
+            return Err(ColumnError::NotSettable { name, scheme, settable });
+        }
+        let (expected, got) = (column.len(), values.len());
+        if got != expected {
+            return Err(ColumnError::Length { name, expected, got });
+        }
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            return Err(ColumnError::NotFinite { name, index, value: values[index] });
+        }
+        if self.executor.state()[column.clone()] != *values {
+            self.executor.change(|state| state[column].copy_from_slice(values));
+        }
+        Ok(())
+    }
+
+    fn described(&self, name: &str) -> Result<&'static FieldDescription, ColumnError> {
+        let scheme = self.executor.scheme.description();
+        scheme.field(name).ok_or_else(|| ColumnError::Unknown {
+            name: name.to_owned(),
+            scheme: scheme.name,
+            known: one_of(scheme.shown().map(|column| column.name)),
+        })
+    }
+}

@@ -1,0 +1,331 @@
+//! A case that is built: the one way into a run.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use thiserror::Error;
+
+use super::build::{self, Built};
+use super::finished::{Finished, removed, unbalanced};
+use super::model::Case;
+use super::outputs::Outputs;
+use super::resume::{self, Resumed};
+use super::{Problems, report};
+use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
+use crate::output::{CheckpointError, OutputError, ResultsFolder};
+use crate::schemes::Scheme;
+use crate::time::{
+    Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
+};
+
+/// A run of a case, from its particles at the start to its results: as a whole, in pieces, or a step at
+/// a time, with the same bits.
+///
+/// ```
+/// use std::sync::atomic::AtomicBool;
+///
+/// use piola::case::{self, Level, LoadOptions, Session, template};
+///
+/// let text = template::new_case("a column of water");
+/// let coarse = LoadOptions { level: Level::Coarse, ..LoadOptions::default() };
+/// let mut session = Session::new(&case::parse(&text, "column.toml", &coarse)?)?;
+///
+/// // Half as fast as the case says.
+/// let mut velocity = session.column("velocity")?.values;
+/// velocity.iter_mut().for_each(|component| *component *= 0.5);
+/// session.set("velocity", &velocity)?;
+///
+/// session.run_until(0.1)?;
+/// assert_eq!(session.column("pressure")?.values.len(), session.ids().len());
+///
+/// let finished = session.run(&AtomicBool::new(false), &mut |_| {})?;
+/// assert_eq!(finished.summary.outcome.summary(), "completed");
+/// assert!(finished.tables.curve("top.displacement.y").is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Session {
+    pub(super) case: Case,
+    pub(super) built: Built,
+    pub(super) executor: Executor,
+    /// Wall time of building in s.
+    build_seconds: f64,
+    tables: SharedTables,
+    outputs: Option<Outputs>,
+    /// Observers that the case asks for, who come first.
+    own: usize,
+    resumed: Option<Resumed>,
+    /// Whether the folder of the results is this run's.
+    has_begun: bool,
+}
+
+/// A fault of files or folders, or of a checkpoint. A run that fails is a [`crate::time::Outcome`].
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The results folder or a file in it.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A file during the run.
+    #[error(transparent)]
+    Observe(#[from] ObserveError),
+    /// There are checkpoints, and none of them is any good for this run.
+    #[error("{newest}\nno checkpoint of this run is sound; nothing was changed")]
+    NoCheckpoint {
+        /// Why the newest was refused.
+        newest: CheckpointError,
+    },
+    /// A checkpoint is of a run with other outputs.
+    #[error("{0}; nothing was changed; start anew without `--resume`")]
+    Misfit(#[from] Misfit),
+    /// A folder was named for a run that had begun without it.
+    #[error("the run has begun: name the folder of its results before the first step")]
+    Begun,
+}
+
+impl Session {
+    /// Builds particles, lists, scheme and integrator of a case.
+    ///
+    /// # Errors
+    /// Everything that only shows when particles exist: a body without particles, a selection that
+    /// selects nothing, a particle without a gradient, a prestress that the material cannot carry.
+    pub fn new(case: &Case) -> Result<Self, Problems> {
+        let start = Instant::now();
+        let (scheme, integrator, built) = build::build(case)?;
+        let control = build::step_control(case);
+        let mut executor = Executor::new(scheme, integrator, control, *case.time.end);
+        executor.max_steps = case.time.max_steps.unwrap_or(u64::MAX);
+        executor.min_step = case.time.min_step;
+        executor.max_speed = case.time.max_speed;
+        executor.retries = case.time.retries as usize;
+        let (tables, observers) = observers(case, &built, executor.scheme.as_ref(), None);
+        let own = observers.len();
+        observers.into_iter().for_each(|observer| executor.observe(observer));
+        Ok(Self {
+            case: case.clone(),
+            built,
+            executor,
+            build_seconds: start.elapsed().as_secs_f64(),
+            tables,
+            outputs: None,
+            own,
+            resumed: None,
+            has_begun: false,
+        })
+    }
+
+    /// The case it was built from.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The formulation, bound to its particles.
+    pub fn scheme(&mut self) -> &mut dyn Scheme {
+        self.executor.scheme.as_mut()
+    }
+
+    /// Simulated time in s.
+    pub fn time(&self) -> f64 {
+        self.executor.time()
+    }
+
+    /// Where the run stands.
+    pub fn progress(&self) -> Progress {
+        self.executor.progress()
+    }
+
+    /// Lets `observer` look from now on, after those of the case.
+    pub fn observe(&mut self, observer: Box<dyn Observer>) {
+        self.executor.observe(observer);
+    }
+
+    /// Lets the results go to `folder`; without one the tables exist in memory only. Nothing is written
+    /// before the first step.
+    ///
+    /// # Errors
+    /// [`RunError::Begun`] after the first step.
+    pub fn write_to(&mut self, folder: &Path) -> Result<(), RunError> {
+        if self.has_begun {
+            return Err(RunError::Begun);
+        }
+        let outputs = Outputs::new(&self.case, &self.built, folder);
+        let scheme = self.executor.scheme.as_ref();
+        let store = outputs.store(&self.case, resume::identity(&self.case, scheme));
+        let (tables, mut all) = observers(&self.case, &self.built, scheme, Some(&outputs));
+        let outside = self.executor.take_observers().split_off(self.own);
+        self.own = all.len();
+        all.extend(outside);
+        all.into_iter().for_each(|observer| self.executor.observe(observer));
+        let policy = build::checkpoint_policy(&self.case);
+        self.executor.keep(Checkpoints::new(policy, Box::new(store)));
+        (self.tables, self.outputs) = (tables, Some(outputs));
+        Ok(())
+    }
+
+    /// Goes on with the run in `folder` from its newest sound checkpoint, and starts anew where
+    /// there is none. The results are those of a run that was never broken off, to the bit. Observers
+    /// from outside have to be there already, the same as in that run.
+    ///
+    /// # Errors
+    /// As [`Session::step`], and if there are checkpoints of which none is sound or of this case; then
+    /// nothing is changed.
+    pub fn resume_from(&mut self, folder: &Path) -> Result<(), RunError> {
+        self.write_to(folder)?;
+        let case = &self.case;
+        let scheme = self.executor.scheme.as_ref();
+        // Without a record there is nothing to go on from.
+        let old = ResultsFolder::of_run(folder).ok();
+        let identity = resume::identity(case, scheme);
+        let columns = Recorder::columns(scheme, &self.built.probes);
+        let profiles = |line: &Line| match &line.schedule {
+            Schedule::At(times) => times.len() + 1,
+            // The checkpoint of a run that is to go on has no later ones.
+            _ => resume::rows(*case.time.end, *case.output.every),
+        };
+        let lines = &self.built.lines;
+        let lines = lines.iter().map(|line| line.numbers(case.dimension, profiles(line))).sum();
+        let most = resume::most_bytes(case, &columns, lines, self.executor.state().len());
+        let found = old.map(|(folder, _)| resume::find(&folder, &identity, most));
+        match found.transpose()?.flatten() {
+            Some((checkpoint, resumed)) => {
+                self.executor.resume(checkpoint)?;
+                self.built.warnings.extend(resumed.warnings.iter().cloned());
+                self.resumed = Some(resumed);
+            }
+            None => {
+                let warning = "there was no checkpoint to resume from: started at t = 0";
+                self.built.warnings.push(warning.to_owned());
+            }
+        }
+        self.begin()
+    }
+
+    /// All that the steps to come depend on.
+    pub fn checkpoint(&self) -> Checkpoint {
+        self.executor.checkpoint()
+    }
+
+    /// Goes on from a checkpoint of a session of the same case with the same observers.
+    ///
+    /// # Errors
+    /// It cannot be one; the session is of no use then.
+    pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), Misfit> {
+        self.executor.resume(checkpoint)
+    }
+
+    /// Takes a step, and lets the observers look for whom the moment after it is due. Before the first
+    /// step they are shown the start. Whether the run goes on: it does not where it has come to its end
+    /// or has failed. A run that may retry may find itself at an earlier moment.
+    ///
+    /// # Errors
+    /// [`RunError`] for faults of files. A run that fails is an outcome in the summary.
+    pub fn step(&mut self) -> Result<bool, RunError> {
+        self.begin()?;
+        Ok(self.executor.step()?)
+    }
+
+    /// Takes steps until the time is `time` or later. None is shortened to meet it, so that results do
+    /// not depend on it. Whether the run goes on.
+    ///
+    /// # Errors
+    /// As [`Session::step`].
+    pub fn run_until(&mut self, time: f64) -> Result<bool, RunError> {
+        while self.time() < time * (1.0 - 1e-12) {
+            if !self.step()? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` after each step.
+    ///
+    /// # Errors
+    /// As [`Session::step`].
+    pub fn run(
+        mut self,
+        stop: &AtomicBool,
+        progress: &mut dyn FnMut(&Progress),
+    ) -> Result<Finished, RunError> {
+        self.begin()?;
+        let summary = self.executor.run(stop, progress)?;
+        self.conclude(summary)
+    }
+
+    /// Ends the run where it is, and shows this moment to all observers as the last.
+    ///
+    /// # Errors
+    /// As [`Session::step`].
+    pub fn finish(mut self) -> Result<Finished, RunError> {
+        self.begin()?;
+        let summary = self.executor.finish()?;
+        self.conclude(summary)
+    }
+
+    /// Makes the folder of the results this run's. What could be refused has been.
+    fn begin(&mut self) -> Result<(), RunError> {
+        if !std::mem::replace(&mut self.has_begun, true)
+            && let Some(outputs) = &mut self.outputs
+        {
+            outputs.begin(self.resumed.as_ref())?;
+        }
+        Ok(())
+    }
+
+    /// What is left of a run: its tables, charts, record and report.
+    fn conclude(self, summary: Summary) -> Result<Finished, RunError> {
+        let Self { case, built, executor, outputs, .. } = self;
+        let tables = self.tables.lock().clone();
+        let particles = executor.scheme.particle_count();
+        let mut warnings = built.warnings;
+        warnings.extend(summary.warnings.iter().cloned());
+        warnings.extend(unbalanced(&tables, &case.time));
+        let gone = removed(&tables);
+        if gone > 0.0 {
+            warnings.push(format!(
+                "{gone} of {particles} particles escaped and were removed: `step.removed` has when"
+            ));
+        }
+        let linear = executor.scheme.linear_costs();
+        let files: Vec<PathBuf> = Vec::new();
+        let mut finished = Finished { summary, tables, files, warnings, particles, linear };
+        let Some(outputs) = outputs else { return Ok(finished) };
+        let folder = outputs.folder().to_owned();
+        finished.files = outputs.finish(&case, &finished, self.build_seconds)?;
+        if case.output.report {
+            // The results are whole without it.
+            match report::write(&folder) {
+                Ok(file) => finished.files.push(file),
+                Err(error) => finished.warnings.push(format!("there is no report: {error}")),
+            }
+        }
+        Ok(finished)
+    }
+}
+
+/// The observers that a case asks for, and the tables that they fill.
+fn observers(
+    case: &Case,
+    built: &Built,
+    scheme: &dyn Scheme,
+    outputs: Option<&Outputs>,
+) -> (SharedTables, Vec<Box<dyn Observer>>) {
+    let recorder = Recorder::new(
+        scheme,
+        built.probes.clone(),
+        Schedule::Every(*case.output.table_every),
+        Schedule::Every(*case.output.every),
+        outputs.map(Outputs::for_tables),
+    );
+    let tables = recorder.tables();
+    let mut observers: Vec<Box<dyn Observer>> = vec![Box::new(recorder)];
+    for line in &built.lines {
+        let folder = outputs.map(Outputs::for_tables);
+        let profile = ProfileRecorder::new(line.clone(), case.dimension, tables.clone(), folder);
+        observers.push(Box::new(profile));
+    }
+    if let Some(outputs) = outputs {
+        observers.extend(outputs.observers(case, &built.bodies));
+    }
+    (tables, observers)
+}

@@ -1,0 +1,226 @@
+//! The one way into a run: however its steps are taken, the bits are the same.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+
+use piola::case::{self, Case, ColumnError, Finished, Level, LoadOptions, RunError, Session};
+use piola::time::{Moment, ObserveError, Observer, Outcome, Schedule};
+
+fn load(name: &str, set: &[&str]) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, level: Level::Coarse, ..LoadOptions::default() };
+    case::load(&path.join("case.toml"), &options).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// Every formulation, and every kind of integrator; the last goes back.
+fn cases() -> Vec<Case> {
+    let failing = ["body.water.spacing=0.1", "time.cfl=2", "time.on_failure='retry'"];
+    vec![
+        load("upwind/piston", &["time.end=0.2"]),
+        load("upwind/stiff-column", &["time.error=0.1", "time.end=0.4"]),
+        load("ctvf/taylor-green", &["time.end=0.05"]),
+        load("dual-support/free-vibration", &["time.end=0.01"]),
+        load("dual-support/tension", &["time.step=0.25"]),
+        load("elastodynamics/pulse", &["time.end=4e-6"]),
+        load("elastodynamics/interpolation", &[]),
+        load("upwind/dam-break", &failing),
+    ]
+}
+
+fn session(case: &Case) -> Session {
+    Session::new(case).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// What an observer from outside saw.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Seen {
+    times: Vec<f64>,
+    speeds: Vec<f64>,
+    state: Vec<u64>,
+}
+
+#[derive(Clone)]
+struct Witness(Schedule, Arc<Mutex<Seen>>);
+
+impl Witness {
+    fn new(schedule: Schedule) -> Self {
+        Self(schedule, Arc::default())
+    }
+
+    fn seen(&self) -> Seen {
+        self.1.lock().expect("no other thread").clone()
+    }
+}
+
+impl Observer for Witness {
+    fn schedule(&self) -> &Schedule {
+        &self.0
+    }
+
+    fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError> {
+        let mut seen = self.1.lock().expect("no other thread");
+        let time = moment.now.time();
+        if seen.times.last() != Some(&time) {
+            seen.times.push(time);
+            seen.speeds.push(moment.health.largest_speed);
+        }
+        seen.state = moment.now.state().iter().map(|number| number.to_bits()).collect();
+        Ok(())
+    }
+
+    fn rewind(&mut self, time: f64) -> Result<(), ObserveError> {
+        let mut seen = self.1.lock().expect("no other thread");
+        let kept = seen.times.partition_point(|known| *known <= time);
+        seen.times.truncate(kept);
+        seen.speeds.truncate(kept);
+        Ok(())
+    }
+}
+
+fn run(session: Session) -> Finished {
+    session.run(&AtomicBool::new(false), &mut |_| {}).expect("nothing is written")
+}
+
+/// A whole run, steps taken by hand, pieces, and a run that goes on in another session.
+#[test]
+fn however_steps_are_taken_the_bits_are_the_same() {
+    for case in cases() {
+        let every = Schedule::Every(*case.output.table_every);
+        let watched = || {
+            let (mut session, witness) = (session(&case), Witness::new(every.clone()));
+            session.observe(Box::new(witness.clone()));
+            (session, witness)
+        };
+        let end = *case.time.end;
+        let (whole, witness) = watched();
+        let whole = run(whole);
+        assert_eq!(whole.summary.outcome, Outcome::Completed, "{}", case.title);
+        let seen = witness.seen();
+        // What it saw is what the tables have.
+        let times = whole.tables.steps.values("time").unwrap();
+        assert_eq!(seen.times, times, "{}", case.title);
+        assert_eq!(seen.speeds, whole.tables.steps.values("largest_speed").unwrap());
+
+        let same = |session: Session, witness: &Witness| {
+            let finished = session.finish().unwrap();
+            assert_eq!(finished.tables, whole.tables, "{}", case.title);
+            let [one, other] = [&finished, &whole].map(|it| (it.summary.steps, it.summary.time));
+            assert_eq!(one, other, "{}", case.title);
+            assert_eq!(finished.summary.retries, whole.summary.retries, "{}", case.title);
+            assert!(witness.seen() == seen, "{}", case.title);
+        };
+        let (mut by_hand, witness) = watched();
+        while by_hand.step().unwrap() {}
+        assert_eq!(by_hand.progress().step, whole.summary.steps);
+        assert!(!by_hand.step().unwrap(), "there is nothing after the end");
+        same(by_hand, &witness);
+
+        let (mut pieces, witness) = watched();
+        for share in [0.1, 0.37, 0.9] {
+            pieces.run_until(share * end).unwrap();
+            assert!(pieces.time() >= share * end * (1.0 - 1e-9));
+        }
+        assert!(!pieces.run_until(2.0 * end + 1.0).unwrap());
+        same(pieces, &witness);
+
+        let (mut first, witness) = watched();
+        first.run_until(0.37 * end).unwrap();
+        let checkpoint = first.checkpoint();
+        assert_eq!(checkpoint.time(), first.time());
+        drop(first);
+        let mut last = session(&case);
+        last.observe(Box::new(witness.clone()));
+        last.resume(checkpoint).unwrap();
+        while last.step().unwrap() {}
+        same(last, &witness);
+    }
+    assert!(
+        !run(session(cases().last().unwrap())).summary.retries.is_empty(),
+        "the last goes back"
+    );
+}
+
+/// Columns are those of the files, and setting them to what they are changes nothing.
+#[test]
+fn columns_are_read_and_set() {
+    for case in cases() {
+        let whole = run(session(&case));
+        let mut again = session(&case);
+        for column in again.columns() {
+            let found = again.column(column.name).unwrap();
+            let components = column.kind.components(case.dimension);
+            assert_eq!(found.values.len(), again.ids().len() * components, "{}", column.name);
+            match again.set(column.name, &found.values) {
+                Ok(()) | Err(ColumnError::NotSettable { .. }) => {}
+                Err(error) => panic!("{error}"),
+            }
+        }
+        assert!(run(again).tables == whole.tables, "{}", case.title);
+    }
+}
+
+#[test]
+fn what_is_set_is_where_the_run_goes_on() {
+    let case = load("elastodynamics/pulse", &["time.end=4e-6"]);
+    let mut session = session(&case);
+    session.run_until(2e-6).unwrap();
+    let still = vec![0.0; session.column("velocity").unwrap().values.len()];
+    session.set("velocity", &still).unwrap();
+    session.set("displacement", &still).unwrap();
+    assert!(session.column("velocity").unwrap().values.iter().all(|v| *v == 0.0));
+    let witness = Witness::new(Schedule::Every(1e-7));
+    session.observe(Box::new(witness.clone()));
+    while session.step().unwrap() {}
+    let before = session.finish().unwrap();
+    let seen = witness.seen();
+    assert!(seen.times[0] > 2e-6 && *seen.times.last().unwrap() == before.summary.time);
+
+    let mut fluid = self::session(&load("upwind/dam-break", &["time.end=0.05"]));
+    let speed = |fluid: &mut Session| {
+        let values = fluid.column("velocity").unwrap().values;
+        values.iter().fold(0.0_f64, |most, v| most.max(v.abs()))
+    };
+    fluid.run_until(0.02).unwrap();
+    let first = speed(&mut fluid);
+    let mut doubled = fluid.column("velocity").unwrap().values;
+    doubled.iter_mut().for_each(|v| *v *= 2.0);
+    fluid.set("velocity", &doubled).unwrap();
+    assert_eq!(speed(&mut fluid), 2.0 * first);
+    assert!(fluid.step().unwrap() && speed(&mut fluid) > 1.9 * first);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_reason() {
+    let mut piston = session(&load("upwind/piston", &[]));
+    let error = piston.set("velocty", &[]).unwrap_err();
+    assert!(matches!(error, ColumnError::Unknown { .. }));
+    assert!(error.to_string().contains("expected `position`, `displacement`"), "{error}");
+    let error = piston.set("pressure", &[]).unwrap_err();
+    assert!(matches!(error, ColumnError::NotSettable { name: "pressure", .. }));
+    assert!(error.to_string().contains("those that can: `velocity`"), "{error}");
+    let count = piston.ids().len();
+    let error = piston.set("velocity", &[0.0]).unwrap_err();
+    assert_eq!(error, ColumnError::Length { name: "velocity", expected: 2 * count, got: 1 });
+    let mut values = vec![0.0; 2 * count];
+    values[3] = f64::NAN;
+    let error = piston.set("velocity", &values).unwrap_err();
+    assert!(matches!(error, ColumnError::NotFinite { index: 3, .. }));
+    let mut beam = session(&load("dual-support/tension", &[]));
+    let error = beam.set("displacement", &[]).unwrap_err();
+    assert!(error.to_string().contains("those that can: none"), "{error}");
+
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("out");
+    piston.write_to(&folder).unwrap();
+    assert!(!folder.exists(), "nothing is written before the first step");
+    piston.step().unwrap();
+    assert!(folder.join("run.json").exists());
+    assert!(matches!(piston.write_to(&folder), Err(RunError::Begun)));
+    let checkpoint = piston.checkpoint();
+    let mut other = session(&load("upwind/bar-sine", &[]));
+    assert!(other.resume(checkpoint).is_err());
+    let finished = piston.finish().unwrap();
+    assert_eq!((finished.summary.outcome, finished.summary.steps), (Outcome::Interrupted, 1));
+}
