@@ -97,6 +97,20 @@ pub struct CheckArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
+    /// Show the stages of a step instead, with what each reads, gathers from neighbours, writes and
+    /// shows them: as a table, or as a drawing in the language DOT
+    #[arg(long, value_name = "FORM", num_args = 0..=1, require_equals = true,
+          default_missing_value = "table")]
+    pub stages: Option<StageForm>,
+}
+
+/// How stages are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum StageForm {
+    /// One line a stage.
+    Table,
+    /// Text for `dot -Tsvg`.
+    Dot,
 }
 
 /// Arguments of `piola sweep`.

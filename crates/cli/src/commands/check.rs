@@ -1,10 +1,10 @@
 //! `piola check`: what a run will do.
 
 use piola::case::{Case, Plan, Undamped};
-use piola::schemes::Particle;
+use piola::schemes::{Particle, Phase};
 
 use super::{assemble, read, use_threads};
-use crate::arguments::CheckArguments;
+use crate::arguments::{CheckArguments, StageForm};
 use crate::exit::{Exit, Fault};
 use crate::text::{bytes, count, duration, large, significant};
 use crate::{table, terminal};
@@ -17,9 +17,51 @@ pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
     use_threads(arguments.case.threads);
     let case = read(&arguments.case)?;
     let mut session = assemble(&arguments.case.case, &case)?;
-    let plan = session.plan();
-    terminal::print(&report(&case, &plan))?;
+    let text = match arguments.stages {
+        Some(form) => stages(&session.scheme().phases(), form),
+        None => report(&case, &session.plan()),
+    };
+    terminal::print(&text)?;
     Ok(Exit::Success)
+}
+
+/// The stages of a step.
+fn stages(phases: &[&Phase], form: StageForm) -> String {
+    if phases.is_empty() {
+        return "the scheme of this case does not list its stages\n".to_owned();
+    }
+    if form == StageForm::Dot {
+        return phases.iter().map(|phase| phase.dot()).collect();
+    }
+    let header = ["part", "stage", "reads", "gathers", "writes", "shows"];
+    let mut rows: Vec<Vec<String>> = vec![header.map(str::to_owned).into()];
+    for phase in phases {
+        for (number, (stage, _)) in phase.stages.iter().enumerate() {
+            let name = if number == 0 { phase.name } else { "" };
+            let columns = [stage.reads, stage.gathers, stage.writes, stage.shows];
+            let cells = columns.map(grouped);
+            rows.push([name, stage.name].map(str::to_owned).into_iter().chain(cells).collect());
+        }
+    }
+    table::align(&rows, terminal::stdout_width(), &[2, 3, 5, 4]).join("\n") + "\n"
+}
+
+/// Names with what those before a point share written once: `side.(velocity density) rates`.
+fn grouped(columns: &[&str]) -> String {
+    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    for column in columns {
+        let (group, name) = column.split_once('.').unwrap_or(("", column));
+        match groups.iter_mut().find(|(known, _)| *known == group) {
+            Some((_, names)) => names.push(name),
+            None => groups.push((group, vec![name])),
+        }
+    }
+    let text = groups.iter().map(|(group, names)| match group.is_empty() {
+        true => names.join(" "),
+        false if names.len() == 1 => format!("{group}.{}", names[0]),
+        false => format!("{group}.({})", names.join(" ")),
+    });
+    text.collect::<Vec<_>>().join(" ")
 }
 
 /// The plan as lines of a name and what it says.

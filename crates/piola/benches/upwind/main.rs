@@ -56,8 +56,11 @@ fn rows<const D: usize>(threads: usize, sizes: &[usize]) {
 
 fn print_row<const D: usize>(threads: usize, name: &str, measured: &Measured) {
     let Measured { particles, neighbors, bytes, read_rate, .. } = *measured;
-    let total: f64 = measured.passes.iter().sum();
-    let share = |pass: usize| 100.0 * measured.passes[pass] / total;
+    let total: f64 = measured.passes.iter().map(|(_, seconds)| seconds).sum();
+    let share = |name: &str| -> f64 {
+        let own = measured.passes.iter().filter(|(pass, _)| *pass == name);
+        100.0 * own.map(|(_, seconds)| seconds).sum::<f64>() / total
+    };
     let each = |seconds: f64| 1e9 * seconds / particles as f64;
     let rate = bytes as f64 / total;
     println!(
@@ -67,9 +70,9 @@ fn print_row<const D: usize>(threads: usize, name: &str, measured: &Measured) {
         speed = particles as f64 / total / 1e6,
         particle = each(total),
         pair = each(total) / neighbors,
-        local = share(0),
-        slopes = share(1),
-        pairs = share(2),
+        local = share("local"),
+        slopes = share("slopes"),
+        pairs = share("pairs"),
         inspect = each(measured.inspect),
         update = each(measured.update),
         moved = bytes as f64 / particles as f64,

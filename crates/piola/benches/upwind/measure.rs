@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use piola::schemes::Scheme;
-use piola::schemes::upwind::{PASSES, Upwind};
+use piola::schemes::upwind::Upwind;
 use piola::time::runge_kutta::{Blend, advance};
 
 use crate::problem::{self, Switches};
@@ -15,7 +15,7 @@ pub struct Measured {
     /// Mean number.
     pub neighbors: f64,
     /// Each pass of the fastest evaluation of the rates.
-    pub passes: [f64; PASSES.len()],
+    pub passes: Vec<(&'static str, f64)>,
     /// The look at a new state, once a step.
     pub inspect: f64,
     /// The two updates of the integrator, once a step.
@@ -36,7 +36,7 @@ pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R
 pub fn run<const D: usize>(size: usize, switches: Switches) -> Measured {
     let (mut scheme, neighbors) = problem::build::<D>(size, switches);
     let particles = scheme.particle_count();
-    let bytes = scheme.streamed_bytes().iter().sum();
+    let bytes = scheme.streamed_bytes();
     let state = problem::disturbed(&scheme);
     let mut rate = vec![0.0; state.len()];
     let (_, passes) = clock::best(|| time_passes(&mut scheme, &state, &mut rate));
@@ -58,17 +58,15 @@ fn time_passes<const D: usize>(
     scheme: &mut Upwind<D>,
     state: &[f64],
     rate: &mut [f64],
-) -> (f64, [f64; PASSES.len()]) {
-    let mut passes = [0.0; PASSES.len()];
-    let mut next = passes.iter_mut();
-    let start = clock::now();
-    let mut last = start;
-    scheme.rates_by_pass(0.0, state, black_box(rate), |_| {
-        let now = clock::now();
-        if let Some(pass) = next.next() {
-            *pass = now - last;
-        }
-        last = now;
-    });
-    (last - start, passes)
+) -> (f64, Vec<(&'static str, f64)>) {
+    let totals = |scheme: &Upwind<D>| -> Vec<(&'static str, f64)> {
+        let phases = scheme.phases();
+        let stages = phases.iter().flat_map(|phase| &phase.stages);
+        stages.map(|(stage, watch)| (stage.name, watch.total.as_secs_f64())).collect()
+    };
+    let (before, start) = (totals(scheme), clock::now());
+    scheme.rates(0.0, state, black_box(rate));
+    let seconds = clock::now() - start;
+    let passes = totals(scheme).into_iter().zip(before);
+    (seconds, passes.map(|((name, after), (_, before))| (name, after - before)).collect())
 }

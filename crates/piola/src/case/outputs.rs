@@ -183,6 +183,15 @@ impl Outputs {
             calls: timing.calls,
         });
         record.stages = std::iter::once(build).chain(stages).collect();
+        let phases = summary.phases.iter();
+        let passes = phases.flat_map(|phase| {
+            phase.stages.iter().map(|(stage, watch)| StageRecord {
+                name: format!("{}: {}", phase.name, stage.name),
+                seconds: watch.total.as_secs_f64(),
+                calls: watch.calls,
+            })
+        });
+        record.passes = passes.collect();
         record.linear = finished.linear.map(|costs| LinearRecord {
             method: if costs.direct { "direct" } else { "krylov" }.into(),
             factor_entries: costs.factor_entries,

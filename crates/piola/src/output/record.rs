@@ -62,6 +62,9 @@ pub struct RunRecord {
     pub time_reached: f64,
     /// Where the time went.
     pub stages: Vec<StageRecord>,
+    /// Where the time of steps went, pass by pass, if the scheme knows it.
+    #[serde(default)]
+    pub passes: Vec<StageRecord>,
     /// What linear equations took; none where there were none.
     pub linear: Option<LinearRecord>,
     /// Figures of the run as a whole, by the names that checks use after `run.`.
@@ -212,6 +215,7 @@ impl Default for RunRecord {
             end_time: 0.0,
             time_reached: 0.0,
             stages: Vec::new(),
+            passes: Vec::new(),
             linear: None,
             figures: Vec::new(),
             references: Vec::new(),

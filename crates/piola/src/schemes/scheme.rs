@@ -5,7 +5,8 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    NewmarkScheme, PartitionedScheme, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
+    NewmarkScheme, PartitionedScheme, Phase, SchemeDescription, SplitScheme, StaticScheme,
+    ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
 use crate::solve::Costs;
@@ -86,6 +87,11 @@ pub trait Scheme: Send {
         particles: &[u32],
         values: &mut Vec<f64>,
     );
+
+    /// The parts of a step as lists of stages, with the time that each has taken.
+    fn phases(&self) -> Vec<&Phase> {
+        Vec::new()
+    }
 
     /// Number of the body of each particle.
     fn bodies(&self) -> &[u32];

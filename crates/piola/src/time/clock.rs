@@ -1,12 +1,10 @@
 //! The moving parts of a run, apart from its state.
 
-use std::time::{Duration, Instant};
-
 use serde::{Deserialize, Serialize};
 
 use super::step::ChosenStep;
 use super::summary::{Retry, Timing};
-use crate::schemes::Health;
+use crate::schemes::{Health, Watch};
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,13 +44,6 @@ pub(super) struct Watches {
     pub checkpoint: Watch,
 }
 
-/// A stop watch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Watch {
-    total: Duration,
-    calls: u64,
-}
-
 impl Clock {
     /// The start of a run.
     pub const START: Self = Self {
@@ -82,19 +73,6 @@ impl Tally {
             checkpoint: Watch::ZERO,
         },
     };
-}
-
-impl Watch {
-    const ZERO: Self = Self { total: Duration::ZERO, calls: 0 };
-
-    /// Runs `body` and adds the time it takes.
-    pub fn time<T>(&mut self, body: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
-        let value = body();
-        self.total += start.elapsed();
-        self.calls += 1;
-        value
-    }
 }
 
 impl Watches {

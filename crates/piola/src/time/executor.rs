@@ -272,6 +272,7 @@ impl Executor {
             worst: tally.worst,
             evaluations: self.evaluations * clock.step,
             timings: tally.watches.timings(),
+            phases: self.scheme.phases().into_iter().cloned().collect(),
             retries: tally.retries.clone(),
             trace,
             resumed: *resumed,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
 use super::history::Trace;
-use crate::schemes::Health;
+use crate::schemes::{Health, Phase};
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +94,8 @@ pub struct Summary {
     pub evaluations: u64,
     /// Wall time by stage, with that of the runs that this one continues.
     pub timings: Vec<Timing>,
+    /// The stages of a step, with the wall time that each took since the run started, or went on.
+    pub phases: Vec<Phase>,
     /// How often it went back, and why.
     pub retries: Vec<Retry>,
     /// The neighbourhood of the first bad particle over the last steps, if the run failed at one.

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::{Report, files};
 use crate::output::drawing::ticks::number;
-use crate::output::{FigureRecord, RunRecord};
+use crate::output::{FigureRecord, RunRecord, StageRecord};
 
 /// Longest case that is shown, in bytes.
 const MAX_CASE: usize = 200_000;
@@ -131,29 +131,16 @@ pub fn energy(report: &Report) -> Markup {
 
 /// Where the wall time went.
 pub fn timings(record: &RunRecord) -> Markup {
-    let total: f64 = record.stages.iter().map(|stage| stage.seconds).sum();
     html! {
         section #timings {
             h2 { "Wall time" }
             @if record.stages.is_empty() {
                 p { "The record has no timings: the run did not end by itself." }
             } @else {
-                div .wide { table .numbers {
-                    thead { tr { th { "Stage" } th { "Time" } th { "Share" } th {} th { "Calls" } th { "Each" } } }
-                    tbody { @for stage in record.stages.iter().take(MAX_LINES) {
-                        @let share = if total > 0.0 { stage.seconds / total } else { 0.0 };
-                        tr {
-                            th { (stage.name) }
-                            td { (duration(stage.seconds)) }
-                            td { (format!("{:.1} %", 100.0 * share)) }
-                            td { svg .share viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true" {
-                                rect width=(format!("{:.2}", 100.0 * share)) height="8" {}
-                            } }
-                            td { (stage.calls) }
-                            td { (each(stage.seconds, stage.calls)) }
-                        }
-                    } }
-                } }
+                (stages("Stage", &record.stages))
+                @if !record.passes.is_empty() {
+                    (stages("Pass of a step", &record.passes))
+                }
             }
             @if let Some(linear) = &record.linear {
                 p {
@@ -170,6 +157,29 @@ pub fn timings(record: &RunRecord) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// A table of times with their shares of all of them together.
+fn stages(title: &str, stages: &[StageRecord]) -> Markup {
+    let total: f64 = stages.iter().map(|stage| stage.seconds).sum();
+    html! {
+        div .wide { table .numbers {
+            thead { tr { th { (title) } th { "Time" } th { "Share" } th {} th { "Calls" } th { "Each" } } }
+            tbody { @for stage in stages.iter().take(MAX_LINES) {
+                @let share = if total > 0.0 { stage.seconds / total } else { 0.0 };
+                tr {
+                    th { (stage.name) }
+                    td { (duration(stage.seconds)) }
+                    td { (format!("{:.1} %", 100.0 * share)) }
+                    td { svg .share viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true" {
+                        rect width=(format!("{:.2}", 100.0 * share)) height="8" {}
+                    } }
+                    td { (stage.calls) }
+                    td { (each(stage.seconds, stage.calls)) }
+                }
+            } }
+        } }
     }
 }
 

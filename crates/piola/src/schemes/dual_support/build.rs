@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::fields::Made;
 use super::stable_step::stable_step;
+use super::stages;
 use super::{
     Discrete, DualSupport, Gradients, Material, Motion, Settings, Side, Statics, StaticsError,
     StaticsInput,
@@ -17,12 +18,12 @@ use crate::boundaries::{
 use crate::fields::width;
 use crate::geometry::Particles;
 use crate::operators::{DirectedSupport, DualGradient, OperatorError};
-use crate::schemes::InputError;
 use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
     check_pressure,
 };
 use crate::schemes::solid::wave_moduli;
+use crate::schemes::{InputError, StageFault};
 use crate::{Tensor, Vector};
 
 /// All that the formulation is bound to.
@@ -53,6 +54,9 @@ pub struct DualSupportInput<const D: usize> {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum DualSupportError {
+    /// Stages that do not fit together.
+    #[error(transparent)]
+    Stages(#[from] StageFault),
     /// A gradient does not exist.
     #[error(transparent)]
     Operator(#[from] OperatorError),
@@ -155,6 +159,7 @@ impl<const D: usize> DualSupport<D> {
             }
         };
         Ok(Self {
+            stages: stages::plan()?,
             loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
             pressed: input.pressures.iter().flat_map(|load| load.pressed(positions)).collect(),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),

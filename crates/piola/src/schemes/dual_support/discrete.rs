@@ -187,12 +187,30 @@ impl<const D: usize> Discrete<D> {
         sides: &mut [Side<T, D>],
         force: &mut [SVector<T, D>],
     ) {
+        self.fill_sides(displacement, sides);
+        self.fill_forces(displacement, sides, force);
+    }
+
+    /// The sides of all particles.
+    pub fn fill_sides<T: Scalar + Send + Sync>(
+        &self,
+        displacement: &[SVector<T, D>],
+        sides: &mut [Side<T, D>],
+    ) {
         parallel::for_each_chunk(sides, |first, sides| {
             for (offset, side) in sides.iter_mut().enumerate() {
                 *side = self.side(displacement, first + offset);
             }
         });
-        let sides = &*sides;
+    }
+
+    /// Forces on all particles in N with these sides.
+    pub fn fill_forces<T: Scalar + Send + Sync>(
+        &self,
+        displacement: &[SVector<T, D>],
+        sides: &[Side<T, D>],
+        force: &mut [SVector<T, D>],
+    ) {
         parallel::for_each_chunk(force, |first, force| {
             for (offset, force) in force.iter_mut().enumerate() {
                 *force = self.force(displacement, sides, first + offset);

@@ -27,6 +27,7 @@ mod scheme;
 mod settings;
 mod split;
 mod stable_step;
+mod stages;
 mod statics;
 
 pub use build::{DualSupportError, DualSupportInput};
@@ -43,11 +44,14 @@ use std::sync::Arc;
 pub use super::solid::Material;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, pressure::Pressed, traction::Loaded};
+use crate::schemes::stages::Stages;
 use crate::{Tensor, Vector};
 
 /// The dual-support formulation bound to its particles.
 pub struct DualSupport<const D: usize> {
     discrete: Arc<Discrete<D>>,
+    /// The stages of an evaluation.
+    stages: Stages<stages::Pass>,
     /// Loads and supports, where states are solved for.
     statics: Option<Box<Statics<D>>>,
     /// Whether nothing moves.

@@ -4,9 +4,10 @@ use super::fields::{Columns, ColumnsMut, Made};
 use super::{DualSupport, ENERGIES, FIGURES, IMPULSES, MECHANISMS, Side};
 use crate::fields::FieldDescription;
 use crate::schemes::look::convexity_is_lost;
+use crate::schemes::stages::Stages;
 use crate::schemes::{
-    Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Scheme, SchemeDescription,
-    SplitScheme, StaticScheme, StepLimit,
+    Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Phase, Scheme,
+    SchemeDescription, SplitScheme, StaticScheme, StepLimit,
 };
 use crate::solve::Costs;
 use crate::{Vector, parallel};
@@ -62,8 +63,9 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let at = self.columns(state);
-        self.discrete.forces(at.displacement, &mut self.sides, &mut self.force);
-        self.external_pass(time, &at, (&self.force, &self.sides), rate);
+        let mut stages = std::mem::replace(&mut self.stages, Stages::none("rates"));
+        stages.run(|pass| self.run(pass, time, &at, rate));
+        self.stages = stages;
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
@@ -134,6 +136,10 @@ impl<const D: usize> Scheme for DualSupport<D> {
     ) {
         let (Some(made), at) = (Made::of(field), self.columns(state)) else { return };
         particles.iter().for_each(|&a| self.push_field(made, &at, a as usize, values));
+    }
+
+    fn phases(&self) -> Vec<&Phase> {
+        vec![self.stages.phase()]
     }
 
     fn bodies(&self) -> &[u32] {

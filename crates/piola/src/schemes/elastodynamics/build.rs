@@ -6,6 +6,7 @@ use thiserror::Error;
 use super::edges::{self, Edges};
 use super::fields::{ColumnsMut, Made};
 use super::holes::Hole;
+use super::stages;
 use super::tractions::Body;
 use super::{Configuration, Elastodynamics, Form, Mixture, Settings, stable_step::Bound};
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -14,10 +15,10 @@ use crate::fields::width;
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
 use crate::operators::{Cover, FoldedGradient, GradientForm, Mirror, OperatorError, images};
-use crate::schemes::InputError;
 use crate::schemes::input::{
     check_conditions, check_index, check_lengths, check_particle, check_particles,
 };
+use crate::schemes::{InputError, StageFault};
 use crate::{Tensor, Vector};
 
 /// All that the formulation is bound to.
@@ -59,6 +60,9 @@ pub struct ElastodynamicsInput<const D: usize> {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ElastodynamicsError {
+    /// Stages that do not fit together.
+    #[error(transparent)]
+    Stages(#[from] StageFault),
     /// A matrix does not exist.
     #[error(transparent)]
     Operator(#[from] OperatorError),
@@ -243,6 +247,8 @@ impl<const D: usize> Elastodynamics<D> {
             not_convex: None,
             body_forces: input.body_forces,
             is_evaluated: false,
+            has_matrices: true,
+            stages: stages::plan()?,
             displacement: vec![Vector::zeros(); count + data],
             velocity: vec![Vector::zeros(); with_edges],
             acceleration: vec![Vector::zeros(); with_edges],

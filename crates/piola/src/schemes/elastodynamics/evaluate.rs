@@ -36,13 +36,8 @@ impl<const D: usize> Elastodynamics<D> {
         }
     }
 
-    /// Gradient, stress, tension and internal force of all particles at the loaded state.
-    pub(super) fn evaluate(&mut self, time: f64, at: &Columns<'_, D>) {
-        if self.settings.configuration == Configuration::Updated && !self.rebuild() {
-            // No matrices: two particles meet. The state that follows is refused as not finite.
-            self.force.fill(Vector::from_element(f64::NAN));
-            return;
-        }
+    /// Displacement gradients of the loaded state, and their rates where something dissipates.
+    pub(super) fn fill_gradients(&mut self, time: f64, at: &Columns<'_, D>) {
         self.continue_displacement(time);
         let data = self.plane_data(&self.displacement);
         self.matrix.gradient(&self.displacement, &data, &mut self.gradient);
@@ -55,6 +50,10 @@ impl<const D: usize> Elastodynamics<D> {
         if self.settings.configuration == Configuration::Updated {
             self.turn_to_reference();
         }
+    }
+
+    /// Stresses of the gradients.
+    pub(super) fn fill_stresses(&mut self) {
         let mut stress = std::mem::take(&mut self.stress);
         parallel::for_each_chunk(&mut stress, |first, rows| {
             for (offset, stress) in rows.iter_mut().enumerate() {
@@ -66,6 +65,10 @@ impl<const D: usize> Elastodynamics<D> {
             edges.overwrite(&mut stress, |_| 1.0);
         }
         self.stress = stress;
+    }
+
+    /// What forces gather of the stresses.
+    pub(super) fn fill_tensions(&mut self) {
         let mut tension = std::mem::take(&mut self.tension);
         let is_viscous = self.settings.is_viscous();
         parallel::for_each_chunk(&mut tension, |first, rows| {
@@ -87,6 +90,11 @@ impl<const D: usize> Elastodynamics<D> {
             edges.overwrite(&mut tension, |a| self.particles.volume[a]);
         }
         self.tension = tension;
+    }
+
+    /// Internal forces.
+    pub(super) fn fill_forces(&mut self) {
+        let data = self.plane_data(&self.displacement);
         let mut force = std::mem::take(&mut self.force);
         match &self.edges {
             Some(edges) => {
@@ -128,7 +136,7 @@ impl<const D: usize> Elastodynamics<D> {
     }
 
     /// Makes the matrices of the places of the moment; whether they exist.
-    fn rebuild(&mut self) -> bool {
+    pub(super) fn rebuild(&mut self) -> bool {
         let Some(mut known) = self.edges.take() else { return true };
         let mut particles = self.particles.clone();
         for (place, displacement) in particles.position.iter_mut().zip(&self.displacement) {

@@ -1,6 +1,7 @@
 //! The columns of the formulation and its fields.
 
 use super::Elastodynamics;
+use super::stages::Pass;
 use crate::fields::columns;
 use crate::schemes::solid::{Measure, append_measure, append_rows};
 
@@ -33,8 +34,9 @@ impl<const D: usize> Elastodynamics<D> {
             // Without edges and dissipation all follows from displacements.
             let is_elastic = self.edges.is_none() && !self.settings.is_viscous();
             if !(is_elastic && self.is_evaluated_at(&at)) {
-                self.load(&at);
-                self.evaluate(time, &at);
+                for pass in Pass::INTERNAL {
+                    self.run(pass, time, &at, &mut []);
+                }
             }
         } else {
             let mut rate = std::mem::take(&mut self.rate);

@@ -26,6 +26,7 @@ mod settings;
 mod slopes;
 mod split;
 mod stable_step;
+mod stages;
 mod tractions;
 
 pub use build::{ElastodynamicsError, ElastodynamicsInput};
@@ -40,6 +41,7 @@ use crate::boundaries::{BodyForce, traction::Loaded};
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
 use crate::operators::{FoldedGradient, FoldedHourglass, Mirror};
+use crate::schemes::stages::Stages;
 use crate::{Tensor, Vector};
 
 use edges::Edges;
@@ -72,6 +74,10 @@ pub struct Elastodynamics<const D: usize> {
     prescribed: PrescribedComponents,
     /// Whether gradients and forces are those of the displacements at hand.
     is_evaluated: bool,
+    /// Whether there are matrices at the places of the moment.
+    has_matrices: bool,
+    /// The stages of an evaluation.
+    stages: Stages<stages::Pass>,
     displacement: Vec<Vector<D>>,
     /// Velocities and accelerations with the data of edges behind; empty without edges.
     velocity: Vec<Vector<D>>,

@@ -5,8 +5,9 @@ use super::{ENERGIES, Elastodynamics, IMPULSES, MECHANISMS};
 use crate::fields::FieldDescription;
 use crate::parallel;
 use crate::schemes::look::convexity_is_lost;
+use crate::schemes::stages::Stages;
 use crate::schemes::{
-    Capability, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit,
+    Capability, Health, Particle, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 /// What the formulation is called and what it shows.
@@ -39,9 +40,9 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let at = self.columns(state);
-        self.load(&at);
-        self.evaluate(time, &at);
-        self.external_pass(time, &at, rate);
+        let mut stages = std::mem::replace(&mut self.stages, Stages::none("rates"));
+        stages.run(|pass| self.run(pass, time, &at, rate));
+        self.stages = stages;
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
@@ -101,6 +102,10 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     ) {
         let (Some(made), at) = (Made::of(field), self.columns(state)) else { return };
         particles.iter().for_each(|&a| self.push_field(made, &at, a as usize, values));
+    }
+
+    fn phases(&self) -> Vec<&Phase> {
+        vec![self.stages.phase()]
     }
 
     fn bodies(&self) -> &[u32] {

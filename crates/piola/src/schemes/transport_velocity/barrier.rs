@@ -60,10 +60,6 @@ impl<const D: usize> TransportVelocity<D> {
                 };
             }
         });
-        let holds_any = |place: usize| f64::from(u8::from(holds[place].wall != u32::MAX));
-        if parallel::maximum(holds.len(), 0.0, holds_any) > 0.0 {
-            self.bear(&holds);
-        }
         if let Shifting::Sun { .. } = self.settings.shifting {
             parallel::for_each_pair_of_chunks(&mut self.sides, &mut holds, |_, sides, holds| {
                 for (side, hold) in sides.iter_mut().zip(holds) {
@@ -75,9 +71,14 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Adds what walls do to the fluid to the forces of both.
-    fn bear(&mut self, holds: &[Hold<D>]) {
+    pub(super) fn bear(&mut self) {
+        let holds = &self.holds;
+        let holds_any = |place: usize| f64::from(u8::from(holds[place].wall != u32::MAX));
+        if parallel::maximum(holds.len(), 0.0, holds_any) == 0.0 {
+            return;
+        }
         let mut forces = std::mem::take(&mut self.forces);
-        let (list, sides) = (self.support.list(), &self.sides);
+        let (list, sides, holds) = (self.support.list(), &self.sides, &self.holds);
         parallel::for_each_chunk(&mut forces, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {

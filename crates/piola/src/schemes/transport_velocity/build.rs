@@ -20,6 +20,7 @@ use crate::operators::MovingSupport;
 use crate::schemes::input::{
     check_index, check_lengths, check_materials, check_particles, check_selected,
 };
+use crate::schemes::stages::{StageFault, Stages};
 use crate::schemes::{Initial, InputError, SplitScheme};
 use crate::{Vector, parallel};
 
@@ -85,6 +86,9 @@ pub enum TransportVelocityError {
         /// Its own in m.
         got: f64,
     },
+    /// Stages that do not fit together.
+    #[error(transparent)]
+    Stages(#[from] StageFault),
     /// Parts that do not fit together.
     #[error(transparent)]
     Input(#[from] InputError),
@@ -195,6 +199,9 @@ impl<const D: usize> TransportVelocity<D> {
             chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
             continua,
             solids,
+            drift: Stages::none("drift"),
+            accelerate: Stages::none("accelerate"),
+            fastest: 0.0,
             guard: None,
             removed: Vec::new(),
             lost: None,
@@ -209,6 +216,7 @@ impl<const D: usize> TransportVelocity<D> {
             motion,
             sliding,
         };
+        scheme.plan()?;
         scheme.begin(&initial)?;
         Ok(scheme)
     }

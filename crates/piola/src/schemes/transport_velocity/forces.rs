@@ -94,7 +94,6 @@ impl<const D: usize> TransportVelocity<D> {
     /// of the fluid.
     pub(super) fn force_pass(&mut self) {
         if self.solids.is_some() {
-            self.tension_pass();
             return self.solid_force_pass();
         }
         let mut forces = std::mem::take(&mut self.forces);

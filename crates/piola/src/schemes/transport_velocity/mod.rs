@@ -45,6 +45,7 @@ mod shifting;
 mod sides;
 mod solids;
 mod split;
+mod stages;
 mod surface;
 mod walls;
 
@@ -52,6 +53,7 @@ use crate::Vector;
 use crate::boundaries::{BodyForce, prescribed::PrescribedComponents};
 use crate::geometry::Particles;
 use crate::operators::MovingSupport;
+use crate::schemes::stages::Stages;
 
 pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
 pub use drift::Rates;
@@ -70,6 +72,7 @@ use inspect::ChunkFigures;
 use shifting::Iteration;
 use sides::Side;
 use solids::{Continua, Solids};
+use stages::Pass;
 use surface::Opening;
 use walls::{WallParticle, WallValues};
 
@@ -93,6 +96,11 @@ pub struct TransportVelocity<const D: usize> {
     body_forces: Vec<BodyForce<D>>,
     /// The state at the start, with its accelerations.
     start: Vec<f64>,
+    /// The stages of a step.
+    drift: Stages<Pass>,
+    accelerate: Stages<Pass>,
+    /// The largest speed that the last pass over densities has seen, in m/s.
+    fastest: f64,
     // Scratch, by place.
     sides: Vec<Side<D>>,
     densities: Vec<f64>,

@@ -20,10 +20,12 @@ impl<const D: usize> TransportVelocity<D> {
         self.correct_gradients();
         self.wall_pass(time);
         self.rate_pass(time);
+        self.tension_pass();
         self.force_pass();
         self.add_body_forces(time);
         self.hold_accelerations();
         self.hold_off();
+        self.bear();
     }
 
     /// The terms of the equations at a state, particle by particle, for those who want to see

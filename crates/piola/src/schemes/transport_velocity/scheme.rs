@@ -5,7 +5,7 @@ use super::ledger::Tail;
 use super::{ENERGIES, IMPULSES, MECHANISMS, TransportVelocity};
 use crate::fields::FieldDescription;
 use crate::schemes::{
-    Capability, Escape, Health, Particle, Scheme, SchemeDescription, SplitScheme, StepLimit,
+    Capability, Escape, Health, Particle, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 /// Names and units of the figures of the formulation.
@@ -115,6 +115,10 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
         let Some(made) = Made::of(field) else { return };
         let at = self.columns(state);
         particles.iter().for_each(|&a| self.push_field(made, a as usize, (&at, state), values));
+    }
+
+    fn phases(&self) -> Vec<&Phase> {
+        vec![self.drift.phase(), self.accelerate.phase()]
     }
 
     fn bodies(&self) -> &[u32] {

@@ -1,8 +1,10 @@
 //! The formulation as kick-drift-kick integrators see it, theory (33).
 
-use super::{ColumnsMut, DensityRule, PressureRule, Rates, Shifting, TransportVelocity};
+use super::stages::Instant;
+use super::{ColumnsMut, DensityRule, Rates, Shifting, TransportVelocity};
 use crate::boundaries::BodyForce;
 use crate::schemes::SplitScheme;
+use crate::schemes::stages::Stages;
 use crate::{Vector, parallel};
 
 impl<const D: usize> SplitScheme for TransportVelocity<D> {
@@ -20,24 +22,28 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
     }
 
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
-        let middle = time + 0.5 * step;
-        self.hold_velocities(middle, state);
-        if let Shifting::Iterative { .. } = self.settings.shifting {
-            self.iterate_positions(step, state);
-        }
-        self.load(state);
-        self.push_apart(step, state);
-        self.correct_gradients();
-        self.wall_pass(middle);
+        let middle = Instant { time: time + 0.5 * step, step };
+        let mut stages = std::mem::replace(&mut self.drift, Stages::none("drift"));
+        stages.run(|pass| self.run(pass, middle, state));
+        self.drift = stages;
+    }
+
+    fn accelerate(&mut self, time: f64, state: &mut [f64]) {
+        let end = Instant { time, step: 0.0 };
+        let mut stages = std::mem::replace(&mut self.accelerate, Stages::none("accelerate"));
+        stages.run(|pass| self.run(pass, end, state));
+        self.accelerate = stages;
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// Moves particles with the rates of the last pass, half way through a step in s at a time in s.
+    pub(super) fn move_particles(&mut self, middle: f64, step: f64, state: &mut [f64]) {
         if self.solids.is_some() {
-            self.rate_pass(middle);
             return self.drift_solids(step, middle, state);
         }
         let evolves = self.settings.density == DensityRule::Continuity;
-        let diffuses = matches!(self.settings.pressure, PressureRule::Edac { .. });
-        if evolves || diffuses {
-            self.rate_pass(middle);
-        }
+        let diffuses = !self.settings.is_algebraic();
         let (own, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
         let count = places.len();
@@ -64,20 +70,10 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         self.move_walls(step, middle, state);
     }
 
-    fn accelerate(&mut self, time: f64, state: &mut [f64]) {
-        self.remove_escaped(state);
-        let is_fluid = self.solids.is_none();
-        let algebraic = is_fluid && self.settings.pressure == PressureRule::StateEquation;
-        let before = if algebraic { self.compression_energy(state) } else { 0.0 };
-        self.load(state);
-        let fastest = self.update_density_and_pressure();
-        self.correct_gradients();
-        self.wall_pass(time);
-        self.force_pass();
-        self.add_body_forces(time);
-        self.hold_accelerations();
-        self.shift(fastest);
-        self.hold_off();
+    /// Writes what the passes have found to the state, with the powers of all accelerations.
+    pub(super) fn store_all(&mut self, state: &mut [f64]) {
+        let follows = self.solids.is_none() && self.settings.is_algebraic();
+        let before = if follows { self.compression_energy(state) } else { 0.0 };
         let (own, tail) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
         let sums = parallel::sums_over_parts(places.len(), own, |first, mut own, sums| {
@@ -94,15 +90,13 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
         if let Some(number) = self.lost {
             self.parts(state).0.kick[number][0] = f64::NAN;
         }
-        if algebraic {
+        if follows {
             let gained = self.compression_energy(state) - before;
             let (_, tail) = self.parts(state);
             Self::book_pressure(gained, tail);
         }
     }
-}
 
-impl<const D: usize> TransportVelocity<D> {
     /// Writes what the passes have found of a particle to entry k of columns.
     fn store(&self, [number, place, k]: [usize; 3], own: &mut ColumnsMut<'_, D>) {
         let (side, forces) = (&self.sides[place], &self.forces[place]);

@@ -79,13 +79,17 @@ impl<const D: usize> TransportVelocity<D> {
     /// Most particles are far from them. Their neighbours are looked through for marks only: first for
     /// those of a sharp normal, then for those of a surface.
     pub(super) fn find_surfaces(&mut self) {
-        let mut openings = std::mem::take(&mut self.openings);
-        let mut marks = std::mem::take(&mut self.marks);
-        let mut found = std::mem::take(&mut self.found);
+        self.sharpen();
+        self.mark_surfaces();
+        self.reach_surfaces();
+    }
+
+    /// Fills the sharp normals and marks who has one.
+    pub(super) fn sharpen(&mut self) {
         let h = self.support.smoothing_length();
-        let even_count = self.even_count();
         let (forces, list) = (&self.forces, self.support.list());
-        parallel::for_each_pair_of_chunks(&mut openings, &mut marks, |first, rows, marks| {
+        let (openings, marks) = (&mut self.openings, &mut self.marks);
+        parallel::for_each_pair_of_chunks(openings, marks, |first, rows, marks| {
             for (offset, (row, mark)) in rows.iter_mut().zip(marks).enumerate() {
                 let place = first + offset;
                 *row = Opening { reach: h, ..Opening::default() };
@@ -96,7 +100,14 @@ impl<const D: usize> TransportVelocity<D> {
                 }
             }
         });
-        let (sharp, sharp_marks): (&[Opening<D>], &[bool]) = (&openings, &marks);
+    }
+
+    /// Fills the smoothed normals and marks who is on a surface.
+    pub(super) fn mark_surfaces(&mut self) {
+        let mut found = std::mem::take(&mut self.found);
+        let even_count = self.even_count();
+        let list = self.support.list();
+        let (sharp, sharp_marks): (&[Opening<D>], &[bool]) = (&self.openings, &self.marks);
         parallel::for_each_chunk(&mut found, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
@@ -110,13 +121,20 @@ impl<const D: usize> TransportVelocity<D> {
                 }
             }
         });
-        parallel::for_each_pair_of_chunks(&mut marks, &mut openings, |first, marks, rows| {
+        let (openings, marks) = (&mut self.openings, &mut self.marks);
+        parallel::for_each_pair_of_chunks(marks, openings, |first, marks, rows| {
             for (offset, (mark, row)) in marks.iter_mut().zip(rows).enumerate() {
                 (row.normal, row.is_surface) = found[first + offset];
                 *mark = row.is_surface;
             }
         });
-        let surfaces: &[bool] = &marks;
+        self.found = found;
+    }
+
+    /// Fills how far surfaces are.
+    pub(super) fn reach_surfaces(&mut self) {
+        let mut openings = std::mem::take(&mut self.openings);
+        let (list, surfaces) = (self.support.list(), self.marks.as_slice());
         parallel::for_each_chunk(&mut openings, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
@@ -128,7 +146,7 @@ impl<const D: usize> TransportVelocity<D> {
                 }
             }
         });
-        (self.openings, self.found, self.marks) = (openings, found, marks);
+        self.openings = openings;
     }
 
     /// Whether a neighbour of the same continuum is marked.

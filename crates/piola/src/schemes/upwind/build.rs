@@ -16,6 +16,7 @@ use crate::schemes::InputError;
 use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
 };
+use crate::schemes::stages::{StageFault, Stages};
 use crate::solve::LinearError;
 use crate::{Vector, parallel};
 
@@ -45,6 +46,9 @@ pub struct UpwindInput<const D: usize> {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum UpwindError {
+    /// Stages that do not fit together.
+    #[error(transparent)]
+    Stages(#[from] StageFault),
     /// A gradient does not exist.
     #[error(transparent)]
     Operator(#[from] OperatorError),
@@ -120,8 +124,10 @@ impl<const D: usize> Upwind<D> {
             settings,
             materials,
             reference,
+            stages: Stages::none("rates"),
             implicit: None,
         };
+        scheme.plan()?;
         scheme.update_body_acceleration(0.0);
         if let Some(settings) = input.implicit {
             scheme.implicit = Some(Box::new(Implicit::new(&scheme, settings)?));

@@ -41,10 +41,10 @@ use crate::geometry::Particles;
 use crate::operators::{LeastSquares, PairAreas, Support};
 use crate::schemes::NEWTON_ITERATIONS;
 use crate::schemes::momentum::MOST_COMPONENTS;
+use crate::schemes::stages::Stages;
 
 pub use build::{UpwindError, UpwindInput};
 pub use implicit::{ImplicitSettings, StepEquations};
-pub use passes::PASSES;
 pub use scheme::DESCRIPTION;
 pub use settings::{Material, Settings, WaveSpeed};
 
@@ -78,6 +78,8 @@ pub struct Upwind<const D: usize> {
     /// Acceleration by body forces: constant in time if all of them are steady.
     body_acceleration: Vec<Vector<D>>,
     steady_body_force: bool,
+    /// The stages of an evaluation.
+    stages: Stages<passes::Pass>,
     /// External force of the tractions on each particle in N, with the particles that have one.
     loaded: Vec<Loaded<D>>,
     sides: Vec<Side<f64, D>>,

@@ -2,38 +2,79 @@
 
 use super::{Side, Slope, Upwind};
 use crate::schemes::Scheme;
+use crate::schemes::stages::{Stage, StageFault, Stages};
 use crate::{Tensor, Vector};
 
-/// The passes of one evaluation, in their order.
-pub const PASSES: [&str; 4] = ["local", "slopes", "pairs", "boundary"];
+/// A pass over particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pass {
+    /// Body forces, where they change in time.
+    BodyForces,
+    /// What each particle shows its neighbours.
+    Local,
+    /// Slopes for the reconstruction.
+    Slopes,
+    /// Forces, rates of the deformation and dissipation.
+    Pairs,
+    /// Tractions and prescribed motion.
+    Boundary,
+}
+
+const STATE: [&str; 4] = ["velocity", "volume_ratio", "position", "deformation_gradient"];
+const SIDE: &[&str] = &["side.position", "side.velocity", "side.cofactor", "side.pressure"];
+
+impl Pass {
+    fn stage(self) -> Stage {
+        let stage =
+            |name, reads, gathers, writes, shows| Stage { name, reads, gathers, writes, shows };
+        match self {
+            Self::BodyForces => stage("body_forces", &[], &[], &["body_acceleration"], &[]),
+            Self::Local => stage("local", &STATE, &[], &[], SIDE),
+            Self::Slopes => stage("slopes", SIDE, SIDE, &[], &["slopes"]),
+            Self::Pairs => {
+                let gathers = &["side.velocity", "side.cofactor", "side.pressure", "slopes"];
+                stage("pairs", SIDE, gathers, &["rate", "ledger"], &[])
+            }
+            Self::Boundary => stage("boundary", &["rate", "ledger"], &[], &["rate", "ledger"], &[]),
+        }
+    }
+}
 
 impl<const D: usize> Upwind<D> {
-    /// [`Scheme::rates`] that calls `done` with the name of each pass when it has ended, for those
-    /// who want to know where time goes.
-    pub fn rates_by_pass(
-        &mut self,
-        time: f64,
-        state: &[f64],
-        rate: &mut [f64],
-        mut done: impl FnMut(&'static str),
-    ) {
-        if !self.steady_body_force {
-            self.update_body_acceleration(time);
+    /// Puts the stages of an evaluation together.
+    ///
+    /// # Errors
+    /// They do not fit together.
+    pub(super) fn plan(&mut self) -> Result<(), StageFault> {
+        let mut passes = vec![Pass::Local, Pass::Pairs, Pass::Boundary];
+        let mut state = STATE.to_vec();
+        match self.settings.reconstruction {
+            true => passes.insert(1, Pass::Slopes),
+            // Without reconstruction slopes are zero.
+            false => state.push("slopes"),
         }
-        self.local_pass(state);
-        done(PASSES[0]);
-        self.slope_pass();
-        done(PASSES[1]);
-        self.pair_pass(rate);
-        done(PASSES[2]);
-        self.boundary_pass(time, rate);
-        done(PASSES[3]);
+        if !self.steady_body_force {
+            passes.insert(0, Pass::BodyForces);
+        }
+        self.stages = Stages::new("rates", &state, passes, Pass::stage)?;
+        Ok(())
     }
 
-    /// Bytes that each pass of one evaluation reads or writes, every array counted once: what is
+    /// Runs one pass of the rates of `state` at `time`.
+    pub(super) fn run(&mut self, pass: Pass, time: f64, state: &[f64], rate: &mut [f64]) {
+        match pass {
+            Pass::BodyForces => self.update_body_acceleration(time),
+            Pass::Local => self.local_pass(state),
+            Pass::Slopes => self.slope_pass(),
+            Pass::Pairs => self.pair_pass(rate),
+            Pass::Boundary => self.boundary_pass(time, rate),
+        }
+    }
+
+    /// Bytes that one evaluation reads or writes, every array counted once a pass: what is
     /// left to move when the neighbours of a particle are all found in cache. The boundary pass
     /// touches few particles and counts as nothing.
-    pub fn streamed_bytes(&self) -> [usize; PASSES.len()] {
+    pub fn streamed_bytes(&self) -> usize {
         let (count, pairs) = (self.particle_count(), self.support.list.pairs());
         let row = self.width() * size_of::<f64>();
         let vector = size_of::<Vector<D>>();
@@ -46,8 +87,8 @@ impl<const D: usize> Upwind<D> {
         let volume = size_of::<f64>();
         let pairwise = self.areas.memory() + count * (side + vector + reference + volume + row);
         match self.settings.reconstruction {
-            true => [local, slopes, pairwise + count * slope, 0],
-            false => [local, 0, pairwise, 0],
+            true => local + slopes + pairwise + count * slope,
+            false => local + pairwise,
         }
     }
 }

@@ -5,8 +5,9 @@ use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Upwind};
 use crate::fields::FieldDescription;
+use crate::schemes::stages::Stages;
 use crate::schemes::{
-    Capability, Health, Particle, PartitionedScheme, Scheme, SchemeDescription, StepLimit,
+    Capability, Health, Particle, PartitionedScheme, Phase, Scheme, SchemeDescription, StepLimit,
     ThetaScheme,
 };
 use crate::solve::Costs;
@@ -48,7 +49,9 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        self.rates_by_pass(time, state, rate, |_| {});
+        let mut stages = std::mem::replace(&mut self.stages, Stages::none("rates"));
+        stages.run(|pass| self.run(pass, time, state, rate));
+        self.stages = stages;
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
@@ -99,6 +102,10 @@ impl<const D: usize> Scheme for Upwind<D> {
     ) {
         let (Some(made), at) = (Made::of(field), self.columns(state)) else { return };
         particles.iter().for_each(|&a| self.push_field(made, &at, a as usize, values));
+    }
+
+    fn phases(&self) -> Vec<&Phase> {
+        vec![self.stages.phase()]
     }
 
     fn bodies(&self) -> &[u32] {

@@ -13,17 +13,14 @@ const MOST_MACH: f64 = 0.25;
 impl<const D: usize> TransportVelocity<D> {
     /// Replaces the deviations of the sides by those of the current places,
     /// `d_a = -f Ma 2h c sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab`, CTVF (35), where the Mach
-    /// number is that of the largest speed now, of solids by theory (76): `Ma c = max |u|`, `fastest` in m/s. Near
+    /// number is that of the largest speed now, of solids by theory (76): `Ma c = max |u|`. Near
     /// free surfaces the sum has the smaller support of CTVF algorithm 1, and (44) holds: theory (27), (30). As
     /// in the method's source, no deviation is larger than half of the largest speed.
-    pub(in super::super) fn shift(&mut self, fastest: f64) {
+    pub(in super::super) fn shift(&mut self) {
         let Shifting::Sun { factor } = self.settings.shifting else { return };
-        let speed = fastest.min(MOST_MACH * self.fluid.wave_speed);
+        let speed = self.fastest.min(MOST_MACH * self.fluid.wave_speed);
         let scale = -factor * speed * 2.0 * self.support.smoothing_length();
         let most = 0.5 * speed;
-        if self.settings.free_surface {
-            self.find_surfaces();
-        }
         let mut sides = std::mem::take(&mut self.sides);
         if self.settings.free_surface {
             let volumes = &mut self.densities;

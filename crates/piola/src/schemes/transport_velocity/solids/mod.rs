@@ -169,6 +169,16 @@ impl<const D: usize> Solids<D> {
         &self.rates[place].common
     }
 
+    /// Whether gradients are corrected.
+    pub fn is_corrected(&self) -> bool {
+        !self.corrections.is_empty()
+    }
+
+    /// Whether anything moves as prescribed.
+    pub fn is_fixed(&self) -> bool {
+        self.is_held.contains(&true)
+    }
+
     /// Whether bulk waves are as fast in all solids.
     fn is_uniform(&self) -> bool {
         let speeds = || self.materials.iter().map(|solid| solid.state.wave_speed);

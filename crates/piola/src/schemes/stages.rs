@@ -1,0 +1,221 @@
+//! An evaluation as a list of stages, each with what it reads, gathers and writes.
+
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// One stage of an evaluation: a pass over all particles.
+///
+/// What a stage writes of a particle only that particle reads, unless the stage shows it: neighbours may
+/// gather what has been shown. Where particles are spread over memories that do not see each other,
+/// what is shown is what has to be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stage {
+    /// Its name.
+    pub name: &'static str,
+    /// Columns that it reads of a particle itself.
+    pub reads: &'static [&'static str],
+    /// Columns that it reads of neighbours.
+    pub gathers: &'static [&'static str],
+    /// Columns that it writes.
+    pub writes: &'static [&'static str],
+    /// Columns that it writes and neighbours may read from then on.
+    pub shows: &'static [&'static str],
+}
+
+/// A list of stages that cannot be run one after another.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum StageFault {
+    /// Something is used that is not there.
+    #[error("the stage `{stage}` reads `{column}`, which no stage before it writes")]
+    NotWritten {
+        /// The stage.
+        stage: &'static str,
+        /// What it reads.
+        column: &'static str,
+    },
+    /// Something is read of neighbours that they do not show.
+    #[error("the stage `{stage}` gathers `{column}`, which is not shown since it was written")]
+    NotShown {
+        /// The stage.
+        stage: &'static str,
+        /// What it gathers.
+        column: &'static str,
+    },
+}
+
+/// A stop watch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Watch {
+    /// Time so far.
+    pub total: Duration,
+    /// How often it ran.
+    pub calls: u64,
+}
+
+impl Watch {
+    /// One that has not run.
+    pub const ZERO: Self = Self { total: Duration::ZERO, calls: 0 };
+
+    /// Runs `body` and adds the time it takes.
+    pub fn time<T>(&mut self, body: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let value = body();
+        self.total += start.elapsed();
+        self.calls += 1;
+        value
+    }
+}
+
+/// Part of a step, as a list of stages with the time that each has taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// What the part of the step is called, for example `drift`.
+    pub name: &'static str,
+    /// Its stages in their order.
+    pub stages: Vec<(Stage, Watch)>,
+}
+
+impl Phase {
+    /// Whether every stage finds what it needs: `state` are the columns that are there before the
+    /// first, and that neighbours may gather.
+    ///
+    /// # Errors
+    /// The first column that is used before it is there.
+    pub fn check(&self, state: &[&'static str]) -> Result<(), StageFault> {
+        let (mut written, mut shown) = (state.to_vec(), state.to_vec());
+        for (stage, _) in &self.stages {
+            let Stage { name: stage, reads, gathers, writes, shows } = *stage;
+            let lacks = |there: &[&str], column: &&&str| !there.contains(*column);
+            if let Some(column) = reads.iter().find(|column| lacks(&written, column)) {
+                return Err(StageFault::NotWritten { stage, column });
+            }
+            if let Some(column) = gathers.iter().find(|column| lacks(&shown, column)) {
+                return Err(StageFault::NotShown { stage, column });
+            }
+            shown.retain(|column| !writes.contains(column));
+            shown.extend(shows);
+            written.extend(writes.iter().chain(shows));
+        }
+        Ok(())
+    }
+
+    /// Text of the drawing in the language DOT: stages from top to bottom, and who hands which column
+    /// to whom, with a bold line where neighbours gather it.
+    pub fn dot(&self) -> String {
+        let mut text = format!("digraph {} {{\n  node [shape=box];\n", self.name);
+        let mut makers: Vec<(&str, &str)> = Vec::new();
+        for (stage, _) in &self.stages {
+            text += &format!("  \"{}\";\n", stage.name);
+            for (columns, style) in [(stage.reads, ""), (stage.gathers, ", style=bold")] {
+                let mut from: Vec<(&str, Vec<&str>)> = Vec::new();
+                for column in columns {
+                    let maker = makers.iter().rev().find(|(made, _)| made == column);
+                    let maker = maker.map_or("state", |(_, maker)| maker);
+                    match from.iter_mut().find(|(known, _)| *known == maker) {
+                        Some((_, columns)) => columns.push(column),
+                        None => from.push((maker, vec![column])),
+                    }
+                }
+                for (maker, columns) in from {
+                    let label = columns.join("\\n");
+                    text += &format!(
+                        "  \"{maker}\" -> \"{}\" [label=\"{label}\"{style}];\n",
+                        stage.name
+                    );
+                }
+            }
+            let made = stage.writes.iter().chain(stage.shows);
+            makers.extend(made.map(|column| (*column, stage.name)));
+        }
+        text + "}\n"
+    }
+}
+
+/// The stages of a phase with the passes of a formulation that run them.
+#[derive(Clone, Debug)]
+pub(crate) struct Stages<P> {
+    passes: Vec<P>,
+    phase: Phase,
+}
+
+impl<P: Copy> Stages<P> {
+    /// None, for a formulation that is being built.
+    pub fn none(name: &'static str) -> Self {
+        Self { passes: Vec::new(), phase: Phase { name, stages: Vec::new() } }
+    }
+
+    /// The stages of some passes.
+    ///
+    /// # Errors
+    /// See [`Phase::check`].
+    pub fn new(
+        name: &'static str,
+        state: &[&'static str],
+        passes: Vec<P>,
+        stage: impl Fn(P) -> Stage,
+    ) -> Result<Self, StageFault> {
+        let stages = passes.iter().map(|&pass| (stage(pass), Watch::ZERO)).collect();
+        let phase = Phase { name, stages };
+        phase.check(state)?;
+        Ok(Self { passes, phase })
+    }
+
+    /// Runs all passes and takes their times.
+    pub fn run(&mut self, mut body: impl FnMut(P)) {
+        for (&pass, (_, watch)) in self.passes.iter().zip(&mut self.phase.stages) {
+            watch.time(|| body(pass));
+        }
+    }
+
+    /// The stages with their times.
+    pub fn phase(&self) -> &Phase {
+        &self.phase
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MAKE: Stage =
+        Stage { name: "make", reads: &["x"], gathers: &[], writes: &["own"], shows: &["side"] };
+    const TAKE: Stage =
+        Stage { name: "take", reads: &["own"], gathers: &["side"], writes: &["y"], shows: &[] };
+
+    fn check(stages: &[Stage]) -> Result<(), StageFault> {
+        let stages = stages.iter().map(|stage| (*stage, Watch::ZERO)).collect();
+        Phase { name: "test", stages }.check(&["x"])
+    }
+
+    #[test]
+    fn nothing_is_used_before_it_is_there() {
+        assert_eq!(check(&[MAKE, TAKE]), Ok(()));
+        let error = check(&[TAKE]).expect_err("nobody writes it");
+        assert_eq!(error, StageFault::NotWritten { stage: "take", column: "own" });
+        let hidden = Stage { writes: &["own", "side"], shows: &[], ..MAKE };
+        let error = check(&[hidden, TAKE]).expect_err("it is not shown");
+        assert_eq!(
+            error.to_string(),
+            "the stage `take` gathers `side`, which is not shown since it was written"
+        );
+        // What was shown and is written again is out of date.
+        let again = Stage { name: "again", writes: &["side"], shows: &[], ..MAKE };
+        assert!(check(&[MAKE, again, TAKE]).is_err());
+    }
+
+    #[test]
+    fn stages_are_run_in_their_order_and_timed() {
+        let mut stages =
+            Stages::new("test", &["x"], vec![0, 1], |k| [MAKE, TAKE][k]).expect("good");
+        let mut seen = Vec::new();
+        stages.run(|pass| seen.push(pass));
+        stages.run(|pass| seen.push(pass));
+        assert_eq!(seen, [0, 1, 0, 1]);
+        assert!(stages.phase().stages.iter().all(|(_, watch)| watch.calls == 2));
+        let dot = stages.phase().dot();
+        assert!(dot.contains("\"make\" -> \"take\" [label=\"side\", style=bold];"), "{dot}");
+        assert!(dot.contains("\"state\" -> \"make\" [label=\"x\"];"), "{dot}");
+    }
+}
