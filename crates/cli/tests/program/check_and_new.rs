@@ -32,6 +32,21 @@ fn check_says_what_will_happen_and_runs_nothing() {
 }
 
 #[test]
+fn check_shows_the_stages_of_a_step() {
+    let place = Place::with_bar();
+    let (table, _) = place.run("check bar/case.toml --stages", 0);
+    assert_contains(&table, &["part", "gathers", "rates", "local", "pairs", "boundary"]);
+    let (drawing, _) = place.run("check bar/case.toml --stages=dot", 0);
+    assert_contains(&drawing, &["digraph rates {", "\"local\" -> \"pairs\"", "style=bold"]);
+    place.run("check bar/case.toml --stages=chart", 2);
+    // The record of a run has the time of each.
+    place.run("run bar/case.toml --out results", 0);
+    let record: serde_json::Value = serde_json::from_str(&place.read("results/run.json")).unwrap();
+    let passes = record["passes"].as_array().unwrap();
+    assert!(passes.iter().any(|pass| pass["name"] == "rates: pairs" && pass["calls"] != 0));
+}
+
+#[test]
 fn a_new_case_can_be_checked_run_and_verified() {
     let place = Place::new();
     let (stdout, _) = place.run("new first", 0);
