@@ -35,7 +35,7 @@ fn sums_of<L: PairLaw>(
     pair: &Of<L::Pair, f64>,
 ) -> Of<L::Sums, f64> {
     let mut sums = L::Sums::zero();
-    law.add(&law.center(me), other, pair, &mut sums);
+    law.add(me, other, pair, &mut sums);
     sums
 }
 
@@ -45,11 +45,11 @@ fn check<L: PairLaw>(name: &str, law: L) {
     let [me, others @ ..] = &sides;
     let pairs: [_; WIDTH] = std::array::from_fn(|k| some::<L::Pair>(0.05 + 0.21 * k as f64));
     let spread = |[x]: [f64; 1]| Lanes4::from(x);
-    let center = law.center(&L::Side::map([me], &spread));
+    let spread = L::Side::map([me], &spread);
     let other = L::Side::map(others.each_ref(), &Lanes4::load);
     let pair = L::Pair::map(pairs.each_ref(), &Lanes4::load);
     let mut lanes = L::Sums::zero();
-    law.add(&center, &other, &pair, &mut lanes);
+    law.add(&spread, &other, &pair, &mut lanes);
     let as_dual = |[x]: [f64; 1]| Dual64::from(x);
     let mut adds = false;
     for k in 0..WIDTH {
@@ -58,7 +58,7 @@ fn check<L: PairLaw>(name: &str, law: L) {
         assert_eq!(numbers::<L::Sums>(&lane), single, "{name}, lane {k}");
         let mut dual = L::Sums::zero();
         law.add(
-            &law.center(&L::Side::map([me], &as_dual)),
+            &L::Side::map([me], &as_dual),
             &L::Side::map([&others[k]], &as_dual),
             &L::Pair::map([&pairs[k]], &as_dual),
             &mut dual,
@@ -264,9 +264,9 @@ fn sum_of<L: PairLaw<Pair = MovingPair<2>>>(
     law: &L,
     side: impl Fn(Vector2<f64>) -> Of<L::Side, f64>,
 ) -> Of<L::Sums, f64> {
-    let center = law.center(&side(Vector2::zeros()));
+    let me = side(Vector2::zeros());
     let mut sums = L::Sums::zero();
-    around(L::NEEDS, &mut |place, pair| law.add(&center, &side(place), &pair, &mut sums));
+    around(L::NEEDS, &mut |place, pair| law.add(&me, &side(place), &pair, &mut sums));
     sums
 }
 
@@ -395,8 +395,8 @@ fn derivatives_of_laws_are_exact() {
     let mut other = fluid::FluidSide::map([&two], &as_dual);
     other.set(Dual64::from(two.mass()), Dual64::from(two.density), Dual64::new(two.pressure, 1.0));
     let mut sums = fluid::ForceSum::<2>::zero();
-    let center = law.center(&fluid::FluidSide::map([&one], &as_dual));
-    law.add(&center, &other, &MovingPair::map([&pair], &as_dual), &mut sums);
+    let me = fluid::FluidSide::map([&one], &as_dual);
+    law.add(&me, &other, &MovingPair::map([&pair], &as_dual), &mut sums);
     let expected = pair.separation * (-two.mass() * pair.slope / two.density.powi(2));
     let found = Components::<2>::map([&sums.pressure], &|[x]: [Dual64; 1]| x.eps);
     assert!((found - expected).norm() <= 1e-15);

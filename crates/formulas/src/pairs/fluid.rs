@@ -98,20 +98,6 @@ record! {
     }
 }
 
-/// A particle of the fluid in the middle of its sums.
-#[derive(Clone, Copy, Debug)]
-pub struct Center<T: Number, const D: usize> {
-    side: Side<T, D>,
-    inverse_density: T,
-}
-
-impl<T: Number, const D: usize> Center<T, D> {
-    #[inline(always)]
-    fn new(side: &Side<T, D>) -> Self {
-        Self { side: *side, inverse_density: side.density.recip() }
-    }
-}
-
 impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>
     Forces<D, CORRECTS, ARTIFICIAL, CROWDING>
 {
@@ -121,7 +107,7 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
     #[inline(always)]
     fn carry<T: Number>(
         &self,
-        me: &Center<T, D>,
+        me: &Side<T, D>,
         other: &Side<T, D>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
@@ -130,15 +116,15 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
         if CORRECTS != NONE {
             // V_b d_b . grad W_ab, and the same with the deviation of a.
             let carried = dot(&other.deviation, &pair.separation) * slope;
-            let mine = dot(&me.side.deviation, &pair.separation) * slope;
-            let ratio = other.density * me.inverse_density;
+            let mine = dot(&me.deviation, &pair.separation) * slope;
+            let ratio = other.density * me.density.recip();
             if CORRECTS == FULL {
                 for i in 0..D {
                     sums.carried[i] += other.velocity[i] * carried;
                 }
                 sums.stretch += mine + (mine - carried) * ratio;
             } else {
-                let jump = difference(&me.side.velocity, &other.velocity);
+                let jump = difference(&me.velocity, &other.velocity);
                 let opening = dot(&jump, &pair.separation) * slope;
                 for i in 0..D {
                     sums.carried[i] += other.velocity[i] * carried * self.0.stress;
@@ -165,29 +151,23 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
     type Pair = MovingPair<D>;
     type Side = FluidSide<D>;
     type Sums = ForceSum<D>;
-    type Center<T: Number> = Center<T, D>;
 
     const NEEDS: Needs = Self::NEEDS;
 
     #[inline(always)]
-    fn center<T: Number>(&self, me: &Side<T, D>) -> Center<T, D> {
-        Center::new(me)
-    }
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        me: &Center<T, D>,
+        me: &Side<T, D>,
         other: &Side<T, D>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
     ) {
         let slope = other.mass() * pair.slope;
-        let jump = difference(&me.side.velocity, &other.velocity);
+        let jump = difference(&me.velocity, &other.velocity);
         let scale =
-            fluid::exchange_scale(me.side.density + other.density, pair.square, self.0.softening);
+            fluid::exchange_scale(me.density + other.density, pair.square, self.0.softening);
         let exchange = fluid::diffusion(self.0.viscosity, pair.square, slope, scale);
-        let pressure = slope * (me.side.load + other.load);
+        let pressure = slope * (me.load + other.load);
         for i in 0..D {
             sums.pressure[i] -= pair.separation[i] * pressure;
             sums.viscosity[i] += jump[i] * exchange;
@@ -215,27 +195,21 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
     type Pair = MovingPair<D>;
     type Side = (FluidSide<D>, Components<D>);
     type Sums = ForceSum<D>;
-    type Center<T: Number> = Center<T, D>;
 
     const NEEDS: Needs = Forces::<D, CORRECTS, ARTIFICIAL, CROWDING>::NEEDS;
 
     #[inline(always)]
-    fn center<T: Number>(&self, (me, _): &Of<Self::Side, T>) -> Center<T, D> {
-        Center::new(me)
-    }
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        me: &Center<T, D>,
+        (me, _): &Of<Self::Side, T>,
         (other, shear): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
     ) {
         let ForceConstants { softening, viscosity, .. } = self.0.0;
         let wall = Wall { softening, viscosity };
-        let jump = difference(&me.side.velocity, shear);
-        wall.push([&me.side, other], &jump, pair, &mut sums.walls);
+        let jump = difference(&me.velocity, shear);
+        wall.push([me, other], &jump, pair, &mut sums.walls);
         self.0.carry(me, other, pair, sums);
     }
 }
@@ -273,14 +247,8 @@ impl<const D: usize> PairLaw for Wall<D> {
     type Pair = MovingPair<D>;
     type Side = (FluidSide<D>, Components<D>);
     type Sums = Components<D>;
-    type Center<T: Number> = Of<Self::Side, T>;
 
     const NEEDS: Needs = Needs::Slope;
-
-    #[inline(always)]
-    fn center<T: Number>(&self, me: &Of<Self::Side, T>) -> Self::Center<T> {
-        *me
-    }
 
     #[inline(always)]
     fn add<T: Number>(
@@ -332,14 +300,8 @@ impl<const D: usize, const CORRECTS: bool, const MOVES: bool, const FALLS: bool>
     type Pair = MovingPair<D>;
     type Side = (FluidSide<D>, Components<D>);
     type Sums = RateSum<D>;
-    type Center<T: Number> = Of<Self::Side, T>;
 
     const NEEDS: Needs = Needs::Slope;
-
-    #[inline(always)]
-    fn center<T: Number>(&self, me: &Of<Self::Side, T>) -> Self::Center<T> {
-        *me
-    }
 
     #[inline(always)]
     fn add<T: Number>(

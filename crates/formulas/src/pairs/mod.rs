@@ -11,7 +11,7 @@ pub mod solid;
 pub mod sums;
 pub mod wall;
 
-pub use record::{Components, Many, Nothing, Of, One, Record, Square};
+pub use record::{Components, Many, Of, One, Record, Square};
 
 use crate::Number;
 use crate::kernels::Needs;
@@ -43,19 +43,15 @@ pub trait PairLaw: Sync {
     type Side: Record;
     /// What is summed over neighbours.
     type Sums: Record;
-    /// What is made of the particle itself, once for all its neighbours.
-    type Center<T: Number>: Copy;
 
     /// What of the kernel the law reads.
     const NEEDS: Needs;
 
-    /// What the particle itself brings to its sums.
-    fn center<T: Number>(&self, me: &Of<Self::Side, T>) -> Self::Center<T>;
-
-    /// Adds the terms of one neighbour.
+    /// Adds the terms of a neighbour `other` of the particle `me`. What depends on `me` alone the compiler
+    /// takes out of the loop.
     fn add<T: Number>(
         &self,
-        me: &Self::Center<T>,
+        me: &Of<Self::Side, T>,
         other: &Of<Self::Side, T>,
         pair: &Of<Self::Pair, T>,
         sums: &mut Of<Self::Sums, T>,

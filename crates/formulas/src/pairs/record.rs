@@ -42,20 +42,6 @@ pub(crate) fn each<'a, S, T: Copy, const N: usize>(
 /// The struct of a family for numbers `T`.
 pub type Of<R, T> = <R as Record>::Of<T>;
 
-/// No number.
-#[derive(Clone, Copy, Debug)]
-pub struct Nothing;
-
-impl Record for Nothing {
-    type Of<T: Number> = ();
-
-    #[inline(always)]
-    fn zero<T: Number>() {}
-
-    #[inline(always)]
-    fn map<S: Number, T: Number, const N: usize>(_: [&(); N], _: &impl Fn([S; N]) -> T) {}
-}
-
 /// One number.
 #[derive(Clone, Copy, Debug)]
 pub struct One;

@@ -1,6 +1,6 @@
 //! Pair laws of solids in the transport-velocity formulation. Paper: CTVF, sections 3.2 and 4.4 to 4.7.
 
-use super::fluid::{FluidSide, Side};
+use super::fluid::FluidSide;
 use super::{
     Components, Many, MovingPair, Of, One, PairLaw, Record, Square, difference, dot, record,
 };
@@ -152,19 +152,13 @@ impl<const D: usize, const PLAIN: bool, const CONTACT: u8> PairLaw for Forces<D,
     type Pair = MovingPair<D>;
     type Side = StressedSide<D>;
     type Sums = ForceSum<D>;
-    type Center<T: Number> = Of<(FluidSide<D>, SolidTension<D>), T>;
 
     const NEEDS: Needs = Needs::Both;
 
     #[inline(always)]
-    fn center<T: Number>(&self, (me, _): &Of<Self::Side, T>) -> Self::Center<T> {
-        *me
-    }
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        me: &Self::Center<T>,
+        (me, _): &Of<Self::Side, T>,
         (other, own): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
@@ -210,19 +204,13 @@ impl<const D: usize, const PLAIN: bool, const CONTACT: u8> PairLaw
     type Pair = MovingPair<D>;
     type Side = StressedSide<D>;
     type Sums = ForceSum<D>;
-    type Center<T: Number> = Tension<T, D>;
 
     const NEEDS: Needs = Needs::Both;
 
     #[inline(always)]
-    fn center<T: Number>(&self, ((_, me), _): &Of<Self::Side, T>) -> Tension<T, D> {
-        *me
-    }
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        me: &Tension<T, D>,
+        ((_, me), _): &Of<Self::Side, T>,
         (other, _): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
@@ -243,19 +231,13 @@ impl<const D: usize> PairLaw for Wall<D> {
     type Pair = MovingPair<D>;
     type Side = (FluidSide<D>, SolidTension<D>);
     type Sums = Components<D>;
-    type Center<T: Number> = Tension<T, D>;
 
     const NEEDS: Needs = Needs::Slope;
 
     #[inline(always)]
-    fn center<T: Number>(&self, (_, me): &Of<Self::Side, T>) -> Tension<T, D> {
-        *me
-    }
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        me: &Tension<T, D>,
+        (_, me): &Of<Self::Side, T>,
         other: &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,
@@ -328,22 +310,13 @@ impl<const D: usize, const KIND: u8, const CARRIES: bool> PairLaw for Rates<D, K
     type Pair = MovingPair<D>;
     type Side = ((FluidSide<D>, SolidTension<D>), (Many<MATTER>, One));
     type Sums = RateSum<D>;
-    type Center<T: Number> = (Side<T, D>, T, [T; MATTER]);
 
     const NEEDS: Needs = Needs::Slope;
 
     #[inline(always)]
-    fn center<T: Number>(
-        &self,
-        ((me, tension), (matter, _)): &Of<Self::Side, T>,
-    ) -> Self::Center<T> {
-        (*me, tension.wave_speed, *matter)
-    }
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (me, wave_speed, matter): &Self::Center<T>,
+        ((me, mine), (matter, _)): &Of<Self::Side, T>,
         ((side, tension), (other_matter, own)): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut RateSums<T, D>,
@@ -369,7 +342,7 @@ impl<const D: usize, const KIND: u8, const CARRIES: bool> PairLaw for Rates<D, K
         }
         if KIND == ANY {
             let approach = dot(&jump, &pair.separation);
-            let speed = (*wave_speed + tension.wave_speed) * 0.5;
+            let speed = (mine.wave_speed + tension.wave_speed) * 0.5;
             let densities = me.density + side.density;
             let scale = fluid::exchange_scale(densities, pair.square, self.0.softening);
             let slope = side.mass() * pair.slope;
@@ -404,17 +377,13 @@ impl<const D: usize> PairLaw for Moments<D> {
     type Pair = MovingPair<D>;
     type Side = (FluidSide<D>, One);
     type Sums = Square<D>;
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Slope;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         (other, own): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut Of<Square<D>, T>,

@@ -19,17 +19,13 @@ impl<const D: usize> PairLaw for Density<D> {
     type Pair = MovingPair<D>;
     type Side = FluidSide<D>;
     type Sums = One;
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Value;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         other: &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sum: &mut T,
@@ -46,17 +42,13 @@ impl<const D: usize> PairLaw for Opening<D> {
     type Pair = MovingPair<D>;
     type Side = OwnSide<D>;
     type Sums = Components<D>;
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Slope;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         (other, own): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,
@@ -76,24 +68,18 @@ impl<const D: usize> PairLaw for VelocityGradient<D> {
     type Pair = MovingPair<D>;
     type Side = FluidSide<D>;
     type Sums = Square<D>;
-    type Center<T: Number> = Of<Components<D>, T>;
 
     const NEEDS: Needs = Needs::Slope;
 
     #[inline(always)]
-    fn center<T: Number>(&self, me: &Of<Self::Side, T>) -> Self::Center<T> {
-        me.velocity
-    }
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        velocity: &Self::Center<T>,
+        me: &Of<Self::Side, T>,
         other: &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut Of<Square<D>, T>,
     ) {
-        let jump = difference(velocity, &other.velocity);
+        let jump = difference(&me.velocity, &other.velocity);
         for i in 0..D {
             for j in 0..D {
                 sums[(i, j)] -= other.volume * jump[i] * (pair.separation[j] * pair.slope);
@@ -111,17 +97,13 @@ impl<const D: usize> PairLaw for SurfaceNormal<D> {
     type Pair = MovingPair<D>;
     type Side = (OwnSide<D>, Components<D>);
     type Sums = (One, Components<D>);
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Value;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         ((other, own), sharp): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         (density, normal): &mut Of<Self::Sums, T>,
@@ -152,17 +134,13 @@ impl<const D: usize> PairLaw for CrowdingWithin<D> {
     type Pair = MovingPair<D>;
     type Side = (One, One);
     type Sums = Components<D>;
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Value;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &(T, T)) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         (volume, own): &(T, T),
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,
@@ -191,17 +169,13 @@ impl<const D: usize> PairLaw for Displacement<D> {
     type Pair = MovingPair<D>;
     type Side = OwnSide<D>;
     type Sums = (One, Components<D>);
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Value;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         (other, own): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         (values, direction): &mut Of<Self::Sums, T>,
@@ -236,17 +210,13 @@ impl<const D: usize> PairLaw for Background<D> {
     type Pair = MovingPair<D>;
     type Side = OwnSide<D>;
     type Sums = Components<D>;
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Nothing;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         (other, own): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,

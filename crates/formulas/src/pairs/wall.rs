@@ -30,17 +30,13 @@ impl<const D: usize> PairLaw for Extrapolation<D> {
     type Pair = MovingPair<D>;
     type Side = FluidSide<D>;
     type Sums = Surroundings<D>;
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Value;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        _me: &Of<Self::Side, T>,
         other: &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sums: &mut Around<T, D>,
@@ -64,22 +60,18 @@ impl<const D: usize> PairLaw for StressExtrapolation<D> {
     type Pair = MovingPair<D>;
     type Side = (FluidSide<D>, Many<MATTER>);
     type Sums = (Surroundings<D>, Many<6>);
-    type Center<T: Number> = ();
 
     const NEEDS: Needs = Needs::Value;
 
     #[inline(always)]
-    fn center<T: Number>(&self, _: &Of<Self::Side, T>) {}
-
-    #[inline(always)]
     fn add<T: Number>(
         &self,
-        (): &(),
+        (me, _): &Of<Self::Side, T>,
         (other, matter): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         (around, deviator): &mut Of<Self::Sums, T>,
     ) {
-        Extrapolation.add(&(), other, pair, around);
+        Extrapolation.add(me, other, pair, around);
         for k in 0..6 {
             deviator[k] += pair.value * matter[k];
         }

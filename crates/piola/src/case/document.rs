@@ -208,6 +208,9 @@ fn whole_number(integer: &DeInteger<'_>) -> Option<i64> {
     i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }
 
+/// What to do about a unit behind a number.
+const WITHOUT_UNIT: &str = "write the number without a unit, `1.5`: all are of SI";
+
 /// One problem a line, with the commonest slips in plain words.
 fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Problem> {
     let mut spans: Vec<_> = errors
@@ -235,10 +238,16 @@ fn syntax_problem(text: &str, span: Range<usize>, message: &str) -> Problem {
         return Problem::new(place, "the values are nested too deeply", "too deep");
     }
     if message.starts_with("string values must be quoted") {
-        return if word.trim().is_empty() {
-            Problem::new(place, "a value is missing here", "expected a value")
-        } else {
-            Problem::new(place, format!("text stands in quotes: \"{word}\""), "no quotes")
+        let is_number = |first: &str| first.parse::<f64>().is_ok();
+        return match word.split_whitespace().next() {
+            None => Problem::new(place, "a value is missing here", "expected a value"),
+            Some(first) if first != word && is_number(first) => {
+                Problem::new(place, format!("a unit stands behind a number: {word}"), "a unit")
+                    .help(WITHOUT_UNIT)
+            }
+            Some(_) => {
+                Problem::new(place, format!("text stands in quotes: \"{word}\""), "no quotes")
+            }
         };
     }
     let problem = Problem::new(place, format!("this is not TOML: {message}"), "");
@@ -249,7 +258,7 @@ fn syntax_problem(text: &str, span: Range<usize>, message: &str) -> Problem {
     let unit = text[..span.end].ends_with(|last: char| last.is_alphabetic())
         || text[span.end..].starts_with(|next: char| next.is_alphabetic());
     if unit && (message.starts_with("invalid float") || message.starts_with("invalid integer")) {
-        return problem.help("write the number without a unit, `1.5`: all are of SI");
+        return problem.help(WITHOUT_UNIT);
     }
     problem
 }

@@ -8,11 +8,9 @@
 //! order of sums is the same on every machine and for every number of threads. Registers hold half of
 //! the lanes: a block of neighbours is gone through twice.
 
-use std::ops::ControlFlow;
-
 use multiversion::multiversion;
 use piola_formulas::kernels::Needs;
-use piola_formulas::pairs::{Nothing, Of, One, PairLaw, Record};
+use piola_formulas::pairs::{Of, One, PairLaw, Record};
 use piola_formulas::{Lanes, Lanes4, WIDTH};
 
 use super::LANES;
@@ -142,14 +140,6 @@ impl Source<One> for Same {
     }
 }
 
-impl Source<Nothing> for () {
-    fn own(&self, _slot: usize) {}
-
-    fn one(&self, _slot: usize, _other: usize) {}
-
-    fn four(&self, _slot: usize, _others: &[u32; WIDTH]) {}
-}
-
 /// What is read of the particle in the middle alone, by a function of its slot. Neighbours show zeros.
 pub struct OfCenter<F>(pub F);
 
@@ -242,8 +232,8 @@ impl<P: Pairs, L: PairLaw<Pair = P::Pair>, S: Source<L::Side>> Sum<P> for Term<L
         if count == 0 {
             return sums;
         }
-        let me = self.source.own(slot);
-        let center = self.law.center(&L::Side::map([&me], &|[x]: [f64; 1]| Lanes4::from(x)));
+        let own = self.source.own(slot);
+        let me = L::Side::map([&own], &|[x]: [f64; 1]| Lanes4::from(x));
         while count > 0 {
             for (half, kept) in sums.iter_mut().enumerate() {
                 let begin = half * WIDTH;
@@ -252,7 +242,7 @@ impl<P: Pairs, L: PairLaw<Pair = P::Pair>, S: Source<L::Side>> Sum<P> for Term<L
                 for first in (begin..count).step_by(LANES) {
                     let (others, pair) = pairs.four(block, first);
                     let other = self.source.four(slot, &others);
-                    self.law.add(&center, &other, &pair, &mut sum);
+                    self.law.add(&me, &other, &pair, &mut sum);
                 }
                 *kept = sum;
             }
@@ -263,10 +253,9 @@ impl<P: Pairs, L: PairLaw<Pair = P::Pair>, S: Source<L::Side>> Sum<P> for Term<L
 
     #[inline(always)]
     fn single(&self, pairs: &P, slot: usize, block: &mut P::Block, sums: &mut Of<L::Sums, f64>) {
-        let center = self.law.center(&self.source.own(slot));
-        let _ = visit(pairs, slot, self.among, L::NEEDS, block, |other, pair| {
-            self.law.add(&center, &self.source.one(slot, other), pair, sums);
-            ControlFlow::<()>::Continue(())
+        let me = self.source.own(slot);
+        visit(pairs, slot, self.among, L::NEEDS, block, |other, pair| {
+            self.law.add(&me, &self.source.one(slot, other), pair, sums);
         });
     }
 }
@@ -341,26 +330,24 @@ pub fn add_at<P: Pairs, M: Sum<P>>(
     sum.single(pairs, slot, block, sums);
 }
 
-/// Shows the neighbours of the particle in one slot until `look` breaks off with an answer.
-pub fn visit<P: Pairs, B>(
+/// Shows the neighbours of the particle in one slot, one after the other.
+pub fn visit<P: Pairs>(
     pairs: &P,
     slot: usize,
     among: Among,
     needs: Needs,
     block: &mut P::Block,
-    mut look: impl FnMut(usize, &Of<P::Pair, f64>) -> ControlFlow<B>,
-) -> Option<B> {
+    mut look: impl FnMut(usize, &Of<P::Pair, f64>),
+) {
     let mut row = pairs.row(slot, among);
     loop {
         let count = pairs.next(&mut row, needs, block);
         if count == 0 {
-            return None;
+            return;
         }
         for k in 0..count {
             let (other, pair) = pairs.one(block, k);
-            if let ControlFlow::Break(answer) = look(other, &pair) {
-                return Some(answer);
-            }
+            look(other, &pair);
         }
     }
 }

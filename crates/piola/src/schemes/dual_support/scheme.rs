@@ -4,7 +4,6 @@ use super::fields::{Columns, ColumnsMut, Made};
 use super::{DualSupport, ENERGIES, FIGURES, IMPULSES, MECHANISMS, Side};
 use crate::fields::FieldDescription;
 use crate::schemes::look::convexity_is_lost;
-use crate::schemes::stages::Stages;
 use crate::schemes::{
     Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Phase, Scheme,
     SchemeDescription, SplitScheme, StaticScheme, StepLimit,
@@ -63,7 +62,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let at = self.columns(state);
-        let mut stages = std::mem::replace(&mut self.stages, Stages::none("rates"));
+        let mut stages = std::mem::take(&mut self.stages);
         stages.run(|pass| self.run(pass, time, &at, rate));
         self.stages = stages;
     }

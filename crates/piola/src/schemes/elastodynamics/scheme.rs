@@ -5,7 +5,6 @@ use super::{ENERGIES, Elastodynamics, IMPULSES, MECHANISMS};
 use crate::fields::FieldDescription;
 use crate::parallel;
 use crate::schemes::look::convexity_is_lost;
-use crate::schemes::stages::Stages;
 use crate::schemes::{
     Capability, Health, Particle, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
@@ -40,7 +39,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let at = self.columns(state);
-        let mut stages = std::mem::replace(&mut self.stages, Stages::none("rates"));
+        let mut stages = std::mem::take(&mut self.stages);
         stages.run(|pass| self.run(pass, time, &at, rate));
         self.stages = stages;
     }

@@ -1,7 +1,5 @@
 //! What keeps fluid in front of walls, theory (80).
 
-use std::ops::ControlFlow;
-
 use piola_formulas::kernels::Needs;
 
 use super::{Shifting, TransportVelocity};
@@ -92,10 +90,9 @@ impl<const D: usize> TransportVelocity<D> {
                         let ratio = sides[other].mass() / sides[place].mass();
                         row.walls -= holds[other].acceleration * ratio;
                     }
-                    ControlFlow::<()>::Continue(())
                 };
                 let (pairs, needs) = (&self.support, Needs::Nothing);
-                let _ = visit(pairs, place, Among::Active, needs, &mut block, add);
+                visit(pairs, place, Among::Active, needs, &mut block, add);
             }
         });
         self.forces = forces;
@@ -110,9 +107,8 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let load = self.forces[place].total();
         let (pairs, needs) = (&self.support, Needs::Nothing);
-        let _ = visit(pairs, place, Among::Passive, needs, block, |wall, pair| {
+        visit(pairs, place, Among::Passive, needs, block, |wall, pair| {
             self.hold_by(wall, &pair.separation, place, &load, &mut hold);
-            ControlFlow::<()>::Continue(())
         });
         hold
     }

@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 use piola_formulas::pairs::sums::Density;
 
-use super::{DensityRule, PressureRule, Side, TransportVelocity};
+use super::{DensityRule, Side, TransportVelocity};
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::parallel;
 
@@ -33,7 +33,7 @@ impl<const D: usize> TransportVelocity<D> {
             return self.update_pressure_of_solids();
         }
         let sums = self.settings.density == DensityRule::Summation;
-        let algebraic = self.settings.pressure == PressureRule::StateEquation;
+        let algebraic = self.settings.is_algebraic();
         if sums {
             self.sum_densities();
         }

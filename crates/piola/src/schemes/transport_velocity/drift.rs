@@ -3,7 +3,7 @@
 use piola_formulas::fluid;
 use piola_formulas::pairs::fluid::{RateConstants, RateSums, Rates as Law};
 
-use super::{DensityRule, Divergence, PressureRule, TransportVelocity};
+use super::{DensityRule, Divergence, TransportVelocity};
 use crate::Vector;
 use crate::operators::{Among, OfCenter, Term, gather};
 
@@ -32,12 +32,7 @@ impl<const D: usize> TransportVelocity<D> {
         let corrections = self.settings.corrections;
         let constants = RateConstants {
             softening: fluid::softening(h),
-            diffusivity: match self.settings.pressure {
-                PressureRule::Edac { alpha } => {
-                    fluid::pressure_diffusivity(alpha, h, self.fluid.wave_speed)
-                }
-                PressureRule::StateEquation => 0.0,
-            },
+            diffusivity: self.settings.diffusivity(h, self.fluid.wave_speed),
         };
         let corrects = corrections.density || corrections.pressure;
         let moves = corrections.divergence == Divergence::Transport;

@@ -1,7 +1,5 @@
 //! Particles of the fluid that leave it: through a wall, or out of the box around everything.
 
-use std::ops::ControlFlow;
-
 use piola_formulas::kernels::Needs;
 
 use super::ledger::Tail;
@@ -134,13 +132,11 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let mut nearest = None::<(f64, Vector<D>, usize)>;
         let block = &mut NeighborBlock::default();
-        let _ =
-            visit(&self.support, place, Among::Passive, Needs::Nothing, block, |other, pair| {
-                if nearest.is_none_or(|(square, ..)| pair.square < square) {
-                    nearest = Some((pair.square, pair.separation, other));
-                }
-                ControlFlow::<()>::Continue(())
-            });
+        visit(&self.support, place, Among::Passive, Needs::Nothing, block, |other, pair| {
+            if nearest.is_none_or(|(square, ..)| pair.square < square) {
+                nearest = Some((pair.square, pair.separation, other));
+            }
+        });
         let (_, separation, wall) = nearest?;
         let number = list.numbers()[wall];
         let (_, normal) = self.over(self.wall_of(number)?, &separation)?;

@@ -1,7 +1,5 @@
 //! Fields of single particles.
 
-use std::ops::ControlFlow;
-
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::fluid::FluidSide;
 use piola_formulas::pairs::sums::{Density, VelocityGradient};
@@ -110,9 +108,8 @@ impl<const D: usize> TransportVelocity<D> {
 
     fn for_each_neighbor(&self, place: usize, mut look: impl FnMut(usize)) {
         let block = &mut NeighborBlock::default();
-        let _ = visit(&self.support, place, Among::All, Needs::Nothing, block, |other, _| {
+        visit(&self.support, place, Among::All, Needs::Nothing, block, |other, _| {
             look(other);
-            ControlFlow::<()>::Continue(())
         });
     }
 

@@ -1,5 +1,7 @@
 //! The choices of the transport-velocity formulation.
 
+use piola_formulas::fluid;
+
 use super::Solid;
 
 /// How the density is found, theory (20) and (26).
@@ -157,6 +159,24 @@ pub struct Settings {
     pub free_surface: bool,
     /// How particles are shifted there.
     pub at_surface: AtSurface,
+}
+
+impl Settings {
+    /// Whether pressures follow from densities.
+    pub(super) fn is_algebraic(&self) -> bool {
+        self.pressure == PressureRule::StateEquation
+    }
+
+    /// Diffusivity of the pressure in m^2/s, CTVF (24), for a smoothing length in m and a wave speed in
+    /// m/s; zero where it does not diffuse.
+    pub(super) fn diffusivity(&self, smoothing_length: f64, wave_speed: f64) -> f64 {
+        match self.pressure {
+            PressureRule::Edac { alpha } => {
+                fluid::pressure_diffusivity(alpha, smoothing_length, wave_speed)
+            }
+            PressureRule::StateEquation => 0.0,
+        }
+    }
 }
 
 /// The one fluid of a run.

@@ -4,7 +4,6 @@ use super::stages::Instant;
 use super::{ColumnsMut, DensityRule, Rates, Shifting, TransportVelocity};
 use crate::boundaries::BodyForce;
 use crate::schemes::SplitScheme;
-use crate::schemes::stages::Stages;
 use crate::{Vector, parallel};
 
 impl<const D: usize> SplitScheme for TransportVelocity<D> {
@@ -23,14 +22,14 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
 
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
         let middle = Instant { time: time + 0.5 * step, step };
-        let mut stages = std::mem::replace(&mut self.drift, Stages::none("drift"));
+        let mut stages = std::mem::take(&mut self.drift);
         stages.run(|pass| self.run(pass, middle, state));
         self.drift = stages;
     }
 
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
         let end = Instant { time, step: 0.0 };
-        let mut stages = std::mem::replace(&mut self.accelerate, Stages::none("accelerate"));
+        let mut stages = std::mem::take(&mut self.accelerate);
         stages.run(|pass| self.run(pass, end, state));
         self.accelerate = stages;
     }

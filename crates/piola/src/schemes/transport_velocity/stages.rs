@@ -1,6 +1,6 @@
 //! The stages of a step, which say what they read of a particle and of its neighbours.
 
-use super::{DensityRule, PressureRule, Settings, Shifting, TransportVelocity};
+use super::{DensityRule, Shifting, TransportVelocity};
 use crate::schemes::stages::{Stage, StageFault, Stages};
 
 /// A pass over particles.
@@ -159,13 +159,6 @@ pub(super) struct Instant {
     pub step: f64,
 }
 
-impl Settings {
-    /// Whether pressures follow from densities.
-    pub(super) fn is_algebraic(&self) -> bool {
-        self.pressure == PressureRule::StateEquation
-    }
-}
-
 impl<const D: usize> TransportVelocity<D> {
     /// Puts the stages of drifts and of accelerations together.
     ///
@@ -246,42 +239,6 @@ impl<const D: usize> TransportVelocity<D> {
             Pass::HoldOff => self.hold_off(),
             Pass::Bear => self.bear(),
             Pass::Store => self.store_all(state),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stages_of_all_passes_have_names_of_their_own() {
-        let all = [
-            Pass::Remove,
-            Pass::Prescribe,
-            Pass::Iterate,
-            Pass::Load,
-            Pass::Push,
-            Pass::State,
-            Pass::Correct,
-            Pass::Walls,
-            Pass::Rates,
-            Pass::Move,
-            Pass::Tension,
-            Pass::Forces,
-            Pass::BodyForces,
-            Pass::Hold,
-            Pass::Sharpen,
-            Pass::Surfaces,
-            Pass::Reach,
-            Pass::Shift,
-            Pass::HoldOff,
-            Pass::Bear,
-            Pass::Store,
-        ];
-        for (k, pass) in all.iter().enumerate() {
-            let name = pass.stage().name;
-            assert!(all[..k].iter().all(|other| other.stage().name != name), "{name}");
         }
     }
 }

@@ -1,7 +1,5 @@
 //! Free surfaces: normals, the particles on them, and how far they are, CTVF section 3.4.
 
-use std::ops::ControlFlow;
-
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::sums;
 
@@ -203,24 +201,21 @@ impl<const D: usize> TransportVelocity<D> {
             return (normal, alone);
         }
         normal.normalize_mut();
-        let covered = visit(support, place, Among::All, Needs::Nothing, block, |other, pair| {
+        let mut covered = false;
+        visit(support, place, Among::All, Needs::Nothing, block, |other, pair| {
             let is_in_cone = -pair.separation.dot(&normal) > CONE * pair.square.sqrt();
-            match is_in_cone && self.continua.is_own(place, other) {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
+            covered |= is_in_cone && self.continua.is_own(place, other);
         });
-        (normal, alone || covered.is_none())
+        (normal, alone || !covered)
     }
 
     /// `h_b` of CTVF algorithm 1, with the kernel's own support for the paper's 3.
     fn reach_at(&self, place: usize, surfaces: &[bool], block: &mut NeighborBlock<D>) -> f64 {
         let mut nearest = f64::INFINITY;
-        let _ = visit(&self.support, place, Among::Active, Needs::Nothing, block, |other, pair| {
+        visit(&self.support, place, Among::Active, Needs::Nothing, block, |other, pair| {
             if surfaces[other] && self.continua.is_own(place, other) {
                 nearest = nearest.min(pair.square);
             }
-            ControlFlow::<()>::Continue(())
         });
         let factor = self.support.kernel().support_over_h();
         self.support.smoothing_length().min(nearest.sqrt() / factor)

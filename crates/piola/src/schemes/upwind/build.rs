@@ -124,7 +124,7 @@ impl<const D: usize> Upwind<D> {
             settings,
             materials,
             reference,
-            stages: Stages::none("rates"),
+            stages: Stages::default(),
             implicit: None,
         };
         scheme.plan()?;

@@ -5,7 +5,6 @@ use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Upwind};
 use crate::fields::FieldDescription;
-use crate::schemes::stages::Stages;
 use crate::schemes::{
     Capability, Health, Particle, PartitionedScheme, Phase, Scheme, SchemeDescription, StepLimit,
     ThetaScheme,
@@ -49,7 +48,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        let mut stages = std::mem::replace(&mut self.stages, Stages::none("rates"));
+        let mut stages = std::mem::take(&mut self.stages);
         stages.run(|pass| self.run(pass, time, state, rate));
         self.stages = stages;
     }

@@ -6,7 +6,7 @@ use super::{ENERGY, Matter, PLASTIC, Solid, SolidRates, TEMPERATURE, full, store
 use crate::Tensor;
 use crate::parallel;
 use crate::schemes::transport_velocity::ledger::Drift;
-use crate::schemes::transport_velocity::{ColumnsMut, PressureRule, TransportVelocity};
+use crate::schemes::transport_velocity::{ColumnsMut, TransportVelocity};
 
 /// What a step brings to the matter of a particle besides its own rates.
 struct Surroundings {
@@ -26,7 +26,7 @@ impl<const D: usize> TransportVelocity<D> {
         let scheme = &*self;
         let Some(solids) = &scheme.solids else { return };
         let (places, rates) = (scheme.support.list().places(), &solids.rates);
-        let evolves = matches!(scheme.settings.pressure, PressureRule::Edac { .. });
+        let evolves = !scheme.settings.is_algebraic();
         let drift = |[number, k]: [usize; 2],
                      own: &mut ColumnsMut<'_, D>,
                      matter: &mut Matter,

@@ -5,7 +5,7 @@ use piola_formulas::hypoelastic::{shear_energy, von_mises};
 use super::{ENERGY, MATTER, Matter, Solid, TEMPERATURE, entry, full};
 use crate::parallel;
 use crate::schemes::transport_velocity::fields::Made;
-use crate::schemes::transport_velocity::{Columns, PressureRule, Side, TransportVelocity};
+use crate::schemes::transport_velocity::{Columns, Side, TransportVelocity};
 use crate::{Tensor, Vector};
 
 impl<const D: usize> TransportVelocity<D> {
@@ -54,7 +54,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// speed of [`Solid::speed_squared`] in m/s.
     pub(in super::super) fn update_pressure_of_solids(&mut self) -> f64 {
         let Some(solids) = &mut self.solids else { return 0.0 };
-        let algebraic = self.settings.pressure == PressureRule::StateEquation;
+        let algebraic = self.settings.is_algebraic();
         let (list, bodies, materials) =
             (self.support.list(), &self.particles.body, &solids.materials);
         let update = |first: usize, sides: &mut [Side<D>], matter: &mut [Matter]| {

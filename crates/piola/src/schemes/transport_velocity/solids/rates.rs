@@ -9,7 +9,7 @@ use piola_formulas::pairs::solid::{
 use super::{Contact, MATTER, Solids, ZZ};
 use crate::Tensor;
 use crate::operators::{Among, Same, Source, Term, gather};
-use crate::schemes::transport_velocity::{Divergence, PressureRule, Rates, TransportVelocity};
+use crate::schemes::transport_velocity::{Divergence, Rates, TransportVelocity};
 
 /// Rates of a particle of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,15 +43,11 @@ impl<const D: usize> TransportVelocity<D> {
         let constants = RateConstants {
             softening: fluid::softening(h),
             artificial: self.settings.artificial_viscosity * h,
-            diffusion: match self.settings.pressure {
-                PressureRule::Edac { alpha } => fluid::pressure_diffusivity(alpha, h, 1.0),
-                PressureRule::StateEquation => 0.0,
-            },
+            diffusion: self.settings.diffusivity(h, 1.0),
             moves: f64::from(u8::from(corrections.divergence == Divergence::Transport)),
         };
         let carries = corrections.density || corrections.pressure;
-        let is_algebraic = self.settings.pressure == PressureRule::StateEquation;
-        let is_plain = solids.is_elastic() && is_algebraic;
+        let is_plain = solids.is_elastic() && self.settings.is_algebraic();
         let (own, out) = (&self.continua, rates.as_mut_slice());
         match (is_plain, own.are_several(), carries) {
             (true, false, false) => {
