@@ -1,6 +1,6 @@
 //! Shows the devices of this machine, or a law as text: `show neo_hookean_stress cuda single`.
 
-use piola_device::{Language, Precision, cuda, laws};
+use piola_device::{Language, Precision, cuda, devices, laws};
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -19,9 +19,8 @@ fn main() {
             println!("there is no law `{}`; there are {}", words[0], names.join(", "));
         }
         None => {
-            let devices = cuda::devices();
             println!("CUDA driver: {}, NVRTC: {}", cuda::has_driver(), cuda::has_compiler());
-            devices.iter().enumerate().for_each(|(k, name)| println!("cuda:{k}  {name}"));
+            devices().iter().for_each(|device| println!("{device}"));
             laws.iter().for_each(|law| println!("{:4} operations  {}", law.operations(), law.name));
         }
     }

@@ -10,18 +10,23 @@
 //! - [`Portable`] numbers compute exponentials and logarithms as the text does, so that a processor
 //!   has the bits of a device.
 //! - [`passes`] writes whole passes over particles, with their loops over neighbours, around laws.
-//! - [`cuda`] compiles and runs them on an NVIDIA GPU, if there is one. Nothing of CUDA is needed to
-//!   build.
+//! - [`Device`] is a GPU, or a processor with OpenCL, that compiles and runs them. Nothing of CUDA or
+//!   OpenCL is needed to build.
 
 pub mod cuda;
+mod device;
+mod error;
 mod law;
 pub mod laws;
+mod opencl;
 mod operators;
 pub mod passes;
 mod portable;
 mod record;
 mod text;
 
+pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices};
+pub use error::DeviceError;
 pub use law::{Law, Outputs};
 pub use portable::{Bits, Portable};
 pub use record::{Traced, Truth};

@@ -1,23 +1,17 @@
 //! The passes on a GPU.
 
-use piola_device::cuda::{Argument, Column, CudaError, Device, Kernel, compile};
 use piola_device::passes::fluid::Fluid;
 use piola_device::passes::solid::{Body, Solid};
 use piola_device::passes::{Rows, Sliced};
-use piola_device::{Language, Portable, Precision};
+use piola_device::{Argument, Column, Device, DeviceError, Kernel, Portable, Precision};
 
 use super::cloud;
 use super::processor::{self, FLUID_RADIUS, SOLID_RADIUS, SPACING, State};
 
-type Outcome<T> = Result<T, CudaError>;
+type Outcome<T> = Result<T, DeviceError>;
 
 /// Measurements of which the best counts.
 const REPEATS: usize = 10;
-
-/// The first device.
-pub fn open() -> Outcome<Device> {
-    Device::open(0)
-}
 
 /// Numbers on the device in one of the precisions.
 enum Numbers {
@@ -82,7 +76,7 @@ impl Pass<'_> {
             for _ in 0..REPEATS {
                 time = time.min(device.time(|| self.start(block))?);
             }
-            let [registers, local, blocks] = self.kernel.resources(block)?;
+            let [registers, local, blocks] = self.kernel.resources(block)?.unwrap_or_default();
             let rate = self.least / time * 1e-9;
             println!(
                 "| {} | {block} | {time:.3} | {:.3} | {rate:.2} | {:.0} | {:.2} | {registers} | {local} | {:.0} |",
@@ -130,7 +124,7 @@ fn flat<const N: usize>(rows: &[[f64; N]], padding: usize) -> Vec<f64> {
 /// All comparisons and measurements.
 pub fn measure(device: &Device, small: usize, large: usize) -> Outcome<()> {
     let copy = copy_rate(device)?;
-    println!("{}, copies {copy:.2} TB/s", device.name()?);
+    println!("{}, copies {copy:.2} TB/s", device.description());
     fluid_bits(device, small, 100)?;
     fluid_bits(device, large, 3)?;
     solid_bits(device, small, 100)?;
@@ -163,10 +157,9 @@ impl GpuFluid {
         let positions = cloud::cube(side, SPACING);
         let rows = cloud::neighbors(&positions, FLUID_RADIUS * SPACING);
         let sides = processor::sides(&positions);
-        let text = Fluid::water(SPACING).text(Language::Cuda, precision);
-        let module = compile(&text, device.architecture()?)?;
+        let program = device.compile(&Fluid::water(SPACING).text(device.language(), precision))?;
         Ok(Self {
-            kernels: device.load(&module, ["fluid_sums", "fluid_step"])?,
+            kernels: [program.kernel("fluid_sums")?, program.kernel("fluid_step")?],
             first: device.upload(&rows.offsets)?,
             neighbors: device.upload(&rows.neighbors)?,
             side: Numbers::of(device, precision, &flat(&sides, 0))?,
@@ -277,8 +270,7 @@ impl GpuSolid {
             cloud::body(&positions, SOLID_RADIUS * SPACING, SPACING * SPACING * SPACING, 1000.0);
         let states = processor::states(&positions);
         let sliced = body.rows.sliced();
-        let module =
-            compile(&Solid::rubber().text(Language::Cuda, precision), device.architecture()?)?;
+        let program = device.compile(&Solid::rubber().text(device.language(), precision))?;
         let numbers = |numbers: &[f64]| Numbers::of(device, precision, numbers);
         let arranged = |coefficients: &[[f64; 3]], axis: usize| {
             numbers(&body.rows.arranged(&sliced, 0.0, |entry| coefficients[entry][axis]))
@@ -289,7 +281,7 @@ impl GpuSolid {
         let neighbors = body.rows.arranged(&sliced, 0, |entry| body.rows.neighbors[entry]);
         let width = if precision == Precision::Double { 10 } else { 12 };
         Ok(Self {
-            kernels: device.load(&module, ["solid_tensions", "solid_step"])?,
+            kernels: [program.kernel("solid_tensions")?, program.kernel("solid_step")?],
             indices: [
                 device.upload(&sliced.first)?,
                 device.upload(&sliced.length)?,

@@ -1,7 +1,8 @@
-//! Passes traced from the formulas, on a GPU and on the processor: bits, times, bandwidth.
+//! Passes traced from the formulas, on a device (`cuda:0` unless named) and on the processor: bits, times,
+//! bandwidth.
 //!
-//! `crates/device/benches/device.sh` runs it with 100 particles a side. Without a GPU only the processor is
-//! measured.
+//! `crates/device/benches/device.sh` runs it with 100 particles a side. Without a device only the
+//! processor is measured.
 
 mod cloud;
 mod gpu;
@@ -9,13 +10,16 @@ mod processor;
 
 use std::error::Error;
 
+use piola_device::Device;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut sides = std::env::args().skip(1).filter_map(|argument| argument.parse().ok());
     let (large, small) = (sides.next().unwrap_or(24), sides.next().unwrap_or(16));
     println!("particles: {} to measure, {} for bits", large * large * large, small * small * small);
-    match gpu::open() {
+    let name = std::env::args().find(|argument| argument.contains(':'));
+    match Device::open(name.as_deref().unwrap_or("cuda:0")) {
         Ok(device) => gpu::measure(&device, small, large)?,
-        Err(reason) => println!("NOT RUN on a GPU: {reason}"),
+        Err(reason) => println!("NOT RUN on a device: {reason}"),
     }
     processor::measure(large);
     Ok(())

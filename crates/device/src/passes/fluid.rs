@@ -189,7 +189,7 @@ fn by_threads(call: &str) -> String {
     let zero = each(&|sum| format!("    real {sum} = 0;\n"));
     let add = each(&|sum| format!("        {sum} += d_{sum};\n"));
     let total =
-        each(&|sum| format!("        {sum} += __shfl_down_sync(0xffffffff, {sum}, half, 8);\n"));
+        each(&|sum| format!("        {sum} += __shfl_down_sync(0xffffffff, {sum}, step, 8);\n"));
     let write = each(&|sum| format!("    sums[a].{sum} = {sum};\n"));
     format!(
         "KERNEL void fluid_sums(const int n, GLOBAL const int *__restrict__ first, \
@@ -201,7 +201,7 @@ fn by_threads(call: &str) -> String {
          const Side me = side[a < n ? a : 0];\n{zero}    \
          for (int k = a < n ? first[a] + lane : 0; k < end; k += 8) {{\n        \
          const Side other = side[neighbor[k]];\n        {call}{add}    }}\n    \
-         for (int half = 4; half > 0; half /= 2) {{\n{total}    }}\n    \
+         for (int step = 4; step > 0; step /= 2) {{\n{total}    }}\n    \
          if (a >= n || lane > 0) return;\n{write}}}\n"
     )
 }
@@ -212,7 +212,7 @@ fn by_lanes(call: &str) -> String {
     let add = each(&|sum| format!("            lanes[k % 8].{sum} += d_{sum};\n"));
     let zero = SUMS.map(|_| "0").join(", ");
     let total =
-        each(&|sum| format!("                lanes[lane].{sum} += lanes[lane + half].{sum};\n"));
+        each(&|sum| format!("                lanes[lane].{sum} += lanes[lane + step].{sum};\n"));
     let call = call.replace("\n        ", "\n            ");
     format!(
         "KERNEL void fluid_sums(const int n, GLOBAL const int *first, GLOBAL const int *neighbor, \
@@ -220,8 +220,8 @@ fn by_lanes(call: &str) -> String {
          Sums lanes[8] = {{{}}};\n        const Side me = side[a];\n        \
          for (int k = 0; k < first[a + 1] - first[a]; ++k) {{\n            \
          const Side other = side[neighbor[first[a] + k]];\n            {call}{add}        }}\n        \
-         for (int half = 4; half > 0; half /= 2) {{\n            \
-         for (int lane = 0; lane < half; ++lane) {{\n{total}            }}\n        }}\n        \
+         for (int step = 4; step > 0; step /= 2) {{\n            \
+         for (int lane = 0; lane < step; ++lane) {{\n{total}            }}\n        }}\n        \
          sums[a] = lanes[0];\n    }}\n}}\n",
         [(); 8].map(|()| format!("{{{zero}}}")).join(", ")
     )

@@ -61,7 +61,7 @@ fn driver(laws: &[Law]) -> String {
 }
 
 /// Numbers of a size that a law takes.
-fn sample(law: &Law, random: &mut impl FnMut() -> f64) -> Vec<f64> {
+pub fn sample(law: &Law, random: &mut impl FnMut() -> f64) -> Vec<f64> {
     let of = |name: &str, x: f64| match name {
         "r" => 3.2 * x,
         "ratio" => 0.3 + 2.0 * x,

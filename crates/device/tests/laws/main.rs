@@ -3,6 +3,7 @@
 
 mod bits;
 mod compiled;
+mod devices;
 mod passes;
 mod portable;
 mod text;

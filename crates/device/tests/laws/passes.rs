@@ -5,9 +5,10 @@ use std::fmt::Write;
 use piola_device::passes::fluid::{Fluid, SIDE};
 use piola_device::passes::solid::{Body, Solid};
 use piola_device::passes::{Rows, SLICE};
-use piola_device::{Language, Portable, Precision};
+use piola_device::{Argument, Column, Device, Language, Portable, Precision};
 
 use super::compiled::run;
+use super::devices::device;
 use super::{assert_bits, random};
 
 const SIDE_LENGTH: usize = 5;
@@ -80,7 +81,8 @@ fn steps_of_a_fluid_have_the_bits_of_the_processor() {
         n = sides.len()
     )
     .unwrap();
-    let Some(output) = run(&text, "") else { return };
+    let on_device = device().map(|device| fluid_steps(&device, &fluid, &rows, &sides));
+    let compiled = run(&text, "").map(|output| parse(&output));
     let mut sums = vec![[0.0; 7]; sides.len()];
     for _ in 0..20 {
         fluid.fill(&sides, &rows, 0, &mut sums);
@@ -88,7 +90,27 @@ fn steps_of_a_fluid_have_the_bits_of_the_processor() {
             *side = fluid.advance(side, sums);
         }
     }
-    assert_bits("fluid", &parse(&output), sides.as_flattened(), &[]);
+    for got in [on_device, compiled].into_iter().flatten() {
+        assert_bits("fluid", &got, sides.as_flattened(), &[]);
+    }
+}
+
+/// What particles show after 20 steps on a device.
+fn fluid_steps(device: &Device, fluid: &Fluid, rows: &Rows, sides: &[[f64; 8]]) -> Vec<f64> {
+    let program = device.compile(&fluid.text(device.language(), Precision::Double)).unwrap();
+    let (n, count) = (sides.len(), Argument::Count(sides.len() as i32));
+    let first = device.upload(&rows.offsets).unwrap();
+    let row = device.upload(&rows.neighbors).unwrap();
+    let side = device.upload(sides.as_flattened()).unwrap();
+    let sums = device.zeros(7 * n).unwrap();
+    let [get, take] = ["fluid_sums", "fluid_step"].map(|name| program.kernel(name).unwrap());
+    let (first, row) = (Argument::Indices(&first), Argument::Indices(&row));
+    let (side_given, sums) = (Argument::Doubles(&side), Argument::Doubles(&sums));
+    for _ in 0..20 {
+        get.start(8 * n, 64, &[count, first, row, side_given, sums]).unwrap();
+        take.start(n, 64, &[count, sums, side_given]).unwrap();
+    }
+    device.download(&side).unwrap()
 }
 
 #[test]
@@ -151,7 +173,8 @@ fn steps_of_a_solid_have_the_bits_of_portable_numbers() {
          return 0; }}"
     )
     .unwrap();
-    let Some(output) = run(&text, "") else { return };
+    let on_device = device().map(|device| solid_steps(&device, &solid, &body, &start));
+    let compiled = run(&text, "").map(|output| parse(&output));
     let mut states: Vec<([Portable; 3], [Portable; 3])> =
         start.iter().map(|v| (v.map(Portable), [Portable(0.0); 3])).collect();
     let mut tensions = vec![[Portable(0.0); 9]; n];
@@ -163,5 +186,51 @@ fn steps_of_a_solid_have_the_bits_of_portable_numbers() {
     let expected: Vec<f64> =
         states.iter().flat_map(|(v, u)| [*v, *u].concat()).map(|number| number.0).collect();
     assert!(expected.iter().all(|x| x.is_finite()), "the numbers of the test are too large");
-    assert_bits("solid", &parse(&output), &expected, &[]);
+    for got in [on_device, compiled].into_iter().flatten() {
+        assert_bits("solid", &got, &expected, &[]);
+    }
+}
+
+/// Velocities and displacements after 20 steps on a device.
+fn solid_steps(device: &Device, solid: &Solid, body: &Body, start: &[[f64; 3]]) -> Vec<f64> {
+    let program = device.compile(&solid.text(device.language(), Precision::Double)).unwrap();
+    let (n, sliced) = (start.len(), body.rows.sliced());
+    let indices = [
+        &sliced.first,
+        &sliced.length,
+        &body.rows.arranged(&sliced, 0, |entry| body.rows.neighbors[entry]),
+    ]
+    .map(|numbers| device.upload(numbers).unwrap());
+    let upload = |numbers: &[f64]| device.upload(numbers).unwrap();
+    let coefficients = [&body.coefficients, &body.reverse].map(|all| {
+        [0, 1, 2].map(|axis| upload(&body.rows.arranged(&sliced, 0.0, |entry| all[entry][axis])))
+    });
+    let padded = |rows: &[[f64; 3]]| -> Vec<f64> {
+        rows.iter().flat_map(|row| [row[0], row[1], row[2], 0.0]).collect()
+    };
+    let columns = [
+        device.zeros(4 * n).unwrap(),
+        upload(&body.volume),
+        device.zeros(10 * n).unwrap(),
+        upload(&padded(&body.total)),
+        upload(&body.inverse_mass),
+        upload(&padded(start)),
+    ];
+    let [displacement, volume, tension, total, inverse_mass, velocity] = columns.each_ref();
+    let kernels = ["solid_tensions", "solid_step"].map(|name| program.kernel(name).unwrap());
+    let given = |which: usize, columns: &[&'_ Column<f64>]| {
+        let mut arguments = vec![Argument::Count(n as i32)];
+        arguments.extend(indices.iter().map(Argument::Indices));
+        arguments.extend(coefficients[which].iter().map(Argument::Doubles));
+        arguments.extend(columns.iter().map(|column| Argument::Doubles(column)));
+        kernels[which].start(n, 64, &arguments).unwrap();
+    };
+    for _ in 0..20 {
+        given(0, &[displacement, volume, tension]);
+        given(1, &[tension, total, inverse_mass, velocity, displacement]);
+    }
+    let [velocity, displacement] =
+        [velocity, displacement].map(|column| device.download(column).unwrap());
+    let points = velocity.chunks(4).zip(displacement.chunks(4));
+    points.flat_map(|(v, u)| [v[0], v[1], v[2], u[0], u[1], u[2]]).collect()
 }

@@ -143,15 +143,15 @@ KERNEL void fluid_sums(const int n, GLOBAL const int *first, GLOBAL const int *n
             lanes[k % 8].open_y += d_open_y;
             lanes[k % 8].open_z += d_open_z;
         }
-        for (int half = 4; half > 0; half /= 2) {
-            for (int lane = 0; lane < half; ++lane) {
-                lanes[lane].force_x += lanes[lane + half].force_x;
-                lanes[lane].force_y += lanes[lane + half].force_y;
-                lanes[lane].force_z += lanes[lane + half].force_z;
-                lanes[lane].rate += lanes[lane + half].rate;
-                lanes[lane].open_x += lanes[lane + half].open_x;
-                lanes[lane].open_y += lanes[lane + half].open_y;
-                lanes[lane].open_z += lanes[lane + half].open_z;
+        for (int step = 4; step > 0; step /= 2) {
+            for (int lane = 0; lane < step; ++lane) {
+                lanes[lane].force_x += lanes[lane + step].force_x;
+                lanes[lane].force_y += lanes[lane + step].force_y;
+                lanes[lane].force_z += lanes[lane + step].force_z;
+                lanes[lane].rate += lanes[lane + step].rate;
+                lanes[lane].open_x += lanes[lane + step].open_x;
+                lanes[lane].open_y += lanes[lane + step].open_y;
+                lanes[lane].open_z += lanes[lane + step].open_z;
             }
         }
         sums[a] = lanes[0];

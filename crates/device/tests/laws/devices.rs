@@ -1,0 +1,115 @@
+//! Laws and passes on OpenCL devices, and what devices say when they are used wrongly.
+
+use std::fmt::Write;
+
+use piola_device::{
+    Argument, Device, DeviceError, Language, Law, Portable, Precision, devices, laws,
+};
+
+use super::compiled::sample;
+use super::{assert_bits, random};
+
+/// An OpenCL device with double precision, or `None` where there is none.
+pub fn device() -> Option<Device> {
+    let found = devices();
+    let found = found.iter().find(|found| found.name.starts_with("opencl") && found.has_double);
+    if found.is_none() {
+        let missing = "there is no OpenCL device with double precision (Debian: pocl-opencl-icd)";
+        assert!(std::env::var_os("PIOLA_OPENCL_REQUIRED").is_none(), "{missing}");
+        eprintln!("NOT RUN: {missing}");
+    }
+    found.map(|found| Device::open(&found.name).unwrap())
+}
+
+/// A kernel that calls a law for each row of numbers.
+fn kernel(law: &Law) -> String {
+    let (takes, gives) = (law.inputs.len(), law.outputs.len());
+    let list = |count: usize, of: &dyn Fn(usize) -> String| {
+        (0..count).map(of).collect::<Vec<_>>().join(", ")
+    };
+    let mut text = law.text(Language::OpenCl, Precision::Double);
+    writeln!(
+        text,
+        "KERNEL void run_{name}(const int n, GLOBAL const real *x, GLOBAL real *y)\n{{\n    \
+         EACH(a, n) {{\n        real {};\n        {name}({}, {});\n{}    }}\n}}",
+        list(gives, &|i| format!("y{i}")),
+        list(takes, &|i| format!("x[a * {takes} + {i}]")),
+        list(gives, &|i| format!("&y{i}")),
+        (0..gives).map(|i| format!("        y[a * {gives} + {i}] = y{i};\n")).collect::<String>(),
+        name = law.name,
+    )
+    .unwrap();
+    text
+}
+
+#[test]
+fn every_law_has_the_bits_of_portable_numbers_on_a_device() {
+    let Some(device) = device() else { return };
+    let (laws, mut random) = (laws::all(), random(6));
+    let mut text = Language::OpenCl.prologue(Precision::Double);
+    laws.iter().for_each(|law| text += &kernel(law));
+    let program = device.compile(&text).unwrap();
+    for law in &laws {
+        let rows: Vec<Vec<f64>> = (0..300).map(|_| sample(law, &mut random)).collect();
+        let inputs = device.upload(&rows.concat()).unwrap();
+        let outputs = device.zeros(rows.len() * law.outputs.len()).unwrap();
+        let arguments = [
+            Argument::Count(rows.len() as i32),
+            Argument::Doubles(&inputs),
+            Argument::Doubles(&outputs),
+        ];
+        let kernel = program.kernel(&format!("run_{}", law.name)).unwrap();
+        kernel.start(rows.len(), 64, &arguments).unwrap();
+        let got = device.download(&outputs).unwrap();
+        for (row, got) in rows.iter().zip(got.chunks(law.outputs.len())) {
+            let portable: Vec<Portable> = row.iter().map(|x| Portable(*x)).collect();
+            let expected: Vec<f64> = law.run(&portable).iter().map(|x| x.0).collect();
+            assert_bits(&law.name, got, &expected, row);
+        }
+    }
+}
+
+#[test]
+fn single_precision_compiles_on_a_device() {
+    let Some(device) = device() else { return };
+    let mut text = Language::OpenCl.prologue(Precision::Single);
+    laws::all().iter().for_each(|law| text += &law.text(Language::OpenCl, Precision::Single));
+    device.compile(&text).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn numbers_come_back_as_they_were() {
+    let Some(device) = device() else { return };
+    let numbers: Vec<f64> = (0..1000).map(|k| f64::from(k).sqrt()).collect();
+    let mut column = device.upload(&numbers).unwrap();
+    assert_eq!(device.download(&column).unwrap(), numbers);
+    device.write(&mut column, &[7.0, 8.0]).unwrap();
+    let mut copy = device.zeros(1000).unwrap();
+    device.copy(&column, &mut copy).unwrap();
+    let mut front = [0.0; 3];
+    device.read(&copy, &mut front).unwrap();
+    assert_eq!(front, [7.0, 8.0, numbers[2]]);
+    let empty = device.upload::<u32>(&[]).unwrap();
+    assert!(empty.is_empty() && device.download(&empty).unwrap().is_empty());
+    let refused = device.write(&mut copy, &[0.0; 1001]).unwrap_err();
+    assert_eq!(refused, DeviceError::Length { length: 1000, count: 1001 });
+    assert!(device.time(|| device.copy(&column, &mut copy)).unwrap() >= 0.0);
+}
+
+#[test]
+fn a_device_says_what_is_wrong() {
+    // That there is none is an error, too.
+    let unknown = Device::open("vulkan:3").unwrap_err();
+    assert!(matches!(unknown, DeviceError::Unknown { .. }));
+    assert!(unknown.to_string().starts_with("there is no device `vulkan:3`: there is "));
+    let Some(device) = device() else { return };
+    assert!(unknown.to_string().contains("there is opencl:0 ("), "{unknown}");
+    let log = device.compile("KERNEL nonsense").unwrap_err();
+    assert!(matches!(&log, DeviceError::Compile { log } if log.contains("KERNEL")), "{log}");
+    let program = device.compile("__kernel void empty(void) {}").unwrap();
+    let missing = program.kernel("other").unwrap_err();
+    assert!(missing.to_string().contains("find the kernel `other`"), "{missing}");
+    program.kernel("empty").unwrap().start(10, 1 << 20, &[]).unwrap();
+    let bytes = 1 << 59;
+    assert_eq!(device.zeros::<f64>(bytes / 8).unwrap_err(), DeviceError::Memory { bytes });
+}
