@@ -78,7 +78,7 @@ impl<T> Column<T> {
     }
 
     /// Fails where it has less than `count` numbers.
-    fn holds(&self, count: usize) -> Outcome<()> {
+    pub(crate) fn holds(&self, count: usize) -> Outcome<()> {
         match count <= self.length {
             true => Ok(()),
             false => Err(DeviceError::Length { length: self.length, count }),

@@ -68,6 +68,16 @@ pub enum DeviceError {
         /// Numbers to be copied.
         count: usize,
     },
+    /// There is more than whole numbers of 32 bits can count.
+    #[error(
+        "{count} {what} are more than a device counts: take fewer particles or a shorter support"
+    )]
+    TooMany {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
     /// A column is used on a device of another kind than it was made on.
     #[error("a column belongs to another device: make it on the one that uses it")]
     Mixed,

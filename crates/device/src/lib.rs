@@ -10,6 +10,7 @@
 //! - [`Portable`] numbers compute exponentials and logarithms as the text does, so that a processor
 //!   has the bits of a device.
 //! - [`passes`] writes whole passes over particles, with their loops over neighbours, around laws.
+//! - [`lists`] are neighbours that a device finds.
 //! - [`Device`] is a GPU, or a processor with OpenCL, that compiles and runs them. Nothing of CUDA or
 //!   OpenCL is needed to build.
 
@@ -18,6 +19,7 @@ mod device;
 mod error;
 mod law;
 pub mod laws;
+pub mod lists;
 mod opencl;
 mod operators;
 pub mod passes;

@@ -3,7 +3,7 @@
 //! The library is looked for when devices are listed or opened.
 #![expect(unsafe_code, reason = "buffers and kernels are used as only their text describes")]
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 use opencl3::command_queue::CommandQueue;
@@ -14,7 +14,7 @@ use opencl3::error_codes::{
     CL_OUT_OF_HOST_MEMORY, CL_OUT_OF_RESOURCES, ClError, DLOPEN_RUNTIME_LOAD_FAILED,
 };
 use opencl3::memory::{Buffer, CL_MEM_READ_WRITE, ClMem};
-use opencl3::platform::get_platforms;
+use opencl3::platform::{Platform, get_platforms};
 use opencl3::types::CL_BLOCKING;
 
 use crate::device::{Found, Given};
@@ -29,36 +29,39 @@ fn refused(what: &str) -> impl Fn(ClError) -> DeviceError {
     }
 }
 
-/// All devices with what they are called here; platforms that can't list theirs have none.
-fn ids() -> Outcome<Vec<Id>> {
-    let platforms = get_platforms().map_err(|error| match error.0 {
-        DLOPEN_RUNTIME_LOAD_FAILED => DeviceError::NoOpenCl,
-        _ => DeviceError::NoPlatform { reason: format!("{error} ({})", error.0) },
-    })?;
-    let of = |platform: &opencl3::platform::Platform| platform.get_devices(CL_DEVICE_TYPE_ALL);
-    let ids: Vec<Id> = platforms
-        .iter()
-        .flat_map(|platform| of(platform).unwrap_or_default())
-        .map(Id::new)
-        .collect();
-    match ids.is_empty() {
-        true => Err(DeviceError::NoPlatform { reason: "no platform has one".into() }),
-        false => Ok(ids),
-    }
+/// All devices, asked once and by one thread: pocl 3.1 fails where two ask at once. Platforms that can't
+/// list theirs have none.
+fn list() -> &'static Outcome<Vec<(Id, Found)>> {
+    static LIST: OnceLock<Outcome<Vec<(Id, Found)>>> = OnceLock::new();
+    LIST.get_or_init(|| {
+        let platforms = get_platforms().map_err(|error| match error.0 {
+            DLOPEN_RUNTIME_LOAD_FAILED => DeviceError::NoOpenCl,
+            _ => DeviceError::NoPlatform { reason: format!("{error} ({})", error.0) },
+        })?;
+        let of = |platform: &Platform| platform.get_devices(CL_DEVICE_TYPE_ALL).unwrap_or_default();
+        let ids = platforms.iter().flat_map(of).map(Id::new);
+        let list: Vec<(Id, Found)> = ids.enumerate().map(found).collect();
+        match list.is_empty() {
+            true => Err(DeviceError::NoPlatform { reason: "no platform has one".into() }),
+            false => Ok(list),
+        }
+    })
 }
 
-fn found((number, device): (usize, &Id)) -> Found {
-    Found {
+fn found((number, device): (usize, Id)) -> (Id, Found) {
+    let found = Found {
         name: format!("opencl:{number}"),
         description: device.name().unwrap_or_else(|error| error.to_string()),
         memory: device.global_mem_size().unwrap_or(0),
         has_double: device.double_fp_config().is_ok_and(|config| config != 0),
-    }
+    };
+    (device, found)
 }
 
 /// All devices.
 pub(crate) fn devices() -> Outcome<Vec<Found>> {
-    Ok(ids()?.iter().enumerate().map(found).collect())
+    let list = list().as_ref().map_err(DeviceError::clone)?;
+    Ok(list.iter().map(|(_, found)| found.clone()).collect())
 }
 
 /// Memory of a device.
@@ -75,13 +78,12 @@ pub(crate) struct Device {
 
 impl Device {
     pub fn open(number: usize) -> Outcome<Self> {
-        let ids = ids()?;
+        let list = list().as_ref().map_err(DeviceError::clone)?;
         let no_device = || DeviceError::NoPlatform { reason: format!("none of number {number}") };
-        let id = ids.get(number).ok_or_else(no_device)?;
-        let found = found((number, id));
+        let (id, found) = list.get(number).cloned().ok_or_else(no_device)?;
         let what = format!("open `{}`", found.name);
         let open = refused(&what);
-        let context = Context::from_device(id).map_err(&open)?;
+        let context = Context::from_device(&id).map_err(&open)?;
         let queue = CommandQueue::create_default(&context, 0).map_err(&open)?;
         // Quotients and roots in double precision are always exact.
         let options = match id.single_fp_config() {

@@ -4,6 +4,7 @@
 mod bits;
 mod compiled;
 mod devices;
+mod lists;
 mod passes;
 mod portable;
 mod text;
