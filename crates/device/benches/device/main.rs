@@ -6,6 +6,7 @@
 
 mod cloud;
 mod gpu;
+mod lists;
 mod processor;
 
 use std::error::Error;
@@ -18,7 +19,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("particles: {} to measure, {} for bits", large * large * large, small * small * small);
     let name = std::env::args().find(|argument| argument.contains(':'));
     match Device::open(name.as_deref().unwrap_or("cuda:0")) {
-        Ok(device) => gpu::measure(&device, small, large)?,
+        Ok(device) => {
+            lists::measure(&device, small)?;
+            lists::measure(&device, large)?;
+            gpu::measure(&device, small, large)?;
+        }
         Err(reason) => println!("NOT RUN on a device: {reason}"),
     }
     processor::measure(large);

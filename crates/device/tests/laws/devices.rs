@@ -9,8 +9,12 @@ use piola_device::{
 use super::compiled::sample;
 use super::{assert_bits, random};
 
-/// An OpenCL device with double precision, or `None` where there is none.
+/// The device that `PIOLA_TEST_DEVICE` names, or else an OpenCL device with double precision, or `None` where
+/// there is none.
 pub fn device() -> Option<Device> {
+    if let Ok(name) = std::env::var("PIOLA_TEST_DEVICE") {
+        return Some(Device::open(&name).unwrap());
+    }
     let found = devices();
     let found = found.iter().find(|found| found.name.starts_with("opencl") && found.has_double);
     if found.is_none() {
@@ -22,12 +26,12 @@ pub fn device() -> Option<Device> {
 }
 
 /// A kernel that calls a law for each row of numbers.
-fn kernel(law: &Law) -> String {
+fn kernel(law: &Law, language: Language) -> String {
     let (takes, gives) = (law.inputs.len(), law.outputs.len());
     let list = |count: usize, of: &dyn Fn(usize) -> String| {
         (0..count).map(of).collect::<Vec<_>>().join(", ")
     };
-    let mut text = law.text(Language::OpenCl, Precision::Double);
+    let mut text = law.text(language, Precision::Double);
     writeln!(
         text,
         "KERNEL void run_{name}(const int n, GLOBAL const real *x, GLOBAL real *y)\n{{\n    \
@@ -46,8 +50,8 @@ fn kernel(law: &Law) -> String {
 fn every_law_has_the_bits_of_portable_numbers_on_a_device() {
     let Some(device) = device() else { return };
     let (laws, mut random) = (laws::all(), random(6));
-    let mut text = Language::OpenCl.prologue(Precision::Double);
-    laws.iter().for_each(|law| text += &kernel(law));
+    let mut text = device.language().prologue(Precision::Double);
+    laws.iter().for_each(|law| text += &kernel(law, device.language()));
     let program = device.compile(&text).unwrap();
     for law in &laws {
         let rows: Vec<Vec<f64>> = (0..300).map(|_| sample(law, &mut random)).collect();
@@ -72,8 +76,8 @@ fn every_law_has_the_bits_of_portable_numbers_on_a_device() {
 #[test]
 fn single_precision_compiles_on_a_device() {
     let Some(device) = device() else { return };
-    let mut text = Language::OpenCl.prologue(Precision::Single);
-    laws::all().iter().for_each(|law| text += &law.text(Language::OpenCl, Precision::Single));
+    let mut text = device.language().prologue(Precision::Single);
+    laws::all().iter().for_each(|law| text += &law.text(device.language(), Precision::Single));
     device.compile(&text).unwrap_or_else(|error| panic!("{error}"));
 }
 
@@ -103,13 +107,20 @@ fn a_device_says_what_is_wrong() {
     assert!(matches!(unknown, DeviceError::Unknown { .. }));
     assert!(unknown.to_string().starts_with("there is no device `vulkan:3`: there is "));
     let Some(device) = device() else { return };
-    assert!(unknown.to_string().contains("there is opencl:0 ("), "{unknown}");
-    let log = device.compile("KERNEL nonsense").unwrap_err();
-    assert!(matches!(&log, DeviceError::Compile { log } if log.contains("KERNEL")), "{log}");
-    let program = device.compile("__kernel void empty(void) {}").unwrap();
+    assert!(unknown.to_string().contains(&device.found().to_string()), "{unknown}");
+    let log = device.compile("nonsense").unwrap_err();
+    assert!(matches!(&log, DeviceError::Compile { log } if log.contains("nonsense")), "{log}");
+    let text = device.language().prologue(Precision::Double)
+        + "KERNEL void twice(const int n, const double x, const float y, GLOBAL double *z)\n\
+           { EACH(a, n) { z[a] = a < 2 ? x : y; } }";
+    let program = device.compile(&text).unwrap();
     let missing = program.kernel("other").unwrap_err();
     assert!(missing.to_string().contains("find the kernel `other`"), "{missing}");
-    program.kernel("empty").unwrap().start(10, 1 << 20, &[]).unwrap();
+    let z = device.zeros(5).unwrap();
+    let numbers = [Argument::Number(0.1), Argument::Single(0.5), Argument::Doubles(&z)];
+    let arguments = [&[Argument::Count(4)], numbers.as_slice()].concat();
+    program.kernel("twice").unwrap().start(4, 1024, &arguments).unwrap();
+    assert_eq!(device.download(&z).unwrap(), [0.1, 0.1, 0.5, 0.5, 0.0]);
     let bytes = 1 << 59;
     assert_eq!(device.zeros::<f64>(bytes / 8).unwrap_err(), DeviceError::Memory { bytes });
 }
