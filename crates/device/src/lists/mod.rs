@@ -103,16 +103,16 @@ pub fn text(language: Language, periodic: &[bool]) -> String {
     }
     let tools = match language {
         Language::Cuda => {
-            "#define ADD(at, number) atomicAdd(at, number)\n\
+            "#define RESTRICT __restrict__\n#define ADD(at, number) atomicAdd(at, number)\n\
              #define VOTES(is) __ballot_sync(0xffffffffu, is)\n#define COUNT(votes) __popc(votes)\n"
         }
         Language::OpenCl => {
-            "#define ADD(at, number) atomic_add(at, number)\n\
+            "#define RESTRICT restrict\n#define ADD(at, number) atomic_add(at, number)\n\
              #define VOTES(is) (unsigned)(is)\n#define COUNT(votes) (votes)\n"
         }
         Language::C => {
             "LAW unsigned p_add(unsigned *at, unsigned number) { const unsigned was = *at; *at += number; return was; }\n\
-             #define ADD(at, number) p_add(at, number)\n\
+             #define RESTRICT restrict\n#define ADD(at, number) p_add(at, number)\n\
              #define VOTES(is) (unsigned)(is)\n#define COUNT(votes) (votes)\n"
         }
     };
@@ -283,6 +283,8 @@ impl Lists {
     /// When positions are missing, or the device fails.
     pub fn pick(&mut self, position_by_slot: &Column<f64>) -> Outcome<()> {
         position_by_slot.holds(self.made_at.len())?;
+        // A build that found no room for candidates has told where they would be.
+        self.candidates.holds(self.total)?;
         let index = Argument::Indices;
         let arguments = [
             Argument::Count(self.count as i32),

@@ -64,7 +64,7 @@ KERNEL void list_put(const int n, GLOBAL const unsigned *cell, GLOBAL const unsi
 }
 
 /* Slots: cell by cell, within one by key, which is the number and for passive particles the highest bit. */
-KERNEL void list_order(const int n, GLOBAL const unsigned *passive, GLOBAL const unsigned *cell, GLOBAL const unsigned *start, GLOBAL const unsigned *member, GLOBAL const double *position, GLOBAL unsigned *number, GLOBAL unsigned *slot, GLOBAL unsigned *key, GLOBAL double *made_at)
+KERNEL void list_order(const int n, GLOBAL const unsigned *RESTRICT passive, GLOBAL const unsigned *RESTRICT cell, GLOBAL const unsigned *RESTRICT start, GLOBAL const unsigned *RESTRICT member, GLOBAL const double *RESTRICT position, GLOBAL unsigned *RESTRICT number, GLOBAL unsigned *RESTRICT slot, GLOBAL unsigned *RESTRICT key, GLOBAL double *RESTRICT made_at)
 {
     EACH(k, n) {
         const unsigned a = member[k], mine = a | passive[a], end = start[cell[a] + 1];
@@ -105,7 +105,7 @@ KERNEL void list_before(const int n, const int threads, GLOBAL const unsigned *b
 }
 
 /* Counts the candidates of each slot, and those of them that are not passive; then writes their keys. */
-KERNEL void list_candidates(const int n, const int writes, const double reach, GLOBAL const double *period, GLOBAL const double *grid, GLOBAL const unsigned *start, GLOBAL const double *made_at, GLOBAL const unsigned *key, GLOBAL unsigned *count, GLOBAL unsigned *active, GLOBAL const unsigned *first, GLOBAL unsigned *passive_first, GLOBAL unsigned *found)
+KERNEL void list_candidates(const int n, const int writes, const double reach, GLOBAL const double *RESTRICT period, GLOBAL const double *RESTRICT grid, GLOBAL const unsigned *RESTRICT start, GLOBAL const double *RESTRICT made_at, GLOBAL const unsigned *RESTRICT key, GLOBAL unsigned *RESTRICT count, GLOBAL unsigned *RESTRICT active, GLOBAL const unsigned *RESTRICT first, GLOBAL unsigned *RESTRICT passive_first, GLOBAL unsigned *RESTRICT found)
 {
     EACH(s, n) {
         const unsigned mine = key[s];
@@ -151,7 +151,7 @@ KERNEL void list_candidates(const int n, const int writes, const double reach, G
 }
 
 /* Rows of candidates in the order of their keys. */
-KERNEL void list_sort(const int n, GLOBAL const unsigned *first, GLOBAL const unsigned *found, GLOBAL const unsigned *slot, GLOBAL unsigned *candidate)
+KERNEL void list_sort(const int n, GLOBAL const unsigned *RESTRICT first, GLOBAL const unsigned *RESTRICT found, GLOBAL const unsigned *RESTRICT slot, GLOBAL unsigned *RESTRICT candidate)
 {
     EACH(thread, n * LANES) {
         const int s = thread / LANES, lane = thread % LANES;
@@ -174,7 +174,7 @@ KERNEL void list_sort(const int n, GLOBAL const unsigned *first, GLOBAL const un
 }
 
 /* The candidates inside the support, in their order. */
-KERNEL void list_pick(const int n, const double support, GLOBAL const double *period, GLOBAL const double *position, GLOBAL const unsigned *first, GLOBAL const unsigned *passive_first, GLOBAL const unsigned *candidate, GLOBAL unsigned *active, GLOBAL unsigned *passive_count, GLOBAL unsigned *entry)
+KERNEL void list_pick(const int n, const double support, GLOBAL const double *RESTRICT period, GLOBAL const double *RESTRICT position, GLOBAL const unsigned *RESTRICT first, GLOBAL const unsigned *RESTRICT passive_first, GLOBAL const unsigned *RESTRICT candidate, GLOBAL unsigned *RESTRICT active, GLOBAL unsigned *RESTRICT passive_count, GLOBAL unsigned *RESTRICT entry)
 {
     EACH(thread, n * LANES) {
         const int s = thread / LANES, lane = thread % LANES;
