@@ -24,11 +24,7 @@ pub fn for_each_pair_of_chunks<T: Send, U: Send>(
     others: &mut [U],
     body: impl Fn(usize, &mut [T], &mut [U]) + Sync,
 ) {
-    if rows.len() <= CHUNK {
-        return body(0, rows, others);
-    }
-    let chunks = rows.par_chunks_mut(CHUNK).zip(others.par_chunks_mut(CHUNK)).enumerate();
-    chunks.for_each(|(chunk, (rows, others))| body(chunk * CHUNK, rows, others));
+    for_each_part(rows.len(), (rows, others), |first, (rows, others)| body(first, rows, others));
 }
 
 /// Writes `from` to `to`, of the same length.
@@ -88,6 +84,33 @@ pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sy
     items.par_iter_mut().enumerate().for_each(|(number, item)| body(number, item));
 }
 
+/// What is added up over particles.
+pub trait Sums: Copy + Send + Sync {
+    /// Nothing yet.
+    const ZERO: Self;
+
+    /// Adds another sum.
+    fn add(&mut self, other: &Self);
+}
+
+impl Sums for f64 {
+    const ZERO: Self = 0.0;
+
+    #[inline]
+    fn add(&mut self, other: &Self) {
+        *self += other;
+    }
+}
+
+impl<T: Sums, const N: usize> Sums for [T; N] {
+    const ZERO: Self = [T::ZERO; N];
+
+    #[inline]
+    fn add(&mut self, other: &Self) {
+        self.iter_mut().zip(other).for_each(|(sum, part)| sum.add(part));
+    }
+}
+
 /// Sums `term(i)` over `0..count` in an order that does not depend on the number of threads.
 pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let partial = |chunk: usize| -> f64 {
@@ -96,15 +119,14 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     if count <= CHUNK {
         return partial(0);
     }
-    let [sum] = sums_of_chunks(count.div_ceil(CHUNK), |chunk| [partial(chunk)]);
-    sum
+    sums_of_chunks(count.div_ceil(CHUNK), partial)
 }
 
-/// Adds up `N` numbers a row over `0..count`: `add(i, sums)` adds the terms of row i. The order
+/// Adds up what a row has over `0..count`: `add(i, sums)` adds the terms of row i. The order
 /// does not depend on the number of threads.
-pub fn sums<const N: usize>(count: usize, add: impl Fn(usize, &mut [f64; N]) + Sync) -> [f64; N] {
+pub fn sums<T: Sums>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
     let partial = |chunk: usize| {
-        let mut sums = [0.0; N];
+        let mut sums = T::ZERO;
         (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(i, &mut sums));
         sums
     };
@@ -118,24 +140,15 @@ pub fn sums<const N: usize>(count: usize, add: impl Fn(usize, &mut [f64; N]) + S
 const SIDE_BY_SIDE: usize = 64;
 
 /// Adds up the sums of all chunks in their order.
-fn sums_of_chunks<const N: usize>(
-    chunks: usize,
-    partial: impl Fn(usize) -> [f64; N] + Sync,
-) -> [f64; N] {
-    let mut kept = [[0.0; N]; SIDE_BY_SIDE];
-    let mut sums = [0.0; N];
+fn sums_of_chunks<T: Sums>(chunks: usize, partial: impl Fn(usize) -> T + Sync) -> T {
+    let mut kept = [T::ZERO; SIDE_BY_SIDE];
+    let mut sums = T::ZERO;
     for first in (0..chunks).step_by(SIDE_BY_SIDE) {
         let kept = &mut kept[..SIDE_BY_SIDE.min(chunks - first)];
         kept.par_iter_mut().enumerate().for_each(|(k, part)| *part = partial(first + k));
-        add_to(&mut sums, kept);
+        kept.iter().for_each(|part| sums.add(part));
     }
     sums
-}
-
-fn add_to<const N: usize>(sums: &mut [f64; N], parts: &[[f64; N]]) {
-    for part in parts {
-        sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-    }
 }
 
 /// The larger of two numbers, infinite where the second is not a number.
@@ -175,29 +188,29 @@ pub fn join<T: Copy + Send + Sync>(
 }
 
 /// Calls `body(first, parts, sums)` for chunks of the arrays of `count` particles, which changes them and
-/// adds its terms to `N` sums, in the order of [`sums`].
-pub fn sums_over_parts<const N: usize, P: Parts>(
+/// adds its terms to sums, in the order of [`sums`].
+pub fn sums_over_parts<T: Sums, P: Parts>(
     count: usize,
     parts: P,
-    body: impl Fn(usize, P, &mut [f64; N]) + Sync,
-) -> [f64; N] {
-    let mut sums = [0.0; N];
+    body: impl Fn(usize, P, &mut T) + Sync,
+) -> T {
+    let mut sums = T::ZERO;
     if count <= CHUNK {
         body(0, parts, &mut sums);
         return sums;
     }
-    let mut kept = [[0.0; N]; SIDE_BY_SIDE];
+    let mut kept = [T::ZERO; SIDE_BY_SIDE];
     let (mut first, mut rest) = (0, Some(parts));
     while let Some(parts) = rest.take() {
         let length = (SIDE_BY_SIDE * CHUNK).min(count - first);
         let (block, later) = parts.split(length);
         let kept = &mut kept[..length.div_ceil(CHUNK)];
         for_each_part(length, (block, PerChunk(kept)), |offset, (parts, PerChunk(part))| {
-            let mut own = [0.0; N];
+            let mut own = T::ZERO;
             body(first + offset, parts, &mut own);
             part.fill(own);
         });
-        add_to(&mut sums, kept);
+        kept.iter().for_each(|part| sums.add(part));
         first += length;
         rest = (first < count).then_some(later);
     }

@@ -79,13 +79,14 @@ pub fn fields(scheme: &str) -> Vec<FieldDescription> {
 /// Columns of the energy table, after `energy.`.
 pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
     SchemeDescription::of(scheme)
-        .map_or_else(Vec::new, |s| observe::energy_columns(s.energies, s.mechanisms))
+        .map_or_else(Vec::new, |s| observe::energy_columns(s.energies, s.ledger.mechanisms))
 }
 
 /// Columns of the momentum table in `dimension` dimensions, after `momentum.`.
 pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
-    let columns = SchemeDescription::of(scheme)
-        .map(|scheme| observe::momentum_columns(momentum_components(dimension), scheme.impulses));
+    let columns = SchemeDescription::of(scheme).map(|scheme| {
+        observe::momentum_columns(momentum_components(dimension), scheme.ledger.impulses)
+    });
     columns.into_iter().flatten().map(|(name, _)| name).collect()
 }
 

@@ -110,11 +110,11 @@ impl Recorder {
         let description = scheme.description();
         let mut probe_columns = vec![time()];
         probe_columns.extend(probes.iter().flat_map(|probe| probe.columns(scheme.dimension())));
-        let energy_names = energy_columns(description.energies, description.mechanisms);
+        let energy_names = energy_columns(description.energies, description.ledger.mechanisms);
         let energy_columns = energy_names.into_iter().map(|name| Column::new(name, "J"));
         let energy = std::iter::once(time()).chain(energy_columns).collect();
         let components = momentum_components(scheme.dimension());
-        let momentum_columns = momentum_columns(components, description.impulses);
+        let momentum_columns = momentum_columns(components, description.ledger.impulses);
         let momentum_columns =
             momentum_columns.into_iter().map(|(name, unit)| Column::new(name, unit));
         let momentum = std::iter::once(time()).chain(momentum_columns).collect();

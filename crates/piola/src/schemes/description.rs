@@ -1,6 +1,8 @@
 //! What a formulation is called and what it shows, known before one is built.
 
-use super::{Scheme, dual_support, elastodynamics, interpolation, transport_velocity, upwind};
+use super::{
+    Accounts, Scheme, dual_support, elastodynamics, interpolation, transport_velocity, upwind,
+};
 use crate::fields::{FieldDescription, Life};
 
 /// The figure of formulations that solve for a state: how many iterations the last step took.
@@ -48,11 +50,8 @@ pub struct SchemeDescription {
     pub fields: &'static [FieldDescription],
     /// The energies of [`Scheme::energies`](super::Scheme::energies).
     pub energies: &'static [&'static str],
-    /// The mechanisms that give or take energy, in the order of the state's tail. Work done on the
-    /// body is positive; what a dissipative mechanism takes is negative.
-    pub mechanisms: &'static [&'static str],
-    /// The ways in which momentum enters from outside, in the order of the state's tail.
-    pub impulses: &'static [&'static str],
+    /// What changes energy and momentum.
+    pub ledger: Accounts,
     /// Names and units of figures of its own, which the table of steps records.
     pub figures: &'static [(&'static str, &'static str)],
 }

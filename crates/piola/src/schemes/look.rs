@@ -1,4 +1,4 @@
-//! One look over the particles of an elastic solid: are they sound, and how stiff have they become.
+//! One look over a state: is it sound, how fast is it, and what is largest of that which bounds the step.
 
 use piola_formulas::tensor;
 
@@ -13,7 +13,92 @@ pub(crate) const RESONANCE: f64 = 0.866_025_403_784_438_6;
 /// with the vibrations of its stiffest particle: steps that go with them drive them.
 pub(crate) const MOST_GROWTH: f64 = 1.01;
 
-/// What the look needs to know of a particle.
+/// What one particle contributes.
+pub(crate) struct Seen<const D: usize, const N: usize> {
+    pub velocity: Vector<D>,
+    /// Largest speed of a wave in m/s.
+    pub wave_speed: f64,
+    /// Smallest volume ratio.
+    pub ratio: f64,
+    /// Difference of an evolved volume ratio and the determinant.
+    pub mismatch: f64,
+    /// Figures of the formulation, of which the largest count.
+    pub figures: [f64; N],
+}
+
+/// The largest of a figure over particles, and who has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Most {
+    pub value: f64,
+    /// Index in memory; the first of those that have it.
+    pub particle: usize,
+}
+
+impl Most {
+    /// Nothing that is seen is less.
+    pub const fn at_least(value: f64) -> Self {
+        Self { value, particle: 0 }
+    }
+
+    /// The larger of the two; what is not a number is not seen.
+    pub fn or(self, other: Self) -> Self {
+        if other.value > self.value { other } else { self }
+    }
+}
+
+/// What has been seen of some particles: squared speed, wave speed, the negative volume ratio and the
+/// mismatch, and the figures of the formulation.
+#[derive(Clone, Copy)]
+struct Sight<const N: usize> {
+    first_not_finite: Option<usize>,
+    common: [Most; 4],
+    own: [Most; N],
+}
+
+impl<const N: usize> Sight<N> {
+    fn worse(self, other: Self) -> Self {
+        Self {
+            first_not_finite: self.first_not_finite.or(other.first_not_finite),
+            common: std::array::from_fn(|k| self.common[k].or(other.common[k])),
+            own: std::array::from_fn(|k| self.own[k].or(other.own[k])),
+        }
+    }
+}
+
+/// The health of `count` particles, and the largest of their figures, which are no less than `least`.
+/// `see` has what a particle contributes; nothing if a value is not finite.
+pub(crate) fn look<const D: usize, const N: usize>(
+    count: usize,
+    least: [f64; N],
+    see: impl Fn(usize) -> Option<Seen<D, N>> + Sync,
+) -> (Health, [Most; N]) {
+    let common = [0.0, 0.0, f64::NEG_INFINITY, 0.0].map(Most::at_least);
+    let neutral = Sight { first_not_finite: None, common, own: least.map(Most::at_least) };
+    let of = |particle: usize| {
+        let Some(seen) = see(particle) else {
+            return Sight { first_not_finite: Some(particle), ..neutral };
+        };
+        let Seen { velocity, wave_speed, ratio, mismatch, figures } = seen;
+        let common = [velocity.norm_squared(), wave_speed, -ratio, mismatch];
+        let most = |value| Most { value, particle };
+        Sight { first_not_finite: None, common: common.map(most), own: figures.map(most) }
+    };
+    let worst = parallel::join(count, neutral, of, Sight::worse);
+    let [speed, wave_speed, ratio, mismatch] = worst.common;
+    let health = Health {
+        largest_speed: speed.value.sqrt(),
+        largest_speed_particle: speed.particle,
+        largest_wave_speed: wave_speed.value,
+        smallest_ratio: -ratio.value,
+        smallest_ratio_particle: ratio.particle,
+        ratio_mismatch: mismatch.value,
+        first_not_finite: worst.first_not_finite,
+        first_escaped: None,
+    };
+    (health, worst.own)
+}
+
+/// What the look needs to know of a particle of an elastic solid.
 pub(crate) struct Deformed<const D: usize> {
     /// Displacement gradient.
     pub gradient: Tensor<D>,
@@ -23,80 +108,33 @@ pub(crate) struct Deformed<const D: usize> {
     pub at_rest: [f64; 2],
     /// Density in kg/m^3.
     pub density: f64,
+    /// By how much viscosity exceeds that at rest.
+    pub thickening: f64,
 }
 
-/// Figures of some particles.
-#[derive(Clone, Copy)]
-pub(crate) struct Figures {
-    pub health: Health,
-    /// Largest modulus of a wave over that at rest.
-    pub stiffening: f64,
-    /// Index in memory of the particle that has it.
-    pub stiffest: usize,
-    /// Smallest modulus of a wave over that at rest.
-    pub convexity: f64,
-    /// Index in memory of the particle that has it.
-    pub least_convex: usize,
-}
-
-impl Figures {
-    const NEUTRAL: Self = Self {
-        health: Health::NEUTRAL,
-        stiffening: 0.0,
-        stiffest: 0,
-        convexity: f64::INFINITY,
-        least_convex: 0,
-    };
-
-    fn of<const D: usize>(a: usize, velocity: &Vector<D>, deformed: &Deformed<D>) -> Self {
-        let Deformed { gradient, moduli: [least, largest], at_rest, density } = deformed;
-        Self {
-            health: Health {
-                largest_speed: velocity.norm(),
-                largest_speed_particle: a,
-                largest_wave_speed: (largest.max(0.0) / density).sqrt(),
-                smallest_ratio: tensor::determinant(&(gradient + Tensor::identity())),
-                smallest_ratio_particle: a,
-                ..Health::NEUTRAL
-            },
-            stiffening: (largest / at_rest[1]).max(0.0),
-            stiffest: a,
-            convexity: least / at_rest[0],
-            least_convex: a,
-        }
-    }
-
-    fn worse(self, other: Self) -> Self {
-        let other_is_less = other.convexity < self.convexity;
-        let other_is_stiffer = other.stiffening > self.stiffening;
-        Self {
-            health: self.health.worse(other.health),
-            stiffening: self.stiffening.max(other.stiffening),
-            stiffest: if other_is_stiffer { other.stiffest } else { self.stiffest },
-            convexity: self.convexity.min(other.convexity),
-            least_convex: if other_is_less { other.least_convex } else { self.least_convex },
-        }
-    }
-
-    /// The particle that has lost its convexity, if there is one.
-    pub fn not_convex(&self) -> Option<usize> {
-        (self.convexity < 0.0).then_some(self.least_convex)
-    }
-}
-
-/// The figures of all particles, whose velocities are the first of `columns`, which are all of the state.
-pub(crate) fn look<const D: usize>(
+/// The health of an elastic solid, whose velocities are the first of `columns`, which are all of the
+/// state; the largest modulus of a wave over that at rest, and the largest thickening; and the particle
+/// whose material has lost its convexity most, if there is one.
+pub(crate) fn look_at_solid<const D: usize>(
     columns: [&[Vector<D>]; 3],
     deformed: impl Fn(usize) -> Deformed<D> + Sync,
-) -> Figures {
-    let figures = |a: usize| {
-        if columns.iter().any(|column| column[a].iter().any(|value| !value.is_finite())) {
-            let health = Health { first_not_finite: Some(a), ..Health::NEUTRAL };
-            return Figures { health, ..Figures::NEUTRAL };
-        }
-        Figures::of(a, &columns[0][a], &deformed(a))
-    };
-    parallel::join(columns[0].len(), Figures::NEUTRAL, figures, Figures::worse)
+) -> (Health, [Most; 2], Option<usize>) {
+    let least = [0.0, 0.0, f64::NEG_INFINITY];
+    let (health, [stiffening, thickening, softening]) = look(columns[0].len(), least, |a| {
+        let is_finite = |column: &&[Vector<D>]| column[a].iter().all(|value| value.is_finite());
+        columns.iter().all(is_finite).then(|| {
+            let Deformed { gradient, moduli, at_rest, density, thickening } = deformed(a);
+            Seen {
+                velocity: columns[0][a],
+                wave_speed: (moduli[1].max(0.0) / density).sqrt(),
+                ratio: tensor::determinant(&(gradient + Tensor::identity())),
+                mismatch: 0.0,
+                figures: [moduli[1] / at_rest[1], thickening, -moduli[0] / at_rest[0]],
+            }
+        })
+    });
+    let soft = (softening.value > 0.0).then_some(softening.particle);
+    (health, [stiffening, thickening], soft)
 }
 
 /// What the user should know of a particle of which the material has lost its convexity.

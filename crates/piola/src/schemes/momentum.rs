@@ -83,6 +83,20 @@ pub fn add_moments<const D: usize>(point: &Vector<D>, vector: &Vector<D>, sum: &
     sum.iter_mut().zip(&all[..count]).for_each(|(sum, part)| *sum += part);
 }
 
+/// Writes the momentum of `count` particles: `of` has the position and the linear momentum of each.
+pub(crate) fn of_particles<const D: usize>(
+    count: usize,
+    of: impl Fn(usize) -> [Vector<D>; 2] + Sync,
+    momentum: &mut [f64],
+) {
+    let all: [f64; MOST_COMPONENTS] =
+        parallel::sums(count, |a, sums: &mut [f64; MOST_COMPONENTS]| {
+            let [position, own] = of(a);
+            add_moments(&position, &own, sums);
+        });
+    momentum.iter_mut().zip(all).for_each(|(entry, sum)| *entry = sum);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

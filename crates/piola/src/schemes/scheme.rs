@@ -14,8 +14,8 @@ use crate::solve::Costs;
 /// A formulation bound to its particles, materials and kernel.
 ///
 /// The state is one flat slice: a column of `particle_count` rows for each of its
-/// [`fields`](SchemeDescription::fields) that is evolved or kept, followed by the running integrals of the [`Ledger`]: the work of each of its mechanisms, then the
-/// impulse of each way in, as its [`SchemeDescription`] has them, with as many numbers as momentum has components. The
+/// [`fields`](SchemeDescription::fields) that is evolved or kept, followed by the running integrals of the
+/// [`Ledger`](super::Ledger): the work of each mechanism, then the impulse of each way in. The
 /// rate of an integral is a power or a force, so an integrator carries the bookkeeping to its own
 /// order without knowing of it, theory (18), and a copy of the state is all there is to save.
 pub trait Scheme: Send {
@@ -165,27 +165,6 @@ pub trait Scheme: Send {
     }
 }
 
-/// The running integrals at the end of a state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ledger<'a> {
-    /// Work so far in J, one number a mechanism.
-    pub work: &'a [f64],
-    /// Impulse so far, one row of momentum components for each way in.
-    pub impulses: &'a [f64],
-}
-
-impl<'a> Ledger<'a> {
-    /// The integrals of `state`.
-    pub fn of(scheme: &dyn Scheme, state: &'a [f64]) -> Self {
-        let tail = &state[scheme.particle_count() * scheme.width()..];
-        let description = scheme.description();
-        let (work, rest) = tail.split_at(description.mechanisms.len());
-        let components = super::momentum_components(scheme.dimension()).len();
-        // What a scheme keeps behind its ledger is its own.
-        Self { work, impulses: &rest[..description.impulses.len() * components] }
-    }
-}
-
 /// Where a particle is and what its number is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particle {
@@ -246,22 +225,14 @@ impl Health {
     /// name the first particle.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
-        let other_is_smaller = other.smallest_ratio < self.smallest_ratio;
-        let other_is_faster = other.largest_speed > self.largest_speed;
+        let faster = if other.largest_speed > self.largest_speed { other } else { self };
+        let smaller = if other.smallest_ratio < self.smallest_ratio { other } else { self };
         Self {
-            largest_speed: self.largest_speed.max(other.largest_speed),
-            largest_speed_particle: if other_is_faster {
-                other.largest_speed_particle
-            } else {
-                self.largest_speed_particle
-            },
+            largest_speed: faster.largest_speed,
+            largest_speed_particle: faster.largest_speed_particle,
             largest_wave_speed: self.largest_wave_speed.max(other.largest_wave_speed),
-            smallest_ratio: self.smallest_ratio.min(other.smallest_ratio),
-            smallest_ratio_particle: if other_is_smaller {
-                other.smallest_ratio_particle
-            } else {
-                self.smallest_ratio_particle
-            },
+            smallest_ratio: smaller.smallest_ratio,
+            smallest_ratio_particle: smaller.smallest_ratio_particle,
             ratio_mismatch: self.ratio_mismatch.max(other.ratio_mismatch),
             first_not_finite: self.first_not_finite.or(other.first_not_finite),
             first_escaped: self.first_escaped.or(other.first_escaped),
@@ -283,4 +254,11 @@ pub struct StepLimit {
     /// The largest ratio of a step to the one before while this bound grows: infinite where it follows
     /// the flow and not the phase of a vibration.
     pub growth: f64,
+}
+
+impl StepLimit {
+    /// A bound that the CFL number scales and that follows the flow.
+    pub fn scaled(name: &'static str, step: f64, particle: usize) -> Self {
+        Self { name, step, particle, scaled: true, growth: f64::INFINITY }
+    }
 }

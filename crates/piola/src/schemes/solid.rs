@@ -18,37 +18,23 @@ pub struct Material<const D: usize> {
     pub law: Reduced<D>,
 }
 
-/// Half a step of velocities with the accelerations of `kick`. The tail begins with a ledger of
-/// `ledger` integrals, of which the first `mechanisms` are works; behind it stand its rates, and how
-/// fast these powers grow.
-///
-/// Work is force times the mean of the velocities before and after, so that it is the change of the
-/// kinetic energy to round-off.
-pub(crate) fn kick<const D: usize>(
-    velocity: &mut [Vector<D>],
-    kick: &[Vector<D>],
-    tail: &mut [f64],
-    (ledger, mechanisms): (usize, usize),
-    duration: f64,
-) {
+/// Half a step of velocities with the accelerations of `kick`.
+pub(crate) fn kick<const D: usize>(velocity: &mut [Vector<D>], kick: &[Vector<D>], duration: f64) {
     parallel::for_each_chunk(velocity, |first, velocity| {
         for (velocity, kick) in velocity.iter_mut().zip(&kick[first..]) {
             *velocity += kick * duration;
         }
     });
-    let (sums, rest) = tail.split_at_mut(ledger);
-    let (rates, growths) = rest.split_at_mut(sums.len());
-    // Of a power that grows evenly, that half way is the mean.
-    let grow = |rates: &mut [f64]| {
-        for (power, growth) in rates.iter_mut().zip(&growths[..mechanisms]) {
-            *power += 0.5 * duration * growth;
-        }
-    };
-    grow(rates);
-    for (sum, rate) in sums.iter_mut().zip(&*rates) {
-        *sum += duration * rate;
-    }
-    grow(rates);
+}
+
+/// Keeps accelerations for kicks, those of prescribed components zero.
+pub(crate) fn keep_accelerations<const D: usize>(
+    kick: &mut [Vector<D>],
+    acceleration: &[Vector<D>],
+    prescribed: &PrescribedComponents,
+) {
+    parallel::copy(kick, acceleration);
+    prescribed.iter().for_each(|entry| kick[entry.particle][entry.component] = 0.0);
 }
 
 /// A step of displacements with velocities half way.

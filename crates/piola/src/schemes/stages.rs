@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::ledger::{Filled, Totals};
+
 /// One stage of an evaluation: a pass over all particles.
 ///
 /// What a stage writes of a particle only that particle reads, unless the stage shows it: neighbours may
@@ -75,6 +77,8 @@ pub struct Phase {
     pub name: &'static str,
     /// Its stages in their order.
     pub stages: Vec<(Stage, Watch)>,
+    /// The mechanisms of the ledger that they have filled.
+    pub filled: Filled,
 }
 
 impl Phase {
@@ -143,7 +147,10 @@ pub(crate) struct Stages<P> {
 /// No stages, of a formulation that is being built or has lent them out.
 impl<P> Default for Stages<P> {
     fn default() -> Self {
-        Self { passes: Vec::new(), phase: Phase { name: "", stages: Vec::new() } }
+        Self {
+            passes: Vec::new(),
+            phase: Phase { name: "", stages: Vec::new(), filled: Filled::default() },
+        }
     }
 }
 
@@ -159,21 +166,25 @@ impl<P: Copy> Stages<P> {
         stage: impl Fn(P) -> Stage,
     ) -> Result<Self, StageFault> {
         let stages = passes.iter().map(|&pass| (stage(pass), Watch::ZERO)).collect();
-        let phase = Phase { name, stages };
+        let phase = Phase { name, stages, filled: Filled::default() };
         phase.check(state)?;
         Ok(Self { passes, phase })
     }
 
-    /// Runs all passes and takes their times.
-    pub fn run(&mut self, mut body: impl FnMut(P)) {
-        let mut last = Instant::now();
+    /// Runs all passes and takes their times; adds up the totals that they fill.
+    pub fn run(&mut self, mut body: impl FnMut(P, &mut Totals)) -> Totals {
+        let (mut all, mut last) = (Totals::default(), Instant::now());
         for (&pass, (_, watch)) in self.passes.iter().zip(&mut self.phase.stages) {
-            body(pass);
+            // What a stage has filled is its own, so that it is seen if it fills that again.
+            self.phase.filled.join(std::mem::take(&mut all.filled));
+            body(pass, &mut all);
             let now = Instant::now();
             watch.total += now - last;
             watch.calls += 1;
             last = now;
         }
+        self.phase.filled.join(all.filled);
+        all
     }
 
     /// The stages with their times.
@@ -193,7 +204,7 @@ mod tests {
 
     fn check(stages: &[Stage]) -> Result<(), StageFault> {
         let stages = stages.iter().map(|stage| (*stage, Watch::ZERO)).collect();
-        Phase { name: "test", stages }.check(&["x"])
+        Phase { name: "test", stages, filled: Filled::default() }.check(&["x"])
     }
 
     #[test]
@@ -217,8 +228,8 @@ mod tests {
         let mut stages =
             Stages::new("test", &["x"], vec![0, 1], |k| [MAKE, TAKE][k]).expect("good");
         let mut seen = Vec::new();
-        stages.run(|pass| seen.push(pass));
-        stages.run(|pass| seen.push(pass));
+        stages.run(|pass, _| seen.push(pass));
+        stages.run(|pass, _| seen.push(pass));
         assert_eq!(seen, [0, 1, 0, 1]);
         assert!(stages.phase().stages.iter().all(|(_, watch)| watch.calls == 2));
         let dot = stages.phase().dot();

@@ -99,8 +99,9 @@ fn the_ledger_closes_for_every_choice() {
         let balance = gained - work.iter().sum::<f64>();
         // Round-off of 50 sums over 1600 particles.
         assert!(balance.abs() < 1e-12 * before, "{settings:?}: {balance:e} of {before:e} J");
-        let named =
-            |name| work[scheme.description().mechanisms.iter().position(|m| *m == name).unwrap()];
+        let named = |name| {
+            work[scheme.description().ledger.mechanisms.iter().position(|m| *m == name).unwrap()]
+        };
         assert!(named("viscosity") < -1e-3 * before, "viscosity takes energy");
         assert!(named("artificial_viscosity") <= 0.0);
         if let PressureRule::Edac { .. } = settings.pressure {

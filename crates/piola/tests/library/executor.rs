@@ -26,8 +26,7 @@ impl Scheme for Pendulum {
             name: "pendulum",
             fields: &[],
             energies: &[],
-            mechanisms: &[],
-            impulses: &[],
+            ledger: piola::schemes::Accounts::NONE,
             figures: &[],
         }
     }

@@ -33,6 +33,26 @@ fn session(case: &Case) -> Session {
     Session::new(case).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
+/// What a formulation declares is filled by its stages, by each of them once.
+#[test]
+fn ledgers_are_filled() {
+    let mut with_stages = Vec::new();
+    for case in cases() {
+        let mut session = session(&case);
+        session.step().expect("it starts");
+        let scheme = session.scheme();
+        let (description, phases) = (scheme.description(), scheme.phases());
+        // Statics runs no stages.
+        if phases.iter().any(|phase| phase.stages.iter().any(|(_, watch)| watch.calls > 0)) {
+            assert_eq!(description.ledger.faults(&phases), [], "{}", description.name);
+            with_stages.push(description.name);
+        }
+    }
+    with_stages.dedup();
+    let all = ["upwind", "transport_velocity", "dual_support", "elastodynamics", "upwind"];
+    assert_eq!(with_stages, all);
+}
+
 /// What an observer from outside saw.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Seen {

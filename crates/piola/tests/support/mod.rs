@@ -229,7 +229,7 @@ pub fn energy(scheme: &dyn Scheme, state: &[f64]) -> f64 {
 
 /// The work that a mechanism has done so far.
 pub fn work(scheme: &dyn Scheme, state: &[f64], mechanism: &str) -> f64 {
-    let names = scheme.description().mechanisms;
+    let names = scheme.description().ledger.mechanisms;
     let position = names.iter().position(|name| *name == mechanism).expect("a known mechanism");
     Ledger::of(scheme, state).work[position]
 }

@@ -8,8 +8,8 @@ use super::fields::Made;
 use super::stable_step::stable_step;
 use super::stages;
 use super::{
-    Discrete, DualSupport, Gradients, Material, Motion, Settings, Side, Statics, StaticsError,
-    StaticsInput,
+    Discrete, DualSupport, FIGURES, Gradients, LEDGER, Material, Motion, Settings, Side, Statics,
+    StaticsError, StaticsInput,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{
@@ -174,7 +174,7 @@ impl<const D: usize> DualSupport<D> {
             initial_velocity: velocity,
             sides: vec![Side::zero(); count],
             force: vec![Vector::zeros(); count],
-            rate: vec![0.0; count * width(Made::FIELDS, D) + Self::tail_length()],
+            rate: vec![0.0; count * width(Made::FIELDS, D) + LEDGER.length(D) + FIGURES],
             reaction: Vec::new(),
             mass,
             discrete,

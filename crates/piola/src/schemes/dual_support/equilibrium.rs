@@ -3,10 +3,11 @@
 use super::fields::ColumnsMut;
 use super::statics::Known;
 use super::{
-    ARC_SCALE, BODY_FORCE, BOUNDARY_MOTION, DualSupport, FIGURES, ITERATIONS, LOAD_FACTOR,
-    MECHANISMS, PRESSURE, StaticState, Statics, StaticsError, TRACTION,
+    ARC_SCALE, BODY_FORCE, BOUNDARY_MOTION, DualSupport, ITERATIONS, LEDGER, LOAD_FACTOR, PRESSURE,
+    StaticState, Statics, StaticsError, TRACTION,
 };
 use crate::boundaries::{pressure::Pressed, traction::Loaded};
+use crate::schemes::ledger::{Total, Totals};
 use crate::schemes::{Missed, NoSolution, Scheme, StaticScheme};
 use crate::solve::{LoadError, NewtonError};
 use crate::{Vector, parallel};
@@ -40,7 +41,8 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution> {
-        let [_, factor, scale] = figures(old);
+        let known = LEDGER.behind(D, self.columns(old).tail);
+        let [factor, scale] = [known[LOAD_FACTOR], known[ARC_SCALE]];
         let mut radius = (from > 0.0).then_some(scale * (to - from));
         self.settle([from, to], factor, old, new, |statics, known| {
             statics.advance_along(known, to - from, &mut radius).map_err(|error| NoSolution {
@@ -54,22 +56,12 @@ impl<const D: usize> StaticScheme for DualSupport<D> {
             })
         })?;
         if let Some(radius) = radius {
-            figures_of(new)[ARC_SCALE] = if from > 0.0 { scale } else { radius / (to - from) };
+            let (_, tail) = ColumnsMut::<D>::of(new, self.mass.len());
+            LEDGER.behind_mut(D, tail)[ARC_SCALE] =
+                if from > 0.0 { scale } else { radius / (to - from) };
         }
         Ok(())
     }
-}
-
-/// The numbers of the last step in a state, or its tail.
-pub(super) fn figures_of(state: &mut [f64]) -> &mut [f64] {
-    let start = state.len() - FIGURES;
-    &mut state[start..]
-}
-
-fn figures(state: &[f64]) -> [f64; FIGURES] {
-    let mut figures = [0.0; FIGURES];
-    figures.copy_from_slice(&state[state.len() - FIGURES..]);
-    figures
 }
 
 impl<const D: usize> DualSupport<D> {
@@ -104,9 +96,8 @@ impl<const D: usize> DualSupport<D> {
         let held = held_before.iter().zip(&state.support_force);
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
         let ends = [&*known.displacement, &*state.displacement];
-        let work = self.work([factor, state.factor], ends, &held);
-        tail.iter_mut().zip(work).for_each(|(sum, work)| *sum += work);
-        let figures = figures_of(tail);
+        LEDGER.add(D, &self.work([factor, state.factor], ends, &held), tail);
+        let figures = LEDGER.behind_mut(D, tail);
         figures[ITERATIONS] = state.solved.iterations.len() as f64;
         figures[LOAD_FACTOR] = state.factor;
         Ok(())
@@ -121,16 +112,14 @@ impl<const D: usize> DualSupport<D> {
         [from, to]: [f64; 2],
         [before, after]: [&[Vector<D>]; 2],
         held: &[Vector<D>],
-    ) -> [f64; MECHANISMS.len()] {
+    ) -> Totals {
         let moved = |a: usize| after[a] - before[a];
-        let mut work = [0.0; MECHANISMS.len()];
-        work[BODY_FORCE] = parallel::sum(held.len(), |a| {
+        let body = parallel::sum(held.len(), |a| {
             let both = self.body_acceleration(a, from) + self.body_acceleration(a, to);
             0.5 * self.mass[a] * both.dot(&moved(a))
         });
         let of =
             |load: &Loaded<D>| 0.5 * (load.force(from) + load.force(to)).dot(&moved(load.particle));
-        work[TRACTION] = self.loaded.iter().map(of).sum();
         let pressing = |part: &Pressed<D>| {
             let a = part.particle;
             let force = |time: f64, displacement: &[Vector<D>]| {
@@ -138,9 +127,13 @@ impl<const D: usize> DualSupport<D> {
             };
             0.5 * (force(from, before) + force(to, after)).dot(&moved(a))
         };
-        work[PRESSURE] = self.pressed.iter().map(pressing).sum();
-        work[BOUNDARY_MOTION] = parallel::sum(held.len(), |a| held[a].dot(&moved(a)));
-        work
+        let mut totals = Totals::default();
+        totals.book(BODY_FORCE, &Total::of(body));
+        totals.book(TRACTION, &Total::of(self.loaded.iter().map(of).sum()));
+        totals.book(PRESSURE, &Total::of(self.pressed.iter().map(pressing).sum()));
+        let boundary = parallel::sum(held.len(), |a| held[a].dot(&moved(a)));
+        totals.book(BOUNDARY_MOTION, &Total::of(boundary));
+        totals
     }
 
     /// What supports and prescribed motions hold each particle with, N.
@@ -157,7 +150,7 @@ impl<const D: usize> DualSupport<D> {
     pub(super) fn reactions_to(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
         let at = self.columns(state);
         if let (true, Some(statics)) = (self.is_static, &mut self.statics) {
-            return statics.support_forces(figures(state)[LOAD_FACTOR], at.displacement);
+            return statics.support_forces(LEDGER.behind(D, at.tail)[LOAD_FACTOR], at.displacement);
         }
         let rate = self.columns(&self.rate);
         let mut loads = vec![Vector::zeros(); self.mass.len()];

@@ -1,7 +1,7 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
 use super::DualSupport;
-use crate::schemes::look::{Deformed, look};
+use crate::schemes::look::{Deformed, look_at_solid};
 use crate::schemes::solid::wave_moduli;
 use crate::schemes::{Health, StepLimit};
 
@@ -12,7 +12,8 @@ impl<const D: usize> DualSupport<D> {
     /// hourglass term included, over the largest stiffening of a particle since, theory (50).
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let at = self.columns(state);
-        let figures = look([at.velocity, at.displacement, at.kick], |a| {
+        let columns = [at.velocity, at.displacement, at.kick];
+        let (health, [stiffening, _], soft) = look_at_solid(columns, |a| {
             let gradient = self.discrete.displacement_gradient(at.displacement, a);
             let material = self.discrete.material(a);
             let at_rest = self.moduli_at_rest[self.discrete.particles.body[a] as usize];
@@ -20,24 +21,19 @@ impl<const D: usize> DualSupport<D> {
                 true => wave_moduli(&material.law, &gradient),
                 false => at_rest,
             };
-            Deformed { gradient, moduli, at_rest, density: material.density }
+            Deformed { gradient, moduli, at_rest, density: material.density, thickening: 0.0 }
         });
-        if let Some(a) = figures.not_convex() {
+        if let Some(a) = soft {
             let gradient = self.discrete.displacement_gradient(at.displacement, a);
             self.not_convex = Some((a, gradient));
         }
         limits.clear();
         if self.is_static {
             // Nothing moves: rows hold another rate.
-            return Health { largest_speed: 0.0, ..figures.health };
+            return Health { largest_speed: 0.0, ..health };
         }
-        limits.push(StepLimit {
-            name: "eigenvalue",
-            step: self.stable_step / figures.stiffening.sqrt(),
-            particle: self.stiffest,
-            scaled: true,
-            growth: f64::INFINITY,
-        });
-        figures.health
+        let step = self.stable_step / stiffening.value.sqrt();
+        limits.push(StepLimit::scaled("eigenvalue", step, self.stiffest));
+        health
     }
 }

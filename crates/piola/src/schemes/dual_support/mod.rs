@@ -44,6 +44,8 @@ use std::sync::Arc;
 pub use super::solid::Material;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, pressure::Pressed, traction::Loaded};
+use crate::schemes::Accounts;
+use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
 use crate::{Tensor, Vector};
 
@@ -83,20 +85,17 @@ pub struct DualSupport<const D: usize> {
 /// The energies of the formulation.
 const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
 
-/// The mechanisms of its ledger, in the order of the state's tail.
-const MECHANISMS: [&str; 4] = ["body_force", "traction", "pressure", "boundary_motion"];
+/// Momentum enters by all mechanisms, since forces between particles cancel.
+const LEDGER: Accounts = Accounts { mechanisms: &OUTSIDE, impulses: &OUTSIDE, is_kicked: true };
+const OUTSIDE: [&str; 4] = ["body_force", "traction", "pressure", "boundary_motion"];
+const BODY_FORCE: Entry = LEDGER.entry("body_force");
+const TRACTION: Entry = LEDGER.entry("traction");
+const PRESSURE: Entry = LEDGER.entry("pressure");
+const BOUNDARY_MOTION: Entry = LEDGER.entry("boundary_motion");
 
-/// The ways in which momentum enters: all mechanisms, since forces between particles cancel.
-const IMPULSES: [&str; 4] = MECHANISMS;
-
-/// Numbers at the end of a state that belong to its last step: iterations of Newton's method, the load
+/// Numbers behind the ledger that belong to its last step: iterations of Newton's method, the load
 /// factor, and the length in m that displacements have moved by per unit of arc length.
 const FIGURES: usize = 3;
 const ITERATIONS: usize = 0;
 const LOAD_FACTOR: usize = 1;
 const ARC_SCALE: usize = 2;
-
-const BODY_FORCE: usize = 0;
-const TRACTION: usize = 1;
-const PRESSURE: usize = 2;
-const BOUNDARY_MOTION: usize = 3;

@@ -1,11 +1,11 @@
 //! The formulation in implicit steps.
 
-use super::equilibrium::{figures_of, kind};
+use super::equilibrium::kind;
 use super::fields::ColumnsMut;
 use super::statics::InertialStep;
-use super::{DualSupport, ITERATIONS, MECHANISMS};
+use super::{DualSupport, ITERATIONS, LEDGER};
 use crate::schemes::momentum::kinetic_distance;
-use crate::schemes::{Newmark, NewmarkScheme, NoSolution, Scheme};
+use crate::schemes::{Newmark, NewmarkScheme, NoSolution};
 use crate::{Vector, parallel};
 
 impl<const D: usize> NewmarkScheme for DualSupport<D> {
@@ -79,20 +79,13 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
         let held = held_before.into_iter().zip(self.held(end, new));
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
         let ends: Vec<Vector<D>> = last.iter().zip(&moved).map(|(u, moved)| u + moved).collect();
-        let work = self.work([time, end], [&last, &ends], &held);
+        let mut totals = self.work([time, end], [&last, &ends], &held);
         let mut rate = std::mem::take(&mut self.rate);
-        self.rates(end, new, &mut rate);
-        let (ledger, (_, tail)) = (Self::ledger_length(), ColumnsMut::<D>::of(new, count));
-        let rates = &self.columns(&rate).tail[..ledger];
-        for (sum, work) in tail.iter_mut().zip(work) {
-            *sum += work;
-        }
-        for index in MECHANISMS.len()..ledger {
-            tail[index] += 0.5 * step * (tail[ledger + index] + rates[index]);
-        }
-        tail[ledger..2 * ledger].copy_from_slice(rates);
+        totals.join(&self.evaluate(end, new, &mut rate));
         self.rate = rate;
-        figures_of(tail)[ITERATIONS] = iterations as f64;
+        let (_, tail) = ColumnsMut::<D>::of(new, count);
+        LEDGER.finish(D, step, &totals, tail);
+        LEDGER.behind_mut(D, tail)[ITERATIONS] = iterations as f64;
         Ok(())
     }
 

@@ -1,9 +1,11 @@
 //! The dual-support formulation as integrators, clock and output see it.
 
 use super::fields::{Columns, ColumnsMut, Made};
-use super::{DualSupport, ENERGIES, FIGURES, IMPULSES, MECHANISMS, Side};
+use super::{DualSupport, ENERGIES, LEDGER, Side};
 use crate::fields::FieldDescription;
+use crate::schemes::ledger::Totals;
 use crate::schemes::look::convexity_is_lost;
+use crate::schemes::momentum::of_particles;
 use crate::schemes::{
     Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Phase, Scheme,
     SchemeDescription, SplitScheme, StaticScheme, StepLimit,
@@ -23,8 +25,7 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     offers: &[Capability::Rates, Capability::Kicks, Capability::Newmark, Capability::Statics],
     fields: Made::FIELDS,
     energies: &ENERGIES,
-    mechanisms: &MECHANISMS,
-    impulses: &IMPULSES,
+    ledger: LEDGER,
     figures: &FIGURE_COLUMNS,
 };
 
@@ -50,21 +51,16 @@ impl<const D: usize> Scheme for DualSupport<D> {
         let mut rate = vec![0.0; state.len()];
         let count = self.mass.len();
         let sides = vec![Side::zero(); count];
-        self.external_pass(
-            0.0,
-            &self.columns(&state),
-            (&vec![Vector::zeros(); count], &sides),
-            &mut rate,
-        );
-        self.store(0.0, &rate, &sides, &mut state);
+        let (at, internal) = (self.columns(&state), (&*vec![Vector::zeros(); count], &*sides));
+        let mut totals = Totals::default();
+        self.external_pass(0.0, &at, internal, (&mut rate, &mut totals));
+        self.store((0.0, &rate), &sides, totals, &mut state);
         state
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        let at = self.columns(state);
-        let mut stages = std::mem::take(&mut self.stages);
-        stages.run(|pass| self.run(pass, time, &at, rate));
-        self.stages = stages;
+        let totals = self.evaluate(time, state, rate);
+        LEDGER.write(D, &totals, ColumnsMut::<D>::of(rate, self.mass.len()).1);
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
@@ -79,7 +75,8 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
-        figures.extend_from_slice(&state[state.len() - FIGURES..][..FIGURE_COLUMNS.len()]);
+        let kept = LEDGER.behind(D, self.columns(state).tail);
+        figures.extend_from_slice(&kept[..FIGURE_COLUMNS.len()]);
     }
 
     fn linear_costs(&self) -> Option<Costs> {
@@ -106,7 +103,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         let at = self.columns(state);
-        let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
+        let sums = parallel::sums::<[f64; 3]>(self.mass.len(), |a, sums| {
             if !self.is_static {
                 sums[0] += 0.5 * self.mass[a] * at.velocity[a].norm_squared();
             }
@@ -118,8 +115,11 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let all = self.momentum_of(state);
-        momentum.copy_from_slice(&all[..momentum.len()]);
+        let at = self.columns(state);
+        // Nothing moves in statics: the column holds another rate.
+        let mass = |a: usize| if self.is_static { 0.0 } else { self.mass[a] };
+        let of = |a: usize| [self.position(a, &at), at.velocity[a] * mass(a)];
+        of_particles(self.mass.len(), of, momentum);
     }
 
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {

@@ -2,6 +2,7 @@
 
 use super::DualSupport;
 use super::fields::Columns;
+use crate::schemes::ledger::{Found, Totals};
 use crate::schemes::stages::{Stage, StageFault, Stages};
 
 /// A pass over particles.
@@ -48,14 +49,25 @@ pub(super) fn plan() -> Result<Stages<Pass>, StageFault> {
 }
 
 impl<const D: usize> DualSupport<D> {
+    /// Writes the rates of the columns of `state` at `time`.
+    pub(super) fn evaluate(&mut self, time: f64, state: &[f64], rate: &mut [f64]) -> Totals {
+        let at = self.columns(state);
+        let mut stages = std::mem::take(&mut self.stages);
+        let totals = stages.run(|pass, totals| self.run(pass, time, &at, (rate, totals)));
+        self.stages = stages;
+        totals
+    }
+
     /// Runs one pass of the rates at a time and columns of a state.
-    pub(super) fn run(&mut self, pass: Pass, time: f64, at: &Columns<'_, D>, rate: &mut [f64]) {
+    pub(super) fn run(&mut self, pass: Pass, time: f64, at: &Columns<'_, D>, found: Found<'_>) {
         match pass {
             Pass::Sides => self.discrete.fill_sides(at.displacement, &mut self.sides),
             Pass::Forces => {
                 self.discrete.fill_forces(at.displacement, &self.sides, &mut self.force);
             }
-            Pass::External => self.external_pass(time, at, (&self.force, &self.sides), rate),
+            Pass::External => {
+                self.external_pass(time, at, (&self.force, &self.sides), found);
+            }
         }
     }
 }

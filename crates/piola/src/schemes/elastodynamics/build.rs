@@ -8,7 +8,7 @@ use super::fields::{ColumnsMut, Made};
 use super::holes::Hole;
 use super::stages;
 use super::tractions::Body;
-use super::{Configuration, Elastodynamics, Form, Mixture, Settings, stable_step::Bound};
+use super::{Configuration, Elastodynamics, Form, LEDGER, Mixture, Settings, stable_step::Bound};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
 use crate::fields::width;
@@ -233,7 +233,7 @@ impl<const D: usize> Elastodynamics<D> {
             loaded = input.tractions.iter().flat_map(|load| body.loads(load)).collect();
         }
         let with_edges = if found.is_some() { count + data } else { 0 };
-        let length = count * width(Made::FIELDS, D) + Self::slopes_at() + D * data;
+        let length = count * width(Made::FIELDS, D) + LEDGER.length(D) + D * data;
         let rate_length = if settings.is_viscous() { count } else { 0 };
         let mut scheme = Self {
             mirrors: input.mirrors.iter().map(|&(mirror, on)| (mirror, on as usize)).collect(),

@@ -7,15 +7,6 @@ use super::{Configuration, Elastodynamics};
 use crate::operators::{Cover, PlaneData};
 use crate::{Tensor, Vector, parallel};
 
-/// Powers in W that boundaries do on the strain energy through the ghosts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct GhostPowers {
-    /// Of loaded edges.
-    pub traction: f64,
-    /// Of held edges and rollers.
-    pub motion: f64,
-}
-
 impl<const D: usize> Elastodynamics<D> {
     /// The columns of a state.
     pub(super) fn columns<'a>(&self, state: &'a [f64]) -> Columns<'a, D> {
@@ -172,16 +163,17 @@ impl<const D: usize> Elastodynamics<D> {
         }
     }
 
-    /// The powers of boundaries through ghosts at the evaluated state: `speed` are velocities, or what
+    /// The powers in W that loaded edges, and held ones with rollers, do on the strain energy through
+    /// ghosts at the evaluated state: `speed` are velocities, or what
     /// stands for them, with the rates of the data that go with them.
-    pub(super) fn ghost_powers(&self, speed: &[Vector<D>], rates: &PlaneData<D>) -> GhostPowers {
+    pub(super) fn ghost_powers(&self, speed: &[Vector<D>], rates: &PlaneData<D>) -> [f64; 2] {
         let Some(edges) = &self.edges else {
             let hourglass = self.hourglass.as_ref().map_or(0.0, |hourglass| {
                 let data = self.plane_data(&self.displacement);
                 hourglass.source_power(&self.displacement, &data, rates)
             });
             let motion = self.matrix.source_power(&self.tension, rates) + hourglass;
-            return GhostPowers { traction: 0.0, motion };
+            return [0.0, motion];
         };
         let count = self.mass.len();
         let held = |datum: usize| {
@@ -196,6 +188,6 @@ impl<const D: usize> Elastodynamics<D> {
             let rate = self.matrix.gradient_at(speed, rates, a);
             self.force[a].dot(&speed[a]) + self.tension[a].dot(&rate)
         });
-        GhostPowers { traction: sum - motion, motion }
+        [sum - motion, motion]
     }
 }

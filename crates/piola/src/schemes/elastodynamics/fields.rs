@@ -3,6 +3,7 @@
 use super::Elastodynamics;
 use super::stages::Pass;
 use crate::fields::columns;
+use crate::schemes::ledger::Totals;
 use crate::schemes::solid::{Measure, append_measure, append_rows};
 
 columns! {
@@ -35,12 +36,12 @@ impl<const D: usize> Elastodynamics<D> {
             let is_elastic = self.edges.is_none() && !self.settings.is_viscous();
             if !(is_elastic && self.is_evaluated_at(&at)) {
                 for pass in Pass::INTERNAL {
-                    self.run(pass, time, &at, &mut []);
+                    self.run(pass, time, &at, (&mut [], &mut Totals::default()));
                 }
             }
         } else {
             let mut rate = std::mem::take(&mut self.rate);
-            self.external_pass(time, &at, &mut rate);
+            self.external_pass(time, &at, (&mut rate, &mut Totals::default()));
             self.rate = rate;
         }
     }

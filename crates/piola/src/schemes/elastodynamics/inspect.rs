@@ -2,11 +2,11 @@
 
 use super::fields::Columns;
 use super::settings::is_linear;
-use super::stable_step::Most;
 use super::{Configuration, Elastodynamics};
-use crate::schemes::look::{Deformed, look};
+use crate::operators::PlaneData;
+use crate::schemes::look::{Deformed, look_at_solid};
 use crate::schemes::{Health, StepLimit};
-use crate::{Tensor, Vector, parallel};
+use crate::{Tensor, Vector};
 
 impl<const D: usize> Elastodynamics<D> {
     /// The health of `state` and the bound on the step, theory (67), of the body as it is deformed:
@@ -21,17 +21,19 @@ impl<const D: usize> Elastodynamics<D> {
             true => self.gradient[a],
             false => self.matrix.gradient_at(&self.displacement, &data, a),
         };
-        let figures = look([at.velocity, at.displacement, at.kick], |a| {
+        let columns = [at.velocity, at.displacement, at.kick];
+        let velocity = self.velocity(&at);
+        let rates = self.plane_data(velocity);
+        let (health, [stiffening, thickening], soft) = look_at_solid(columns, |a| {
             let gradient = gradient_of(a);
             let kind = self.mixture[a] as usize;
             let mixture = &self.mixtures[kind];
             let moduli = mixture.wave_moduli(&gradient);
             let (at_rest, density) = (self.moduli_at_rest[kind], mixture.density());
-            Deformed { gradient, moduli, at_rest, density }
+            let thickening = self.thickening_at(a, &gradient, (velocity, &rates));
+            Deformed { gradient, moduli, at_rest, density, thickening }
         });
-        let thickening = self.thickest(self.velocity(&at), &gradient_of);
-        let stiffening = Most { ratio: figures.stiffening, particle: figures.stiffest };
-        if let Some(a) = figures.not_convex() {
+        if let Some(a) = soft {
             let gradient = gradient_of(a);
             self.not_convex = Some((a, gradient));
         }
@@ -39,26 +41,22 @@ impl<const D: usize> Elastodynamics<D> {
         limits.clear();
         let is_linear = self.mixtures.iter().all(is_linear);
         limits.push(self.stable.limit(stiffening, thickening, is_linear));
-        figures.health
+        health
     }
 
-    /// The particle at which viscosity has grown most since rest.
-    fn thickest(
+    /// By how much viscosity has grown at a particle since rest.
+    fn thickening_at(
         &self,
-        velocity: &[Vector<D>],
-        gradient_of: &(impl Fn(usize) -> Tensor<D> + Sync),
-    ) -> Most {
+        a: usize,
+        gradient: &Tensor<D>,
+        (velocity, data): (&[Vector<D>], &PlaneData<D>),
+    ) -> f64 {
         if !self.settings.is_viscous() {
-            return Most::NONE;
+            return 0.0;
         }
         let is_quadratic = self.settings.artificial_viscosity[1] > 0.0;
-        let rates = self.plane_data(velocity);
-        let of = |a: usize| {
-            let rate = is_quadratic.then(|| self.matrix.gradient_at(velocity, &rates, a));
-            let ratio = self.thickening(&gradient_of(a), rate.as_ref(), a);
-            Most { ratio, particle: a }
-        };
-        parallel::join(self.mass.len(), Most::NONE, of, Most::or)
+        let rate = is_quadratic.then(|| self.matrix.gradient_at(velocity, data, a));
+        self.thickening(gradient, rate.as_ref(), a)
     }
 
     /// Whether the gradients at hand are those of the displacements of `state`: after a step they

@@ -41,6 +41,8 @@ use crate::boundaries::{BodyForce, traction::Loaded};
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
 use crate::operators::{FoldedGradient, FoldedHourglass, Mirror};
+use crate::schemes::Accounts;
+use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
 use crate::{Tensor, Vector};
 
@@ -98,15 +100,13 @@ pub struct Elastodynamics<const D: usize> {
 /// The energies of the formulation.
 const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
 
-/// The mechanisms of its ledger, in the order of the state's tail.
-const MECHANISMS: [&str; 5] = ["body_force", "traction", "boundary_motion", "viscosity", "damping"];
-
-/// The ways in which momentum enters.
-const IMPULSES: [&str; 4] = ["body_force", "traction", "boundary_motion", "damping"];
-
-const BODY_FORCE: usize = 0;
-const TRACTION: usize = 1;
-const BOUNDARY_MOTION: usize = 2;
-const VISCOSITY: usize = 3;
-const DAMPING: usize = 4;
-const DAMPING_IMPULSE: usize = 3;
+const LEDGER: Accounts = Accounts {
+    mechanisms: &["body_force", "traction", "boundary_motion", "viscosity", "damping"],
+    impulses: &["body_force", "traction", "boundary_motion", "damping"],
+    is_kicked: true,
+};
+const BODY_FORCE: Entry = LEDGER.entry("body_force");
+const TRACTION: Entry = LEDGER.entry("traction");
+const BOUNDARY_MOTION: Entry = LEDGER.entry("boundary_motion");
+const VISCOSITY: Entry = LEDGER.entry("viscosity");
+const DAMPING: Entry = LEDGER.entry("damping");

@@ -1,10 +1,11 @@
 //! The elastodynamics formulation as integrators, clock and output see it.
 
 use super::fields::{ColumnsMut, Made};
-use super::{ENERGIES, Elastodynamics, IMPULSES, MECHANISMS};
+use super::{ENERGIES, Elastodynamics, LEDGER};
 use crate::fields::FieldDescription;
 use crate::parallel;
 use crate::schemes::look::convexity_is_lost;
+use crate::schemes::momentum::of_particles;
 use crate::schemes::{
     Capability, Health, Particle, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
@@ -15,8 +16,7 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &ENERGIES,
-    mechanisms: &MECHANISMS,
-    impulses: &IMPULSES,
+    ledger: LEDGER,
     figures: &[],
 };
 
@@ -38,10 +38,8 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        let at = self.columns(state);
-        let mut stages = std::mem::take(&mut self.stages);
-        stages.run(|pass| self.run(pass, time, &at, rate));
-        self.stages = stages;
+        let totals = self.evaluate(time, state, rate);
+        LEDGER.write(D, &totals, ColumnsMut::<D>::of(rate, self.mass.len()).1);
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
@@ -67,7 +65,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
         displacement.resize(self.displacement.len(), crate::Vector::zeros());
         self.append_kept(&mut displacement, at.tail);
         let data = self.plane_data(&displacement);
-        let sums = parallel::sums::<3>(self.mass.len(), |a, sums| {
+        let sums = parallel::sums::<[f64; 3]>(self.mass.len(), |a, sums| {
             sums[0] += 0.5 * self.mass[a] * at.velocity[a].norm_squared();
             let gradient = self.matrix.gradient_at(&displacement, &data, a);
             let mixture = &self.mixtures[self.mixture[a] as usize];
@@ -84,8 +82,9 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let all = self.momentum_of(state);
-        momentum.copy_from_slice(&all[..momentum.len()]);
+        let (at, reference) = (self.columns(state), &self.particles.position);
+        let of = |a: usize| [reference[a] + at.displacement[a], at.velocity[a] * self.mass[a]];
+        of_particles(self.mass.len(), of, momentum);
     }
 
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {

@@ -2,9 +2,9 @@
 
 use piola_formulas::tensor;
 
-use super::Elastodynamics;
 use super::edges::{Edges, Slot};
 use super::settings::{Mixture, is_linear};
+use super::{Elastodynamics, LEDGER};
 use crate::operators::FoldedGradient;
 use crate::{Tensor, Vector};
 
@@ -166,7 +166,7 @@ impl<const D: usize> Elastodynamics<D> {
     /// displacements in a state.
     pub(super) fn append_kept(&self, field: &mut [Vector<D>], tail: &[f64]) {
         let Some(edges) = &self.edges else { return };
-        let kept = &tail[Self::slopes_at()..];
+        let kept = LEDGER.behind(D, tail);
         edges.append(self.mass.len(), field, |number, i| kept[number * D + i]);
     }
 

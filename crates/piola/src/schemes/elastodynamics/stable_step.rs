@@ -5,7 +5,7 @@ use piola_formulas::tensor;
 use super::Elastodynamics;
 use super::edges::Edges;
 use crate::schemes::StepLimit;
-use crate::schemes::look::{MOST_GROWTH, RESONANCE};
+use crate::schemes::look::{MOST_GROWTH, Most, RESONANCE};
 use crate::solve::largest_mode;
 use crate::{Tensor, Vector};
 
@@ -28,21 +28,6 @@ pub(super) struct Bound {
     particle: usize,
 }
 
-/// The largest of a ratio over particles, and who has it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Most {
-    pub ratio: f64,
-    pub particle: usize,
-}
-
-impl Most {
-    pub const NONE: Self = Self { ratio: 0.0, particle: 0 };
-
-    pub fn or(self, other: Self) -> Self {
-        if other.ratio > self.ratio { other } else { self }
-    }
-}
-
 impl Bound {
     /// The largest step of central differences with dissipation by the velocities half a step back,
     /// theory (67), of a body whose stiffness and whose viscosity have grown by these factors since
@@ -51,13 +36,13 @@ impl Bound {
     /// Laws that are not linear resonate at three steps a period, which is the limit for them where
     /// dissipation does not set a smaller one.
     pub fn limit(&self, stiffening: Most, thickening: Most, is_linear: bool) -> StepLimit {
-        let stiffness = self.stiffness * stiffening.ratio;
-        let dissipation = self.viscosity * thickening.ratio + self.damping;
+        let stiffness = self.stiffness * stiffening.value;
+        let dissipation = self.viscosity * thickening.value + self.damping;
         let sum = dissipation + (dissipation * dissipation + 4.0 * stiffness).sqrt();
         let (name, particle) = match dissipation * dissipation > stiffness {
             true => ("dissipation", thickening.particle),
             // The mode at rest tells where small or crowded particles are, until something stiffens.
-            false if stiffening.ratio > 1.0 + ROUND_OFF => ("eigenvalue", stiffening.particle),
+            false if stiffening.value > 1.0 + ROUND_OFF => ("eigenvalue", stiffening.particle),
             false => ("eigenvalue", self.particle),
         };
         let step = match sum {

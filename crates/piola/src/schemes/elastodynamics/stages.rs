@@ -2,6 +2,7 @@
 
 use super::fields::Columns;
 use super::{Configuration, Elastodynamics};
+use crate::schemes::ledger::{Found, Totals};
 use crate::schemes::stages::{Stage, StageFault, Stages};
 
 /// A pass over particles.
@@ -65,8 +66,17 @@ pub(super) fn plan() -> Result<Stages<Pass>, StageFault> {
 }
 
 impl<const D: usize> Elastodynamics<D> {
+    /// Writes the rates of the columns of `state` at `time`.
+    pub(super) fn evaluate(&mut self, time: f64, state: &[f64], rate: &mut [f64]) -> Totals {
+        let at = self.columns(state);
+        let mut stages = std::mem::take(&mut self.stages);
+        let totals = stages.run(|pass, totals| self.run(pass, time, &at, (rate, totals)));
+        self.stages = stages;
+        totals
+    }
+
     /// Runs one pass that leads to forces at a time and columns of a state.
-    pub(super) fn run(&mut self, pass: Pass, time: f64, at: &Columns<'_, D>, rate: &mut [f64]) {
+    pub(super) fn run(&mut self, pass: Pass, time: f64, at: &Columns<'_, D>, found: Found<'_>) {
         match pass {
             Pass::Load => {
                 self.load(at);
@@ -81,7 +91,7 @@ impl<const D: usize> Elastodynamics<D> {
             Pass::Stresses if self.has_matrices => self.fill_stresses(),
             Pass::Tensions if self.has_matrices => self.fill_tensions(),
             Pass::Forces => self.fill_forces(),
-            Pass::External => self.external_pass(time, at, rate),
+            Pass::External => self.external_pass(time, at, found),
             Pass::Gradients | Pass::Stresses | Pass::Tensions => {}
         }
     }

@@ -2,7 +2,9 @@
 
 use super::Interpolation;
 use crate::fields::{FieldDescription, columns};
-use crate::schemes::{Capability, Health, Particle, Scheme, SchemeDescription, StepLimit};
+use crate::schemes::{
+    Accounts, Capability, Health, Particle, Scheme, SchemeDescription, StepLimit,
+};
 
 /// What the study is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
@@ -10,8 +12,7 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &[],
-    mechanisms: &[],
-    impulses: &[],
+    ledger: Accounts::NONE,
     figures: &[
         ("ghosts", "1"),
         ("smallest_ghost_value", "1"),

@@ -6,12 +6,12 @@ use piola_formulas::pairs::Record;
 use piola_formulas::pairs::fluid::FluidSide;
 use thiserror::Error;
 
-use super::inspect::ChunkFigures;
 use super::shifting::Iteration;
 use super::{
-    Continua, DensityRule, Fluid, Forces, Hold, Opening, Rates, Settings, Slip, Solids,
+    Continua, DensityRule, Fluid, Forces, Hold, LEDGER, Opening, Rates, Settings, Slip, Solids,
     SolidsInput, TransportVelocity, WallParticle, WallValues,
 };
+use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
 use crate::geometry::{Faces, Particles};
@@ -22,7 +22,6 @@ use crate::schemes::input::{
 };
 use crate::schemes::stages::{StageFault, Stages};
 use crate::schemes::{Initial, InputError, SplitScheme};
-use crate::{Vector, parallel};
 
 /// A body that is a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -196,7 +195,6 @@ impl<const D: usize> TransportVelocity<D> {
             found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
             marks: vec![false; if settings.free_surface { count } else { 0 }],
             iteration: Iteration::default(),
-            chunk_figures: vec![ChunkFigures::NEUTRAL; count.div_ceil(parallel::CHUNK)],
             continua,
             solids,
             drift: Stages::default(),
@@ -250,7 +248,7 @@ impl<const D: usize> TransportVelocity<D> {
         self.load(&state);
         self.note_evenness();
         self.accelerate(0.0, &mut state);
-        Self::clear_bookings(self.parts(&mut state).1);
+        LEDGER.clear(D, self.parts(&mut state).1);
         self.start = state;
         Ok(())
     }

@@ -2,12 +2,13 @@
 
 use piola_formulas::kernels::Needs;
 
-use super::ledger::Tail;
-use super::{BY_REMOVAL, TransportVelocity};
+use super::TransportVelocity;
 use crate::Vector;
 use crate::operators::{Among, NeighborBlock, visit};
 use crate::parallel;
 use crate::schemes::Escape;
+use crate::schemes::ledger::Total;
+use crate::schemes::momentum::add_moments;
 
 /// What a run does about particles that escape.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -146,30 +147,26 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Removes what has escaped in `state`, if that is what is to be done: such particles rest where
     /// they were found and nothing feels them. Their energy and momentum leave by ways of their own.
-    pub(super) fn remove_escaped(&mut self, state: &mut [f64]) {
+    pub(super) fn remove_escaped(&mut self, state: &mut [f64]) -> Total {
+        let mut total = Total::default();
         if self.removed.is_empty() {
-            return;
+            return total;
         }
         self.load(state);
-        let escaped = self.escaped(state);
-        if escaped.is_empty() {
-            return;
-        }
-        let layout = Tail::new(D);
-        let compliance = self.compliance();
-        let (own, tail) = self.parts(state);
+        let (escaped, compliance) = (self.escaped(state), self.compliance());
+        let (own, _) = self.parts(state);
         for number in escaped {
             let mass = self.mass[number];
             let (velocity, pressure) = (own.velocity[number], own.pressure[number]);
             let energy = velocity.norm_squared() + compliance * pressure * pressure;
-            let position = own.position[number];
-            let taken = (super::REMOVED, -0.5 * mass * energy);
-            layout.book(taken, BY_REMOVAL, &position, &(velocity * -mass), tail);
+            total.power -= 0.5 * mass * energy;
+            add_moments(&own.position[number], &(velocity * -mass), &mut total.force);
             for column in [&mut *own.velocity, own.deviation, own.kick] {
                 column[number] = Vector::zeros();
             }
             (own.pressure[number], own.density[number]) = (0.0, REMOVED);
         }
+        total
     }
 
     /// Number of particles that have been removed in `state`.

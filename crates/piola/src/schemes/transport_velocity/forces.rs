@@ -5,7 +5,7 @@ use piola_formulas::pairs::fluid::{
     FULL, ForceConstants, ForceSums, Forces as Law, MIXED, NONE, Wall, WallForces,
 };
 
-use super::{Dilatation, Shifting, Side, TransportVelocity};
+use super::{ACCELERATING, Dilatation, Shifting, Side, TransportVelocity};
 use crate::Vector;
 use crate::operators::{Among, Term, gather};
 
@@ -52,8 +52,8 @@ impl<const D: usize> Forces<D> {
         self.terms().into_iter().sum()
     }
 
-    /// The accelerations in the order of the mechanisms.
-    pub(super) fn terms(&self) -> [&Vector<D>; super::ACCELERATING] {
+    /// The accelerations in the order of [`ACCELERATING`].
+    pub(super) fn terms(&self) -> [&Vector<D>; ACCELERATING.len()] {
         [
             &self.pressure,
             &self.viscosity,
@@ -62,14 +62,6 @@ impl<const D: usize> Forces<D> {
             &self.walls,
             &self.body_force,
         ]
-    }
-}
-
-impl<const D: usize> Forces<D> {
-    /// The accelerations that do not come in pairs on the line between two particles, in the
-    /// order of the ways in which momentum enters.
-    pub(super) fn ways_in(&self) -> [&Vector<D>; super::ENTERING] {
-        [&self.walls, &self.body_force, &self.viscosity, &self.transport]
     }
 }
 

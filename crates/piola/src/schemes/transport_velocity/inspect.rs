@@ -1,36 +1,8 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
-use std::ops::Range;
-
 use super::TransportVelocity;
-use crate::parallel::{self, CHUNK, PerChunk};
+use crate::schemes::look::{Seen, look};
 use crate::schemes::{Health, StepLimit};
-
-/// Figures of one chunk of particles.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ChunkFigures {
-    health: Health,
-    /// Squares of the largest speed and acceleration, with their particles.
-    speed: (f64, usize),
-    acceleration: (f64, usize),
-    /// Largest speed of signals, waves and what carries them, in m/s.
-    signal: (f64, usize),
-}
-
-impl ChunkFigures {
-    pub const NEUTRAL: Self =
-        Self { health: Health::NEUTRAL, speed: (0.0, 0), acceleration: (0.0, 0), signal: (0.0, 0) };
-
-    fn worse(self, other: Self) -> Self {
-        let larger = |a: (f64, usize), b: (f64, usize)| if b.0 > a.0 { b } else { a };
-        Self {
-            health: self.health.worse(other.health),
-            speed: larger(self.speed, other.speed),
-            acceleration: larger(self.acceleration, other.acceleration),
-            signal: larger(self.signal, other.signal),
-        }
-    }
-}
 
 impl<const D: usize> TransportVelocity<D> {
     /// The health of `state` and the bounds on the step, CTVF (61) corrected, theory (34):
@@ -46,31 +18,26 @@ impl<const D: usize> TransportVelocity<D> {
         if self.guard.is_some() {
             self.load(state);
         }
-        let mut figures = std::mem::take(&mut self.chunk_figures);
-        let count = self.particles.len();
-        parallel::for_each_part(count, PerChunk(&mut figures), |first, PerChunk(figures)| {
-            figures.fill(self.look_at(first..count.min(first + CHUNK), state));
-        });
-        let worst = figures.iter().copied().fold(ChunkFigures::NEUTRAL, ChunkFigures::worse);
-        self.chunk_figures = figures;
-
+        let (mut health, [signal, acceleration]) =
+            look(self.particles.len(), [0.0; 2], |number| self.look_at(number, state));
         let h = self.support.smoothing_length();
-        let growth = f64::INFINITY;
-        let limit = |name, step, particle| StepLimit { name, step, particle, scaled: true, growth };
+        let fastest = health.largest_speed_particle;
         limits.clear();
-        let (fastest, particle) = match self.solids {
-            Some(_) => worst.signal,
-            None => (self.fluid.wave_speed + worst.speed.0.sqrt(), worst.speed.1),
+        let (speed, particle) = match self.solids {
+            Some(_) => (signal.value, signal.particle),
+            None => {
+                health.largest_wave_speed = self.fluid.wave_speed;
+                (self.fluid.wave_speed + health.largest_speed, fastest)
+            }
         };
-        limits.push(limit("acoustic", h / fastest, particle));
+        limits.push(StepLimit::scaled("acoustic", h / speed, particle));
         if self.fluid.viscosity > 0.0 {
-            limits.push(limit("viscous", h * h / self.fluid.viscosity, worst.speed.1));
+            limits.push(StepLimit::scaled("viscous", h * h / self.fluid.viscosity, fastest));
         }
-        if worst.acceleration.0 > 0.0 {
-            let step = (h / worst.acceleration.0.sqrt()).sqrt();
-            limits.push(limit("acceleration", step, worst.acceleration.1));
+        if acceleration.value > 0.0 {
+            let step = (h / acceleration.value.sqrt()).sqrt();
+            limits.push(StepLimit::scaled("acceleration", step, acceleration.particle));
         }
-        let mut health = worst.health;
         if let Some((guard, _)) = &self.guard
             && !guard.removes
             && health.first_not_finite.is_none()
@@ -80,52 +47,39 @@ impl<const D: usize> TransportVelocity<D> {
         health
     }
 
-    fn look_at(&self, numbers: Range<usize>, state: &[f64]) -> ChunkFigures {
-        let (mut worst, at) = (ChunkFigures::NEUTRAL, self.columns(state));
-        for number in numbers {
-            let matter = match self.solids {
-                Some(_) => self.matter_of(number, state),
-                None => &[],
-            };
-            let vectors = [&at.position, &at.velocity, &at.deviation, &at.kick];
-            let mut numbers = vectors.iter().flat_map(|column| column[number].iter());
-            let scalars = [at.density[number], at.pressure[number]];
-            if numbers.any(|value| !value.is_finite())
-                || scalars.iter().chain(matter).any(|value| !value.is_finite())
-            {
-                worst.health.first_not_finite.get_or_insert(number);
-                continue;
-            }
-            let speed = at.velocity[number].norm_squared();
-            if speed > worst.speed.0 {
-                worst.speed = (speed, number);
-            }
-            if self.is_wall[number] {
-                continue;
-            }
+    /// What a particle contributes: the speed of signals, waves and what carries them, in m/s, and its
+    /// squared acceleration.
+    fn look_at(&self, number: usize, state: &[f64]) -> Option<Seen<D, 2>> {
+        let at = self.columns(state);
+        let matter = match self.solids {
+            Some(_) => self.matter_of(number, state),
+            None => &[],
+        };
+        let vectors = [&at.position, &at.velocity, &at.deviation, &at.kick];
+        let mut vectors = vectors.iter().flat_map(|column| column[number].iter());
+        let scalars = [at.density[number], at.pressure[number]];
+        if !vectors.all(|value| value.is_finite())
+            || !scalars.iter().chain(matter).all(|value| value.is_finite())
+        {
+            return None;
+        }
+        let velocity = at.velocity[number];
+        let mut seen = Seen {
+            velocity,
+            wave_speed: 0.0,
+            ratio: f64::INFINITY,
+            mismatch: 0.0,
+            figures: [0.0; 2],
+        };
+        if !self.is_wall[number] {
             // The inverse has the sign of the density, and is the volume ratio.
-            let ratio = self.reference_density(number) / at.density[number];
-            if ratio < worst.health.smallest_ratio {
-                worst.health.smallest_ratio = ratio;
-                worst.health.smallest_ratio_particle = number;
-            }
+            seen.ratio = self.reference_density(number) / at.density[number];
+            seen.figures[1] = at.kick[number].norm_squared();
             if let Some(wave_speed) = self.signal_speed(number, state) {
-                let signal = wave_speed + speed.sqrt();
-                if signal > worst.signal.0 {
-                    worst.signal = (signal, number);
-                }
-                worst.health.largest_wave_speed = worst.health.largest_wave_speed.max(wave_speed);
-            }
-            let acceleration = at.kick[number].norm_squared();
-            if acceleration > worst.acceleration.0 {
-                worst.acceleration = (acceleration, number);
+                seen.wave_speed = wave_speed;
+                seen.figures[0] = wave_speed + velocity.norm();
             }
         }
-        worst.health.largest_speed = worst.speed.0.sqrt();
-        worst.health.largest_speed_particle = worst.speed.1;
-        if self.solids.is_none() {
-            worst.health.largest_wave_speed = self.fluid.wave_speed;
-        }
-        worst
+        Some(seen)
     }
 }

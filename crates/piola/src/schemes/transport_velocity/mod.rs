@@ -53,6 +53,8 @@ use crate::Vector;
 use crate::boundaries::{BodyForce, prescribed::PrescribedComponents};
 use crate::geometry::Particles;
 use crate::operators::MovingSupport;
+use crate::schemes::Accounts;
+use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
 
 pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
@@ -68,7 +70,6 @@ pub use solids::{Contact, Heat, Solid, SolidRates, SolidsInput};
 
 use barrier::Hold;
 use fields::{Columns, ColumnsMut};
-use inspect::ChunkFigures;
 use shifting::Iteration;
 use sides::Side;
 use solids::{Continua, Solids};
@@ -113,7 +114,6 @@ pub struct TransportVelocity<const D: usize> {
     found: Vec<(Vector<D>, bool)>,
     marks: Vec<bool>,
     iteration: Iteration<D>,
-    chunk_figures: Vec<ChunkFigures>,
     /// Who looks for particles that escape, with the width of everything at the start in m.
     guard: Option<(Guard, f64)>,
     /// What there is besides where particles are of solids.
@@ -130,40 +130,44 @@ pub struct TransportVelocity<const D: usize> {
 /// The energies of the formulation.
 const ENERGIES: [&str; 3] = ["kinetic", "compression", "shear"];
 
-/// The mechanisms of its ledger, in the order of the state's tail.
+/// The ledger of the formulation.
 ///
 /// `pressure` is what the exchange between kinetic energy and that of compression fails to
 /// conserve: the discrete force and divergence are not exact adjoints. Of solids it is all stress.
-const MECHANISMS: [&str; 9] = [
-    "pressure",
-    "viscosity",
-    "artificial_viscosity",
-    "transport",
-    "walls",
-    "body_force",
-    "pressure_diffusion",
-    "removed",
-    "plasticity",
-];
+///
+/// Viscous forces act along `u_ab` and turn the fluid; the corrections neither come in pairs, nor do
+/// particles move along their velocity. What is removed takes its momentum along.
+const LEDGER: Accounts = Accounts {
+    mechanisms: &[
+        "pressure",
+        "viscosity",
+        "artificial_viscosity",
+        "transport",
+        "walls",
+        "body_force",
+        "pressure_diffusion",
+        "removed",
+        "plasticity",
+    ],
+    impulses: &["walls", "body_force", "viscosity", "corrections", "removed"],
+    is_kicked: true,
+};
+const PRESSURE: Entry = LEDGER.entry("pressure");
+const VISCOSITY: Entry = LEDGER.entry("viscosity");
+const ARTIFICIAL_VISCOSITY: Entry = LEDGER.entry("artificial_viscosity");
+const TRANSPORT: Entry = LEDGER.entry_by("transport", "corrections");
+const WALLS: Entry = LEDGER.entry("walls");
+const BODY_FORCE: Entry = LEDGER.entry("body_force");
+const PRESSURE_DIFFUSION: Entry = LEDGER.entry("pressure_diffusion");
+const REMOVED: Entry = LEDGER.entry("removed");
+const PLASTICITY: Entry = LEDGER.entry("plasticity");
 
-/// The ways in which momentum enters, in the order of the state's tail. Viscous forces act along
-/// `u_ab` and turn the fluid; the corrections neither come in pairs, nor do particles move along
-/// their velocity. What is removed takes its momentum along.
-const IMPULSES: [&str; 5] = ["walls", "body_force", "viscosity", "corrections", "removed"];
+/// The mechanisms that accelerate.
+const ACCELERATING: [Entry; 6] =
+    [PRESSURE, VISCOSITY, ARTIFICIAL_VISCOSITY, TRANSPORT, WALLS, BODY_FORCE];
 
-const PRESSURE: usize = 0;
-const TRANSPORT: usize = 3;
-const WALLS: usize = 4;
-const PRESSURE_DIFFUSION: usize = 6;
-const REMOVED: usize = 7;
-const PLASTICITY: usize = 8;
-/// Ways in that are booked one particle at a time.
-const BY_WALLS: usize = 0;
-const BY_REMOVAL: usize = 4;
-/// The mechanisms that accelerate, which stand first.
-const ACCELERATING: usize = 6;
-/// The ways in of accelerations, which stand first.
-const ENTERING: usize = 4;
+/// The mechanisms of a drift.
+const DRIFTING: [Entry; 4] = [PRESSURE, TRANSPORT, PRESSURE_DIFFUSION, PLASTICITY];
 
 impl<const D: usize> TransportVelocity<D> {
     /// How often the neighbour list has been made, for those who watch its cost.

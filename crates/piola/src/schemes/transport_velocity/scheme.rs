@@ -1,9 +1,10 @@
 //! The transport-velocity formulation as integrators, clock and output see it.
 
 use super::fields::{ColumnsMut, Made};
-use super::ledger::Tail;
-use super::{ENERGIES, IMPULSES, MECHANISMS, TransportVelocity};
+use super::{ENERGIES, LEDGER, TransportVelocity, WALLS};
 use crate::fields::FieldDescription;
+use crate::schemes::ledger::Totals;
+use crate::schemes::momentum::of_particles;
 use crate::schemes::{
     Capability, Escape, Health, Particle, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
@@ -18,8 +19,7 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &ENERGIES,
-    mechanisms: &MECHANISMS,
-    impulses: &IMPULSES,
+    ledger: LEDGER,
     figures: &FIGURES,
 };
 
@@ -61,8 +61,10 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
-        self.hold_velocities(time, state);
-        let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
+        let mut totals = Totals::default();
+        totals.book(WALLS, &self.hold_velocities(time, state));
+        let (own, tail) = ColumnsMut::<D>::of(state, self.particles.len());
+        LEDGER.add(D, &totals, tail);
         for entry in self.motion.iter() {
             let number = self.walls[entry.particle].number as usize;
             own.velocity[number][entry.component] = entry.value.value(entry.place, time);
@@ -80,7 +82,7 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let tail = self.columns(state).tail;
         figures.extend([
-            tail[Tail::new(D).passes()],
+            LEDGER.behind(D, tail)[0],
             self.removed_count(state),
             self.behind_count(state),
             self.largest_gap(state),
@@ -97,8 +99,12 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     }
 
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let count = momentum.len();
-        momentum.copy_from_slice(&self.momentum_of(state)[..count]);
+        let at = self.columns(state);
+        let of = |number: usize| {
+            let mass = if self.is_wall[number] { 0.0 } else { self.mass[number] };
+            [at.position[number], at.velocity[number] * mass]
+        };
+        of_particles(self.particles.len(), of, momentum);
     }
 
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {

@@ -1,9 +1,14 @@
 //! The formulation as kick-drift-kick integrators see it, theory (33).
 
+use super::ledger::{Drift, Kick};
 use super::stages::Instant;
-use super::{ColumnsMut, DensityRule, Rates, Shifting, TransportVelocity};
+use super::{
+    ACCELERATING, ColumnsMut, DRIFTING, DensityRule, LEDGER, PRESSURE, Rates, Shifting,
+    TransportVelocity,
+};
 use crate::boundaries::BodyForce;
 use crate::schemes::SplitScheme;
+use crate::schemes::ledger::{Total, Totals};
 use crate::{Vector, parallel};
 
 impl<const D: usize> SplitScheme for TransportVelocity<D> {
@@ -17,36 +22,51 @@ impl<const D: usize> SplitScheme for TransportVelocity<D> {
                 }
             }
         });
-        Self::book_kick(duration, tail);
+        LEDGER.kick(D, duration, tail);
     }
 
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
         let middle = Instant { time: time + 0.5 * step, step };
         let mut stages = std::mem::take(&mut self.drift);
-        stages.run(|pass| self.run(pass, middle, state));
+        let totals = stages.run(|pass, totals| self.run(pass, middle, state, totals));
         self.drift = stages;
+        LEDGER.add(D, &totals, self.parts(state).1);
     }
 
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
         let end = Instant { time, step: 0.0 };
         let mut stages = std::mem::take(&mut self.accelerate);
-        stages.run(|pass| self.run(pass, end, state));
+        let totals = stages.run(|pass, totals| self.run(pass, end, state, totals));
         self.accelerate = stages;
+        LEDGER.keep(D, &totals, self.parts(state).1);
     }
 }
 
 impl<const D: usize> TransportVelocity<D> {
     /// Moves particles with the rates of the last pass, half way through a step in s at a time in s.
-    pub(super) fn move_particles(&mut self, middle: f64, step: f64, state: &mut [f64]) {
-        if self.solids.is_some() {
-            return self.drift_solids(step, middle, state);
-        }
+    pub(super) fn move_particles(
+        &mut self,
+        middle: f64,
+        step: f64,
+        state: &mut [f64],
+        totals: &mut Totals,
+    ) {
+        let sums = match self.solids {
+            Some(_) => self.drift_solids(step, state),
+            None => self.drift_fluid(step, state),
+        };
+        DRIFTING.iter().zip(&sums).for_each(|(entry, sum)| totals.book(*entry, sum));
+        self.move_walls(step, middle, state);
+    }
+
+    /// The drift of a fluid.
+    fn drift_fluid(&mut self, step: f64, state: &mut [f64]) -> Drift {
         let evolves = self.settings.density == DensityRule::Continuity;
         let diffuses = !self.settings.is_algebraic();
-        let (own, tail) = self.parts(state);
+        let (own, _) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
         let count = places.len();
-        let sums = parallel::sums_over_parts(count, own, |first, own, sums| {
+        parallel::sums_over_parts(count, own, |first, own, sums| {
             let moving = own.position.iter_mut().zip(own.velocity.iter().zip(&*own.deviation));
             for (k, (position, (velocity, deviation))) in moving.enumerate() {
                 let number = first + k;
@@ -64,18 +84,16 @@ impl<const D: usize> TransportVelocity<D> {
                 }
                 scheme.advect(step, position, velocity + deviation);
             }
-        });
-        Self::book_drift(&sums, tail);
-        self.move_walls(step, middle, state);
+        })
     }
 
     /// Writes what the passes have found to the state, with the powers of all accelerations.
-    pub(super) fn store_all(&mut self, state: &mut [f64]) {
+    pub(super) fn store_all(&mut self, state: &mut [f64], totals: &mut Totals) {
         let follows = self.solids.is_none() && self.settings.is_algebraic();
         let before = if follows { self.compression_energy(state) } else { 0.0 };
-        let (own, tail) = self.parts(state);
+        let (own, _) = self.parts(state);
         let (scheme, places) = (&*self, self.support.list().places());
-        let sums = parallel::sums_over_parts(places.len(), own, |first, mut own, sums| {
+        let sums: Kick = parallel::sums_over_parts(places.len(), own, |first, mut own, sums| {
             for k in 0..own.position.len() {
                 let (number, place) = (first + k, places[first + k] as usize);
                 scheme.store([number, place, k], &mut own);
@@ -85,14 +103,13 @@ impl<const D: usize> TransportVelocity<D> {
                 }
             }
         });
-        Self::book_powers(&sums, tail);
+        ACCELERATING.iter().zip(&sums).for_each(|(entry, sum)| totals.drive(*entry, sum));
         if let Some(number) = self.lost {
             self.parts(state).0.kick[number][0] = f64::NAN;
         }
         if follows {
             let gained = self.compression_energy(state) - before;
-            let (_, tail) = self.parts(state);
-            Self::book_pressure(gained, tail);
+            totals.book(PRESSURE, &Total::of(gained));
         }
     }
 

@@ -1,6 +1,7 @@
 //! The stages of a step, which say what they read of a particle and of its neighbours.
 
-use super::{DensityRule, Shifting, TransportVelocity};
+use super::{DensityRule, REMOVED, Shifting, TransportVelocity, WALLS};
+use crate::schemes::ledger::Totals;
 use crate::schemes::stages::{Stage, StageFault, Stages};
 
 /// A pass over particles.
@@ -216,10 +217,16 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Runs one pass.
-    pub(super) fn run(&mut self, pass: Pass, Instant { time, step }: Instant, state: &mut [f64]) {
+    pub(super) fn run(
+        &mut self,
+        pass: Pass,
+        Instant { time, step }: Instant,
+        state: &mut [f64],
+        totals: &mut Totals,
+    ) {
         match pass {
-            Pass::Remove => self.remove_escaped(state),
-            Pass::Prescribe => self.hold_velocities(time, state),
+            Pass::Remove => totals.book(REMOVED, &self.remove_escaped(state)),
+            Pass::Prescribe => totals.book(WALLS, &self.hold_velocities(time, state)),
             Pass::Iterate => self.iterate_positions(step, state),
             Pass::Load => self.load(state),
             Pass::Push => self.push_apart(step, state),
@@ -227,7 +234,7 @@ impl<const D: usize> TransportVelocity<D> {
             Pass::Correct => self.correct_gradients(),
             Pass::Walls => self.wall_pass(time),
             Pass::Rates => self.rate_pass(time),
-            Pass::Move => self.move_particles(time, step, state),
+            Pass::Move => self.move_particles(time, step, state, totals),
             Pass::Tension => self.tension_pass(),
             Pass::Forces => self.force_pass(),
             Pass::BodyForces => self.add_body_forces(time),
@@ -238,7 +245,7 @@ impl<const D: usize> TransportVelocity<D> {
             Pass::Shift => self.shift(),
             Pass::HoldOff => self.hold_off(),
             Pass::Bear => self.bear(),
-            Pass::Store => self.store_all(state),
+            Pass::Store => self.store_all(state, totals),
         }
     }
 }

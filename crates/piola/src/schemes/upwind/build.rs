@@ -4,10 +4,9 @@ use piola_formulas::volumetric::{Prestressed, VolumetricResponse};
 use thiserror::Error;
 
 use super::implicit::{Implicit, ImplicitSettings};
-use super::inspect::ChunkFigures;
 use super::local::Side;
 use super::reconstruction::Slope;
-use super::{Initial, Material, Powers, Reference, Settings, Upwind};
+use super::{Initial, Material, Reference, Settings, Upwind};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
 use crate::geometry::Particles;
@@ -100,7 +99,6 @@ impl<const D: usize> Upwind<D> {
             false => None,
         };
         let reference = references(&particles, &materials, &initial)?;
-        let chunks = count.div_ceil(parallel::CHUNK);
         let positions = &particles.position;
         let mut scheme = Self {
             nearest,
@@ -113,8 +111,6 @@ impl<const D: usize> Upwind<D> {
             loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
             sides: vec![Side::default(); count],
             slopes: vec![Slope::ZERO; if settings.reconstruction { count } else { 0 }],
-            chunk_powers: vec![Powers::default(); chunks],
-            chunk_figures: vec![ChunkFigures::NEUTRAL; chunks],
             observed: Vec::new(),
             body_forces: input.body_forces,
             initial_velocity: initial.velocity,

@@ -17,7 +17,6 @@
 //! a free surface needs no treatment.
 
 mod build;
-mod external;
 mod fields;
 mod folding;
 mod gather;
@@ -39,9 +38,9 @@ use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::traction::Loaded;
 use crate::geometry::Particles;
 use crate::operators::{LeastSquares, PairAreas, Support};
-use crate::schemes::NEWTON_ITERATIONS;
-use crate::schemes::momentum::MOST_COMPONENTS;
+use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
+use crate::schemes::{Accounts, NEWTON_ITERATIONS};
 
 pub use build::{UpwindError, UpwindInput};
 pub use implicit::{ImplicitSettings, StepEquations};
@@ -52,7 +51,6 @@ pub use crate::boundaries::BodyForce;
 pub use crate::schemes::Initial;
 
 use implicit::Implicit;
-use inspect::ChunkFigures;
 use local::Side;
 use reconstruction::Slope;
 
@@ -84,8 +82,6 @@ pub struct Upwind<const D: usize> {
     loaded: Vec<Loaded<D>>,
     sides: Vec<Side<f64, D>>,
     slopes: Vec<Slope<f64, D>>,
-    chunk_powers: Vec<Powers>,
-    chunk_figures: Vec<ChunkFigures>,
     /// Rates of the last observation that asked for them.
     observed: Vec<f64>,
     /// What implicit steps need, if it was built for them.
@@ -106,13 +102,24 @@ struct Reference {
 /// The energies of the formulation.
 const ENERGIES: [&str; 2] = ["kinetic", "strain"];
 
-/// The mechanisms of its ledger, in the order of the state's tail.
-const MECHANISMS: [&str; 5] =
-    ["body_force", "traction", "boundary_motion", "upwind_velocity", "upwind_pressure"];
-
-/// The ways in which momentum enters. Pairs exchange what one of them loses, so that internal
-/// forces and dissipation are not among them.
-const IMPULSES: [&str; 3] = ["body_force", "traction", "boundary_motion"];
+/// Pairs exchange what one of them loses, so that momentum enters neither by internal forces nor by
+/// dissipation.
+const LEDGER: Accounts = Accounts {
+    mechanisms: &[
+        "body_force",
+        "traction",
+        "boundary_motion",
+        "upwind_velocity",
+        "upwind_pressure",
+    ],
+    impulses: &["body_force", "traction", "boundary_motion"],
+    is_kicked: false,
+};
+const BODY_FORCE: Entry = LEDGER.entry("body_force");
+const TRACTION: Entry = LEDGER.entry("traction");
+const BOUNDARY_MOTION: Entry = LEDGER.entry("boundary_motion");
+const UPWIND_VELOCITY: Entry = LEDGER.entry("upwind_velocity");
+const UPWIND_PRESSURE: Entry = LEDGER.entry("upwind_pressure");
 
 /// What the table of steps has besides: of implicit steps, which the state keeps behind its ledger, and
 /// whether the lattice has folded.
@@ -121,21 +128,6 @@ const FIGURES: [(&str, &str); 3] =
 
 /// Those that the state keeps.
 const KEPT: usize = 2;
-
-/// What the pair pass adds up of some particles.
-#[derive(Clone, Copy, Debug, Default)]
-struct Powers {
-    /// Power of each mechanism in W.
-    work: [f64; MECHANISMS.len()],
-    /// Force and moment of the body forces.
-    body_force: [f64; MOST_COMPONENTS],
-}
-
-const BODY_FORCE: usize = 0;
-const TRACTION: usize = 1;
-const BOUNDARY_MOTION: usize = 2;
-const UPWIND_VELOCITY: usize = 3;
-const UPWIND_PRESSURE: usize = 4;
 
 impl<const D: usize> Upwind<D> {
     /// The law of particle a with its prestress.

@@ -4,14 +4,17 @@ use multiversion::multiversion;
 
 use super::fields::ColumnsMut;
 use super::gather::Sums;
-use super::{BODY_FORCE, MECHANISMS, Powers, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
-use crate::parallel::{self, PerChunk};
-use crate::schemes::momentum::{add_moments, momentum_components};
-use crate::{Tensor, Vector};
+use super::{BODY_FORCE, BOUNDARY_MOTION, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
+use crate::schemes::ledger::{Entry, Total, Totals};
+use crate::schemes::outside::{Acted, prescribe, push};
+use crate::{Tensor, Vector, parallel};
+
+/// The mechanisms of the pass, in the order of its sums.
+const MECHANISMS: [Entry; 3] = [BODY_FORCE, UPWIND_VELOCITY, UPWIND_PRESSURE];
 
 impl<const D: usize> Upwind<D> {
-    /// Writes the rates of all rows and the powers at their end.
-    pub(super) fn pair_pass(&mut self, rate: &mut [f64]) {
+    /// Writes the rates of all rows.
+    pub(super) fn pair_pass(&self, rate: &mut [f64], totals: &mut Totals) {
         let settings = &self.settings;
         let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure != 0.0);
         let rate_rows = match (velocity, pressure, settings.reconstruction) {
@@ -24,20 +27,28 @@ impl<const D: usize> Upwind<D> {
             (true, true, true) => rate_rows::<D, true, true, true>,
         };
         let count = self.particles.len();
-        let (own, tail) = ColumnsMut::<D>::of(rate, count);
-        let mut powers = std::mem::take(&mut self.chunk_powers);
-        let parts = (own, PerChunk(&mut powers));
-        parallel::for_each_part(count, parts, |first, (mut own, PerChunk(powers))| {
-            powers.fill(rate_rows(self, first, &mut own));
+        let (own, _) = ColumnsMut::<D>::of(rate, count);
+        let sums = parallel::sums_over_parts(count, own, |first, mut own, sums| {
+            rate_rows(self, first, &mut own, sums);
         });
-        tail.fill(0.0);
-        let (work, impulses) = tail.split_at_mut(MECHANISMS.len());
-        let body_force = &mut impulses[..momentum_components(D).len()];
-        for chunk in &powers {
-            work.iter_mut().zip(chunk.work).for_each(|(total, part)| *total += part);
-            body_force.iter_mut().zip(chunk.body_force).for_each(|(total, part)| *total += part);
-        }
-        self.chunk_powers = powers;
+        MECHANISMS.iter().zip(&sums).for_each(|(entry, sum)| totals.drive(*entry, sum));
+    }
+
+    /// Adds tractions and replaces the acceleration of prescribed components by the rate of
+    /// their value, with the power and the momentum of both.
+    pub(super) fn boundary_pass(&self, time: f64, rate: &mut [f64], totals: &mut Totals) {
+        let (own, _) = ColumnsMut::<D>::of(rate, self.particles.len());
+        let particle = |a: usize| Acted {
+            mass: self.mass(a),
+            position: self.sides[a].position,
+            velocity: self.sides[a].velocity,
+        };
+        let [mut traction, mut boundary] = [Total::default(); 2];
+        let loads = self.loaded.iter().map(|load| (load.particle, load.force(time)));
+        push(loads, particle, own.velocity, &mut traction);
+        prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
+        totals.drive(TRACTION, &traction);
+        totals.drive(BOUNDARY_MOTION, &boundary);
     }
 
     /// Turns the sums of particle a into its rates, which stand at place k of their columns.
@@ -47,7 +58,7 @@ impl<const D: usize> Upwind<D> {
         [a, k]: [usize; 2],
         sums: &Sums<f64, D>,
         own: &mut ColumnsMut<'_, D>,
-        powers: &mut Powers,
+        [body_force, by_velocity, by_pressure]: &mut [Total; MECHANISMS.len()],
     ) {
         let me = &self.sides[a];
         let (settings, volume) = (&self.settings, self.particles.volume[a]);
@@ -65,11 +76,9 @@ impl<const D: usize> Upwind<D> {
         own.volume_ratio[k] = dilatation + upwind_volume_rate / volume;
         own.position[k] = me.velocity;
         own.deformation_gradient[k] = deformation_rate;
-        let weight = gravity * mass;
-        powers.work[BODY_FORCE] += weight.dot(&me.velocity);
-        powers.work[UPWIND_VELOCITY] += upwind_force.dot(&me.velocity);
-        powers.work[UPWIND_PRESSURE] -= me.pressure * upwind_volume_rate;
-        add_moments(&me.position, &weight, &mut powers.body_force);
+        body_force.push(&me.position, &me.velocity, &(gravity * mass));
+        by_velocity.power += upwind_force.dot(&me.velocity);
+        by_pressure.power -= me.pressure * upwind_volume_rate;
     }
 }
 
@@ -83,11 +92,10 @@ fn rate_rows<
     scheme: &Upwind<D>,
     first: usize,
     own: &mut ColumnsMut<'_, D>,
-) -> Powers {
-    let mut powers = Powers::default();
+    totals: &mut [Total; MECHANISMS.len()],
+) {
     for k in 0..own.velocity.len() {
         let sums = scheme.gather::<VELOCITY, PRESSURE, RECONSTRUCTION>(first + k);
-        scheme.write_row([first + k, k], &sums.total(), own, &mut powers);
+        scheme.write_row([first + k, k], &sums.total(), own, totals);
     }
-    powers
 }

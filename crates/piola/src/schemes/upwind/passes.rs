@@ -2,6 +2,7 @@
 
 use super::{Side, Slope, Upwind};
 use crate::schemes::Scheme;
+use crate::schemes::ledger::Found;
 use crate::schemes::stages::{Stage, StageFault, Stages};
 use crate::{Tensor, Vector};
 
@@ -61,13 +62,13 @@ impl<const D: usize> Upwind<D> {
     }
 
     /// Runs one pass of the rates of `state` at `time`.
-    pub(super) fn run(&mut self, pass: Pass, time: f64, state: &[f64], rate: &mut [f64]) {
+    pub(super) fn run(&mut self, pass: Pass, time: f64, state: &[f64], (rate, totals): Found<'_>) {
         match pass {
             Pass::BodyForces => self.update_body_acceleration(time),
             Pass::Local => self.local_pass(state),
             Pass::Slopes => self.slope_pass(),
-            Pass::Pairs => self.pair_pass(rate),
-            Pass::Boundary => self.boundary_pass(time, rate),
+            Pass::Pairs => self.pair_pass(rate, totals),
+            Pass::Boundary => self.boundary_pass(time, rate, totals),
         }
     }
 

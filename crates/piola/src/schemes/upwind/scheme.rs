@@ -3,8 +3,9 @@
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::fields::{ColumnsMut, Made};
-use super::{ENERGIES, FIGURES, IMPULSES, KEPT, MECHANISMS, Upwind};
+use super::{ENERGIES, FIGURES, KEPT, LEDGER, Upwind};
 use crate::fields::FieldDescription;
+use crate::schemes::momentum::of_particles;
 use crate::schemes::{
     Capability, Health, Particle, PartitionedScheme, Phase, Scheme, SchemeDescription, StepLimit,
     ThetaScheme,
@@ -18,8 +19,7 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     offers: &[Capability::Rates, Capability::Kicks, Capability::Theta],
     fields: Made::FIELDS,
     energies: &ENERGIES,
-    mechanisms: &MECHANISMS,
-    impulses: &IMPULSES,
+    ledger: LEDGER,
     figures: &FIGURES,
 };
 
@@ -37,7 +37,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn initial_state(&self) -> Vec<f64> {
-        let length = self.particles.len() * self.width() + Self::tail_length();
+        let length = self.particles.len() * self.width() + LEDGER.length(D) + KEPT;
         let mut state = vec![0.0; length];
         let (own, _) = ColumnsMut::<D>::of(&mut state, self.particles.len());
         own.position.copy_from_slice(&self.particles.position);
@@ -49,8 +49,9 @@ impl<const D: usize> Scheme for Upwind<D> {
 
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let mut stages = std::mem::take(&mut self.stages);
-        stages.run(|pass| self.run(pass, time, state, rate));
+        let totals = stages.run(|pass, totals| self.run(pass, time, state, (rate, totals)));
         self.stages = stages;
+        LEDGER.write(D, &totals, ColumnsMut::<D>::of(rate, self.particles.len()).1);
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
@@ -65,7 +66,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
-        figures.extend_from_slice(&state[state.len() - KEPT..]);
+        figures.extend_from_slice(LEDGER.behind(D, self.columns(state).tail));
         figures.push(self.least_corner(state));
     }
 
@@ -84,8 +85,9 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let all = self.momentum_of(state);
-        momentum.copy_from_slice(&all[..momentum.len()]);
+        let at = self.columns(state);
+        let of = |a: usize| [at.position[a], at.velocity[a] * self.mass(a)];
+        of_particles(self.particles.len(), of, momentum);
     }
 
     fn observe(&mut self, _stage: usize, time: f64, state: &[f64]) {

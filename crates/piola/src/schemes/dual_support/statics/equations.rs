@@ -117,7 +117,7 @@ impl<const D: usize> Equations for Statics<D> {
             let moving = self.inertia.as_ref();
             own + moving.map_or(0.0, |it| it.potential(discrete.mass(a), a, &displacement[a]))
         };
-        let [potential, broken] = parallel::sums::<2>(discrete.len(), |a, sums| {
+        let [potential, broken] = parallel::sums::<[f64; 2]>(discrete.len(), |a, sums| {
             let own = energy(a);
             sums[0] += own - dead[a].dot(&displacement[a]);
             sums[1] += f64::from(u8::from(is_broken(a, own)));

@@ -3,7 +3,7 @@
 use piola_formulas::pairs::sums::Displacement;
 
 use crate::operators::{Among, NeighborBlock, Term, add_at};
-use crate::schemes::transport_velocity::ledger::Tail;
+use crate::schemes::transport_velocity::LEDGER;
 use crate::schemes::transport_velocity::{AtSurface, Opening, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
@@ -80,7 +80,7 @@ impl<const D: usize> TransportVelocity<D> {
                 *deviation = (positions[number] - places[number]) / step;
             }
         });
-        tail[Tail::new(D).passes()] = passes;
+        LEDGER.behind_mut(D, tail)[0] = passes;
         self.iteration = iteration;
     }
 

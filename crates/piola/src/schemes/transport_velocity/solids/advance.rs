@@ -19,12 +19,12 @@ struct Surroundings {
 
 impl<const D: usize> TransportVelocity<D> {
     /// The drift of solids, CTVF (56) to (59), with the rates of the last pass: theory (33), (69) to (71).
-    pub(in super::super) fn drift_solids(&mut self, step: f64, middle: f64, state: &mut [f64]) {
+    pub(in super::super) fn drift_solids(&self, step: f64, state: &mut [f64]) -> Drift {
         let (front, matter) = state.split_at_mut(self.matter_start());
         let matter: &mut [Matter] = bytemuck::cast_slice_mut(matter);
-        let (own, tail) = self.parts(front);
-        let scheme = &*self;
-        let Some(solids) = &scheme.solids else { return };
+        let (own, _) = self.parts(front);
+        let scheme = self;
+        let Some(solids) = &scheme.solids else { return Drift::default() };
         let (places, rates) = (scheme.support.list().places(), &solids.rates);
         let evolves = !scheme.settings.is_algebraic();
         let drift = |[number, k]: [usize; 2],
@@ -59,17 +59,16 @@ impl<const D: usize> TransportVelocity<D> {
                 *pressure = (*pressure + step * rate).max(-material.state.spall_strength);
             }
             scheme.advect(step, &mut own.position[k], velocity + deviation);
-            sums[0] += energy(own.density[k], matter) - before + work;
-            sums[3] -= work;
+            let [pressure, .., plasticity] = sums;
+            pressure.power += energy(own.density[k], matter) - before + work;
+            plasticity.power -= work;
         };
         let parts = (own, matter);
-        let sums = parallel::sums_over_parts(places.len(), parts, |first, (mut own, all), sums| {
+        parallel::sums_over_parts(places.len(), parts, |first, (mut own, all), sums| {
             for (k, matter) in all.iter_mut().enumerate() {
                 drift([first + k, k], &mut own, matter, sums);
             }
-        });
-        Self::book_drift(&sums, tail);
-        self.move_walls(step, middle, front);
+        })
     }
 
     /// Energies of compression and shear in J.

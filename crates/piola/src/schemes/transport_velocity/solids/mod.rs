@@ -29,8 +29,7 @@ pub(super) use piola_formulas::pairs::solid::MATTER;
 use piola_formulas::pairs::solid::SolidTension;
 
 use super::fields::Made;
-use super::ledger::Tail;
-use super::{Rates, TransportVelocity};
+use super::{LEDGER, Rates, TransportVelocity};
 use crate::boundaries::PrescribedVelocity;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::fields::width;
@@ -201,7 +200,7 @@ impl<const D: usize> Solids<D> {
 impl<const D: usize> TransportVelocity<D> {
     /// Where the matter of solids begins in a state.
     pub(super) fn matter_start(&self) -> usize {
-        self.particles.len() * width(Made::FIELDS, D) + Tail::new(D).length()
+        self.particles.len() * width(Made::FIELDS, D) + LEDGER.length(D) + 1
     }
 
     /// Numbers of the matter of all particles.

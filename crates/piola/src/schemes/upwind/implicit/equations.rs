@@ -88,7 +88,7 @@ impl<const D: usize> StepEquations<'_, D> {
     /// rounding: what residuals are measured against.
     pub(super) fn measure(&mut self) {
         let (scheme, parts) = (self.scheme, &*self.parts);
-        let [terms, rounding] = parallel::sums::<2>(scheme.particles.len(), |a, sums| {
+        let [terms, rounding] = parallel::sums::<[f64; 2]>(scheme.particles.len(), |a, sums| {
             let (mass, reference) = (scheme.mass(a), &scheme.reference[a]);
             let local = &parts.fields.locals[a];
             let force = parts.fields.exchanges[a].force + parts.outside[a];

@@ -13,7 +13,7 @@ use num_dual::Dual64;
 
 use super::fields::ColumnsMut;
 use super::local::Unknowns;
-use super::{KEPT, Upwind};
+use super::{KEPT, LEDGER, Upwind};
 use crate::boundaries::BodyForce;
 use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Missed, NoSolution, Scheme, Theta, ThetaScheme};
@@ -106,7 +106,7 @@ impl<const D: usize> Implicit<D> {
         let solver = LinearSolver::new(settings.method, positions, &matrix, |order| {
             Reduction::new(frames.clone(), &held, &[], order)
         })?;
-        let length = count * scheme.width() + Upwind::<D>::tail_length();
+        let length = count * scheme.width() + LEDGER.length(D) + KEPT;
         let mut new = Self {
             settings,
             solver,
@@ -284,8 +284,8 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
         self.implicit = Some(parts);
         rule.finish(old, new);
         self.constrain(end, new);
-        let figures = new.len() - KEPT;
-        new[figures..].copy_from_slice(&[iterations as f64, linear_steps as f64]);
+        let (_, tail) = ColumnsMut::<D>::of(new, self.particles.len());
+        LEDGER.behind_mut(D, tail).copy_from_slice(&[iterations as f64, linear_steps as f64]);
         Ok(())
     }
 
