@@ -84,7 +84,7 @@ pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sy
     items.par_iter_mut().enumerate().for_each(|(number, item)| body(number, item));
 }
 
-/// What is added up over particles.
+/// What is added up over particles, or of which the largest is kept.
 pub trait Sums: Copy + Send + Sync {
     /// Nothing yet.
     const ZERO: Self;
@@ -167,24 +167,6 @@ pub fn maximum(count: usize, least: f64, term: impl Fn(usize) -> f64 + Sync) -> 
     chunks
         .map(|chunk| largest(chunk * CHUNK..((chunk + 1) * CHUNK).min(count)))
         .reduce(|| least, f64::max)
-}
-
-/// Joins `term(i)` over `0..count` to one value, from `neutral` on. `join` has to be associative; it gets
-/// values in the order of their indices.
-pub fn join<T: Copy + Send + Sync>(
-    count: usize,
-    neutral: T,
-    term: impl Fn(usize) -> T + Sync,
-    join: impl Fn(T, T) -> T + Sync,
-) -> T {
-    let of = |range: std::ops::Range<usize>| range.map(&term).fold(neutral, &join);
-    if count <= CHUNK {
-        return of(0..count);
-    }
-    let chunks = (0..count.div_ceil(CHUNK)).into_par_iter();
-    chunks
-        .map(|chunk| of(chunk * CHUNK..((chunk + 1) * CHUNK).min(count)))
-        .reduce(|| neutral, &join)
 }
 
 /// Calls `body(first, parts, sums)` for chunks of the arrays of `count` particles, which changes them and

@@ -3,7 +3,8 @@
 use piola_formulas::tensor;
 
 use super::{Health, Particle};
-use crate::{Tensor, Vector, parallel};
+use crate::parallel::{self, Sums};
+use crate::{Tensor, Vector};
 
 /// The share of the stable step at which a mode takes three steps a period, `2 sin(pi/3)/2`: there the
 /// quadratic part of a law drives the mode by itself, theory (67).
@@ -35,14 +36,20 @@ pub(crate) struct Most {
 }
 
 impl Most {
-    /// Nothing that is seen is less.
-    pub const fn at_least(value: f64) -> Self {
-        Self { value, particle: 0 }
+    /// What is less than anything that is seen.
+    const NOTHING: Self = Self { value: f64::NEG_INFINITY, particle: 0 };
+
+    /// Sees another; what is not a number is not seen.
+    #[inline]
+    fn see(&mut self, value: f64, particle: usize) {
+        if value > self.value {
+            *self = Self { value, particle };
+        }
     }
 
-    /// The larger of the two; what is not a number is not seen.
-    pub fn or(self, other: Self) -> Self {
-        if other.value > self.value { other } else { self }
+    /// At least `least`, which nobody has.
+    fn at_least(self, least: f64) -> Self {
+        if self.value > least { self } else { Self { value: least, particle: 0 } }
     }
 }
 
@@ -55,13 +62,15 @@ struct Sight<const N: usize> {
     own: [Most; N],
 }
 
-impl<const N: usize> Sight<N> {
-    fn worse(self, other: Self) -> Self {
-        Self {
-            first_not_finite: self.first_not_finite.or(other.first_not_finite),
-            common: std::array::from_fn(|k| self.common[k].or(other.common[k])),
-            own: std::array::from_fn(|k| self.own[k].or(other.own[k])),
-        }
+impl<const N: usize> Sums for Sight<N> {
+    const ZERO: Self =
+        Self { first_not_finite: None, common: [Most::NOTHING; 4], own: [Most::NOTHING; N] };
+
+    fn add(&mut self, other: &Self) {
+        self.first_not_finite = self.first_not_finite.or(other.first_not_finite);
+        let own = self.common.iter_mut().chain(&mut self.own);
+        let others = other.common.iter().chain(&other.own);
+        own.zip(others).for_each(|(own, other)| own.see(other.value, other.particle));
     }
 }
 
@@ -72,30 +81,30 @@ pub(crate) fn look<const D: usize, const N: usize>(
     least: [f64; N],
     see: impl Fn(usize) -> Option<Seen<D, N>> + Sync,
 ) -> (Health, [Most; N]) {
-    let common = [0.0, 0.0, f64::NEG_INFINITY, 0.0].map(Most::at_least);
-    let neutral = Sight { first_not_finite: None, common, own: least.map(Most::at_least) };
-    let of = |particle: usize| {
+    let sight = parallel::sums(count, |particle, sight: &mut Sight<N>| {
         let Some(seen) = see(particle) else {
-            return Sight { first_not_finite: Some(particle), ..neutral };
+            sight.first_not_finite.get_or_insert(particle);
+            return;
         };
-        let Seen { velocity, wave_speed, ratio, mismatch, figures } = seen;
-        let common = [velocity.norm_squared(), wave_speed, -ratio, mismatch];
-        let most = |value| Most { value, particle };
-        Sight { first_not_finite: None, common: common.map(most), own: figures.map(most) }
-    };
-    let worst = parallel::join(count, neutral, of, Sight::worse);
-    let [speed, wave_speed, ratio, mismatch] = worst.common;
+        let common = [seen.velocity.norm_squared(), seen.wave_speed, -seen.ratio, seen.mismatch];
+        sight.common.iter_mut().zip(common).for_each(|(most, value)| most.see(value, particle));
+        sight.own.iter_mut().zip(seen.figures).for_each(|(most, value)| most.see(value, particle));
+    });
+    let [speed, wave_speed, ratio, mismatch] = sight.common;
+    let speed = speed.at_least(0.0);
     let health = Health {
         largest_speed: speed.value.sqrt(),
         largest_speed_particle: speed.particle,
-        largest_wave_speed: wave_speed.value,
+        largest_wave_speed: wave_speed.at_least(0.0).value,
         smallest_ratio: -ratio.value,
         smallest_ratio_particle: ratio.particle,
-        ratio_mismatch: mismatch.value,
-        first_not_finite: worst.first_not_finite,
+        ratio_mismatch: mismatch.at_least(0.0).value,
+        first_not_finite: sight.first_not_finite,
         first_escaped: None,
     };
-    (health, worst.own)
+    let mut own = sight.own;
+    own.iter_mut().zip(least).for_each(|(most, least)| *most = most.at_least(least));
+    (health, own)
 }
 
 /// What the look needs to know of a particle of an elastic solid.
@@ -152,4 +161,54 @@ pub(crate) fn convexity_is_lost<const D: usize>(
          follows depends on the lattice; {advice}",
         particle.id, particle.reference, stretches[0], stretches[1]
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is seen of 3000 particles, more than a chunk: a speed and a figure of each.
+    fn seen(speed: impl Fn(usize) -> f64 + Sync, least: f64) -> (Health, Most) {
+        let (health, [most]) = look(3000, [least], |a| {
+            let value = speed(a);
+            let velocity = Vector::from([value, 0.0]);
+            let seen =
+                Seen { velocity, wave_speed: 1.0, ratio: value, mismatch: 0.0, figures: [value] };
+            (value != f64::INFINITY).then_some(seen)
+        });
+        (health, most)
+    }
+
+    #[test]
+    fn the_first_particle_of_the_worst_is_named() {
+        // 7 at 1500, 2500 and 2900, and 1 elsewhere but for 0.5 at 40 and 2000.
+        let speed = |a: usize| match a {
+            1500 | 2500 | 2900 => 7.0,
+            40 | 2000 => 0.5,
+            _ => 1.0,
+        };
+        let (health, most) = seen(speed, 0.0);
+        assert_eq!((health.largest_speed, health.largest_speed_particle), (7.0, 1500));
+        assert_eq!((health.smallest_ratio, health.smallest_ratio_particle), (0.5, 40));
+        assert_eq!(most, Most { value: 7.0, particle: 1500 });
+        // Nobody has what all of them have to exceed.
+        assert_eq!(seen(speed, 8.0).1, Most { value: 8.0, particle: 0 });
+        assert_eq!(health.first_not_finite, None);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_named_and_takes_no_part() {
+        let speed = |a: usize| match a {
+            1700 | 2800 => f64::INFINITY,
+            2 => f64::NAN,
+            _ => 3.0,
+        };
+        let (health, most) = seen(speed, 0.0);
+        assert_eq!(health.first_not_finite, Some(1700));
+        assert_eq!((health.largest_speed, health.smallest_ratio), (3.0, 3.0));
+        assert_eq!(most, Most { value: 3.0, particle: 0 });
+        // Of nothing there is nothing to say.
+        let (none, [most]) = look::<2, 1>(0, [0.0], |_| None);
+        assert_eq!((none, most), (Health::NEUTRAL, Most { value: 0.0, particle: 0 }));
+    }
 }

@@ -49,6 +49,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// What a particle contributes: the speed of signals, waves and what carries them, in m/s, and its
     /// squared acceleration.
+    #[inline]
     fn look_at(&self, number: usize, state: &[f64]) -> Option<Seen<D, 2>> {
         let at = self.columns(state);
         let matter = match self.solids {

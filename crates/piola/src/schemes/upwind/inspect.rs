@@ -41,6 +41,7 @@ impl<const D: usize> Upwind<D> {
     /// What particle `a` contributes: the negative of the time in s in which a wave crosses `d_a`, the
     /// wave speed on the reference configuration in m/s, and the speed of the shock that the dissipation
     /// uses over the reference speed.
+    #[inline]
     fn look_at(&self, a: usize, at: &Columns<'_, D>) -> Option<Seen<D, 3>> {
         let (evolved, gradient) = (at.volume_ratio[a], &at.deformation_gradient[a]);
         let mut vectors = at.velocity[a].iter().chain(&at.position[a]).chain(gradient);
