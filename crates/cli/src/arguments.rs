@@ -40,6 +40,8 @@ pub enum Command {
         #[arg(value_name = "NAME")]
         name: PathBuf,
     },
+    /// List the devices that `--device` takes
+    Devices,
     /// Print the JSON schema of case files
     Schema,
     /// Print the reference of all keys of case files, as Markdown
@@ -67,6 +69,9 @@ pub struct CaseArguments {
     /// Threads to use [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Compute on this device, as `piola devices` lists them, for example cuda:0
+    #[arg(long, value_name = "NAME")]
+    pub device: Option<String>,
 }
 
 /// Arguments of `piola run`.

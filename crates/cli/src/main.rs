@@ -36,6 +36,7 @@ fn dispatch(command: Command) -> Result<Exit, Fault> {
         Command::Verify(arguments) => commands::verify::verify(&arguments),
         Command::Report { folder } => commands::report::report(&folder),
         Command::New { name } => commands::new::new(&name),
+        Command::Devices => commands::devices::devices(),
         Command::Schema => commands::generate::schema(),
         Command::Reference => commands::generate::reference(),
         Command::Completions { shell } => commands::generate::completions(shell),

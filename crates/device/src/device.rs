@@ -34,6 +34,11 @@ pub fn devices() -> Vec<Found> {
     [cuda::devices(), opencl::devices()].into_iter().flat_map(Result::unwrap_or_default).collect()
 }
 
+/// Why there are no devices of a kind, for kinds of which there are none.
+pub fn missing() -> Vec<DeviceError> {
+    [cuda::devices(), opencl::devices()].into_iter().filter_map(Result::err).collect()
+}
+
 /// That there is no device of a name, with those that there are.
 fn unknown(name: &str) -> DeviceError {
     let list = |found: Outcome<Vec<Found>>| match found {

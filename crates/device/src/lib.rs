@@ -17,19 +17,26 @@
 pub mod cuda;
 mod device;
 mod error;
+mod gather;
 mod law;
 pub mod laws;
 pub mod lists;
+mod machine;
 mod opencl;
 mod operators;
+mod pass;
 pub mod passes;
 mod portable;
 mod record;
+pub mod reduce;
 mod text;
 
-pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices};
+pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices, missing};
 pub use error::DeviceError;
+pub use gather::{Among, Gather, Meeting, Order, Space};
 pub use law::{Law, Outputs};
+pub use machine::{Indices, Machine};
+pub use pass::{Ask, At, Pass, Use, local, own, spread, through};
 pub use portable::{Bits, Portable};
 pub use record::{Traced, Truth};
 pub use text::{Language, Precision};

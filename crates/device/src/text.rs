@@ -136,7 +136,11 @@ impl Language {
             Self::Cuda => CUDA,
         }
         .to_string();
-        let _ = writeln!(text, "typedef {} real;", precision.type_name());
+        let _ = writeln!(
+            text,
+            "typedef {} real;\ntypedef struct ALIGNED {{ real x, y; }} Pair;",
+            precision.type_name()
+        );
         if precision == Precision::Double {
             text += &bits(self);
             for name in ["exp", "expm1", "log", "log1p", "pow"] {

@@ -136,8 +136,8 @@ macro_rules! each_law {
         $check("opening", sums::Opening::<2>);
         $check("velocity gradient", sums::VelocityGradient::<3>);
         $check("surface normal", sums::SurfaceNormal::<2>);
-        let (size, crowding, smoothing_length) = (0.5, 0.7, 0.8);
-        $check("crowding", sums::CrowdingWithin::<2> { kernel, smoothing_length, size, crowding });
+        let (crowding, smoothing_length) = (0.7, 0.8);
+        $check("crowding", sums::CrowdingWithin::<2> { kernel, smoothing_length, crowding });
         let smoothing_length = Some(0.8);
         $check("displacement", sums::Displacement::<2> { kernel, smoothing_length });
         $check("background", sums::Background::<2> { kernel, smoothing_length: 0.8 });

@@ -10,6 +10,7 @@ use crate::terminal;
 use crate::text::count;
 
 pub mod check;
+pub mod devices;
 pub mod generate;
 pub mod new;
 pub mod report;
@@ -29,8 +30,9 @@ fn use_threads(threads: Option<u16>) {
 
 /// Reads the case as it stands.
 fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
+    let device = arguments.device.iter().map(|name| format!("compute.device=\"{name}\""));
     let options = LoadOptions {
-        overrides: arguments.set.clone(),
+        overrides: arguments.set.iter().cloned().chain(device).collect(),
         variant: arguments.variant.clone(),
         level: Level::Case,
     };

@@ -5,6 +5,7 @@ use super::{
     QuinticSpline, ScaledKernel, WendlandC2, WendlandC4, WendlandC6,
 };
 use crate::Number;
+use crate::power::integer_power;
 
 /// A computation that is generic over the kernel's shape, for [`Kernel::visit`].
 pub trait KernelVisitor {
@@ -100,6 +101,12 @@ impl Kernel {
         self.evaluate(dimension, Quantity::DerivativeOverR, r, h)
     }
 
+    /// [`Self::derivative_over_r`] of a smoothing length that is a number as `r` is.
+    #[inline(always)]
+    pub fn derivative_over_r_within<T: Number>(self, dimension: usize, r: T, h: T) -> T {
+        self.visit(Within { dimension, r, h })
+    }
+
     /// `W'(r)`; at the tip of a cusp the limit from above.
     pub fn derivative<T: Number>(self, dimension: usize, r: T, h: f64) -> T {
         self.evaluate(dimension, Quantity::Derivative, r, h)
@@ -118,6 +125,25 @@ impl Kernel {
             3 => self.visit(InDimension::<T, 3>(evaluation)),
             _ => T::from(f64::NAN),
         }
+    }
+}
+
+/// The slope of a kernel over the distance, with the operations of [`ScaledKernel`].
+struct Within<T> {
+    dimension: usize,
+    r: T,
+    h: T,
+}
+
+impl<T: Number> KernelVisitor for Within<T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn visit<K: KernelShape>(self, _shape: K) -> T {
+        let inverse = self.h.recip();
+        let power = integer_power(inverse, self.dimension as u32);
+        let factor = power * K::normalisation(self.dimension) * inverse * inverse;
+        K::derivative_over_q(self.dimension, self.r * inverse) * factor
     }
 }
 

@@ -22,7 +22,18 @@ pub trait Record: Send + Sync + 'static {
         from: [&Self::Of<S>; N],
         f: &impl Fn([S; N]) -> T,
     ) -> Self::Of<T>;
+
+    /// Appends the names of its numbers in the order of [`Record::map`], each after `prefix`.
+    fn names(prefix: &str, names: &mut Vec<String>);
 }
+
+/// A name within another.
+pub(crate) fn within(prefix: &str, name: &str) -> String {
+    if prefix.is_empty() { name.into() } else { format!("{prefix}_{name}") }
+}
+
+/// Names of the axes.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What is picked of each of some records.
 ///
@@ -58,6 +69,10 @@ impl Record for One {
     fn map<S: Number, T: Number, const N: usize>(from: [&S; N], f: &impl Fn([S; N]) -> T) -> T {
         f(each(from, |part| *part))
     }
+
+    fn names(prefix: &str, names: &mut Vec<String>) {
+        names.push(prefix.into());
+    }
 }
 
 /// `N` numbers.
@@ -83,6 +98,10 @@ impl<const M: usize> Record for Many<M> {
         }
         all
     }
+
+    fn names(prefix: &str, names: &mut Vec<String>) {
+        names.extend((0..M).map(|i| within(prefix, &i.to_string())));
+    }
 }
 
 /// A vector of `D` components.
@@ -107,6 +126,10 @@ impl<const D: usize> Record for Components<D> {
             vector[i] = f(each(from, |part| part[i]));
         }
         vector
+    }
+
+    fn names(prefix: &str, names: &mut Vec<String>) {
+        names.extend(AXES[..D].iter().map(|axis| within(prefix, axis)));
     }
 }
 
@@ -135,6 +158,12 @@ impl<const D: usize> Record for Square<D> {
         }
         tensor
     }
+
+    fn names(prefix: &str, names: &mut Vec<String>) {
+        let axes = &AXES[..D];
+        let entries = axes.iter().flat_map(|i| axes.iter().map(move |j| format!("{i}{j}")));
+        names.extend(entries.map(|entry| within(prefix, &entry)));
+    }
 }
 
 impl<A: Record, B: Record> Record for (A, B) {
@@ -151,6 +180,11 @@ impl<A: Record, B: Record> Record for (A, B) {
         f: &impl Fn([S; N]) -> T,
     ) -> Self::Of<T> {
         (A::map(each(from, |part| &part.0), f), B::map(each(from, |part| &part.1), f))
+    }
+
+    fn names(prefix: &str, names: &mut Vec<String>) {
+        A::names(prefix, names);
+        B::names(&within(prefix, "beside"), names);
     }
 }
 
@@ -191,6 +225,13 @@ macro_rules! record {
                         f,
                     )),*
                 }
+            }
+
+            fn names(prefix: &str, names: &mut Vec<String>) {
+                $(<$kind as $crate::pairs::Record>::names(
+                    &$crate::pairs::record::within(prefix, stringify!($field)),
+                    names,
+                );)*
             }
         }
     };

@@ -6,6 +6,7 @@
 use super::fluid::FluidSide;
 use super::{Components, MovingPair, Of, One, PairLaw, Square, difference};
 use crate::kernels::{Kernel, Needs};
+use crate::power::integer_power;
 use crate::{Number, fluid};
 
 /// A side, and whether it counts.
@@ -116,23 +117,24 @@ impl<const D: usize> PairLaw for SurfaceNormal<D> {
     }
 }
 
-/// The sum of CTVF (35) with the gradient of a kernel of another smoothing length than that of values,
-/// in 1/m.
+/// The sum of CTVF (35) in 1/m with the gradient of a kernel of another smoothing length than that of
+/// values, which stands beside the side of the particle itself, in m.
+///
+/// The gradients keep the size that they have with the full support: a kernel that is scaled down to a
+/// unit integral pushes without bounds once it holds but a neighbour or two.
 #[derive(Clone, Copy, Debug)]
 pub struct CrowdingWithin<const D: usize> {
     /// The kernel.
     pub kernel: Kernel,
-    /// Smoothing length of its gradient in m.
+    /// Smoothing length of values in m.
     pub smoothing_length: f64,
-    /// What its gradient is multiplied with.
-    pub size: f64,
     /// `1 / W(dx)` in m^D.
     pub crowding: f64,
 }
 
 impl<const D: usize> PairLaw for CrowdingWithin<D> {
     type Pair = MovingPair<D>;
-    type Side = (One, One);
+    type Side = ((One, One), One);
     type Sums = Components<D>;
 
     const NEEDS: Needs = Needs::Value;
@@ -140,13 +142,14 @@ impl<const D: usize> PairLaw for CrowdingWithin<D> {
     #[inline(always)]
     fn add<T: Number>(
         &self,
-        _me: &Of<Self::Side, T>,
-        (volume, own): &(T, T),
+        (_, h): &Of<Self::Side, T>,
+        ((volume, own), _): &Of<Self::Side, T>,
         pair: &Of<MovingPair<D>, T>,
         sum: &mut Of<Components<D>, T>,
     ) {
         let distance = pair.square.sqrt();
-        let slope = self.kernel.derivative_over_r(D, distance, self.smoothing_length) * self.size;
+        let size = integer_power(*h / T::from(self.smoothing_length), D as u32 + 1);
+        let slope = self.kernel.derivative_over_r_within(D, distance, *h) * size;
         let weight = fluid::repulsion(pair.value * self.crowding) * slope * *volume * *own;
         for i in 0..D {
             sum[i] += pair.separation[i] * weight;

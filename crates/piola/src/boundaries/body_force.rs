@@ -28,6 +28,11 @@ impl<const D: usize> BodyForce<D> {
         sum
     }
 
+    /// Whether it is the same at all places.
+    pub fn is_uniform(&self) -> bool {
+        self.acceleration.iter().all(|component| component.is_uniform())
+    }
+
     /// Whether it is the same at all times.
     pub fn is_steady(&self) -> bool {
         self.acceleration.iter().all(|component| component.is_steady())

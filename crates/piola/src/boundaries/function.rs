@@ -11,6 +11,11 @@ pub trait SpaceTime: Send + Sync {
 
     /// Whether the value is the same at all times.
     fn is_steady(&self) -> bool;
+
+    /// Whether it is known to be the same at all places.
+    fn is_uniform(&self) -> bool {
+        false
+    }
 }
 
 impl SpaceTime for f64 {
@@ -23,6 +28,10 @@ impl SpaceTime for f64 {
     }
 
     fn is_steady(&self) -> bool {
+        true
+    }
+
+    fn is_uniform(&self) -> bool {
         true
     }
 }

@@ -63,6 +63,10 @@ impl SpaceTime for Scaled {
     fn is_steady(&self) -> bool {
         false
     }
+
+    fn is_uniform(&self) -> bool {
+        self.value.is_uniform()
+    }
 }
 
 #[cfg(test)]

@@ -124,6 +124,8 @@ pub(super) fn case(
         scheme: scheme?,
         time: time?,
         checkpoint: checkpoint?,
+        device: (record.record("compute").and_then(|compute| compute.text("device")))
+            .filter(|device| **device != "processor"),
         loads: loads.into_iter().collect::<Option<_>>()?,
         boundaries: boundaries?,
         probes: probes?,

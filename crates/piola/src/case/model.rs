@@ -54,6 +54,8 @@ pub struct Case {
     pub time: Time,
     /// When checkpoints are written.
     pub checkpoint: Checkpoint,
+    /// The device that computes, if it is not the processor.
+    pub device: Option<Located<String>>,
     /// Body forces and tractions.
     pub loads: Vec<Load>,
     /// Prescribed velocities.

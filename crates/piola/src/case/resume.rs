@@ -33,8 +33,18 @@ pub(super) struct Resumed {
 }
 
 /// Tables and keys that the course of a run does not depend on before it ends.
-const FREE: [&str; 9] =
-    ["id", "title", "checkpoint", "plot", "coarse", "paper", "variant", "sweep", "check"];
+const FREE: [&str; 10] = [
+    "id",
+    "title",
+    "checkpoint",
+    "compute",
+    "plot",
+    "coarse",
+    "paper",
+    "variant",
+    "sweep",
+    "check",
+];
 /// Those of `[time]`.
 const FREE_TIME: [&str; 2] = ["end", "max_steps"];
 

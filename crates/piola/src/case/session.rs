@@ -4,17 +4,20 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use piola_device::Device;
 use thiserror::Error;
 
 use super::build::{self, Built};
+use super::diagnostics::Problem;
 use super::finished::{Finished, removed, unbalanced};
 use super::model::Case;
 use super::outputs::Outputs;
 use super::resume::{self, Resumed};
+use super::source::Located;
 use super::{Problems, report};
 use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
-use crate::schemes::Scheme;
+use crate::schemes::{DeviceRefusal, Scheme};
 use crate::time::{
     Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
 };
@@ -98,6 +101,9 @@ impl Session {
         executor.min_step = case.time.min_step;
         executor.max_speed = case.time.max_speed;
         executor.retries = case.time.retries as usize;
+        if let Some(device) = &case.device {
+            use_device(&mut executor, device).map_err(|problem| case.refuse(vec![problem]))?;
+        }
         let (tables, observers) = observers(case, &built, executor.scheme.as_ref(), None);
         let own = observers.len();
         observers.into_iter().for_each(|observer| executor.observe(observer));
@@ -201,7 +207,7 @@ impl Session {
     }
 
     /// All that the steps to come depend on.
-    pub fn checkpoint(&self) -> Checkpoint {
+    pub fn checkpoint(&mut self) -> Checkpoint {
         self.executor.checkpoint()
     }
 
@@ -301,6 +307,18 @@ impl Session {
         }
         Ok(finished)
     }
+}
+
+/// Lets a run take its steps on a device.
+fn use_device(executor: &mut Executor, device: &Located<String>) -> Result<(), Problem> {
+    let opened = Device::open(device).map_err(DeviceRefusal::from);
+    opened.and_then(|device| executor.use_device(device)).map_err(|refusal| {
+        let label = match &refusal {
+            DeviceRefusal::Device(_) => "the device",
+            _ => "this case has no steps there",
+        };
+        Problem::new(device.place, refusal.to_string(), label)
+    })
 }
 
 /// The observers that a case asks for, and the tables that they fill.

@@ -74,6 +74,7 @@ pub static CASE: TableSpec = TableSpec {
             Optional,
             "when the run writes a file that it can be resumed from; it also does on Ctrl-C and SIGTERM",
         ),
+        key("compute", Kind::Table(&time::COMPUTE), "", Optional, "who computes"),
         key(
             "load",
             Kind::List(&Kind::Tagged(&LOAD)),

@@ -17,6 +17,16 @@ impl<const D: usize> Faces<D> {
         Self { normals, depth }
     }
 
+    /// The normals.
+    pub fn normals(&self) -> &[Vector<D>] {
+        &self.normals
+    }
+
+    /// How far the point is behind the faces in m.
+    pub fn depth(&self) -> f64 {
+        self.depth
+    }
+
     /// The unit normal between those of the faces; zero if there is none.
     pub fn between(&self) -> Vector<D> {
         let Some(first) = self.normals.first() else { return Vector::zeros() };

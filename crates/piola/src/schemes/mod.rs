@@ -1,6 +1,7 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
 mod description;
+mod device;
 pub mod dual_support;
 pub mod elastodynamics;
 mod equilibrium;
@@ -23,6 +24,7 @@ pub mod transport_velocity;
 pub mod upwind;
 
 pub use description::{Capability, NEWTON_ITERATIONS, SchemeDescription};
+pub use device::{DeviceRefusal, DeviceSteps};
 pub use equilibrium::{Missed, NoSolution, StaticScheme};
 pub use initial::Initial;
 pub use input::InputError;

@@ -1,5 +1,8 @@
 //! Linear and angular momentum, and the impulses that change them.
 
+use nalgebra::SVector;
+use piola_formulas::Number;
+
 use crate::{Vector, parallel};
 
 /// One component of momentum.
@@ -55,11 +58,11 @@ pub(crate) fn kinetic_distance<const D: usize>(
 /// The momentum of `vector` (mass times velocity, or a force) at `point`, as
 /// [`momentum_components`] orders it: `vector`, then `point x vector`.
 #[inline]
-pub fn moments<const D: usize>(
-    point: &Vector<D>,
-    vector: &Vector<D>,
-) -> ([f64; MOST_COMPONENTS], usize) {
-    let mut all = [0.0; MOST_COMPONENTS];
+pub fn moments<T: Number, const D: usize>(
+    point: &SVector<T, D>,
+    vector: &SVector<T, D>,
+) -> ([T; MOST_COMPONENTS], usize) {
+    let mut all = [T::zero(); MOST_COMPONENTS];
     all[..D].copy_from_slice(vector.as_slice());
     let turn = |i: usize, j: usize| point[i] * vector[j] - point[j] * vector[i];
     let count = match D {

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use piola_device::Device;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    NewmarkScheme, PartitionedScheme, Phase, SchemeDescription, SplitScheme, StaticScheme,
-    ThetaScheme,
+    DeviceRefusal, DeviceSteps, NewmarkScheme, PartitionedScheme, Phase, SchemeDescription,
+    SplitScheme, StaticScheme, ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
 use crate::solve::Costs;
@@ -145,6 +146,14 @@ pub trait Scheme: Send {
     /// it dissipates.
     fn partitioned(&mut self) -> Option<&mut dyn PartitionedScheme> {
         None
+    }
+
+    /// Its steps on a device.
+    ///
+    /// # Errors
+    /// Something of it has no body for devices, or the device refuses.
+    fn on_device(&self, _device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        Err(DeviceRefusal::Formulation(self.description().name))
     }
 
     /// Whether [`Scheme::rates`] are all there is of its motion, as Runge-Kutta methods need it.

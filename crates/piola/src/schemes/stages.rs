@@ -1,5 +1,6 @@
 //! An evaluation as a list of stages, each with what it reads, gathers and writes.
 
+use std::convert::Infallible;
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
@@ -173,18 +174,39 @@ impl<P: Copy> Stages<P> {
 
     /// Runs all passes and takes their times; adds up the totals that they fill.
     pub fn run(&mut self, mut body: impl FnMut(P, &mut Totals)) -> Totals {
+        let done: Result<Totals, Infallible> = self.attempt(|pass, totals| {
+            body(pass, totals);
+            Ok(())
+        });
+        let Ok(totals) = done;
+        totals
+    }
+
+    /// As [`Self::run`], up to the first pass that fails.
+    ///
+    /// # Errors
+    /// That of the pass.
+    pub fn attempt<E>(
+        &mut self,
+        mut body: impl FnMut(P, &mut Totals) -> Result<(), E>,
+    ) -> Result<Totals, E> {
         let (mut all, mut last) = (Totals::default(), Instant::now());
         for (&pass, (_, watch)) in self.passes.iter().zip(&mut self.phase.stages) {
             // What a stage has filled is its own, so that it is seen if it fills that again.
             self.phase.filled.join(std::mem::take(&mut all.filled));
-            body(pass, &mut all);
+            body(pass, &mut all)?;
             let now = Instant::now();
             watch.total += now - last;
             watch.calls += 1;
             last = now;
         }
         self.phase.filled.join(all.filled);
-        all
+        Ok(all)
+    }
+
+    /// The passes in their order.
+    pub fn passes(&self) -> &[P] {
+        &self.passes
     }
 
     /// The stages with their times.

@@ -2,17 +2,20 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use piola_device::Device;
+
 use super::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use super::clock::{Clock, Tally};
 use super::failure::Failure;
 use super::history::{History, Mark};
 use super::integrator::Integrator;
 use super::judgement::supersonic;
+use super::kick_drift_kick::KickDriftKick;
 use super::observer::{Moment, ObserveError, Observer};
 use super::run::Run;
 use super::step::StepControl;
 use super::summary::{Outcome, Progress, Retry, Summary};
-use crate::schemes::{Observation, Scheme, StepLimit};
+use crate::schemes::{DeviceRefusal, DeviceSteps, Observation, Scheme, StepLimit};
 
 /// Owns a run: the clock, the state, the observers, and the reasons to stop.
 pub struct Executor {
@@ -49,6 +52,10 @@ pub struct Executor {
     outcome: Option<Outcome>,
     /// Whether the outcome is a failure that the last step led to.
     is_broken: bool,
+    /// Who takes the steps, if that is a device.
+    device: Option<Box<dyn DeviceSteps>>,
+    /// Whether the state is that of the moment: a device may be ahead.
+    is_here: bool,
 }
 
 impl Executor {
@@ -95,6 +102,8 @@ impl Executor {
             is_seen: false,
             outcome: None,
             is_broken: false,
+            device: None,
+            is_here: true,
             run: Run::at(Clock::START, Tally::START, state, Vec::new()),
             scheme,
             integrator,
@@ -107,8 +116,52 @@ impl Executor {
     }
 
     /// The state as it is between two steps.
-    pub fn state(&self) -> &[f64] {
+    pub fn state(&mut self) -> &[f64] {
+        self.bring();
         &self.run.state
+    }
+
+    /// Lets a device take the steps from now on.
+    ///
+    /// # Errors
+    /// The formulation or the integrator has no steps there, or the device refuses.
+    pub fn use_device(&mut self, device: Device) -> Result<(), DeviceRefusal> {
+        if self.integrator.name() != KickDriftKick::NAME {
+            return Err(DeviceRefusal::Integrator(self.integrator.name()));
+        }
+        self.bring();
+        let mut steps = self.scheme.on_device(device)?;
+        steps.put(&self.run.state)?;
+        self.device = Some(steps);
+        Ok(())
+    }
+
+    /// Brings the state of the moment here, if a device is ahead.
+    fn bring(&mut self) {
+        if let (false, Some(device)) = (self.is_here, &self.device) {
+            let fetched = device.fetch(&mut self.run.state);
+            self.is_here = true;
+            if let Err(error) = fetched {
+                self.lose(error.into());
+            }
+        }
+    }
+
+    /// Gives the state to the device, if there is one.
+    fn hand_over(&mut self) {
+        if let Some(Err(error)) = self.device.as_mut().map(|it| it.put(&self.run.state)) {
+            self.lose(error.into());
+        }
+    }
+
+    /// Ends the run without its device, at the last mark.
+    fn lose(&mut self, failure: Failure) {
+        let Run { clock, state, history, .. } = &mut self.run;
+        let mark = history.last();
+        *clock = mark.clock;
+        state.copy_from_slice(&mark.state);
+        (self.device, self.is_here) = (None, true);
+        self.outcome = Some(Outcome::Failed(failure));
     }
 
     /// Where the run stands.
@@ -150,7 +203,8 @@ impl Executor {
     }
 
     /// All that the steps to come depend on.
-    pub fn checkpoint(&self) -> Checkpoint {
+    pub fn checkpoint(&mut self) -> Checkpoint {
+        self.bring();
         let Run { clock, tally, state, due, history, .. } = &self.run;
         Checkpoint {
             clock: *clock,
@@ -183,6 +237,8 @@ impl Executor {
             checkpoints.start(&clock);
         }
         (self.is_seen, self.outcome, self.is_broken) = (false, None, false);
+        self.is_here = true;
+        self.hand_over();
         Ok(())
     }
 
@@ -190,6 +246,7 @@ impl Executor {
     /// the state holds follow. The run cannot go back to before it, and what it does to energy and
     /// momentum is in no ledger.
     pub fn change(&mut self, change: impl FnOnce(&mut [f64])) {
+        self.bring();
         let Run { clock, tally, state, due, history, .. } = &mut self.run;
         change(state);
         self.scheme.constrain(clock.time, state);
@@ -198,10 +255,12 @@ impl Executor {
         }
         *history = History::new(Mark::of(clock, tally, due, state));
         self.is_seen = false;
+        self.hand_over();
     }
 
     /// The formulation at the moment.
     pub fn now(&mut self) -> Observation<'_> {
+        self.bring();
         let Run { clock, state, .. } = &self.run;
         Observation::new(self.scheme.as_mut(), clock.time, state)
     }
@@ -258,8 +317,12 @@ impl Executor {
         };
         if self.is_broken && self.run.clock.step > self.previous.0.step {
             self.run.clock = self.previous.0;
-            self.run.state.copy_from_slice(&self.previous.1);
+            match &self.device {
+                Some(device) => self.is_here = device.fetch_before(&mut self.run.state).is_ok(),
+                None => self.run.state.copy_from_slice(&self.previous.1),
+            }
         }
+        self.bring();
         self.save_at_end(&outcome);
         self.show(true)?;
         let Run { clock, tally, resumed, .. } = &self.run;
@@ -272,7 +335,10 @@ impl Executor {
             worst: tally.worst,
             evaluations: self.evaluations * clock.step,
             timings: tally.watches.timings(),
-            phases: self.scheme.phases().into_iter().cloned().collect(),
+            phases: match &self.device {
+                Some(device) => device.phases().into_iter().cloned().collect(),
+                None => self.scheme.phases().into_iter().cloned().collect(),
+            },
             retries: tally.retries.clone(),
             trace,
             resumed: *resumed,
@@ -290,6 +356,9 @@ impl Executor {
                 }
                 None => {
                     self.show(false)?;
+                    if self.run.history.is_due(&self.run.clock) {
+                        self.bring();
+                    }
                     let Run { clock, tally, state, due, history, .. } = &mut self.run;
                     history.mark(clock, tally, due, state);
                     if self.checkpoints.as_ref().is_some_and(|it| it.due(&self.run.clock)) {
@@ -297,6 +366,7 @@ impl Executor {
                     }
                     self.is_seen = true;
                 }
+                Some(failure @ Failure::Device(_)) => self.lose(failure),
                 Some(failure) if self.run.clock.step > 0 && self.may_retry() => {
                     self.go_back(&failure)?;
                 }
@@ -313,7 +383,15 @@ impl Executor {
     fn judge(&mut self) -> Option<Failure> {
         let Run { clock, tally, state, .. } = &mut self.run;
         let (scheme, limits) = (self.scheme.as_mut(), &mut self.limits);
-        let health = tally.watches.inspect.time(|| scheme.inspect(state, limits));
+        let device = self.device.as_mut();
+        let health = tally.watches.inspect.time(|| match device {
+            Some(device) => device.inspect(limits),
+            None => Ok(scheme.inspect(state, limits)),
+        });
+        let health = match health {
+            Ok(health) => health,
+            Err(error) => return Some(error.into()),
+        };
         if clock.step == 0 {
             tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
             let warning = supersonic(tally.start_speeds);
@@ -349,16 +427,16 @@ impl Executor {
             }
         };
         let may_retry = self.may_retry();
-        let Self { run, scheme, integrator, next, .. } = self;
+        let Self { run, scheme, integrator, next, device, .. } = self;
         if run.clock.step == 0 {
             run.tally.first_step = chosen.step;
         }
         let soonest = run.due.iter().flatten().copied().fold(self.end, f64::min);
         let met = self.control.meet(chosen, run.clock.time, soonest);
-        let taken =
-            run.tally.watches.step.time(|| {
-                integrator.step(scheme.as_mut(), run.clock.time, met.step, &run.state, next)
-            });
+        let taken = run.tally.watches.step.time(|| match device {
+            Some(device) => device.step(run.clock.time, met.step).map_err(Failure::from),
+            None => integrator.step(scheme.as_mut(), run.clock.time, met.step, &run.state, next),
+        });
         let growth = integrator.growth();
         if let Err(failure) = taken {
             self.is_seen = false;
@@ -366,14 +444,19 @@ impl Executor {
                 (Failure::Inaccurate { .. }, Some(growth)) if self.control.adapts() => {
                     run.tally.factor *= growth * met.step / chosen.step;
                 }
+                (Failure::Device(_), _) => self.lose(failure),
                 _ if may_retry => run.shorten(&failure),
                 _ => self.outcome = Some(Outcome::Failed(failure)),
             }
             return false;
         }
         self.previous.0 = run.clock;
-        std::mem::swap(&mut self.previous.1, &mut run.state);
-        std::mem::swap(&mut run.state, next);
+        if device.is_some() {
+            self.is_here = false;
+        } else {
+            std::mem::swap(&mut self.previous.1, &mut run.state);
+            std::mem::swap(&mut run.state, next);
+        }
         run.tally.wanted = chosen.step / run.tally.factor;
         run.advance(self.control, met, soonest);
         run.lengthen(integrator.as_ref(), scheme.as_ref(), chosen, met);
@@ -397,6 +480,8 @@ impl Executor {
         *tally = Tally { watches, retries, warnings, warned, factor, ..mark.tally.clone() };
         state.copy_from_slice(&mark.state);
         due.copy_from_slice(&mark.due);
+        self.is_here = true;
+        self.hand_over();
         for observer in &mut self.observers {
             observer.rewind(back_to)?;
         }
@@ -405,6 +490,10 @@ impl Executor {
 
     /// Shows the moment to the observers for whom it is due, or to all if it is the last.
     fn show(&mut self, last: bool) -> Result<(), ObserveError> {
+        let time = self.run.clock.time * (1.0 + 1e-12);
+        if last || self.run.due.iter().flatten().any(|due| *due <= time) {
+            self.bring();
+        }
         let Run { clock, tally, state, due, .. } = &mut self.run;
         let (scheme, observers) = (self.scheme.as_mut(), &mut self.observers);
         tally.watches.observe.time(|| {

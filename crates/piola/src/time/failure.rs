@@ -1,5 +1,6 @@
 //! Why a run stops before its end.
 
+use piola_device::DeviceError;
 use thiserror::Error;
 
 use super::integrator::Unserved;
@@ -174,6 +175,11 @@ pub enum Failure {
         /// Its length in s.
         step: f64,
     },
+    /// A device cannot go on.
+    #[error(
+        "the device failed: {0}; the run ends with the last state that was here; `--resume` goes on from          its last checkpoint, on any device or on the processor"
+    )]
+    Device(#[from] DeviceError),
     /// The number of steps allowed is used up.
     #[error(
         "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
@@ -203,6 +209,7 @@ impl Failure {
             },
             Self::Unserved(_) => "unserved",
             Self::Inaccurate { .. } => "inaccurate",
+            Self::Device(_) => "device",
             Self::TooManySteps { .. } => "too_many_steps",
         }
     }
@@ -220,6 +227,7 @@ impl Failure {
             Self::NoSolution(_)
             | Self::Unserved(_)
             | Self::Inaccurate { .. }
+            | Self::Device(_)
             | Self::TooManySteps { .. } => None,
         }
     }

@@ -53,9 +53,19 @@ impl History {
         Self { older: mark.clone(), newer: mark, steps }
     }
 
+    /// Whether it is time for a mark.
+    pub fn is_due(&self, clock: &Clock) -> bool {
+        clock.step.is_multiple_of(Self::INTERVAL) && clock.step != self.newer.clock.step
+    }
+
+    /// The last mark.
+    pub fn last(&self) -> &Mark {
+        &self.newer
+    }
+
     /// Takes a mark if it is time for one.
     pub fn mark(&mut self, clock: &Clock, tally: &Tally, due: &[Option<f64>], state: &[f64]) {
-        if !clock.step.is_multiple_of(Self::INTERVAL) || clock.step == self.newer.clock.step {
+        if !self.is_due(clock) {
             return;
         }
         std::mem::swap(&mut self.older, &mut self.newer);

@@ -20,6 +20,9 @@ pub struct KickDriftKick {
 }
 
 impl KickDriftKick {
+    /// Its name.
+    pub const NAME: &str = "kick_drift_kick";
+
     fn partitioned(
         &mut self,
         scheme: &mut dyn PartitionedScheme,
@@ -55,7 +58,7 @@ impl KickDriftKick {
 
 impl Integrator for KickDriftKick {
     fn name(&self) -> &'static str {
-        "kick_drift_kick"
+        Self::NAME
     }
 
     fn evaluations(&self, scheme: &mut dyn Scheme) -> u64 {

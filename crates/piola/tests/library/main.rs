@@ -5,6 +5,7 @@
 
 mod convergence;
 mod deformed_steps;
+mod devices;
 mod elastodynamics;
 mod executor;
 mod failures;

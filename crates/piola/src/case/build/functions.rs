@@ -17,6 +17,10 @@ impl SpaceTime for Expression {
     fn is_steady(&self) -> bool {
         !self.depends_on(Variable::T)
     }
+
+    fn is_uniform(&self) -> bool {
+        ![Variable::X, Variable::Y, Variable::Z].into_iter().any(|axis| self.depends_on(axis))
+    }
 }
 
 impl<const D: usize> Field<D> for Expression {

@@ -156,6 +156,18 @@ const REACTIONS: Choices = choices(&[
     ),
 ]);
 
+pub(super) static COMPUTE: TableSpec = TableSpec {
+    title: "[compute]",
+    meaning: "Who computes. Results do not depend on it.",
+    keys: &[key(
+        "device",
+        Kind::Text,
+        "",
+        Default("\"processor\""),
+        "`processor`, or the name of a device as `piola devices` lists them, for example `cuda:0`; `docs/devices.md` says which cases have steps there",
+    )],
+};
+
 pub(super) static CHECKPOINT: TableSpec = TableSpec {
     title: "[checkpoint]",
     meaning: "When checkpoints are written, from which `piola run --resume` goes on. Results do not depend on them.",

@@ -7,10 +7,10 @@ use crate::operators::{Among, NeighborBlock, visit};
 use crate::{Vector, parallel};
 
 /// What of a spacing in front of a face a particle touches it.
-const TOUCH: f64 = 0.25;
+pub(super) const TOUCH: f64 = 0.25;
 /// How far beside a wall particle, in spacings, the one in front of it may be: half of the diagonal of
 /// a face of particles in 3D is 0.71.
-const BESIDE: f64 = 0.75;
+pub(super) const BESIDE: f64 = 0.75;
 /// What of a spacing behind a face a particle counts as behind it: more than round-off.
 const BEHIND: f64 = 0.01;
 

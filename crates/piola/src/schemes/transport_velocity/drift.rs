@@ -28,15 +28,8 @@ impl<const D: usize> TransportVelocity<D> {
             return self.solid_rate_pass();
         }
         let mut rates = std::mem::take(&mut self.rates);
-        let h = self.support.smoothing_length();
-        let corrections = self.settings.corrections;
-        let constants = RateConstants {
-            softening: fluid::softening(h),
-            diffusivity: self.settings.diffusivity(h, self.fluid.wave_speed),
-        };
-        let corrects = corrections.density || corrections.pressure;
-        let moves = corrections.divergence == Divergence::Transport;
-        let fill = match (corrects, moves, !self.body_forces.is_empty()) {
+        let (constants, kind) = self.rate_law();
+        let fill = match kind {
             (true, true, true) => Self::gather_rates::<true, true, true>,
             (true, true, false) => Self::gather_rates::<true, true, false>,
             (true, false, true) => Self::gather_rates::<true, false, true>,
@@ -48,6 +41,20 @@ impl<const D: usize> TransportVelocity<D> {
         };
         fill(self, constants, time, &mut rates);
         self.rates = rates;
+    }
+
+    /// The constants of the law of rates, and which one it is: whether the deviation carries them,
+    /// whether the divergence is that of the transport velocity, whether there are body forces.
+    pub(super) fn rate_law(&self) -> (RateConstants, (bool, bool, bool)) {
+        let h = self.support.smoothing_length();
+        let corrections = self.settings.corrections;
+        let constants = RateConstants {
+            softening: fluid::softening(h),
+            diffusivity: self.settings.diffusivity(h, self.fluid.wave_speed),
+        };
+        let corrects = corrections.density || corrections.pressure;
+        let moves = corrections.divergence == Divergence::Transport;
+        (constants, (corrects, moves, !self.body_forces.is_empty()))
     }
 
     fn gather_rates<const CORRECTS: bool, const MOVES: bool, const FALLS: bool>(

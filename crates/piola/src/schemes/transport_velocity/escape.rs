@@ -21,7 +21,7 @@ pub struct Guard {
 
 /// What of a spacing a particle may be behind the first layer of a wall. The layer may stand on
 /// the wall's face, which the fluid touches up to round-off.
-const TOLERANCE: f64 = 0.1;
+pub(super) const TOLERANCE: f64 = 0.1;
 
 /// The density that says that its particle has been removed.
 const REMOVED: f64 = 0.0;
@@ -104,7 +104,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// The box that the fluid may be in, if anybody asks.
-    fn bounds(&self, state: &[f64]) -> Option<(Vector<D>, Vector<D>)> {
+    pub(super) fn bounds(&self, state: &[f64]) -> Option<(Vector<D>, Vector<D>)> {
         let reach = Vector::repeat(self.guard.as_ref()?.1);
         let mut bounds: Option<(Vector<D>, Vector<D>)> = None;
         let at = self.columns(state);

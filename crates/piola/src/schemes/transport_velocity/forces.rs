@@ -89,6 +89,31 @@ impl<const D: usize> TransportVelocity<D> {
             return self.solid_force_pass();
         }
         let mut forces = std::mem::take(&mut self.forces);
+        let (constants, kind) = self.force_law();
+        let fill = match kind {
+            (NONE, false, false) => Self::gather_forces::<NONE, false, false>,
+            (NONE, false, true) => Self::gather_forces::<NONE, false, true>,
+            (NONE, true, false) => Self::gather_forces::<NONE, true, false>,
+            (NONE, true, true) => Self::gather_forces::<NONE, true, true>,
+            (FULL, false, false) => Self::gather_forces::<FULL, false, false>,
+            (FULL, false, true) => Self::gather_forces::<FULL, false, true>,
+            (FULL, true, false) => Self::gather_forces::<FULL, true, false>,
+            (FULL, true, true) => Self::gather_forces::<FULL, true, true>,
+            (_, false, false) => Self::gather_forces::<MIXED, false, false>,
+            (_, false, true) => Self::gather_forces::<MIXED, false, true>,
+            (_, true, false) => Self::gather_forces::<MIXED, true, false>,
+            (_, true, true) => Self::gather_forces::<MIXED, true, true>,
+        };
+        fill(self, constants, &mut forces);
+        if !self.walls.is_empty() {
+            self.react(&constants, &mut forces);
+        }
+        self.forces = forces;
+    }
+
+    /// The constants of the law between particles of a fluid, and which one it is: its corrections,
+    /// whether there is artificial viscosity, whether particles are shifted by SPST.
+    pub(super) fn force_law(&self) -> (ForceConstants, (u8, bool, bool)) {
         let h = self.support.smoothing_length();
         let corrections = &self.settings.corrections;
         let one_if = |is_on: bool| f64::from(u8::from(is_on));
@@ -110,25 +135,7 @@ impl<const D: usize> TransportVelocity<D> {
             (true, Dilatation::Deviation) => FULL,
             _ => MIXED,
         };
-        let fill = match (kind, constants.artificial > 0.0, crowding.is_some()) {
-            (NONE, false, false) => Self::gather_forces::<NONE, false, false>,
-            (NONE, false, true) => Self::gather_forces::<NONE, false, true>,
-            (NONE, true, false) => Self::gather_forces::<NONE, true, false>,
-            (NONE, true, true) => Self::gather_forces::<NONE, true, true>,
-            (FULL, false, false) => Self::gather_forces::<FULL, false, false>,
-            (FULL, false, true) => Self::gather_forces::<FULL, false, true>,
-            (FULL, true, false) => Self::gather_forces::<FULL, true, false>,
-            (FULL, true, true) => Self::gather_forces::<FULL, true, true>,
-            (_, false, false) => Self::gather_forces::<MIXED, false, false>,
-            (_, false, true) => Self::gather_forces::<MIXED, false, true>,
-            (_, true, false) => Self::gather_forces::<MIXED, true, false>,
-            (_, true, true) => Self::gather_forces::<MIXED, true, true>,
-        };
-        fill(self, constants, &mut forces);
-        if !self.walls.is_empty() {
-            self.react(&constants, &mut forces);
-        }
-        self.forces = forces;
+        (constants, (kind, constants.artificial > 0.0, crowding.is_some()))
     }
 
     fn gather_forces<const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(

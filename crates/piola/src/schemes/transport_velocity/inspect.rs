@@ -1,8 +1,27 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
 use super::TransportVelocity;
-use crate::schemes::look::{Seen, look};
+use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, StepLimit};
+
+/// The bounds on a step for a smoothing length in m and a kinematic viscosity in m^2/s, by the speed of
+/// signals and the largest speed in m/s, and the squared acceleration.
+pub(super) fn step_limits(
+    h: f64,
+    viscosity: f64,
+    [signal, fastest, acceleration]: [Most; 3],
+    limits: &mut Vec<StepLimit>,
+) {
+    limits.clear();
+    limits.push(StepLimit::scaled("acoustic", h / signal.value, signal.particle));
+    if viscosity > 0.0 {
+        limits.push(StepLimit::scaled("viscous", h * h / viscosity, fastest.particle));
+    }
+    if acceleration.value > 0.0 {
+        let step = (h / acceleration.value.sqrt()).sqrt();
+        limits.push(StepLimit::scaled("acceleration", step, acceleration.particle));
+    }
+}
 
 impl<const D: usize> TransportVelocity<D> {
     /// The health of `state` and the bounds on the step, CTVF (61) corrected, theory (34):
@@ -20,24 +39,16 @@ impl<const D: usize> TransportVelocity<D> {
         }
         let (mut health, [signal, acceleration]) =
             look(self.particles.len(), [0.0; 2], |number| self.look_at(number, state));
-        let h = self.support.smoothing_length();
-        let fastest = health.largest_speed_particle;
-        limits.clear();
-        let (speed, particle) = match self.solids {
-            Some(_) => (signal.value, signal.particle),
+        let fastest = Most { value: health.largest_speed, particle: health.largest_speed_particle };
+        let signal = match self.solids {
+            Some(_) => signal,
             None => {
                 health.largest_wave_speed = self.fluid.wave_speed;
-                (self.fluid.wave_speed + health.largest_speed, fastest)
+                Most { value: self.fluid.wave_speed + fastest.value, ..fastest }
             }
         };
-        limits.push(StepLimit::scaled("acoustic", h / speed, particle));
-        if self.fluid.viscosity > 0.0 {
-            limits.push(StepLimit::scaled("viscous", h * h / self.fluid.viscosity, fastest));
-        }
-        if acceleration.value > 0.0 {
-            let step = (h / acceleration.value.sqrt()).sqrt();
-            limits.push(StepLimit::scaled("acceleration", step, acceleration.particle));
-        }
+        let h = self.support.smoothing_length();
+        step_limits(h, self.fluid.viscosity, [signal, fastest, acceleration], limits);
         if let Some((guard, _)) = &self.guard
             && !guard.removes
             && health.first_not_finite.is_none()

@@ -32,6 +32,7 @@
 mod barrier;
 mod build;
 mod density;
+mod device;
 mod drift;
 mod escape;
 mod fields;

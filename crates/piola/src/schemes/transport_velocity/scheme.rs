@@ -1,12 +1,15 @@
 //! The transport-velocity formulation as integrators, clock and output see it.
 
+use piola_device::Device;
+
 use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, LEDGER, TransportVelocity, WALLS};
 use crate::fields::FieldDescription;
 use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, Escape, Health, Particle, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
+    Capability, DeviceRefusal, DeviceSteps, Escape, Health, Particle, Phase, Scheme,
+    SchemeDescription, SplitScheme, StepLimit,
 };
 
 /// Names and units of the figures of the formulation.
@@ -167,6 +170,10 @@ impl<const D: usize> Scheme for TransportVelocity<D> {
     /// Accelerations are kept in the state, for kicks.
     fn has_rates(&self) -> bool {
         false
+    }
+
+    fn on_device(&self, device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        self.to_device(device)
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

@@ -67,6 +67,11 @@ const SIDE: &[&str] =
     &["side.velocity", "side.shifting_velocity", "side.density", "side.pressure", "side.material"];
 
 impl Pass {
+    /// The name of its stage.
+    pub fn name(self) -> &'static str {
+        self.stage().name
+    }
+
     /// What the pass reads and writes.
     fn stage(self) -> Stage {
         let stage =

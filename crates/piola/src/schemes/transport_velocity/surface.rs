@@ -10,7 +10,7 @@ use crate::{Vector, parallel};
 
 /// Cosine of the half-angle of the cone around the outward normal in which a particle of the
 /// surface has no neighbour: 60 degrees, in 2D and 3D.
-const CONE: f64 = 0.5;
+pub(super) const CONE: f64 = 0.5;
 
 /// What is known of a particle's place at a free surface.
 #[derive(Clone, Copy, Debug)]
@@ -160,7 +160,7 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Neighbours of a particle among others that are evenly spread: the volume of the support over
     /// that of a particle.
-    fn even_count(&self) -> usize {
+    pub(super) fn even_count(&self) -> usize {
         let support = self.support.kernel().support_radius(self.support.smoothing_length());
         ball_volume(D, support / self.particles.spacing[0]) as usize
     }

@@ -6,3 +6,4 @@ mod iterative;
 mod sun;
 
 pub(super) use iterative::Iteration;
+pub(super) use sun::Speed;

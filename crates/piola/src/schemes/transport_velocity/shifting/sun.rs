@@ -2,13 +2,31 @@
 
 use piola_formulas::pairs::sums::CrowdingWithin;
 
-use crate::operators::{Among, NeighborBlock, Term, add_at};
+use crate::operators::{Among, NeighborBlock, OfCenter, Term, add_at};
 use crate::schemes::transport_velocity::{AtSurface, Shifting, TransportVelocity};
 use crate::{Vector, parallel};
 
 /// Largest Mach number of CTVF (35). A fluid that is faster is not weakly compressible: such a
 /// speed is that of a particle in a splash, and no measure of how fast the others lose their order.
 const MOST_MACH: f64 = 0.25;
+
+/// How fast particles are shifted by SPST.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Speed {
+    factor: f64,
+    /// The largest speed that counts in m/s.
+    most: f64,
+    smoothing_length: f64,
+}
+
+impl Speed {
+    /// What the sum of CTVF (35) is scaled by, in m^2/s, and the largest deviation in m/s, for a largest
+    /// speed in m/s.
+    pub fn of(&self, fastest: f64) -> (f64, f64) {
+        let speed = fastest.min(self.most);
+        (-self.factor * speed * 2.0 * self.smoothing_length, 0.5 * speed)
+    }
+}
 
 impl<const D: usize> TransportVelocity<D> {
     /// Replaces the deviations of the sides by those of the current places,
@@ -17,10 +35,7 @@ impl<const D: usize> TransportVelocity<D> {
     /// free surfaces the sum has the smaller support of CTVF algorithm 1, and (44) holds: theory (27), (30). As
     /// in the method's source, no deviation is larger than half of the largest speed.
     pub(in super::super) fn shift(&mut self) {
-        let Shifting::Sun { factor } = self.settings.shifting else { return };
-        let speed = self.fastest.min(MOST_MACH * self.fluid.wave_speed);
-        let scale = -factor * speed * 2.0 * self.support.smoothing_length();
-        let most = 0.5 * speed;
+        let (scale, most) = self.shifting_speed().of(self.fastest);
         let mut sides = std::mem::take(&mut self.sides);
         if self.settings.free_surface {
             let volumes = &mut self.densities;
@@ -62,18 +77,24 @@ impl<const D: usize> TransportVelocity<D> {
         self.sides = sides;
     }
 
+    /// How fast particles are shifted; not at all without SPST.
+    pub(in super::super) fn shifting_speed(&self) -> Speed {
+        let factor = match self.settings.shifting {
+            Shifting::Sun { factor } => factor,
+            _ => 0.0,
+        };
+        let most = MOST_MACH * self.fluid.wave_speed;
+        Speed { factor, most, smoothing_length: self.support.smoothing_length() }
+    }
+
     /// The sum of CTVF (35) with a smaller support, for the few particles near surfaces. Volumes
     /// stand in `densities`.
-    ///
-    /// The gradients keep the size that they have with the full support: a kernel that is scaled
-    /// down to a unit integral pushes without bounds once it holds but a neighbour or two.
     fn crowding_within(&self, place: usize, h: f64, block: &mut NeighborBlock<D>) -> Vector<D> {
+        let smoothing_length = self.support.smoothing_length();
+        let crowding = 1.0 / self.value_at_spacing(smoothing_length);
         let kernel = self.support.kernel();
-        let full = self.support.smoothing_length();
-        let inverse = 1.0 / self.value_at_spacing(full);
-        let size = (h / full).powi(D as i32 + 1);
-        let law = CrowdingWithin::<D> { kernel, smoothing_length: h, size, crowding: inverse };
-        let source = (self.densities.as_slice(), &self.continua);
+        let law = CrowdingWithin::<D> { kernel, smoothing_length, crowding };
+        let source = ((self.densities.as_slice(), &self.continua), OfCenter(|_| h));
         let mut sum = Vector::zeros();
         add_at(&self.support, &Term { law, source, among: Among::All }, place, block, &mut sum);
         sum

@@ -1,0 +1,211 @@
+//! Passes and columns on a device.
+
+use std::collections::HashMap;
+
+use crate::device::{Argument, Column, Device, Kernel};
+use crate::error::DeviceError;
+use crate::pass::{Ask, Pass};
+use crate::reduce;
+use crate::text::{Language, Precision};
+
+/// Threads a block.
+const BLOCK: u32 = 128;
+
+/// A device with the passes of a formulation and the columns that they work on, by name.
+#[derive(Debug)]
+pub struct Machine {
+    device: Device,
+    kernels: HashMap<&'static str, (Kernel, Pass)>,
+    numbers: HashMap<&'static str, Column<f64>>,
+    indices: HashMap<&'static str, Column<u32>>,
+    /// Particles a chunk of sums.
+    chunk: usize,
+}
+
+/// Columns of indices that belong to somebody else.
+pub trait Indices {
+    /// The column of a name.
+    fn indices(&self, name: &str) -> Option<&Column<u32>>;
+}
+
+impl Indices for () {
+    fn indices(&self, _name: &str) -> Option<&Column<u32>> {
+        None
+    }
+}
+
+impl Machine {
+    /// Compiles passes for a device, with those that sum over chunks of so many particles.
+    ///
+    /// # Errors
+    /// When the device's compiler refuses their text.
+    pub fn new(
+        device: Device,
+        passes: impl FnOnce(Language) -> Vec<Pass>,
+        chunk: usize,
+    ) -> Result<Self, DeviceError> {
+        let passes = passes(device.language()).into_iter().chain(reduce::passes(chunk));
+        let passes: Vec<Pass> = passes.collect();
+        let mut text = device.language().prologue(Precision::Double);
+        passes.iter().for_each(|pass| text += &pass.text);
+        let program = device.compile(&text)?;
+        let mut kernels = HashMap::new();
+        for pass in passes {
+            kernels.insert(pass.name, (program.kernel(pass.name)?, pass));
+        }
+        let (numbers, indices) = (HashMap::new(), HashMap::new());
+        Ok(Self { device, kernels, numbers, indices, chunk })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// Makes a column of these numbers.
+    ///
+    /// # Errors
+    /// When the memory does not suffice.
+    pub fn add(&mut self, name: &'static str, numbers: &[f64]) -> Result<(), DeviceError> {
+        self.numbers.insert(name, self.device.upload(numbers)?);
+        Ok(())
+    }
+
+    /// Makes a column of zeros.
+    ///
+    /// # Errors
+    /// When the memory does not suffice.
+    pub fn add_zeros(&mut self, name: &'static str, length: usize) -> Result<(), DeviceError> {
+        self.numbers.insert(name, self.device.zeros(length)?);
+        Ok(())
+    }
+
+    /// Makes a column of these indices.
+    ///
+    /// # Errors
+    /// When the memory does not suffice.
+    pub fn add_indices(&mut self, name: &'static str, all: &[u32]) -> Result<(), DeviceError> {
+        self.indices.insert(name, self.device.upload(all)?);
+        Ok(())
+    }
+
+    /// A column.
+    ///
+    /// # Panics
+    /// When there is none of that name: whoever asks has added it.
+    pub fn column(&self, name: &str) -> &Column<f64> {
+        &self.numbers[name]
+    }
+
+    /// Replaces the numbers of a column.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn write(&mut self, name: &'static str, numbers: &[f64]) -> Result<(), DeviceError> {
+        match self.numbers.get_mut(name) {
+            Some(column) => self.device.write(column, numbers),
+            None => self.add(name, numbers),
+        }
+    }
+
+    /// Copies a column to another one.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn copy(&mut self, from: &'static str, to: &'static str) -> Result<(), DeviceError> {
+        let Some(mut taken) = self.numbers.remove(to) else { return Ok(()) };
+        let done = self.device.copy(self.column(from), &mut taken);
+        self.numbers.insert(to, taken);
+        done
+    }
+
+    /// Starts a pass over so many rows. Columns of indices that it has not are those of `others`.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    ///
+    /// # Panics
+    /// When the pass, a scalar or a column is missing: that is a fault of whoever declared the pass.
+    pub fn start(
+        &self,
+        pass: &str,
+        rows: usize,
+        scalars: &[(&str, f64)],
+        others: &dyn Indices,
+    ) -> Result<(), DeviceError> {
+        let (kernel, pass) = &self.kernels[pass];
+        let missing = |what: &str| -> ! { panic!("the pass `{}` asks for `{what}`", pass.name) };
+        let argument = |ask: &Ask| match *ask {
+            Ask::Rows => Argument::Count(rows as i32),
+            Ask::Scalar(name) => {
+                let given = scalars.iter().find(|(known, _)| *known == name);
+                Argument::Number(given.unwrap_or_else(|| missing(name)).1)
+            }
+            Ask::Numbers(name) => {
+                Argument::Doubles(self.numbers.get(name).unwrap_or_else(|| missing(name)))
+            }
+            Ask::Indices(name) => {
+                let own = self.indices.get(name).or_else(|| others.indices(name));
+                Argument::Indices(own.unwrap_or_else(|| missing(name)))
+            }
+        };
+        let arguments: Vec<Argument<'_>> = pass.asks.iter().map(argument).collect();
+        kernel.start(rows * pass.threads, BLOCK, &arguments)
+    }
+
+    /// Sums of the first components of the column `terms` over so many particles, in the order of the
+    /// processor: chunk by chunk, then over chunks.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn sums(&mut self, components: usize, count: usize) -> Result<Vec<f64>, DeviceError> {
+        let chunks = count.div_ceil(self.chunk);
+        self.need("chunk_sums", components * chunks)?;
+        let scalars = [("count", count as f64), ("chunks", chunks as f64)];
+        self.start(reduce::SUMS, components * chunks, &scalars, &())?;
+        let mut parts = vec![0.0; components * chunks];
+        self.device.read(self.column("chunk_sums"), &mut parts)?;
+        let sum = |part: &[f64]| match part {
+            // The sum of one chunk is the sum.
+            [only] => *only,
+            all => all.iter().fold(0.0, |sum, part| sum + part),
+        };
+        Ok(parts.chunks_exact(chunks).map(sum).collect())
+    }
+
+    /// The largest of each of the first `N` components of the column `terms` over so many particles, at least
+    /// negative infinity, with its first particle. What is not a number is infinite.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn largest<const N: usize>(
+        &mut self,
+        count: usize,
+    ) -> Result<[(f64, usize); N], DeviceError> {
+        let chunks = count.div_ceil(self.chunk);
+        self.need("largest_parts", 2 * reduce::STRIDE * N * chunks)?;
+        self.need("largest", 2 * N * chunks)?;
+        let scalars = [("count", count as f64), ("chunks", chunks as f64)];
+        self.start(reduce::LARGEST_OF_STRIDES, reduce::STRIDE * N * chunks, &scalars, &())?;
+        self.start(reduce::LARGEST, N * chunks, &[], &())?;
+        let mut parts = vec![0.0; 2 * N * chunks];
+        self.device.read(self.column("largest"), &mut parts)?;
+        let mut all = [(f64::NEG_INFINITY, 0); N];
+        for (most, parts) in all.iter_mut().zip(parts.chunks_exact(2 * chunks)) {
+            for part in parts.chunks_exact(2) {
+                if part[0] > most.0 {
+                    *most = (part[0], part[1] as usize);
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// Makes room for so many numbers in a column.
+    fn need(&mut self, name: &'static str, length: usize) -> Result<(), DeviceError> {
+        match self.numbers.get(name) {
+            Some(column) if column.len() >= length => Ok(()),
+            _ => self.add_zeros(name, length),
+        }
+    }
+}

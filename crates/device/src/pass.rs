@@ -1,0 +1,220 @@
+//! Passes over particles as text: what they read and write, and the law between.
+
+use std::cell::{Cell, RefCell};
+use std::fmt::Write;
+
+use piola_formulas::pairs::{Of, Record};
+
+use crate::law::Law;
+use crate::record::Traced;
+use crate::text::{Language, Precision};
+
+/// What a kernel is called with, in the order of its parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// The number of rows.
+    Rows,
+    /// A number that is known at the start only, by its name.
+    Scalar(&'static str),
+    /// A column of numbers.
+    Numbers(&'static str),
+    /// A column of indices.
+    Indices(&'static str),
+}
+
+/// A kernel as text, and how it is started.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// The name of its kernel.
+    pub name: &'static str,
+    /// Laws and kernel, to stand behind the [prologue](Language::prologue).
+    pub text: String,
+    /// What it is called with.
+    pub asks: Vec<Ask>,
+    /// Threads a row.
+    pub threads: usize,
+}
+
+/// How a pass finds its row of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// The row of the same number.
+    Own,
+    /// The row that an index column names.
+    Through(&'static str),
+    /// The row of the same number, where all numbers of one component stand side by side.
+    Spread,
+}
+
+/// A column that a pass reads or writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// Its name.
+    pub column: &'static str,
+    /// Numbers a row.
+    pub width: usize,
+    /// Its row.
+    pub at: At,
+}
+
+/// The row of the same number of a column.
+pub const fn own(column: &'static str, width: usize) -> Use {
+    Use { column, width, at: At::Own }
+}
+
+/// The row of a column that an index column names.
+pub const fn through(index: &'static str, column: &'static str, width: usize) -> Use {
+    Use { column, width, at: At::Through(index) }
+}
+
+/// The row of the same number of a column whose components stand apart.
+pub const fn spread(column: &'static str, width: usize) -> Use {
+    Use { column, width, at: At::Spread }
+}
+
+impl Use {
+    /// Names of the numbers in the text.
+    pub(crate) fn names(&self, prefix: &str) -> Vec<String> {
+        (0..self.width).map(|i| format!("{prefix}{}_{i}", self.column)).collect()
+    }
+
+    /// Where number i of its row stands.
+    fn place(&self, i: usize) -> String {
+        let (column, width) = (self.column, self.width);
+        match self.at {
+            At::Own => format!("{column}[a * {width} + {i}]"),
+            At::Through(index) => format!("{column}[{index}_of_a * {width} + {i}]"),
+            At::Spread => format!("{column}[{i} * n + a]"),
+        }
+    }
+}
+
+/// The number of numbers of a record.
+pub(crate) fn width<R: Record>() -> usize {
+    let mut names = Vec::new();
+    R::names("", &mut names);
+    names.len()
+}
+
+/// A record of these numbers.
+pub(crate) fn filled<R: Record>(numbers: &[Traced]) -> Of<R, Traced> {
+    let next = Cell::new(0);
+    R::map([&R::zero::<f64>()], &|[_]: [f64; 1]| numbers[next.replace(next.get() + 1)])
+}
+
+/// The numbers of a record.
+pub(crate) fn flat<R: Record>(record: &Of<R, Traced>) -> Vec<Traced> {
+    let all = RefCell::new(Vec::new());
+    R::map([record], &|[number]: [Traced; 1]| {
+        all.borrow_mut().push(number);
+        number
+    });
+    all.into_inner()
+}
+
+/// A pass that looks at no neighbours: `law` takes the scalars, then the numbers of all columns that are
+/// read, and gives those of all that are written.
+pub fn local(
+    language: Language,
+    name: &'static str,
+    scalars: &[&'static str],
+    reads: &[Use],
+    writes: &[Use],
+    law: impl FnOnce(&[Traced]) -> Vec<Traced>,
+) -> Pass {
+    let inputs = scalars.iter().map(|name| name.to_string());
+    let inputs: Vec<String> = inputs.chain(reads.iter().flat_map(|read| read.names(""))).collect();
+    let outputs: Vec<String> = writes.iter().flat_map(|write| write.names("new_")).collect();
+    let law = Law::record(format!("{name}_law"), inputs.clone(), |x| {
+        let results = law(x);
+        assert_eq!(results.len(), outputs.len(), "the pass `{name}` writes what it says");
+        outputs.iter().cloned().zip(results).collect()
+    });
+    let mut arguments = Arguments::default();
+    scalars.iter().for_each(|name| arguments.scalar(name));
+    for column in reads.iter().chain(writes) {
+        if let At::Through(index) = column.at {
+            arguments.indices(index);
+        }
+    }
+    reads.iter().for_each(|read| arguments.numbers(read.column, true));
+    writes.iter().for_each(|write| arguments.numbers(write.column, false));
+    let mut text = law.text(language, Precision::Double);
+    let _ =
+        writeln!(text, "KERNEL void {name}({})\n{{\n    EACH(a, n) {{", arguments.text(language));
+    for index in arguments.asks.iter().filter_map(|ask| match ask {
+        Ask::Indices(index) => Some(index),
+        _ => None,
+    }) {
+        let _ = writeln!(text, "        const unsigned {index}_of_a = {index}[a];");
+    }
+    for read in reads {
+        for (i, number) in read.names("").iter().enumerate() {
+            let _ = writeln!(text, "        const real {number} = {};", read.place(i));
+        }
+    }
+    let pointers = outputs.iter().map(|name| format!("&{name}"));
+    let _ = writeln!(
+        text,
+        "        real {};\n        {}({});",
+        outputs.join(", "),
+        law.name,
+        inputs.into_iter().chain(pointers).collect::<Vec<_>>().join(", ")
+    );
+    for write in writes {
+        for (i, number) in write.names("new_").iter().enumerate() {
+            let _ = writeln!(text, "        {} = {number};", write.place(i));
+        }
+    }
+    text += "    }\n}\n";
+    Pass { name, text, asks: arguments.asks, threads: 1 }
+}
+
+/// Parameters of a kernel, each once. The first is the number of rows `n`.
+pub(crate) struct Arguments {
+    pub asks: Vec<Ask>,
+    text: Vec<(Ask, bool)>,
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        Self { asks: vec![Ask::Rows], text: vec![(Ask::Rows, true)] }
+    }
+}
+
+impl Arguments {
+    pub fn scalar(&mut self, name: &'static str) {
+        self.add(Ask::Scalar(name), true);
+    }
+
+    pub fn indices(&mut self, name: &'static str) {
+        self.add(Ask::Indices(name), true);
+    }
+
+    /// A column that is written is not constant, though it is read, too.
+    pub fn numbers(&mut self, name: &'static str, is_constant: bool) {
+        self.add(Ask::Numbers(name), is_constant);
+    }
+
+    fn add(&mut self, ask: Ask, is_constant: bool) {
+        match self.text.iter_mut().find(|(known, _)| *known == ask) {
+            Some((_, known)) => *known &= is_constant,
+            None => {
+                self.asks.push(ask);
+                self.text.push((ask, is_constant));
+            }
+        }
+    }
+
+    pub fn text(&self, language: Language) -> String {
+        let restrict = if language == Language::Cuda { "__restrict__ " } else { "" };
+        let parameter = |(ask, is_constant): &(Ask, bool)| match ask {
+            Ask::Rows => "const int n".to_string(),
+            Ask::Scalar(name) => format!("const real {name}"),
+            Ask::Numbers(name) if *is_constant => format!("GLOBAL const real *{restrict}{name}"),
+            Ask::Numbers(name) => format!("GLOBAL real *{restrict}{name}"),
+            Ask::Indices(name) => format!("GLOBAL const unsigned *{restrict}{name}"),
+        };
+        self.text.iter().map(parameter).collect::<Vec<_>>().join(", ")
+    }
+}

@@ -1,0 +1,75 @@
+//! What a formulation offers to a device.
+
+use piola_device::DeviceError;
+use thiserror::Error;
+
+use super::{Health, Phase, StepLimit};
+
+/// The steps of a formulation on a device, by the kick-drift-kick method, with a state that stays
+/// there. What comes back is the state where somebody asks for it, and what the choice of a step takes.
+pub trait DeviceSteps: Send {
+    /// Takes a state over.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    fn put(&mut self, state: &[f64]) -> Result<(), DeviceError>;
+
+    /// Takes a step from a time, both in s. The state before it is kept.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    fn step(&mut self, time: f64, step: f64) -> Result<(), DeviceError>;
+
+    /// Looks once over the state, as [`Scheme::inspect`](super::Scheme::inspect).
+    ///
+    /// # Errors
+    /// When the device refuses.
+    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, DeviceError>;
+
+    /// Gives the state.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    fn fetch(&self, state: &mut [f64]) -> Result<(), DeviceError>;
+
+    /// Gives the state before the last step.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    fn fetch_before(&self, state: &mut [f64]) -> Result<(), DeviceError>;
+
+    /// The parts of a step as lists of stages. What a device does while nobody waits for it is counted
+    /// where somebody does next.
+    fn phases(&self) -> Vec<&Phase>;
+}
+
+/// Why a run cannot be on a device.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum DeviceRefusal {
+    /// The formulation has no passes for devices.
+    #[error(
+        "the formulation `{0}` has no passes for devices, only fluids of `transport_velocity` have; run it on \
+         the processor"
+    )]
+    Formulation(&'static str),
+    /// The integrator has no steps on devices.
+    #[error(
+        "the integrator `{0}` has no steps on devices, only `kick_drift_kick` has; run it on the processor"
+    )]
+    Integrator(&'static str),
+    /// One of the stages of a step has no body for devices.
+    #[error(
+        "{what} has no body for devices: run the case on the processor (leave out `--device` and \
+         `compute.device`), or {instead}"
+    )]
+    Stage {
+        /// The stage.
+        what: String,
+        /// What a case has to be like instead.
+        instead: &'static str,
+    },
+    /// The device.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+}

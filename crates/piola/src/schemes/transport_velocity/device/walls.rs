@@ -1,0 +1,313 @@
+//! The passes of walls.
+
+use piola_device::{Among, Gather, Language, Order, Pass, Space, Traced, local, own, through};
+use piola_formulas::pairs::fluid::{Side, Wall};
+use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
+use piola_formulas::pairs::{Components, One};
+use piola_formulas::{Number, fluid};
+
+use super::super::ACCELERATING;
+use super::super::barrier::{BESIDE, TOUCH};
+use super::super::escape::TOLERANCE;
+use super::Plan;
+use super::passes::{FORCES, Vector, flat, one, side, side_width, square, take};
+
+/// The faces of a wall particle as numbers: how many they are, whether the wall lets slip, how deep it
+/// is behind them, the normal between them, and all normals.
+struct Faces<const D: usize> {
+    count: Traced,
+    slips: Traced,
+    depth: Traced,
+    between: Vector<D>,
+    normals: Vec<Vector<D>>,
+}
+
+/// Numbers of the faces of a wall particle with so many normals.
+pub(super) const fn faces_width(dimension: usize, normals: usize) -> usize {
+    3 + dimension * (1 + normals)
+}
+
+impl<const D: usize> Faces<D> {
+    fn take(numbers: &mut &[Traced], count: usize) -> Self {
+        Self {
+            count: one(numbers),
+            slips: one(numbers),
+            depth: one(numbers),
+            between: take(numbers),
+            normals: (0..count).map(|_| take(numbers)).collect(),
+        }
+    }
+
+    /// As [`crate::geometry::Faces::towards`].
+    fn towards(&self, direction: &Vector<D>) -> Vector<D> {
+        let zero = Traced::from(0.0);
+        let mut sum = Vector::<D>::repeat(zero);
+        for (k, normal) in self.normals.iter().enumerate() {
+            let along = direction.dot(normal);
+            let part = normal * Traced::select(along.above(0.0), along, zero);
+            let is_face = self.count.above(k as f64 + 0.5);
+            for axis in 0..D {
+                sum[axis] = Traced::select(is_face, sum[axis] + part[axis], sum[axis]);
+            }
+        }
+        let length = square(&sum).sqrt();
+        let least = square(direction).sqrt() * 1e-6;
+        let is_between = self.count.below(1.5) | length.at_most(least);
+        pick(is_between, &self.between, &(sum / length))
+    }
+
+    /// As [`super::super::TransportVelocity::over`]: whether a place is over a face, how far in front of
+    /// it, and the normal.
+    fn over(&self, way: &Vector<D>, spacing: f64) -> (<Traced as Number>::Mask, Traced, Vector<D>) {
+        let height = |normal: &Vector<D>| way.dot(normal) - self.depth;
+        let mut best = (height(&self.normals[0]), self.normals[0]);
+        for (k, normal) in self.normals.iter().enumerate().skip(1) {
+            let other = height(normal);
+            let is_better = self.count.above(k as f64 + 0.5) & best.0.less(other);
+            best = (Traced::select(is_better, other, best.0), pick(is_better, normal, &best.1));
+        }
+        let (height, normal) = best;
+        let along = way.dot(&normal);
+        let aside = square(way) - along * along;
+        let reach = BESIDE * spacing;
+        let is_over = self.count.above(0.5) & aside.at_most(Traced::from(reach * reach));
+        (is_over, height, normal)
+    }
+}
+
+/// One of two vectors.
+fn pick<const D: usize>(
+    mask: <Traced as Number>::Mask,
+    yes: &Vector<D>,
+    no: &Vector<D>,
+) -> Vector<D> {
+    Vector::from_fn(|axis, _| Traced::select(mask, yes[axis], no[axis]))
+}
+
+impl<const D: usize> Plan<D> {
+    fn faces_width(&self) -> usize {
+        faces_width(D, self.normals)
+    }
+
+    /// Passes of walls, and of what touches them.
+    pub(super) fn wall_passes(&self, language: Language, space: &Space<D>) -> Vec<Pass> {
+        if self.normals == 0 {
+            return Vec::new();
+        }
+        let mut all = vec![
+            self.walls(language, space),
+            self.reactions(language, space),
+            self.hold_off(language, space),
+            self.add_holds(language),
+            self.bear(language, space),
+        ];
+        all.extend(self.bounds.map(|bounds| self.escape(language, space, bounds)));
+        all
+    }
+
+    /// Sides of wall particles from the fluid around them.
+    fn walls(&self, language: Language, space: &Space<D>) -> Pass {
+        let sides = [own("side", side_width(D))];
+        let of = |column, width| through("numbers", column, width);
+        let columns = [
+            of("mass", 1),
+            of("motion", D),
+            of("sliding", D),
+            of("wall_acceleration", D),
+            of("faces", self.faces_width()),
+            of("gravity", D),
+        ];
+        let gather = Gather::<Surroundings<D>, D>::new(
+            language,
+            "walls",
+            space,
+            Among::Passive,
+            Order::Single,
+        )
+        .term(&Extrapolation::<D>, &sides, Among::Active);
+        let writes = [own("side", side_width(D)), own("shear", D)];
+        gather.close(&[], &columns, &writes, |around, mut x| {
+            let mass = one(&mut x);
+            let (motion, sliding): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
+            let acceleration: Vector<D> = take(&mut x);
+            let faces = Faces::<D>::take(&mut x, self.normals);
+            let gravity: Vector<D> = take(&mut x);
+            let (zero, weight) = (Traced::from(0.0), around.weight);
+            let surface = motion + sliding;
+            let (velocity, deviation) = (around.velocity / weight, around.deviation / weight);
+            let lift = (gravity - acceleration).dot(&around.arm);
+            let pressure = (around.pressure + lift) / weight;
+            let normal = faces.towards(&-around.arm);
+            let two = Traced::from(2.0);
+            let reflected = velocity + normal * (two * (motion - velocity).dot(&normal));
+            let turned = deviation - normal * (two * deviation.dot(&normal));
+            let dragged = surface * two - velocity;
+            let shear = pick(faces.slips.above(0.5), &reflected, &dragged);
+            // Without fluid around it moves with the wall and bears no pressure.
+            let is_wet = weight.above(0.0);
+            let pressure = Traced::select(is_wet, pressure, zero);
+            let mut side: Side<Traced, D> = Side {
+                velocity: pick(is_wet, &reflected, &motion),
+                deviation: pick(is_wet, &turned, &Vector::<D>::repeat(zero)),
+                density: zero,
+                pressure,
+                load: zero,
+                volume: zero,
+            };
+            let density = fluid::density(pressure, self.fluid.density, self.fluid.wave_speed);
+            side.set(mass, density, pressure);
+            let shear = pick(is_wet, &shear, &surface);
+            flat(&side).into_iter().chain(shear.iter().copied()).collect()
+        })
+    }
+
+    /// What the fluid does to wall particles.
+    fn reactions(&self, language: Language, space: &Space<D>) -> Pass {
+        let constants = self.force_constants;
+        let law = Wall::<D> { softening: constants.softening, viscosity: constants.viscosity };
+        let columns = [own("side", side_width(D)), own("shear", D)];
+        let writes = [own("force", FORCES * D)];
+        Gather::<Components<D>, D>::new(language, "reactions", space, Among::Passive, Order::Lanes)
+            .term(&law, &columns, Among::Active)
+            .close(&[], &[], &writes, |walls, _| {
+                let mut all = vec![Traced::from(0.0); FORCES * D];
+                all[4 * D..5 * D].copy_from_slice(walls.as_slice());
+                all
+            })
+    }
+
+    /// What walls do to fluid that touches them, theory (80).
+    fn hold_off(&self, language: Language, space: &Space<D>) -> Pass {
+        let mine = [own("side", side_width(D)), own("force", FORCES * D)];
+        let of = |column, width| through("numbers", column, width);
+        let others = [of("motion", D), of("faces", self.faces_width())];
+        let spacing = self.spacing;
+        let writes = [own("hold", 2 * D + 1), own("side", side_width(D))];
+        type Holds<const D: usize> = ((Components<D>, Components<D>), One);
+        Gather::<Holds<D>, D>::new(language, "hold_off", space, Among::Active, Order::Fold)
+            .start(&[], |_| {
+                let nothing = Vector::<D>::repeat(Traced::from(0.0));
+                ((nothing, nothing), Traced::from(-1.0))
+            })
+            .fold(&mine, &others, Among::Passive, |meeting, ((acceleration, deviation), wall)| {
+                let (mut mine, mut other) = (meeting.me, meeting.other);
+                let me: Side<Traced, D> = side(&mut mine);
+                let load = total(&forces(&mut mine));
+                let motion: Vector<D> = take(&mut other);
+                let faces = Faces::<D>::take(&mut other, self.normals);
+                let way = meeting.pair.separation;
+                let (is_over, height, normal) = faces.over(&way, spacing);
+                let touches = is_over
+                    & Traced::from(-spacing).at_most(height)
+                    & height.below(TOUCH * spacing);
+                let shift = (me.deviation - *deviation).dot(&normal);
+                let shift = Traced::select(shift.below(0.0), shift, Traced::from(0.0));
+                let mut approach = (me.velocity - motion).dot(&normal);
+                if self.shifts {
+                    *deviation = pick(touches, &(*deviation + normal * shift), deviation);
+                } else {
+                    approach += shift;
+                }
+                let rate = self.fluid.wave_speed / spacing;
+                let push = -(load + *acceleration).dot(&normal) - approach * rate;
+                let acts = touches & push.above(0.0);
+                *acceleration = pick(acts, &(*acceleration + normal * push), acceleration);
+                *wall = Traced::select(acts, meeting.slots[1], *wall);
+            })
+            .close(&[], &[own("side", side_width(D))], &writes, |hold, mut x| {
+                let ((acceleration, deviation), wall) = hold;
+                let mut me: Side<Traced, D> = side(&mut x);
+                if self.shifts {
+                    me.deviation -= deviation;
+                }
+                let vectors = acceleration.iter().chain(deviation.iter()).copied();
+                vectors.chain([*wall]).chain(flat(&me)).collect()
+            })
+    }
+
+    /// Adds what walls do to the forces on the fluid.
+    fn add_holds(&self, language: Language) -> Pass {
+        let reads =
+            [through("numbers", "wall", 1), own("hold", 2 * D + 1), own("force", FORCES * D)];
+        let writes = [own("force", FORCES * D)];
+        local(language, "add_holds", &[], &reads, &writes, |mut x| {
+            let wall = one(&mut x);
+            let acceleration: Vector<D> = take(&mut x);
+            let _: Vector<D> = take(&mut x);
+            let _ = one(&mut x);
+            let mut all = x.to_vec();
+            for axis in 0..D {
+                let held = all[4 * D + axis] + acceleration[axis];
+                all[4 * D + axis] = super::passes::if_fluid(wall, held, all[4 * D + axis]);
+            }
+            all
+        })
+    }
+
+    /// What wall particles get for what they do.
+    fn bear(&self, language: Language, space: &Space<D>) -> Pass {
+        let mine = [own("side", side_width(D))];
+        let others = [own("hold", 2 * D + 1), own("side", side_width(D))];
+        let force = [own("force", FORCES * D)];
+        Gather::<Components<D>, D>::new(language, "bear", space, Among::Passive, Order::Fold)
+            .start(&force, |mut x| forces::<D>(&mut x)[4])
+            .fold(&mine, &others, Among::Active, |meeting, sum| {
+                let (mut mine, mut other) = (meeting.me, meeting.other);
+                let me: Side<Traced, D> = side(&mut mine);
+                let acceleration: Vector<D> = take(&mut other);
+                let _: Vector<D> = take(&mut other);
+                let wall = one(&mut other);
+                let its: Side<Traced, D> = side(&mut other);
+                let mine = meeting.slots[0];
+                let is_mine = wall.at_most(mine) & mine.at_most(wall);
+                let ratio = its.mass() / me.mass();
+                *sum = pick(is_mine, &(*sum - acceleration * ratio), sum);
+            })
+            .close(&[], &force, &force, |walls, x| {
+                let mut all = x.to_vec();
+                all[4 * D..5 * D].copy_from_slice(walls.as_slice());
+                all
+            })
+    }
+
+    /// Which particles have gone through a wall, or out of the box around everything.
+    fn escape(&self, language: Language, space: &Space<D>, bounds: [[f64; D]; 2]) -> Pass {
+        let others = [through("numbers", "faces", self.faces_width())];
+        let spacing = self.spacing;
+        let [low, high] = bounds;
+        Gather::<(One, One), D>::new(language, "escape", space, Among::Active, Order::Fold)
+            .start(&[], |_| (Traced::from(f64::INFINITY), Traced::from(0.0)))
+            .fold(&[], &others, Among::Passive, |meeting, (nearest, is_through)| {
+                let mut other = meeting.other;
+                let faces = Faces::<D>::take(&mut other, self.normals);
+                let way = meeting.pair.separation;
+                let (is_over, _, normal) = faces.over(&way, spacing);
+                let passed = is_over & way.dot(&normal).below(-TOLERANCE * spacing);
+                let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
+                let is_nearer = meeting.pair.square.less(*nearest);
+                *is_through =
+                    Traced::select(is_nearer, Traced::select(passed, yes, no), *is_through);
+                *nearest = Traced::select(is_nearer, meeting.pair.square, *nearest);
+            })
+            .close(&[], &[own("place", D)], &[own("escaped", 1)], |(_, is_through), x| {
+                let mut escaped = *is_through;
+                for axis in (0..D).filter(|axis| self.periods[*axis].is_none()) {
+                    let (low, high) = (Traced::from(low[axis]), Traced::from(high[axis]));
+                    let is_inside = low.at_most(x[axis]) & x[axis].at_most(high);
+                    escaped = Traced::select(is_inside, escaped, Traced::from(1.0));
+                }
+                vec![escaped]
+            })
+    }
+}
+
+/// Takes the accelerations of a particle from the front of some numbers.
+pub(super) fn forces<const D: usize>(numbers: &mut &[Traced]) -> [Vector<D>; FORCES] {
+    std::array::from_fn(|_| take(numbers))
+}
+
+/// The acceleration by all mechanisms.
+pub(super) fn total<const D: usize>(forces: &[Vector<D>; FORCES]) -> Vector<D> {
+    let nothing = Vector::<D>::repeat(Traced::from(0.0));
+    forces[..ACCELERATING.len()].iter().fold(nothing, |sum, force| sum + force)
+}

@@ -1,0 +1,149 @@
+//! Runs on a device have the bits of the processor, and what has no steps there is refused.
+//!
+//! They need a device: the one that `PIOLA_TEST_DEVICE` names, or the first of OpenCL.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use piola::case::{self, Case, Finished, Level, LoadOptions, Problems, Session};
+use piola::time::{Failure, Outcome};
+use piola_device::Device;
+
+/// The device of the tests; without one they say that they were not run.
+fn device() -> Option<String> {
+    let name = std::env::var("PIOLA_TEST_DEVICE").unwrap_or_else(|_| "opencl:0".into());
+    match Device::open(&name) {
+        Ok(_) => Some(name),
+        Err(error) if std::env::var_os("PIOLA_OPENCL_REQUIRED").is_some() => panic!("{error}"),
+        Err(error) => {
+            eprintln!("NOT RUN: {error}");
+            None
+        }
+    }
+}
+
+fn load(name: &str, set: &[&str], device: &str) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
+    let device = format!("compute.device='{device}'");
+    let overrides = set.iter().map(|text| (*text).to_owned()).chain([device]).collect();
+    let options = LoadOptions { overrides, level: Level::Coarse, ..LoadOptions::default() };
+    case::load(&path.join("case.toml"), &options).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn session(case: &Case) -> Session {
+    Session::new(case).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The bits of all columns that a run ends with.
+fn ends_with(session: &mut Session) -> Vec<u64> {
+    let columns = ["position", "velocity", "pressure", "density", "transport_velocity"];
+    let of = |name: &&str| session.column(name).expect("fluids have it").values;
+    let values: Vec<f64> = columns.iter().flat_map(of).collect();
+    values.into_iter().map(f64::to_bits).collect()
+}
+
+fn finish(session: Session) -> Finished {
+    session.run(&AtomicBool::new(false), &mut |_| {}).expect("no file is written")
+}
+
+/// Bits of all tables: energies, momentum, probes and limits.
+fn tables(finished: &Finished) -> Vec<u64> {
+    let tables = finished.tables.all();
+    let numbers = tables.iter().flat_map(|table| table.numbers());
+    numbers.map(|number| number.to_bits()).collect()
+}
+
+/// Fluids in periodic boxes, between walls, with free surfaces and body forces, in 2D and 3D.
+const CASES: [(&str, &[&str]); 6] = [
+    ("ctvf/taylor-green", &["time.end=0.1", "output.table_every=0.01"]),
+    ("ctvf/taylor-green-3d", &["time.end=0.05", "scheme.density='continuity'"]),
+    ("ctvf/cavity", &["time.end=0.2", "output.table_every=0.05"]),
+    ("ctvf/poiseuille", &["time.end=0.05"]),
+    ("ctvf/still-water", &["time.end=0.1"]),
+    ("ctvf/dam-break-3d", &["time.end=0.05"]),
+];
+
+#[test]
+fn a_device_has_the_bits_of_the_processor() {
+    let Some(device) = device() else { return };
+    for (name, set) in CASES {
+        let [mut here, mut there] =
+            ["processor", &device].map(|device| session(&load(name, set, device)));
+        for session in [&mut here, &mut there] {
+            session.run_until(0.5 * *session.case().time.end).expect("no file is written");
+        }
+        assert!(ends_with(&mut here) == ends_with(&mut there), "{name}, half way");
+        let [here, there] = [here, there].map(finish);
+        assert_eq!(here.summary.steps, there.summary.steps, "{name}");
+        assert!(here.summary.steps > 10, "{name} takes {} steps only", here.summary.steps);
+        assert!(tables(&here) == tables(&there), "{name}");
+    }
+}
+
+#[test]
+fn a_run_goes_on_anywhere() {
+    let Some(device) = device() else { return };
+    let set = ["time.end=0.1", "output.table_every=0.02"];
+    let of = |device: &str| session(&load("ctvf/cavity", &set, device));
+    let expected = tables(&finish(of("processor")));
+    for (first, then) in [(device.as_str(), "processor"), ("processor", &device)] {
+        let mut begun = of(first);
+        begun.run_until(0.05).expect("no file is written");
+        let checkpoint = begun.checkpoint();
+        let mut resumed = of(then);
+        resumed.resume(checkpoint).expect("it is of the same case");
+        assert!(tables(&finish(resumed)) == expected, "from {first} to {then}");
+    }
+}
+
+#[test]
+fn what_is_set_from_outside_reaches_the_device() {
+    let Some(device) = device() else { return };
+    let ends = ["processor", &device].map(|device| {
+        let mut session = session(&load("ctvf/taylor-green", &["time.end=0.05"], device));
+        session.run_until(0.02).expect("no file is written");
+        let mut velocity = session.column("velocity").expect("fluids have it").values;
+        velocity.iter_mut().for_each(|component| *component *= 0.5);
+        session.set("velocity", &velocity).expect("it may be set");
+        session.run_until(0.04).expect("no file is written");
+        ends_with(&mut session)
+    });
+    assert!(ends[0] == ends[1]);
+}
+
+/// A fault of a run is the same on a device, with the same particle, and the run ends before it.
+#[test]
+fn a_run_that_breaks_up_ends_as_on_the_processor() {
+    let Some(device) = device() else { return };
+    let set = ["time.end=0.2", "time.max_speed=0.3", "time.on_failure='retry'", "time.retries=1"];
+    let ends = ["processor", &device].map(|device| {
+        let finished = finish(session(&load("ctvf/dam-break-3d", &set, device)));
+        (finished.summary.outcome.clone(), tables(&finished), finished.summary.trace)
+    });
+    assert!(matches!(&ends[0].0, Outcome::Failed(Failure::TooFast { .. })), "{:?}", ends[0].0);
+    assert_eq!(ends[0].0, ends[1].0);
+    assert!(ends[0] == ends[1]);
+}
+
+fn refusal(name: &str, set: &[&str], device: &str) -> String {
+    let refused: Result<Session, Problems> = Session::new(&load(name, set, device));
+    refused.err().unwrap_or_else(|| panic!("{name} is no case for devices")).to_string()
+}
+
+#[test]
+fn what_a_device_cannot_do_is_refused_by_name() {
+    let text = refusal("ctvf/taylor-green", &[], "cuda:99");
+    assert!(text.contains("there is no device `cuda:99`"), "{text}");
+    let Some(device) = device() else { return };
+    for (name, set, what) in [
+        ("upwind/piston", &[][..], "the formulation `upwind` has no passes for devices"),
+        ("ctvf/rings", &[], "a solid has no body for devices"),
+        ("ctvf/couette", &[], "a wall that moves has no body for devices"),
+        ("ctvf/dam-break", &[], "the removal of particles that escape has no body for devices"),
+        ("ctvf/taylor-green", &["scheme.shifting='ipst'"], "the stage `iterate` has no body"),
+        ("ctvf/taylor-green", &["scheme.pressure='state_equation'"], "by the law of state"),
+    ] {
+        let text = refusal(name, set, &device);
+        assert!(text.contains(what) && text.contains("compute.device"), "{name}: {text}");
+    }
+}
