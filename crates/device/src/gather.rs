@@ -375,7 +375,8 @@ impl<'a, R: Record, const D: usize> Gather<'a, R, D> {
         let _ = match (is_gpu, self.order) {
             (true, Order::Lanes) => writeln!(
                 text,
-                "    for (unsigned k = lane, end = is_on ? {count}[a] : 0; k < end; k += 8) {{"
+                "    for (unsigned k = lane, end = is_on ? {count}[a] : 0, next = k < end ? \
+                 {ENTRIES}[{first}[a] + k] : 0; k < end; k += 8) {{"
             ),
             (true, Order::Single) => writeln!(
                 text,
@@ -386,7 +387,15 @@ impl<'a, R: Record, const D: usize> Gather<'a, R, D> {
                 writeln!(text, "    for (unsigned k = 0, end = {count}[a]; k < end; ++k) {{")
             }
         };
-        let _ = writeln!(text, "        const unsigned b = {ENTRIES}[{first}[a] + k];");
+        let _ = match (is_gpu, self.order) {
+            // The place of the next neighbour is read ahead: what is read of it waits for nothing else.
+            (true, Order::Lanes) => writeln!(
+                text,
+                "        const unsigned b = next;\n        \
+                 next = k + 8 < end ? {ENTRIES}[{first}[a] + k + 8] : 0;"
+            ),
+            _ => writeln!(text, "        const unsigned b = {ENTRIES}[{first}[a] + k];"),
+        };
         for axis in 0..D {
             let _ =
                 writeln!(text, "        const real there_{axis} = {POSITION}[b * {D} + {axis}];");

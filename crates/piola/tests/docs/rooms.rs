@@ -9,6 +9,9 @@ type Arrows = BTreeMap<String, BTreeSet<String>>;
 
 const SOURCES: &str = "crates/piola/src";
 
+/// The crates below the library, `piola_` before each.
+const CRATES: [&str; 2] = ["device", "formulas"];
+
 /// The table: the last part of the path in the first column, and the names in the last one.
 fn described(architecture: &str) -> Arrows {
     let rows = architecture.lines().filter_map(|line| {
@@ -64,11 +67,11 @@ fn found() -> Arrows {
     for file in &files {
         let Some(user) = room(&file.name) else { continue };
         let mut used = named_after_crate(&file.text);
-        if file.text.contains("piola_formulas") {
-            used.push("formulas".to_owned());
-        }
+        let crates = CRATES.iter().filter(|name| file.text.contains(&format!("piola_{name}")));
+        used.extend(crates.map(|name| (*name).to_owned()));
         let others = used.into_iter().filter(|name| *name != user);
-        let known = others.filter(|name| rooms.contains(name) || name == "formulas");
+        let is_crate = |name: &String| CRATES.contains(&name.as_str());
+        let known = others.filter(|name| rooms.contains(name) || is_crate(name));
         arrows.entry(user.clone()).or_default().extend(known);
     }
     arrows
