@@ -308,8 +308,13 @@ impl Executor {
     pub fn finish(&mut self) -> Result<Summary, ObserveError> {
         self.look()?;
         let outcome = self.outcome.get_or_insert(Outcome::Interrupted).clone();
+        self.bring();
         let trace = match &outcome {
             Outcome::Failed(failure) => failure.particle().map(|index| {
+                if let (Some(_), Some(scheme)) = (&self.device, self.scheme.split()) {
+                    // Who is near is asked of the formulation, which has not seen this state yet.
+                    scheme.accelerate(self.run.clock.time, &mut self.run.state.clone());
+                }
                 let (scheme, integrator) = (self.scheme.as_mut(), self.integrator.as_mut());
                 self.run.history.trace(scheme, integrator, index)
             }),
@@ -322,7 +327,6 @@ impl Executor {
                 None => self.run.state.copy_from_slice(&self.previous.1),
             }
         }
-        self.bring();
         self.save_at_end(&outcome);
         self.show(true)?;
         let Run { clock, tally, resumed, .. } = &self.run;
