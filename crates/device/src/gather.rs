@@ -211,6 +211,7 @@ impl<'a, R: Record, const D: usize> Gather<'a, R, D> {
     /// What sums begin with, of columns of the particle itself, instead of zero.
     #[must_use]
     pub fn start(mut self, columns: &[Use], f: impl FnOnce(&[Traced]) -> Of<R, Traced>) -> Self {
+        assert!(self.order != Order::Lanes, "lanes of `{}` begin with nothing", self.name);
         let columns = columns.to_vec();
         let inputs = columns.iter().flat_map(|column| column.names("my_"));
         let law = Law::record(format!("{}_start", self.name), inputs, |x| {

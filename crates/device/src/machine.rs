@@ -112,8 +112,11 @@ impl Machine {
     ///
     /// # Errors
     /// When the device refuses.
+    ///
+    /// # Panics
+    /// When one of them is missing: whoever copies has added both.
     pub fn copy(&mut self, from: &'static str, to: &'static str) -> Result<(), DeviceError> {
-        let Some(mut taken) = self.numbers.remove(to) else { return Ok(()) };
+        let mut taken = self.numbers.remove(to).expect("whoever copies has added both columns");
         let done = self.device.copy(self.column(from), &mut taken);
         self.numbers.insert(to, taken);
         done

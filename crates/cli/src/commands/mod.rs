@@ -30,7 +30,9 @@ fn use_threads(threads: Option<u16>) {
 
 /// Reads the case as it stands.
 fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
-    let device = arguments.device.iter().map(|name| format!("compute.device=\"{name}\""));
+    // A JSON string is one of TOML, too.
+    let quoted = |name: &String| serde_json::Value::from(name.as_str()).to_string();
+    let device = arguments.device.iter().map(|name| format!("compute.device={}", quoted(name)));
     let options = LoadOptions {
         overrides: arguments.set.iter().cloned().chain(device).collect(),
         variant: arguments.variant.clone(),

@@ -31,10 +31,10 @@ pub(super) struct Outputs {
 
 impl Outputs {
     /// What goes into `folder`, which is not touched yet.
-    pub fn new(case: &Case, built: &Built, folder: &Path) -> Self {
+    pub fn new(case: &Case, built: &Built, device: Option<&String>, folder: &Path) -> Self {
         Self {
             folder: ResultsFolder::at(folder),
-            record: Self::record(case, built),
+            record: Self::record(case, built, device),
             written: WrittenFiles::default(),
         }
     }
@@ -69,7 +69,7 @@ impl Outputs {
         Store { folder, identity, written, keep: case.checkpoint.keep }
     }
 
-    fn record(case: &Case, built: &Built) -> RunRecord {
+    fn record(case: &Case, built: &Built, device: Option<&String>) -> RunRecord {
         RunRecord {
             case_file: case.sources()[0].name.clone(),
             id: case.id.clone(),
@@ -79,6 +79,7 @@ impl Outputs {
             overrides: case.sources()[1..].iter().map(|flag| flag.text.clone()).collect(),
             seeds: case.bodies.iter().map(|body| body.lattice.seed).collect(),
             threads: rayon::current_num_threads(),
+            device: device.cloned(),
             dimension: case.dimension,
             bodies: built
                 .bodies

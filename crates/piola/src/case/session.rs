@@ -51,6 +51,8 @@ pub struct Session {
     pub(super) case: Case,
     pub(super) built: Built,
     pub(super) executor: Executor,
+    /// The device that takes the steps, if it is not the processor.
+    device: Option<String>,
     /// Wall time of building in s.
     build_seconds: f64,
     tables: SharedTables,
@@ -101,9 +103,13 @@ impl Session {
         executor.min_step = case.time.min_step;
         executor.max_speed = case.time.max_speed;
         executor.retries = case.time.retries as usize;
-        if let Some(device) = &case.device {
-            use_device(&mut executor, device).map_err(|problem| case.refuse(vec![problem]))?;
-        }
+        let device = match &case.device {
+            Some(name) => {
+                let used = use_device(&mut executor, name);
+                Some(used.map_err(|problem| case.refuse(vec![problem]))?)
+            }
+            None => None,
+        };
         let (tables, observers) = observers(case, &built, executor.scheme.as_ref(), None);
         let own = observers.len();
         observers.into_iter().for_each(|observer| executor.observe(observer));
@@ -111,6 +117,7 @@ impl Session {
             case: case.clone(),
             built,
             executor,
+            device,
             build_seconds: start.elapsed().as_secs_f64(),
             tables,
             outputs: None,
@@ -154,7 +161,7 @@ impl Session {
         if self.has_begun {
             return Err(RunError::Begun);
         }
-        let outputs = Outputs::new(&self.case, &self.built, folder);
+        let outputs = Outputs::new(&self.case, &self.built, self.device.as_ref(), folder);
         let scheme = self.executor.scheme.as_ref();
         let store = outputs.store(&self.case, resume::identity(&self.case, scheme));
         let (tables, mut all) = observers(&self.case, &self.built, scheme, Some(&outputs));
@@ -309,15 +316,18 @@ impl Session {
     }
 }
 
-/// Lets a run take its steps on a device.
-fn use_device(executor: &mut Executor, device: &Located<String>) -> Result<(), Problem> {
-    let opened = Device::open(device).map_err(DeviceRefusal::from);
-    opened.and_then(|device| executor.use_device(device)).map_err(|refusal| {
+/// Lets a run take its steps on the device of a name, and says what that is.
+fn use_device(executor: &mut Executor, name: &Located<String>) -> Result<String, Problem> {
+    let used = Device::open(name).map_err(DeviceRefusal::from).and_then(|device| {
+        let found = device.found().to_string();
+        executor.use_device(device).map(|()| found)
+    });
+    used.map_err(|refusal| {
         let label = match &refusal {
             DeviceRefusal::Device(_) => "the device",
             _ => "this case has no steps there",
         };
-        Problem::new(device.place, refusal.to_string(), label)
+        Problem::new(name.place, refusal.to_string(), label)
     })
 }
 

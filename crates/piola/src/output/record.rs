@@ -36,6 +36,8 @@ pub struct RunRecord {
     pub seeds: Vec<u64>,
     /// Number of threads.
     pub threads: usize,
+    /// The device that took the steps, by both of its names; none for the processor.
+    pub device: Option<String>,
     /// 1, 2 or 3.
     pub dimension: usize,
     /// The bodies, in the order of their numbers.
@@ -203,6 +205,7 @@ impl Default for RunRecord {
             overrides: Vec::new(),
             seeds: Vec::new(),
             threads: 1,
+            device: None,
             dimension: 0,
             bodies: Vec::new(),
             started: String::new(),

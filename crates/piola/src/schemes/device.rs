@@ -47,28 +47,37 @@ pub trait DeviceSteps: Send {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum DeviceRefusal {
-    /// The formulation has no passes for devices.
+    /// The formulation has no steps on devices.
     #[error(
-        "the formulation `{0}` has no passes for devices, only fluids of `transport_velocity` have; run it on \
-         the processor"
+        "the formulation `{0}` does not run on devices yet, only fluids of `transport_velocity` do: leave out \
+         `--device` and `compute.device`"
     )]
     Formulation(&'static str),
+    /// The bodies are solids.
+    #[error(
+        "solids do not run on devices yet, only fluids of `transport_velocity` do: leave out `--device` and \
+         `compute.device`"
+    )]
+    Solids,
     /// The integrator has no steps on devices.
     #[error(
-        "the integrator `{0}` has no steps on devices, only `kick_drift_kick` has; run it on the processor"
+        "the integrator `{0}` does not run on devices, only `kick_drift_kick` does: use that, or leave out \
+         `--device` and `compute.device`"
     )]
     Integrator(&'static str),
-    /// One of the stages of a step has no body for devices.
+    /// Something of the case has no steps on devices.
     #[error(
-        "{what} has no body for devices: run the case on the processor (leave out `--device` and \
-         `compute.device`), or {instead}"
+        "{what} does not run on devices yet: {instead}, or leave out `--device` and `compute.device`"
     )]
     Stage {
-        /// The stage.
+        /// The stage, or the setting.
         what: String,
         /// What a case has to be like instead.
         instead: &'static str,
     },
+    /// The device has single precision only.
+    #[error("runs take double precision, which this device has not: {0}; choose another, or none")]
+    Single(String),
     /// The device.
     #[error(transparent)]
     Device(#[from] DeviceError),

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use piola_device::Device;
+use piola_device::{Device, DeviceError};
 
 use super::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use super::clock::{Clock, Tally};
@@ -126,11 +126,19 @@ impl Executor {
     /// # Errors
     /// The formulation or the integrator has no steps there, or the device refuses.
     pub fn use_device(&mut self, device: Device) -> Result<(), DeviceRefusal> {
+        let steps = self.scheme.on_device(device)?;
         if self.integrator.name() != KickDriftKick::NAME {
             return Err(DeviceRefusal::Integrator(self.integrator.name()));
         }
+        Ok(self.use_steps(steps)?)
+    }
+
+    /// Lets somebody else take the steps from now on.
+    ///
+    /// # Errors
+    /// They cannot take the state over.
+    pub(crate) fn use_steps(&mut self, mut steps: Box<dyn DeviceSteps>) -> Result<(), DeviceError> {
         self.bring();
-        let mut steps = self.scheme.on_device(device)?;
         steps.put(&self.run.state)?;
         self.device = Some(steps);
         Ok(())
@@ -156,10 +164,18 @@ impl Executor {
 
     /// Ends the run without its device, at the last mark.
     fn lose(&mut self, failure: Failure) {
-        let Run { clock, state, history, .. } = &mut self.run;
+        let Run { clock, tally, state, due, history, .. } = &mut self.run;
         let mark = history.last();
+        let (watches, retries) = (tally.watches, std::mem::take(&mut tally.retries));
+        let mut warnings = std::mem::take(&mut tally.warnings);
+        for observer in &mut self.observers {
+            // What cannot be taken back is too much, and the rest is sound.
+            warnings.extend(observer.rewind(mark.clock.time).err().map(|error| error.to_string()));
+        }
         *clock = mark.clock;
+        *tally = Tally { watches, retries, warnings, ..mark.tally.clone() };
         state.copy_from_slice(&mark.state);
+        due.copy_from_slice(&mark.due);
         (self.device, self.is_here) = (None, true);
         self.outcome = Some(Outcome::Failed(failure));
     }
@@ -307,8 +323,8 @@ impl Executor {
     /// A fault of an observer. What was observed before stays.
     pub fn finish(&mut self) -> Result<Summary, ObserveError> {
         self.look()?;
-        let outcome = self.outcome.get_or_insert(Outcome::Interrupted).clone();
         self.bring();
+        let mut outcome = self.outcome.get_or_insert(Outcome::Interrupted).clone();
         let trace = match &outcome {
             Outcome::Failed(failure) => failure.particle().map(|index| {
                 if let (Some(_), Some(scheme)) = (&self.device, self.scheme.split()) {
@@ -321,10 +337,20 @@ impl Executor {
             _ => None,
         };
         if self.is_broken && self.run.clock.step > self.previous.0.step {
-            self.run.clock = self.previous.0;
-            match &self.device {
-                Some(device) => self.is_here = device.fetch_before(&mut self.run.state).is_ok(),
-                None => self.run.state.copy_from_slice(&self.previous.1),
+            let fetched = match &self.device {
+                Some(device) => device.fetch_before(&mut self.run.state),
+                None => {
+                    self.run.state.copy_from_slice(&self.previous.1);
+                    Ok(())
+                }
+            };
+            match fetched {
+                Ok(()) => self.run.clock = self.previous.0,
+                Err(error) => {
+                    let failure = Failure::from(error);
+                    outcome = Outcome::Failed(failure.clone());
+                    self.lose(failure);
+                }
             }
         }
         self.save_at_end(&outcome);
@@ -363,6 +389,9 @@ impl Executor {
                     if self.run.history.is_due(&self.run.clock) {
                         self.bring();
                     }
+                    if self.outcome.is_some() {
+                        return Ok(());
+                    }
                     let Run { clock, tally, state, due, history, .. } = &mut self.run;
                     history.mark(clock, tally, due, state);
                     if self.checkpoints.as_ref().is_some_and(|it| it.due(&self.run.clock)) {
@@ -385,17 +414,23 @@ impl Executor {
 
     /// Looks for what is wrong with the state, and how far the next step may go.
     fn judge(&mut self) -> Option<Failure> {
-        let Run { clock, tally, state, .. } = &mut self.run;
+        let Run { tally, state, .. } = &mut self.run;
         let (scheme, limits) = (self.scheme.as_mut(), &mut self.limits);
         let device = self.device.as_mut();
         let health = tally.watches.inspect.time(|| match device {
             Some(device) => device.inspect(limits),
             None => Ok(scheme.inspect(state, limits)),
         });
-        let health = match health {
+        let mut health = match health {
             Ok(health) => health,
             Err(error) => return Some(error.into()),
         };
+        if self.device.is_some() && health.first_escaped.is_some() {
+            // Where it has gone is asked of the formulation, which has not seen this state yet.
+            self.bring();
+            health = self.scheme.inspect(&self.run.state, &mut self.limits);
+        }
+        let Run { clock, tally, .. } = &mut self.run;
         if clock.step == 0 {
             tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
             let warning = supersonic(tally.start_speeds);
@@ -496,7 +531,12 @@ impl Executor {
     fn show(&mut self, last: bool) -> Result<(), ObserveError> {
         let time = self.run.clock.time * (1.0 + 1e-12);
         if last || self.run.due.iter().flatten().any(|due| *due <= time) {
+            let is_new = !self.is_here;
             self.bring();
+            if is_new {
+                // Figures are of neighbours at this state.
+                self.scheme.inspect(&self.run.state, &mut Vec::new());
+            }
         }
         let Run { clock, tally, state, due, .. } = &mut self.run;
         let (scheme, observers) = (self.scheme.as_mut(), &mut self.observers);
@@ -530,7 +570,7 @@ impl Executor {
         };
         let take = match outcome {
             Outcome::Completed => wanted(true),
-            Outcome::Interrupted => wanted(false),
+            Outcome::Interrupted | Outcome::Failed(Failure::Device(_)) => wanted(false),
             Outcome::Failed(_) => false,
         };
         if take {

@@ -177,7 +177,8 @@ pub enum Failure {
     },
     /// A device cannot go on.
     #[error(
-        "the device failed: {0}; the run ends with the last state that was here; `--resume` goes on from          its last checkpoint, on any device or on the processor"
+        "the device failed: {0}; the run is back at the last state that was kept, and `--resume` goes on \
+         from there, on any device or on the processor"
     )]
     Device(#[from] DeviceError),
     /// The number of steps allowed is used up.

@@ -6,6 +6,8 @@ use piola::case::{self, Case, Finished, LoadOptions, Session};
 use piola::observe::Series;
 use piola::time::{Failure, Outcome};
 
+use super::device::device;
+
 /// A block of fluid above a floor that it hits at three times its wave speed, so that it goes
 /// through.
 const BULLET: &str = r#"
@@ -179,4 +181,20 @@ fn walls_that_will_not_hold_are_warned_of() {
     assert!(has(&hole, "`floor` has a gap of about 1.000e-1 m at [0.9"), "{hole:?}");
     let wide = warnings(&["parameters.speed=0.2", "parameters.hole=1.0", "parameters.gap=0.2"]);
     assert!(wide.is_empty(), "wider than the support: {wide:?}");
+}
+
+/// A device sees it in the same step, and tells the same of it.
+#[test]
+fn what_escapes_on_a_device_is_named_as_on_the_processor() {
+    let Some(device) = device() else { return };
+    let of = |device: &str, more: &str| {
+        let finished = run(BULLET, &[&format!("compute.device='{device}'"), more]);
+        let behind = series(&finished, "step.behind");
+        (finished.summary.outcome.clone(), finished.summary.steps, behind)
+    };
+    for more in ["time.retries=0", "time.on_failure='retry'"] {
+        let expected = of("processor", more);
+        assert!(matches!(expected.0, Outcome::Failed(Failure::Escaped { .. })), "{:?}", expected.0);
+        assert_eq!(of(&device, more), expected);
+    }
 }

@@ -3,6 +3,8 @@
 mod background;
 mod bodies;
 mod clamps;
+#[path = "../support/device.rs"]
+mod device;
 mod edac;
 mod escapes;
 #[path = "../support/fields.rs"]

@@ -1,26 +1,14 @@
 //! Runs on a device have the bits of the processor, and what has no steps there is refused.
 //!
-//! They need a device: the one that `PIOLA_TEST_DEVICE` names, or the first of OpenCL.
+//! They need a device, see `device`.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use piola::case::{self, Case, Finished, Level, LoadOptions, Problems, Session};
 use piola::time::{Failure, Outcome};
-use piola_device::Device;
 
-/// The device of the tests; without one they say that they were not run.
-fn device() -> Option<String> {
-    let name = std::env::var("PIOLA_TEST_DEVICE").unwrap_or_else(|_| "opencl:0".into());
-    match Device::open(&name) {
-        Ok(_) => Some(name),
-        Err(error) if std::env::var_os("PIOLA_OPENCL_REQUIRED").is_some() => panic!("{error}"),
-        Err(error) => {
-            eprintln!("NOT RUN: {error}");
-            None
-        }
-    }
-}
+use super::device::device;
 
 fn load(name: &str, set: &[&str], device: &str) -> Case {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
@@ -54,8 +42,27 @@ fn tables(finished: &Finished) -> Vec<u64> {
 }
 
 /// Fluids in periodic boxes, between walls, with free surfaces and body forces, in 2D and 3D.
-const CASES: [(&str, &[&str]); 6] = [
+const CASES: [(&str, &[&str]); 11] = [
     ("ctvf/taylor-green", &["time.end=0.1", "output.table_every=0.01"]),
+    (
+        "ctvf/taylor-green",
+        &[
+            "time.end=0.05",
+            "scheme.corrections='gtvf'",
+            "scheme.shifting='none'",
+            "scheme.artificial_viscosity=0.1",
+        ],
+    ),
+    (
+        "ctvf/taylor-green",
+        &["time.end=0.05", "scheme.corrections='paper'", "scheme.kernel='wendland_c2'"],
+    ),
+    ("ctvf/still-water", &["time.end=0.05", "scheme.shifting='none'"]),
+    ("ctvf/still-water", &["time.end=0.05", "scheme.free_surface=false"]),
+    (
+        "ctvf/still-water",
+        &["time.end=0.05", "load+={ kind = 'body_force', acceleration = ['sin(50 * t)', '0'] }"],
+    ),
     ("ctvf/taylor-green-3d", &["time.end=0.05", "scheme.density='continuity'"]),
     ("ctvf/cavity", &["time.end=0.2", "output.table_every=0.05"]),
     ("ctvf/poiseuille", &["time.end=0.05"]),
@@ -130,20 +137,43 @@ fn refusal(name: &str, set: &[&str], device: &str) -> String {
     refused.err().unwrap_or_else(|| panic!("{name} is no case for devices")).to_string()
 }
 
+/// Exponentials of a device are its own: the last digits differ, and no more.
+#[test]
+fn kernels_with_an_exponential_differ_by_round_off() {
+    let Some(device) = device() else { return };
+    let set = ["time.end=0.05", "scheme.kernel='gaussian'"];
+    let [here, there] = ["processor", &device].map(|device| {
+        let mut session = session(&load("ctvf/taylor-green", &set, device));
+        session.run_until(0.05).expect("no file is written");
+        session.column("velocity").expect("fluids have it").values
+    });
+    let differences = here.iter().zip(&there).map(|(a, b)| (a - b).abs());
+    let largest = here.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    assert!(differences.fold(0.0, f64::max) <= 1e-12 * largest);
+}
+
 #[test]
 fn what_a_device_cannot_do_is_refused_by_name() {
     let text = refusal("ctvf/taylor-green", &[], "cuda:99");
     assert!(text.contains("there is no device `cuda:99`"), "{text}");
     let Some(device) = device() else { return };
     for (name, set, what) in [
-        ("upwind/piston", &[][..], "the formulation `upwind` has no passes for devices"),
-        ("ctvf/rings", &[], "a solid has no body for devices"),
-        ("ctvf/couette", &[], "a wall that moves has no body for devices"),
-        ("ctvf/dam-break", &[], "the removal of particles that escape has no body for devices"),
-        ("ctvf/taylor-green", &["scheme.shifting='ipst'"], "the stage `iterate` has no body"),
-        ("ctvf/taylor-green", &["scheme.pressure='state_equation'"], "by the law of state"),
+        ("upwind/piston", &[][..], "the formulation `upwind` does not run on devices yet"),
+        ("ctvf/rings", &[], "solids do not run on devices yet"),
+        (
+            "ctvf/couette",
+            &[],
+            "a wall that moves does not run on devices yet: let it slide or rest",
+        ),
+        ("ctvf/dam-break", &[], "the removal of particles that escape does not run on devices yet"),
+        ("ctvf/taylor-green", &["scheme.shifting='ipst'"], "the stage `iterate` does not run"),
+        (
+            "ctvf/taylor-green",
+            &["scheme.pressure='state_equation'"],
+            "by the law of state does not",
+        ),
     ] {
         let text = refusal(name, set, &device);
-        assert!(text.contains(what) && text.contains("compute.device"), "{name}: {text}");
+        assert!(text.contains(what), "{name}: {text}");
     }
 }

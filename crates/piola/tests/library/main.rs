@@ -5,6 +5,8 @@
 
 mod convergence;
 mod deformed_steps;
+#[path = "../support/device.rs"]
+mod device;
 mod devices;
 mod elastodynamics;
 mod executor;

@@ -158,7 +158,7 @@ const REACTIONS: Choices = choices(&[
 
 pub(super) static COMPUTE: TableSpec = TableSpec {
     title: "[compute]",
-    meaning: "Who computes. Results do not depend on it.",
+    meaning: "Who computes. Results do not depend on it, but for the last digits with kernels that have an exponential.",
     keys: &[key(
         "device",
         Kind::Text,

@@ -25,6 +25,9 @@ pub fn summary(report: &Report) -> Markup {
             (fact("Steps", &record.steps.to_string()))
             (fact("Wall time", &duration(seconds)))
             (fact("Threads", &record.threads.to_string()))
+            @if let Some(device) = &record.device {
+                (fact("Device", device))
+            }
             (fact("Started", &minute(&record.started)))
             (fact("Program", &format!("{} {}", record.program, record.version)))
             @for figure in record.figures.iter().filter(|figure| is_health(figure)) {

@@ -43,8 +43,6 @@ struct Plan<const D: usize> {
     /// Whether densities are sums over masses, and whether they evolve.
     sums_densities: bool,
     evolves: bool,
-    /// Whether pressures follow from densities.
-    is_algebraic: bool,
     /// Whether the deviation carries density and pressure.
     carries: [bool; 2],
     rate_constants: RateConstants,
@@ -134,8 +132,7 @@ impl<const D: usize> TransportVelocity<D> {
     pub(super) fn to_device(&self, device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         let (drift, accelerate) = (self.drift.passes(), self.accelerate.passes());
         if self.solids.is_some() {
-            let (what, instead) = ("a solid".into(), "use a fluid");
-            return Err(DeviceRefusal::Stage { what, instead });
+            return Err(DeviceRefusal::Solids);
         }
         if let Some(refusal) = drift.iter().chain(accelerate).find_map(|pass| refusal(*pass)) {
             return Err(refusal);
@@ -173,7 +170,6 @@ impl<const D: usize> TransportVelocity<D> {
             fluid: self.fluid,
             sums_densities: self.settings.density == DensityRule::Summation,
             evolves,
-            is_algebraic: self.settings.is_algebraic(),
             carries: [corrections.density && evolves, corrections.pressure],
             rate_constants,
             rate_kind,
@@ -299,10 +295,11 @@ impl<const D: usize> TransportVelocity<D> {
             ("density", "density_before"),
         ];
         let description = self.description();
-        let all = copies.iter().filter_map(|&(name, before)| {
-            let field = description.fields.iter().find(|field| field.name == name)?;
+        let all = copies.iter().map(|&(name, before)| {
+            let field = description.fields.iter().find(|field| field.name == name);
+            let field = field.expect("these are columns of the formulation");
             let range = fields::column(description.fields, D, self.particle_count(), field);
-            Some((range.start, (name, before, field.kind.components(D))))
+            (range.start, (name, before, field.kind.components(D)))
         });
         all.collect()
     }

@@ -4,12 +4,12 @@ use nalgebra::SVector;
 use piola_device::{
     Among, Gather, Language, Order, Pass, Space, Traced, local, own, spread, through,
 };
+use piola_formulas::Number;
 use piola_formulas::pairs::One;
 use piola_formulas::pairs::fluid::{
     FULL, ForceSum, Forces, MIXED, NONE, RateSum, Rates, Side, WallForces,
 };
 use piola_formulas::pairs::sums::Density;
-use piola_formulas::{Number, fluid};
 
 use super::super::{ACCELERATING, DRIFTING};
 use super::Plan;
@@ -172,10 +172,7 @@ impl<const D: usize> Plan<D> {
             let wall = one(&mut x);
             let before: Side<Traced, D> = side(&mut x);
             let density = if self.sums_densities { one(&mut x) } else { before.density };
-            let pressure = match self.is_algebraic {
-                true => fluid::pressure(density, self.fluid.density, self.fluid.wave_speed),
-                false => before.pressure,
-            };
+            let pressure = before.pressure;
             let mut after = before;
             after.set(before.mass(), density, pressure);
             let same = |a: Traced, b: Traced| a.at_most(b) & b.at_most(a);
@@ -257,11 +254,9 @@ impl<const D: usize> Plan<D> {
             let pressure_rates = [compression, pressure_transport, pressure_diffusion];
             let pressure_rate = compression + pressure_transport + pressure_diffusion;
             let mut terms = vec![zero; drift_terms(D)];
-            if !self.is_algebraic {
-                let mean = pressure + step * 0.5 * pressure_rate;
-                for (term, rate) in terms.iter_mut().zip(pressure_rates) {
-                    *term = step * mass * self.compliance * mean * rate;
-                }
+            let mean = pressure + step * 0.5 * pressure_rate;
+            for (term, rate) in terms.iter_mut().zip(pressure_rates) {
+                *term = step * mass * self.compliance * mean * rate;
             }
             let momentum = velocity * (step * mass);
             let (turned, count) = moments(&deviation, &momentum);
@@ -274,7 +269,7 @@ impl<const D: usize> Plan<D> {
             let next = (0..D).map(|axis| (position[axis], self.wrapped(axis, next[axis])));
             let next = next.chain([
                 (density, evolved(self.evolves, density, density_rate)),
-                (pressure, evolved(!self.is_algebraic, pressure, pressure_rate)),
+                (pressure, evolved(true, pressure, pressure_rate)),
             ]);
             let terms = terms.into_iter().map(|term| (zero, term));
             next.chain(terms).map(|(still, moved)| if_fluid(wall, moved, still)).collect()
@@ -491,7 +486,7 @@ impl<const D: usize> Plan<D> {
                 known(if_fluid(wall, square(&kick), least)),
                 known(if_fluid(wall, -ratio, least)),
                 Traced::select(is_finite, least, Traced::from(1.0)),
-                one(&mut x),
+                if_fluid(wall, one(&mut x), Traced::from(0.0)),
             ]
         })
     }
