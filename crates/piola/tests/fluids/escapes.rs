@@ -189,7 +189,7 @@ fn what_escapes_on_a_device_is_named_as_on_the_processor() {
     let Some(device) = device() else { return };
     let of = |device: &str, more: &str| {
         let finished = run(BULLET, &[&format!("compute.device='{device}'"), more]);
-        let behind = series(&finished, "step.behind");
+        let behind = values(&finished, "step.behind");
         (finished.summary.outcome.clone(), finished.summary.steps, behind)
     };
     for more in ["time.retries=0", "time.on_failure='retry'"] {

@@ -93,9 +93,7 @@ fn session(steps: Option<usize>) -> Session {
 
 /// The times and the numbers of the table of energies.
 fn energies(finished: &Finished) -> Vec<Vec<f64>> {
-    let tables = finished.tables.all();
-    let table = tables.iter().find(|table| table.name() == "energy").expect("there is one");
-    table.rows().map(<[f64]>::to_vec).collect()
+    finished.tables.energy.rows().map(<[f64]>::to_vec).collect()
 }
 
 #[test]
