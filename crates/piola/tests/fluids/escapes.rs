@@ -192,7 +192,7 @@ fn what_escapes_on_a_device_is_named_as_on_the_processor() {
         let behind = values(&finished, "step.behind");
         (finished.summary.outcome.clone(), finished.summary.steps, behind)
     };
-    for more in ["time.retries=0", "time.on_failure='retry'"] {
+    for more in ["time.cfl=0.25", "time.on_failure='retry'"] {
         let expected = of("processor", more);
         assert!(matches!(expected.0, Outcome::Failed(Failure::Escaped { .. })), "{:?}", expected.0);
         assert_eq!(of(&device, more), expected);
