@@ -1,7 +1,12 @@
 use std::path::Path;
 
-use piola_device::{Language, Precision, cuda, laws, passes};
+use piola_device::{
+    Among, Gather, Language, Order, Pass, Precision, Space, cuda, laws, own, passes,
+};
 use piola_formulas::kernels::Kernel;
+use piola_formulas::pairs::One;
+use piola_formulas::pairs::fluid::{FULL, ForceConstants, ForceSum, Forces};
+use piola_formulas::pairs::sums::Density;
 
 /// Compares with a stored text; `PIOLA_RENEW=1` stores it.
 fn compare(name: &str, text: &str) {
@@ -27,6 +32,41 @@ fn the_text_of_laws_is_the_stored_one() {
     compare("solid.cu", &solid.text(Language::Cuda, Precision::Double));
     let fluid = passes::fluid::Fluid::water(0.1);
     compare("fluid.cl", &fluid.text(Language::OpenCl, Precision::Single));
+}
+
+/// Sums of density, one after the other, and of forces in lanes, in 2D with one periodic axis.
+fn gathers(language: Language) -> [Pass; 2] {
+    let periods = [Some(2.0), None];
+    let space = Space { kernel: Kernel::WendlandC2, smoothing_length: 0.1, periods };
+    let side = [own("side", 8)];
+    let density = Gather::<One, 2>::new(language, "density", &space, Among::Active, Order::Single)
+        .term(&Density::<2>, &side, Among::All)
+        .close(&[], &[], &[own("summed", 1)], |sum, _| vec![*sum]);
+    let law = Forces::<2, FULL, false, true>(ForceConstants {
+        softening: 1e-4,
+        viscosity: 1e-2,
+        artificial: 0.0,
+        stress: 1.0,
+        dilatation: 1.0,
+        transport: 0.0,
+        crowding: 0.02,
+    });
+    let forces =
+        Gather::<ForceSum<2>, 2>::new(language, "forces", &space, Among::All, Order::Lanes)
+            .only("near")
+            .term(&law, &side, Among::Active)
+            .close(&["scale"], &[], &[own("force", 2)], |sums, x| {
+                (0..2).map(|axis| (sums.pressure[axis] + sums.viscosity[axis]) * x[0]).collect()
+            });
+    [density, forces]
+}
+
+#[test]
+fn the_text_of_gathers_is_the_stored_one() {
+    let [density, _] = gathers(Language::OpenCl);
+    compare("density.cl", &density.text);
+    let [_, forces] = gathers(Language::Cuda);
+    compare("forces.cu", &forces.text);
 }
 
 #[test]
@@ -55,6 +95,9 @@ fn all_cuda_text_compiles() {
         let mut text = Language::Cuda.prologue(precision);
         for law in laws::all() {
             text += &law.text(Language::Cuda, precision);
+        }
+        if precision == Precision::Double {
+            gathers(Language::Cuda).iter().for_each(|pass| text += &pass.text);
         }
         for text in [
             text,

@@ -7,6 +7,7 @@
 #define P_INFINITY INFINITY
 #define P_NAN NAN
 typedef float real;
+typedef struct ALIGNED { real x, y; } Pair;
 /* 78 operations */
 LAW void fluid_exchange(real a_x, real a_y, real a_z, real a_u, real a_v, real a_w, real a_density, real a_pressure, real b_x, real b_y, real b_z, real b_u, real b_v, real b_w, real b_density, real b_pressure, real *force_x, real *force_y, real *force_z, real *rate, real *open_x, real *open_y, real *open_z)
 {

@@ -6,6 +6,7 @@
 #define P_INFINITY __longlong_as_double(0x7ff0000000000000)
 #define P_NAN __longlong_as_double(0x7ff8000000000000)
 typedef double real;
+typedef struct ALIGNED { real x, y; } Pair;
 LAW double p_two_to(double k) { return __longlong_as_double(((long long)k + 1023) << 52); }
 LAW double p_exponent(double x) { return (double)(((__double_as_longlong(x) >> 52) & 2047) - 1023); }
 LAW double p_mantissa(double x) { return __longlong_as_double((__double_as_longlong(x) & 0xfffffffffffff) | 0x3ff0000000000000); }
