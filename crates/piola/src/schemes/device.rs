@@ -75,6 +75,19 @@ pub enum DeviceRefusal {
         /// What a case has to be like instead.
         instead: &'static str,
     },
+    /// The memory of the device does not suffice.
+    #[error(
+        "the run takes at least {needed} of a device's memory, more than there is on {device}; the largest \
+         columns are {largest}: take fewer particles, or another device"
+    )]
+    Memory {
+        /// What is needed.
+        needed: String,
+        /// The device with its memory.
+        device: String,
+        /// The largest columns with their sizes.
+        largest: String,
+    },
     /// The device has single precision only.
     #[error("runs take double precision, which this device has not: {0}; choose another, or none")]
     Single(String),

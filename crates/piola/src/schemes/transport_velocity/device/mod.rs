@@ -116,6 +116,45 @@ impl Indices for Rows<'_> {
     }
 }
 
+fn gibibytes(bytes: usize) -> String {
+    format!("{:.2} GiB", bytes as f64 / f64::from(1 << 30))
+}
+
+impl<const D: usize> Plan<D> {
+    /// Columns beside those of the state, with their numbers a particle.
+    fn scratch(&self) -> Vec<(&'static str, usize)> {
+        let mut all = vec![
+            ("place", D),
+            ("made_at", D),
+            ("side", side_width(D)),
+            ("rate", 4),
+            ("force", FORCES * D),
+            ("escaped", 1),
+            ("terms", kick_terms(D).max(drift_terms(D)).max(FIGURES)),
+            // Read by the pass of rates, and of walls.
+            ("half_force", D),
+            ("gravity", D),
+        ];
+        if self.sums_densities {
+            all.push(("summed", 1));
+        }
+        if self.normals > 0 {
+            all.extend([
+                ("shear", D),
+                ("hold", 2 * D + 1),
+                ("motion", D),
+                ("wall_acceleration", D),
+            ]);
+        }
+        if self.seeks_surfaces {
+            let marks = ["mark", "near", "alone", "surface", "close_by", "reach"];
+            all.extend(marks.map(|name| (name, 1)));
+            all.extend(["sharp", "normal", "crowd"].map(|name| (name, D)));
+        }
+        all
+    }
+}
+
 /// What of a settled case has no body for devices.
 fn refusal(pass: Pass) -> Option<DeviceRefusal> {
     let instead = match pass {
@@ -187,49 +226,27 @@ impl<const D: usize> TransportVelocity<D> {
         };
         let count = self.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
+        let (columns, scratch) = (self.device_columns(), plan.scratch());
+        self.fits(&device, &columns, &scratch)?;
         let mut machine = Machine::new(device, |language| plan.passes(language), CHUNK)?;
         let support = list.support();
         let skin = MovingSupport::<D>::SKIN * support;
         let lists = Lists::new(machine.device(), &self.is_wall, support, skin, &periods)?;
-        let columns = self.device_columns();
         for (_, (name, before, width)) in &columns {
             machine.add_zeros(name, count * width)?;
             machine.add_zeros(before, count * width)?;
         }
-        let by_slot = [
-            ("place", D),
-            ("made_at", D),
-            ("side", side_width(D)),
-            ("rate", 4),
-            ("force", FORCES * D),
-            ("summed", 1),
-            ("half_force", D),
-            ("shear", D),
-            ("hold", 2 * D + 1),
-            ("escaped", 1),
-            ("sharp", D),
-            ("mark", 1),
-            ("near", 1),
-            ("normal", D),
-            ("alone", 1),
-            ("surface", 1),
-            ("close_by", 1),
-            ("reach", 1),
-            ("crowd", D),
-            ("terms", kick_terms(D).max(drift_terms(D)).max(FIGURES)),
-        ];
-        for (name, width) in by_slot {
+        for (name, width) in scratch {
             machine.add_zeros(name, count * width)?;
         }
         machine.add("mass", &self.mass)?;
         let wall: Vec<u32> = self.is_wall.iter().map(|&is_wall| u32::from(is_wall)).collect();
         machine.add("wall", &wall.iter().map(|&wall| f64::from(wall)).collect::<Vec<_>>())?;
         machine.add_indices("passive", &wall)?;
-        machine.add("faces", &self.face_numbers(faces, normals))?;
-        machine.add_zeros("gravity", count * D)?;
-        machine.add_zeros("motion", count * D)?;
-        machine.add_zeros("wall_acceleration", count * D)?;
-        machine.add("sliding", &self.sliding_numbers())?;
+        if normals > 0 {
+            machine.add("faces", &self.face_numbers(faces, normals))?;
+            machine.add("sliding", &self.sliding_numbers())?;
+        }
         let tail = self.start()[count * self.width()..].to_vec();
         Ok(Box::new(OnDevice {
             plan,
@@ -250,6 +267,32 @@ impl<const D: usize> TransportVelocity<D> {
             is_falling: false,
             skin,
         }))
+    }
+
+    /// Refuses a device whose memory does not suffice, with what takes it.
+    fn fits(
+        &self,
+        device: &Device,
+        columns: &[(usize, Named)],
+        scratch: &[(&'static str, usize)],
+    ) -> Result<(), DeviceRefusal> {
+        let number = self.particles.len() * size_of::<f64>();
+        let state = columns.iter().map(|(_, (name, _, width))| (*name, 2 * width * number));
+        let others = scratch.iter().map(|(name, width)| (*name, width * number));
+        let lists = ("neighbours", 2 * self.support.list().entries() * size_of::<u32>());
+        let mut all: Vec<(&str, usize)> = state.chain(others).chain([lists]).collect();
+        let needed: usize = all.iter().map(|(_, bytes)| bytes).sum();
+        if needed as u64 <= device.memory() {
+            return Ok(());
+        }
+        all.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
+        let largest =
+            all.iter().take(5).map(|(name, bytes)| format!("{name} {}", gibibytes(*bytes)));
+        Err(DeviceRefusal::Memory {
+            needed: gibibytes(needed),
+            device: device.found().to_string(),
+            largest: largest.collect::<Vec<_>>().join(", "),
+        })
     }
 
     /// Most normals of a wall particle.
