@@ -35,7 +35,7 @@ pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devi
 pub use error::DeviceError;
 pub use gather::{Among, Gather, Meeting, Order, Space};
 pub use law::{Law, Outputs};
-pub use machine::{Indices, Machine};
+pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, local, own, spread, through};
 pub use portable::{Bits, Portable};
 pub use record::{Traced, Truth};

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use crate::device::{Argument, Column, Device, Kernel};
 use crate::error::DeviceError;
+use crate::lists::Lists;
 use crate::pass::{Ask, Pass};
 use crate::reduce;
 use crate::text::{Language, Precision};
@@ -11,27 +12,16 @@ use crate::text::{Language, Precision};
 /// Threads a block.
 const BLOCK: u32 = 128;
 
-/// A device with the passes of a formulation and the columns that they work on, by name.
+/// A device with the passes of a formulation and the columns that they work on, by name, beside those of
+/// [`Lists`].
 #[derive(Debug)]
 pub struct Machine {
     device: Device,
     kernels: HashMap<&'static str, (Kernel, Pass)>,
     numbers: HashMap<&'static str, Column<f64>>,
-    indices: HashMap<&'static str, Column<u32>>,
+    lists: Lists,
     /// Particles a chunk of sums.
     chunk: usize,
-}
-
-/// Columns of indices that belong to somebody else.
-pub trait Indices {
-    /// The column of a name.
-    fn indices(&self, name: &str) -> Option<&Column<u32>>;
-}
-
-impl Indices for () {
-    fn indices(&self, _name: &str) -> Option<&Column<u32>> {
-        None
-    }
 }
 
 impl Machine {
@@ -41,6 +31,7 @@ impl Machine {
     /// When the device's compiler refuses their text.
     pub fn new(
         device: Device,
+        lists: Lists,
         passes: impl FnOnce(Language) -> Vec<Pass>,
         chunk: usize,
     ) -> Result<Self, DeviceError> {
@@ -53,8 +44,7 @@ impl Machine {
         for pass in passes {
             kernels.insert(pass.name, (program.kernel(pass.name)?, pass));
         }
-        let (numbers, indices) = (HashMap::new(), HashMap::new());
-        Ok(Self { device, kernels, numbers, indices, chunk })
+        Ok(Self { device, kernels, numbers: HashMap::new(), lists, chunk })
     }
 
     /// The device.
@@ -80,21 +70,28 @@ impl Machine {
         Ok(())
     }
 
-    /// Makes a column of these indices.
-    ///
-    /// # Errors
-    /// When the memory does not suffice.
-    pub fn add_indices(&mut self, name: &'static str, all: &[u32]) -> Result<(), DeviceError> {
-        self.indices.insert(name, self.device.upload(all)?);
-        Ok(())
-    }
-
     /// A column.
     ///
     /// # Panics
     /// When there is none of that name: whoever asks has added it.
     pub fn column(&self, name: &str) -> &Column<f64> {
         &self.numbers[name]
+    }
+
+    /// Makes neighbour lists anew from a column of positions by number.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn build(&mut self, positions: &str) -> Result<(), DeviceError> {
+        self.lists.build(&self.numbers[positions])
+    }
+
+    /// Picks neighbours at a column of positions by slot.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn pick(&mut self, positions: &str) -> Result<(), DeviceError> {
+        self.lists.pick(&self.numbers[positions])
     }
 
     /// Replaces the numbers of a column.
@@ -122,7 +119,7 @@ impl Machine {
         done
     }
 
-    /// Starts a pass over so many rows. Columns of indices that it has not are those of `others`.
+    /// Starts a pass over so many rows.
     ///
     /// # Errors
     /// When the device refuses.
@@ -134,7 +131,6 @@ impl Machine {
         pass: &str,
         rows: usize,
         scalars: &[(&str, f64)],
-        others: &dyn Indices,
     ) -> Result<(), DeviceError> {
         let (kernel, pass) = &self.kernels[pass];
         let missing = |what: &str| -> ! { panic!("the pass `{}` asks for `{what}`", pass.name) };
@@ -144,12 +140,12 @@ impl Machine {
                 let given = scalars.iter().find(|(known, _)| *known == name);
                 Argument::Number(given.unwrap_or_else(|| missing(name)).1)
             }
+            Ask::Numbers("made_at") => Argument::Doubles(self.lists.made_at()),
             Ask::Numbers(name) => {
                 Argument::Doubles(self.numbers.get(name).unwrap_or_else(|| missing(name)))
             }
             Ask::Indices(name) => {
-                let own = self.indices.get(name).or_else(|| others.indices(name));
-                Argument::Indices(own.unwrap_or_else(|| missing(name)))
+                Argument::Indices(self.lists.indices(name).unwrap_or_else(|| missing(name)))
             }
         };
         let arguments: Vec<Argument<'_>> = pass.asks.iter().map(argument).collect();
@@ -165,7 +161,7 @@ impl Machine {
         let chunks = count.div_ceil(self.chunk);
         self.need("chunk_sums", components * chunks)?;
         let scalars = [("count", count as f64), ("chunks", chunks as f64)];
-        self.start(reduce::SUMS, components * chunks, &scalars, &())?;
+        self.start(reduce::SUMS, components * chunks, &scalars)?;
         let mut parts = vec![0.0; components * chunks];
         self.device.read(self.column("chunk_sums"), &mut parts)?;
         let sum = |part: &[f64]| match part {
@@ -189,8 +185,8 @@ impl Machine {
         self.need("largest_parts", 2 * reduce::STRIDE * N * chunks)?;
         self.need("largest", 2 * N * chunks)?;
         let scalars = [("count", count as f64), ("chunks", chunks as f64)];
-        self.start(reduce::LARGEST_OF_STRIDES, reduce::STRIDE * N * chunks, &scalars, &())?;
-        self.start(reduce::LARGEST, N * chunks, &[], &())?;
+        self.start(reduce::LARGEST_OF_STRIDES, reduce::STRIDE * N * chunks, &scalars)?;
+        self.start(reduce::LARGEST, N * chunks, &[])?;
         let mut parts = vec![0.0; 2 * N * chunks];
         self.device.read(self.column("largest"), &mut parts)?;
         let mut all = [(f64::NEG_INFINITY, 0); N];

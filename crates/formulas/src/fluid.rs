@@ -2,6 +2,8 @@
 //!
 //! Paper: CTVF. Pairs are named as there: `r_ab = r_a - r_b`, `u_ab = u_a - u_b`.
 
+use nalgebra::SVector;
+
 use crate::Number;
 
 /// Pressure in Pa of the isothermal law `K (rho / rho0 - 1)`, `K = rho0 c^2`, CTVF (8), theory (25).
@@ -59,6 +61,14 @@ pub fn repulsion<T: Number>(ratio: T) -> T {
     square * square * 0.2 + 1.0
 }
 
+/// A deviation in m/s, shortened to a length where it is longer, as the source of SPST has it.
+#[inline(always)]
+pub fn shortened<T: Number, const D: usize>(deviation: SVector<T, D>, most: T) -> SVector<T, D> {
+    let length = deviation.dot(&deviation).sqrt();
+    let (is_long, shorter) = (most.less(length), most / length);
+    deviation.map(|component| T::select(is_long, component * shorter, component))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,5 +98,13 @@ mod tests {
         assert!((coefficient + 4.0 * 3.0 * 0.5 * 7.0 / (2.0 * 0.51)).abs() < 1e-13);
         assert_eq!(repulsion(0.0), 1.0);
         assert_eq!(repulsion(1.0), 1.2);
+    }
+
+    #[test]
+    fn a_deviation_keeps_its_direction() {
+        let long = SVector::from([3.0, 4.0]);
+        assert_eq!(shortened(long, 2.5), SVector::from([1.5, 2.0]));
+        assert_eq!(shortened(long, 5.0), long);
+        assert_eq!(shortened(long * 0.0, 0.0), long * 0.0);
     }
 }

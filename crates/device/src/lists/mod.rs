@@ -302,6 +302,22 @@ impl Lists {
         self.kernels.pick.start(threads, BLOCK, &arguments)
     }
 
+    /// The column of indices that passes know by a name: `numbers`, `slots`, those of rows, and `passive`,
+    /// which is zero for particles that are not.
+    pub(crate) fn indices(&self, name: &str) -> Option<&Column<u32>> {
+        Some(match name {
+            "numbers" => &self.numbers,
+            "slots" => &self.slots,
+            "passive" => &self.passive,
+            "first" => &self.first,
+            "active" => &self.active,
+            "passive_first" => &self.passive_first,
+            "passive_count" => &self.passive_count,
+            "entries" => &self.entries,
+            _ => return None,
+        })
+    }
+
     /// Number of the particle in each slot.
     pub fn numbers(&self) -> &Column<u32> {
         &self.numbers

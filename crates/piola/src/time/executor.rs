@@ -1,8 +1,8 @@
 //! A run, a step at a time.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+mod device;
 
-use piola_device::{Device, DeviceError};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use super::clock::{Clock, Tally};
@@ -10,12 +10,11 @@ use super::failure::Failure;
 use super::history::{History, Mark};
 use super::integrator::Integrator;
 use super::judgement::supersonic;
-use super::kick_drift_kick::KickDriftKick;
 use super::observer::{Moment, ObserveError, Observer};
 use super::run::Run;
 use super::step::StepControl;
 use super::summary::{Outcome, Progress, Retry, Summary};
-use crate::schemes::{DeviceRefusal, DeviceSteps, Observation, Scheme, StepLimit};
+use crate::schemes::{DeviceSteps, Observation, Scheme, StepLimit};
 
 /// Owns a run: the clock, the state, the observers, and the reasons to stop.
 pub struct Executor {
@@ -119,65 +118,6 @@ impl Executor {
     pub fn state(&mut self) -> &[f64] {
         self.bring();
         &self.run.state
-    }
-
-    /// Lets a device take the steps from now on.
-    ///
-    /// # Errors
-    /// The formulation or the integrator has no steps there, or the device refuses.
-    pub fn use_device(&mut self, device: Device) -> Result<(), DeviceRefusal> {
-        let steps = self.scheme.on_device(device)?;
-        if self.integrator.name() != KickDriftKick::NAME {
-            return Err(DeviceRefusal::Integrator(self.integrator.name()));
-        }
-        Ok(self.use_steps(steps)?)
-    }
-
-    /// Lets somebody else take the steps from now on.
-    ///
-    /// # Errors
-    /// They cannot take the state over.
-    pub(crate) fn use_steps(&mut self, mut steps: Box<dyn DeviceSteps>) -> Result<(), DeviceError> {
-        self.bring();
-        steps.put(&self.run.state)?;
-        self.device = Some(steps);
-        Ok(())
-    }
-
-    /// Brings the state of the moment here, if a device is ahead.
-    fn bring(&mut self) {
-        if let (false, Some(device)) = (self.is_here, &self.device) {
-            let fetched = device.fetch(&mut self.run.state);
-            self.is_here = true;
-            if let Err(error) = fetched {
-                self.lose(error.into());
-            }
-        }
-    }
-
-    /// Gives the state to the device, if there is one.
-    fn hand_over(&mut self) {
-        if let Some(Err(error)) = self.device.as_mut().map(|it| it.put(&self.run.state)) {
-            self.lose(error.into());
-        }
-    }
-
-    /// Ends the run without its device, at the last mark.
-    fn lose(&mut self, failure: Failure) {
-        let Run { clock, tally, state, due, history, .. } = &mut self.run;
-        let mark = history.last();
-        let (watches, retries) = (tally.watches, std::mem::take(&mut tally.retries));
-        let mut warnings = std::mem::take(&mut tally.warnings);
-        for observer in &mut self.observers {
-            // What cannot be taken back is too much, and the rest is sound.
-            warnings.extend(observer.rewind(mark.clock.time).err().map(|error| error.to_string()));
-        }
-        *clock = mark.clock;
-        *tally = Tally { watches, retries, warnings, ..mark.tally.clone() };
-        state.copy_from_slice(&mark.state);
-        due.copy_from_slice(&mark.due);
-        (self.device, self.is_here) = (None, true);
-        self.outcome = Some(Outcome::Failed(failure));
     }
 
     /// Where the run stands.
@@ -336,22 +276,11 @@ impl Executor {
             }),
             _ => None,
         };
-        if self.is_broken && self.run.clock.step > self.previous.0.step {
-            let fetched = match &self.device {
-                Some(device) => device.fetch_before(&mut self.run.state),
-                None => {
-                    self.run.state.copy_from_slice(&self.previous.1);
-                    Ok(())
-                }
-            };
-            match fetched {
-                Ok(()) => self.run.clock = self.previous.0,
-                Err(error) => {
-                    let failure = Failure::from(error);
-                    outcome = Outcome::Failed(failure.clone());
-                    self.lose(failure);
-                }
-            }
+        if self.is_broken
+            && self.run.clock.step > self.previous.0.step
+            && let Some(failure) = self.step_back()
+        {
+            outcome = Outcome::Failed(failure);
         }
         self.save_at_end(&outcome);
         self.show(true)?;
@@ -414,22 +343,10 @@ impl Executor {
 
     /// Looks for what is wrong with the state, and how far the next step may go.
     fn judge(&mut self) -> Option<Failure> {
-        let Run { tally, state, .. } = &mut self.run;
-        let (scheme, limits) = (self.scheme.as_mut(), &mut self.limits);
-        let device = self.device.as_mut();
-        let health = tally.watches.inspect.time(|| match device {
-            Some(device) => device.inspect(limits),
-            None => Ok(scheme.inspect(state, limits)),
-        });
-        let mut health = match health {
+        let health = match self.inspect() {
             Ok(health) => health,
-            Err(error) => return Some(error.into()),
+            Err(failure) => return Some(failure),
         };
-        if self.device.is_some() && health.first_escaped.is_some() {
-            // Where it has gone is asked of the formulation, which has not seen this state yet.
-            self.bring();
-            health = self.scheme.inspect(&self.run.state, &mut self.limits);
-        }
         let Run { clock, tally, .. } = &mut self.run;
         if clock.step == 0 {
             tally.start_speeds = [health.largest_speed, health.largest_wave_speed];
@@ -507,18 +424,11 @@ impl Executor {
     fn go_back(&mut self, failure: &Failure) -> Result<(), ObserveError> {
         let Run { clock, tally, state, due, history, .. } = &mut self.run;
         let (step, time) = (clock.step, clock.time);
-        let mark = history.go_back();
-        // What the failed attempt took of wall time, that it was made, and its warnings are not forgotten.
-        let (watches, mut retries) = (tally.watches, std::mem::take(&mut tally.retries));
-        let (warnings, warned) = (std::mem::take(&mut tally.warnings), tally.warned);
-        let factor = tally.factor * Self::RETRY_FACTOR;
-        let back_to = mark.clock.time;
-        let kind = failure.kind().to_owned();
-        retries.push(Retry { kind, failure: failure.to_string(), step, time, back_to, factor });
-        *clock = mark.clock;
-        *tally = Tally { watches, retries, warnings, warned, factor, ..mark.tally.clone() };
-        state.copy_from_slice(&mark.state);
-        due.copy_from_slice(&mark.due);
+        let (kind, factor) = (failure.kind().to_owned(), tally.factor * Self::RETRY_FACTOR);
+        history.go_back().restore(clock, tally, due, state);
+        let (failure, back_to) = (failure.to_string(), clock.time);
+        tally.retries.push(Retry { kind, failure, step, time, back_to, factor });
+        tally.factor = factor;
         self.is_here = true;
         self.hand_over();
         for observer in &mut self.observers {

@@ -34,6 +34,24 @@ impl Mark {
         Self { clock, tally, due: due.to_vec(), state: state.to_vec() }
     }
 
+    /// Takes a run back to this instant. What the time since then took, the retries and the warnings are
+    /// not forgotten.
+    pub fn restore(
+        &self,
+        clock: &mut Clock,
+        tally: &mut Tally,
+        due: &mut [Option<f64>],
+        state: &mut [f64],
+    ) {
+        let (watches, warned) = (tally.watches, tally.warned);
+        let retries = std::mem::take(&mut tally.retries);
+        let warnings = std::mem::take(&mut tally.warnings);
+        *clock = self.clock;
+        *tally = Tally { watches, retries, warnings, warned, ..self.tally.clone() };
+        due.copy_from_slice(&self.due);
+        state.copy_from_slice(&self.state);
+    }
+
     fn set(&mut self, clock: &Clock, tally: &Tally, due: &[Option<f64>], state: &[f64]) {
         self.clock = *clock;
         self.tally.clone_from(tally);

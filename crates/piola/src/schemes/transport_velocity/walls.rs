@@ -2,7 +2,7 @@
 
 use piola_formulas::fluid;
 use piola_formulas::pairs::Record;
-use piola_formulas::pairs::wall::{Around, Extrapolation, StressExtrapolation, Surroundings};
+use piola_formulas::pairs::wall::{Extrapolation, StressExtrapolation, Surroundings};
 
 use super::{Slip, TransportVelocity};
 use crate::geometry::Faces;
@@ -137,33 +137,29 @@ impl<const D: usize> TransportVelocity<D> {
                 both.0
             }
         };
-        let Around { weight, velocity, deviation, pressure, arm } = around;
         let surface = values.motion + values.sliding;
-        if !(weight > 0.0) {
+        if !(around.weight > 0.0) {
             values.velocity = values.motion;
             values.shear = surface;
             return;
         }
-        let (velocity, deviation) = (velocity / weight, deviation / weight);
-        values.deviator.iter_mut().for_each(|stress| *stress /= weight);
+        values.deviator.iter_mut().for_each(|stress| *stress /= around.weight);
         let gravity = self.body_force_at(wall.number as usize, place, time);
-        values.pressure = (pressure + (gravity - values.acceleration).dot(&arm)) / weight;
         // An edge faces the fluid that is there: what hits one of its sides must not be turned along it.
-        let normal = &wall.faces.towards(&-arm);
-        // A surface that slides goes nowhere: at corners, where the normal is between two faces,
-        // it must not push.
-        values.velocity = velocity + normal * (2.0 * (values.motion - velocity).dot(normal));
-        // The reflected uhat less the reflected u, CTVF (49) less (48).
-        values.deviation = deviation - normal * (2.0 * deviation.dot(normal));
+        let normal = &wall.faces.towards(&-around.arm);
+        let lift = gravity - values.acceleration;
+        let ghost = around.ghost([&values.motion, &values.sliding], &lift, normal);
+        (values.velocity, values.deviation) = (ghost.velocity, ghost.deviation);
+        values.pressure = ghost.pressure;
         values.shear = match wall.slip {
-            Slip::No => surface * 2.0 - velocity,
-            Slip::Free => values.velocity,
+            Slip::No => ghost.dragged,
+            Slip::Free => ghost.velocity,
         };
         if self.solids.is_some() {
             match wall.slip {
                 // What is clamped does not slide in its gradients either.
                 Slip::No => {
-                    (values.velocity, values.deviation) = (values.shear, -deviation);
+                    (values.velocity, values.deviation) = (values.shear, -ghost.carried);
                 }
                 Slip::Free => values.mirror = Some(*normal),
             }

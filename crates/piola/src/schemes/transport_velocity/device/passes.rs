@@ -4,12 +4,12 @@ use nalgebra::SVector;
 use piola_device::{
     Among, Gather, Language, Order, Pass, Space, Traced, local, own, spread, through,
 };
-use piola_formulas::Number;
 use piola_formulas::pairs::One;
 use piola_formulas::pairs::fluid::{
     FULL, ForceSum, Forces, MIXED, NONE, RateSum, Rates, Side, WallForces,
 };
 use piola_formulas::pairs::sums::Density;
+use piola_formulas::{Number, fluid};
 
 use super::super::{ACCELERATING, DRIFTING};
 use super::Plan;
@@ -363,14 +363,9 @@ impl<const D: usize> Plan<D> {
                 true => self.at_surface(crowding, x),
                 false => crowding,
             };
-            let deviation = shift * scale;
-            let length = square(&deviation).sqrt();
-            let is_long = most.less(length);
-            let shorter = most / length;
+            let deviation = fluid::shortened(shift * scale, most);
             for axis in 0..D {
-                let cut = deviation[axis] * shorter;
-                let shifted = Traced::select(is_long, cut, deviation[axis]);
-                me.deviation[axis] = if_fluid(wall, shifted, me.deviation[axis]);
+                me.deviation[axis] = if_fluid(wall, deviation[axis], me.deviation[axis]);
             }
             flat(&me)
         })

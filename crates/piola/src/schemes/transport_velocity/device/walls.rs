@@ -109,14 +109,8 @@ impl<const D: usize> Plan<D> {
     fn walls(&self, language: Language, space: &Space<D>) -> Pass {
         let sides = [own("side", side_width(D))];
         let of = |column, width| through("numbers", column, width);
-        let columns = [
-            of("mass", 1),
-            of("motion", D),
-            of("sliding", D),
-            of("wall_acceleration", D),
-            of("faces", self.faces_width()),
-            of("gravity", D),
-        ];
+        let columns =
+            [of("mass", 1), of("sliding", D), of("faces", self.faces_width()), of("gravity", D)];
         let gather = Gather::<Surroundings<D>, D>::new(
             language,
             "walls",
@@ -128,27 +122,21 @@ impl<const D: usize> Plan<D> {
         let writes = [own("side", side_width(D)), own("shear", D)];
         gather.close(&[], &columns, &writes, |around, mut x| {
             let mass = one(&mut x);
-            let (motion, sliding): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
-            let acceleration: Vector<D> = take(&mut x);
+            let sliding: Vector<D> = take(&mut x);
             let faces = Faces::<D>::take(&mut x, self.normals);
             let gravity: Vector<D> = take(&mut x);
-            let (zero, weight) = (Traced::from(0.0), around.weight);
-            let surface = motion + sliding;
-            let (velocity, deviation) = (around.velocity / weight, around.deviation / weight);
-            let lift = (gravity - acceleration).dot(&around.arm);
-            let pressure = (around.pressure + lift) / weight;
+            // Walls that move are refused.
+            let rest = Vector::<D>::repeat(Traced::from(0.0));
             let normal = faces.towards(&-around.arm);
-            let two = Traced::from(2.0);
-            let reflected = velocity + normal * (two * (motion - velocity).dot(&normal));
-            let turned = deviation - normal * (two * deviation.dot(&normal));
-            let dragged = surface * two - velocity;
-            let shear = pick(faces.slips.above(0.5), &reflected, &dragged);
-            // Without fluid around it moves with the wall and bears no pressure.
-            let is_wet = weight.above(0.0);
-            let pressure = Traced::select(is_wet, pressure, zero);
+            let ghost = around.ghost([&rest, &sliding], &gravity, &normal);
+            let shear = pick(faces.slips.above(0.5), &ghost.velocity, &ghost.dragged);
+            // Without fluid around it rests and bears no pressure.
+            let is_wet = around.weight.above(0.0);
+            let zero = Traced::from(0.0);
+            let pressure = Traced::select(is_wet, ghost.pressure, zero);
             let mut side: Side<Traced, D> = Side {
-                velocity: pick(is_wet, &reflected, &motion),
-                deviation: pick(is_wet, &turned, &Vector::<D>::repeat(zero)),
+                velocity: pick(is_wet, &ghost.velocity, &rest),
+                deviation: pick(is_wet, &ghost.deviation, &rest),
                 density: zero,
                 pressure,
                 load: zero,
@@ -156,7 +144,7 @@ impl<const D: usize> Plan<D> {
             };
             let density = fluid::density(pressure, self.fluid.density, self.fluid.wave_speed);
             side.set(mass, density, pressure);
-            let shear = pick(is_wet, &shear, &surface);
+            let shear = pick(is_wet, &shear, &sliding);
             flat(&side).into_iter().chain(shear.iter().copied()).collect()
         })
     }
@@ -179,8 +167,7 @@ impl<const D: usize> Plan<D> {
     /// What walls do to fluid that touches them, theory (80).
     fn hold_off(&self, language: Language, space: &Space<D>) -> Pass {
         let mine = [own("side", side_width(D)), own("force", FORCES * D)];
-        let of = |column, width| through("numbers", column, width);
-        let others = [of("motion", D), of("faces", self.faces_width())];
+        let others = [through("numbers", "faces", self.faces_width())];
         let spacing = self.spacing;
         let writes = [own("hold", 2 * D + 1), own("side", side_width(D))];
         type Holds<const D: usize> = ((Components<D>, Components<D>), One);
@@ -193,7 +180,6 @@ impl<const D: usize> Plan<D> {
                 let (mut mine, mut other) = (meeting.me, meeting.other);
                 let me: Side<Traced, D> = side(&mut mine);
                 let load = total(&forces(&mut mine));
-                let motion: Vector<D> = take(&mut other);
                 let faces = Faces::<D>::take(&mut other, self.normals);
                 let way = meeting.pair.separation;
                 let (is_over, height, normal) = faces.over(&way, spacing);
@@ -202,7 +188,7 @@ impl<const D: usize> Plan<D> {
                     & height.below(TOUCH * spacing);
                 let shift = (me.deviation - *deviation).dot(&normal);
                 let shift = Traced::select(shift.below(0.0), shift, Traced::from(0.0));
-                let mut approach = (me.velocity - motion).dot(&normal);
+                let mut approach = me.velocity.dot(&normal);
                 if self.shifts {
                     *deviation = pick(touches, &(*deviation + normal * shift), deviation);
                 } else {

@@ -1,5 +1,6 @@
 //! SPST: a velocity deviation from the crowding of neighbours.
 
+use piola_formulas::fluid;
 use piola_formulas::pairs::sums::CrowdingWithin;
 
 use crate::operators::{Among, NeighborBlock, OfCenter, Term, add_at};
@@ -66,12 +67,7 @@ impl<const D: usize> TransportVelocity<D> {
                     }
                     Some(_) => crowding,
                 };
-                let deviation = shift * scale;
-                let length = deviation.norm();
-                side.deviation = match length > most {
-                    true => deviation * (most / length),
-                    false => deviation,
-                };
+                side.deviation = fluid::shortened(shift * scale, most);
             }
         });
         self.sides = sides;

@@ -1,0 +1,263 @@
+//! From a settled fluid to its passes and columns on a device, or what has none there.
+
+use piola_device::lists::Lists;
+use piola_device::{Device, Machine};
+
+use super::super::stages::Pass;
+use super::super::{AtSurface, DensityRule, Shifting, Slip, TransportVelocity};
+use super::passes::{FIGURES, FORCES, drift_terms, kick_terms, side_width};
+use super::{Named, OnDevice, Plan, walls};
+use crate::boundaries::BodyForce;
+use crate::fields;
+use crate::operators::MovingSupport;
+use crate::parallel::CHUNK;
+use crate::schemes::Scheme;
+use crate::schemes::device::{DeviceRefusal, DeviceSteps};
+
+fn gibibytes(bytes: usize) -> String {
+    format!("{:.2} GiB", bytes as f64 / f64::from(1 << 30))
+}
+
+/// What columns with these bytes take, and the five largest of them, if that is more than a memory has.
+fn too_much(mut columns: Vec<(&str, usize)>, memory: u64) -> Option<[String; 2]> {
+    let needed: usize = columns.iter().map(|(_, bytes)| bytes).sum();
+    if needed as u64 <= memory {
+        return None;
+    }
+    columns.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
+    let named = |(name, bytes): &(&str, usize)| format!("{name} {}", gibibytes(*bytes));
+    let largest: Vec<String> = columns.iter().take(5).map(named).collect();
+    Some([gibibytes(needed), largest.join(", ")])
+}
+
+impl<const D: usize> Plan<D> {
+    /// Columns beside those of the state, with their numbers a particle.
+    fn scratch(&self) -> Vec<(&'static str, usize)> {
+        let mut all = vec![
+            ("place", D),
+            ("side", side_width(D)),
+            ("rate", 4),
+            ("force", FORCES * D),
+            ("escaped", 1),
+            ("terms", kick_terms(D).max(drift_terms(D)).max(FIGURES)),
+            // Read by the pass of rates, and of walls.
+            ("half_force", D),
+            ("gravity", D),
+        ];
+        if self.sums_densities {
+            all.push(("summed", 1));
+        }
+        if self.normals > 0 {
+            all.extend([("shear", D), ("hold", 2 * D + 1)]);
+        }
+        if self.seeks_surfaces {
+            let marks = ["mark", "near", "alone", "surface", "close_by", "reach"];
+            all.extend(marks.map(|name| (name, 1)));
+            all.extend(["sharp", "normal", "crowd"].map(|name| (name, D)));
+        }
+        all
+    }
+}
+
+/// What of a settled case has no body for devices.
+fn refusal(pass: Pass) -> Option<DeviceRefusal> {
+    let instead = match pass {
+        Pass::Iterate | Pass::Push => "use `scheme.shifting = \"spst\"` or \"none\"",
+        Pass::Prescribe | Pass::Correct | Pass::Tension | Pass::Hold => "use a fluid",
+        _ => return None,
+    };
+    let what = format!("the stage `{}`", pass.name());
+    Some(DeviceRefusal::Stage { what, instead })
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// The steps of the fluid on a device.
+    pub(in super::super) fn to_device(
+        &self,
+        device: Device,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        let (drift, accelerate) = (self.drift.passes(), self.accelerate.passes());
+        if self.solids.is_some() {
+            return Err(DeviceRefusal::Solids);
+        }
+        if let Some(refusal) = drift.iter().chain(accelerate).find_map(|pass| refusal(*pass)) {
+            return Err(refusal);
+        }
+        let refuse = |what: &str, instead| Err(DeviceRefusal::Stage { what: what.into(), instead });
+        if self.settings.is_algebraic() {
+            let instead = "use `scheme.pressure = \"edac\"`";
+            return refuse("a pressure by the law of state", instead);
+        }
+        if self.motion.iter().next().is_some() {
+            return refuse("a wall that moves", "let it slide or rest");
+        }
+        if !self.sliding.iter().all(|entry| entry.value.is_steady()) {
+            return refuse("a wall that slides by a function of time", "let it slide steadily");
+        }
+        if self.guard.as_ref().is_some_and(|(guard, _)| guard.removes) {
+            let instead = "leave out `scheme.escaped = \"remove\"`";
+            return refuse("the removal of particles that escape", instead);
+        }
+        if !self.body_forces.iter().all(BodyForce::is_uniform) {
+            let instead = "take one that is the same everywhere";
+            return refuse("a body force that depends on places", instead);
+        }
+        let list = self.support.list();
+        let periods = *list.domain().periodic();
+        let corrections = self.settings.corrections;
+        let evolves = self.settings.density == DensityRule::Continuity;
+        let by_crowding = matches!(self.settings.shifting, Shifting::Sun { .. });
+        let (rate_constants, rate_kind) = self.rate_law();
+        let (force_constants, force_kind) = self.force_law();
+        let plan = Plan {
+            kernel: self.support.kernel(),
+            smoothing_length: self.support.smoothing_length(),
+            periods,
+            fluid: self.fluid,
+            sums_densities: self.settings.density == DensityRule::Summation,
+            evolves,
+            carries: [corrections.density && evolves, corrections.pressure],
+            rate_constants,
+            rate_kind,
+            force_constants,
+            force_kind,
+            shifts: by_crowding,
+            compliance: self.compliance(),
+            seeks_surfaces: by_crowding && self.settings.free_surface,
+            along_surfaces: self.settings.at_surface == AtSurface::Along,
+            even_count: self.even_count() as f64,
+            falls: !self.body_forces.is_empty(),
+            normals: self.most_normals(),
+            spacing: self.particles.spacing[0],
+            bounds: self.bounds(self.start()).map(|(low, high)| [low.into(), high.into()]),
+        };
+        let count = self.particles.len();
+        let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
+        let (columns, scratch) = (self.device_columns(), plan.scratch());
+        self.fits(&device, &columns, &scratch)?;
+        let support = list.support();
+        let skin = MovingSupport::<D>::SKIN * support;
+        let lists = Lists::new(&device, &self.is_wall, support, skin, &periods)?;
+        let mut machine = Machine::new(device, lists, |language| plan.passes(language), CHUNK)?;
+        for (_, (name, before, width)) in &columns {
+            machine.add_zeros(name, count * width)?;
+            machine.add_zeros(before, count * width)?;
+        }
+        for (name, width) in scratch {
+            machine.add_zeros(name, count * width)?;
+        }
+        machine.add("mass", &self.mass)?;
+        let wall = self.is_wall.iter().map(|&is_wall| f64::from(u8::from(is_wall)));
+        machine.add("wall", &wall.collect::<Vec<_>>())?;
+        if normals > 0 {
+            machine.add("faces", &self.face_numbers(faces, normals))?;
+            machine.add("sliding", &self.sliding_numbers())?;
+        }
+        let tail = self.start()[count * self.width()..].to_vec();
+        Ok(Box::new(OnDevice {
+            plan,
+            machine,
+            drift: self.drift.clone(),
+            accelerate: self.accelerate.clone(),
+            count,
+            columns,
+            tail_before: tail.clone(),
+            tail,
+            is_picked: false,
+            is_listed: false,
+            fastest: 0.0,
+            speed: self.shifting_speed(),
+            body_forces: self.body_forces.clone(),
+            bodies: self.particles.body.clone(),
+            is_falling: false,
+            skin,
+        }))
+    }
+
+    /// Refuses a device whose memory does not suffice, with what takes it.
+    fn fits(
+        &self,
+        device: &Device,
+        columns: &[(usize, Named)],
+        scratch: &[(&'static str, usize)],
+    ) -> Result<(), DeviceRefusal> {
+        let number = self.particles.len() * size_of::<f64>();
+        let state = columns.iter().map(|(_, (name, _, width))| (*name, 2 * width * number));
+        let others = scratch.iter().map(|(name, width)| (*name, width * number));
+        let lists = ("neighbours", 2 * self.support.list().entries() * size_of::<u32>());
+        let all = state.chain(others).chain([lists]).collect();
+        match too_much(all, device.memory()) {
+            None => Ok(()),
+            Some([needed, largest]) => {
+                let device = device.found().to_string();
+                Err(DeviceRefusal::Memory { needed, device, largest })
+            }
+        }
+    }
+
+    /// Most normals of a wall particle.
+    fn most_normals(&self) -> usize {
+        let normals = self.walls.iter().map(|wall| wall.faces.normals().len());
+        normals.max().map_or(0, |most| most.max(1))
+    }
+
+    /// The faces of wall particles as numbers, by number of the particle.
+    fn face_numbers(&self, width: usize, most: usize) -> Vec<f64> {
+        let mut all = vec![0.0; self.particles.len() * width];
+        for wall in &self.walls {
+            let (faces, row) = (&wall.faces, &mut all[wall.number as usize * width..][..width]);
+            let normals = faces.normals();
+            row[0] = normals.len() as f64;
+            row[1] = f64::from(u8::from(wall.slip == Slip::Free));
+            row[2] = faces.depth();
+            row[3..][..D].copy_from_slice(faces.between().as_slice());
+            let own = normals.iter().take(most).flat_map(|normal| normal.iter());
+            row[3 + D..].iter_mut().zip(own).for_each(|(to, component)| *to = *component);
+        }
+        all
+    }
+
+    /// Velocities with which walls slide, by number of the particle.
+    fn sliding_numbers(&self) -> Vec<f64> {
+        let mut all = vec![0.0; self.particles.len() * D];
+        for entry in self.sliding.iter() {
+            let number = self.walls[entry.particle].number as usize;
+            all[number * D + entry.component] = entry.value.value(entry.place, 0.0);
+        }
+        all
+    }
+
+    /// Columns of the state by where they begin.
+    fn device_columns(&self) -> Vec<(usize, Named)> {
+        let copies = [
+            ("position", "position_before"),
+            ("velocity", "velocity_before"),
+            ("deviation", "deviation_before"),
+            ("kick", "kick_before"),
+            ("pressure", "pressure_before"),
+            ("density", "density_before"),
+        ];
+        let description = self.description();
+        let all = copies.iter().map(|&(name, before)| {
+            let field = description.fields.iter().find(|field| field.name == name);
+            let field = field.expect("these are columns of the formulation");
+            let range = fields::column(description.fields, D, self.particle_count(), field);
+            (range.start, (name, before, field.kind.components(D)))
+        });
+        all.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_told_by_its_largest_columns() {
+        let gibibyte = 1 << 30;
+        let columns = || vec![("side", gibibyte), ("terms", 3 * gibibyte), ("rate", gibibyte / 2)];
+        assert_eq!(too_much(columns(), 9 << 29), None, "it fits exactly");
+        let told = ["4.50 GiB", "terms 3.00 GiB, side 1.00 GiB, rate 0.50 GiB"].map(str::to_owned);
+        assert_eq!(too_much(columns(), (9 << 29) - 1), Some(told));
+    }
+}
