@@ -39,7 +39,7 @@ fn vortices<const D: usize>(
             _ => 0.0,
         })
     });
-    TransportVelocity::new(TransportVelocityInput {
+    let input = TransportVelocityInput {
         smoothing_length: h * particles.spacing[0],
         faces: vec![Faces::default(); particles.len()],
         domain: Domain::new([Some([0.0, 1.0]); D]).expect("the bounds are in order"),
@@ -53,16 +53,15 @@ fn vortices<const D: usize>(
             free_surface: false,
             at_surface: AtSurface::Held,
         },
-        fluid: Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 },
-        solids: None,
         initial: Initial { velocity: velocity.collect(), pressure: vec![0.0; particles.len()] },
         walls: Vec::new(),
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces: Vec::new(),
         particles,
-    })
-    .expect("the fluid can be built")
+    };
+    let fluid = Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 };
+    TransportVelocity::new(input, fluid).expect("the fluid can be built")
 }
 
 fn measure<const D: usize>(count: usize, name: &str, kernel: Kernel, h: f64) {

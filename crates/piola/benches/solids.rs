@@ -18,8 +18,8 @@ use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, Fluid, Heat, PressureRule, Settings, Shifting,
-    Solid, SolidsInput, TransportVelocity, TransportVelocityInput,
+    AtSurface, Contact, Corrections, DensityRule, Heat, Hypoelastic, PressureRule, Settings,
+    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 use piola_formulas::kernels::Kernel;
@@ -55,7 +55,7 @@ fn block<const D: usize>(
     setting: &Setting,
     kernel: Kernel,
     h: f64,
-) -> TransportVelocity<D> {
+) -> TransportVelocity<D, Hypoelastic<D>> {
     let velocity = particles.position.iter().map(|x| {
         Vector::from_fn(|axis, _| 0.01 * WAVE_SPEED * (6.0 * x[(axis + 1) % D] + axis as f64).sin())
     });
@@ -73,7 +73,7 @@ fn block<const D: usize>(
         },
         heat: Heat::NONE,
     };
-    TransportVelocity::new(TransportVelocityInput {
+    let input = TransportVelocityInput {
         smoothing_length: h * particles.spacing[0],
         faces: vec![Faces::default(); particles.len()],
         domain: Domain::new([None; D]).expect("an open domain"),
@@ -87,22 +87,21 @@ fn block<const D: usize>(
             free_surface: true,
             at_surface: AtSurface::Along,
         },
-        fluid: Fluid::of_solids(&[material]),
-        solids: Some(SolidsInput {
-            materials: vec![material],
-            contact: Contact::Repulsive,
-            self_contact: None,
-            corrected: setting.corrected_gradients,
-            held: Vec::new(),
-        }),
         initial: Initial { velocity: velocity.collect(), pressure: vec![0.0; particles.len()] },
         walls: Vec::new(),
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces: Vec::new(),
         particles,
-    })
-    .expect("the block can be built")
+    };
+    let solids = SolidsInput {
+        materials: vec![material],
+        contact: Contact::Repulsive,
+        self_contact: None,
+        corrected: setting.corrected_gradients,
+        held: Vec::new(),
+    };
+    TransportVelocity::new(input, solids).expect("the block can be built")
 }
 
 fn measure<const D: usize>(count: usize, setting: &Setting, kernel: Kernel, h: f64) {

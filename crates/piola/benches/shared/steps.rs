@@ -2,7 +2,6 @@
 
 use piola::Vector;
 use piola::geometry::{LatticeSpec, Particles, Placement, Shape, fill};
-use piola::schemes::transport_velocity::TransportVelocity;
 use piola::schemes::{Observation, Scheme};
 use piola::time::IntegratorKind;
 use piola_formulas::kernels::Kernel;
@@ -78,12 +77,7 @@ pub fn lattice<const D: usize>(count: usize, jitter: f64) -> Particles<D> {
 }
 
 /// Prints the row of a scheme whose steps take `step` s.
-pub fn measure<const D: usize>(
-    mut scheme: TransportVelocity<D>,
-    step: f64,
-    kernel: Kernel,
-    name: &str,
-) {
+pub fn measure(mut scheme: impl Scheme, step: f64, kernel: Kernel, name: &str) {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
     let mut integrator = IntegratorKind::KickDriftKick.build(&mut scheme).expect("it has kicks");
@@ -102,7 +96,8 @@ pub fn measure<const D: usize>(
     let neighbors = Observation::new(&mut scheme, 0.0, &state).values("neighbors", &all);
     let speed = particles as f64 / least;
     println!(
-        "| {D} | {threads} | {particles} | {mean:.1} | {kernel} | {name} | {millions:.2} | {ns:.0} |",
+        "| {dimension} | {threads} | {particles} | {mean:.1} | {kernel} | {name} | {millions:.2} | {ns:.0} |",
+        dimension = scheme.dimension(),
         threads = rayon::current_num_threads(),
         mean = neighbors.iter().sum::<f64>() / particles as f64,
         kernel = kernel.name(),

@@ -71,28 +71,30 @@ pub fn reductions() -> Vec<Choice> {
     REDUCTIONS.iter().map(choice).collect()
 }
 
-/// The fields of the scheme called `scheme`.
-pub fn fields(scheme: &str) -> Vec<FieldDescription> {
-    SchemeDescription::of(scheme).map_or_else(Vec::new, |scheme| scheme.shown().copied().collect())
+/// A formulation, if there is one of the name that the case has.
+pub type Described = Option<&'static SchemeDescription>;
+
+/// The fields of a scheme.
+pub fn fields(scheme: Described) -> Vec<FieldDescription> {
+    scheme.map_or_else(Vec::new, |scheme| scheme.shown().copied().collect())
 }
 
 /// Columns of the energy table, after `energy.`.
-pub fn energy_columns(scheme: &str) -> Vec<&'static str> {
-    SchemeDescription::of(scheme)
-        .map_or_else(Vec::new, |s| observe::energy_columns(s.energies, s.ledger.mechanisms))
+pub fn energy_columns(scheme: Described) -> Vec<&'static str> {
+    scheme.map_or_else(Vec::new, |s| observe::energy_columns(s.energies, s.ledger.mechanisms))
 }
 
 /// Columns of the momentum table in `dimension` dimensions, after `momentum.`.
-pub fn momentum_columns(scheme: &str, dimension: usize) -> Vec<String> {
-    let columns = SchemeDescription::of(scheme).map(|scheme| {
+pub fn momentum_columns(scheme: Described, dimension: usize) -> Vec<String> {
+    let columns = scheme.map(|scheme| {
         observe::momentum_columns(momentum_components(dimension), scheme.ledger.impulses)
     });
     columns.into_iter().flatten().map(|(name, _)| name).collect()
 }
 
 /// Columns of the table of steps, after `step.`.
-pub fn step_columns(scheme: &str) -> Vec<&'static str> {
-    let figures = SchemeDescription::of(scheme).map_or(&[][..], |scheme| scheme.figures);
+pub fn step_columns(scheme: Described) -> Vec<&'static str> {
+    let figures = scheme.map_or(&[][..], |scheme| scheme.figures);
     observe::STEP_COLUMNS.iter().chain(figures).map(|(name, _)| *name).collect()
 }
 

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use self::sweeps::run_traits;
+use super::catalogue;
 use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
 use super::model::{
@@ -12,6 +13,7 @@ use super::model::{
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
 use super::suggest::suggestion;
+use crate::schemes::SchemeDescription;
 use crate::time::IntegratorKind;
 
 mod bodies;
@@ -173,6 +175,13 @@ struct Names {
     dissipates: bool,
     /// Whether a body is of a hypoelastic solid.
     is_solid: bool,
+}
+
+impl Names {
+    /// The formulation, with the matter of the case.
+    fn described(&self) -> catalogue::Described {
+        SchemeDescription::of(self.scheme, if self.is_solid { "solids" } else { "fluids" })
+    }
 }
 
 impl Reader<'_, '_> {

@@ -144,7 +144,8 @@ fn fields(page: &mut String) {
     );
     for scheme in SchemeDescription::ALL {
         let head = "| field | kind | unit | life | meaning |\n|---|---|---|---|---|\n";
-        push(page, &format!("\n### Fields of `{}`\n\n{head}", scheme.name));
+        let of = scheme.matter.map_or_else(String::new, |matter| format!(" for {matter}"));
+        push(page, &format!("\n### Fields of `{}`{of}\n\n{head}", scheme.name));
         for FieldDescription { name, kind, unit, life, meaning, .. } in scheme.shown() {
             let (kind, life) = (kind.name(), life.name());
             push(page, &format!("| `{name}` | {kind} | {unit} | {life} | {meaning} |\n"));

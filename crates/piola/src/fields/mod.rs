@@ -82,6 +82,18 @@ impl FieldDescription {
         }
         fields
     }
+
+    /// A table of two, one behind the other, of which the first is not empty.
+    pub(crate) const fn joined<const N: usize>(one: &[Self], other: &[Self]) -> [Self; N] {
+        let mut all = [one[0]; N];
+        let mut number = 0;
+        while number < N {
+            let behind = number >= one.len();
+            all[number] = if behind { other[number - one.len()] } else { one[number] };
+            number += 1;
+        }
+        Self::numbered(all)
+    }
 }
 
 impl FieldKind {

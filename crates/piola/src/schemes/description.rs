@@ -44,6 +44,8 @@ impl Capability {
 pub struct SchemeDescription {
     /// Name in a case file.
     pub name: &'static str,
+    /// The matter that it is of, in the plural, where a formulation has systems of several kinds.
+    pub matter: Option<&'static str>,
     /// What it offers where it is built for that.
     pub offers: &'static [Capability],
     /// The columns of its state and all that an [`Observation`](super::Observation) can show.
@@ -58,9 +60,10 @@ pub struct SchemeDescription {
 
 impl SchemeDescription {
     /// All formulations.
-    pub const ALL: [&'static Self; 5] = [
+    pub const ALL: [&'static Self; 6] = [
         &upwind::DESCRIPTION,
-        &transport_velocity::DESCRIPTION,
+        &transport_velocity::FLUIDS,
+        &transport_velocity::SOLIDS,
         &dual_support::DESCRIPTION,
         &elastodynamics::DESCRIPTION,
         &interpolation::DESCRIPTION,
@@ -76,8 +79,10 @@ impl SchemeDescription {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// The formulation of a name.
-    pub fn of(name: &str) -> Option<&'static Self> {
-        Self::ALL.into_iter().find(|scheme| scheme.name == name)
+    /// The formulation of a name, for some matter where it has systems of several kinds.
+    pub fn of(name: &str, matter: &str) -> Option<&'static Self> {
+        let fits =
+            |scheme: &&Self| scheme.name == name && scheme.matter.is_none_or(|own| own == matter);
+        Self::ALL.into_iter().find(fits)
     }
 }

@@ -28,14 +28,14 @@ pub struct Accounts {
 
 /// A mechanism with the way by which its momentum enters, if it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Entry {
+pub struct Entry {
     mechanism: usize,
     pub way: Option<usize>,
 }
 
 /// The sum over particles of what one mechanism does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Total {
+pub struct Total {
     /// Power in W, or work in J of what is done at once.
     pub power: f64,
     /// How fast the power grows in a kick, W/s.
@@ -107,7 +107,7 @@ fn fill(slots: &mut Slots, Entry { mechanism, way }: Entry, total: &Total) {
 
 /// What stages have found: rates, and what they have done at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Totals {
+pub struct Totals {
     rates: Slots,
     done: Slots,
     pub filled: Filled,

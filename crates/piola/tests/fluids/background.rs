@@ -6,14 +6,16 @@ use piola::geometry::Particles;
 use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{
     Contact, Corrections, DensityRule, Fluid, Heat, Settings, Shifting, Slip, Solid, SolidsInput,
-    TransportVelocity, TransportVelocityInput, Wall,
+    TransportVelocityInput, Wall,
 };
 use piola::{Tensor, Vector};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 use piola_formulas::kernels::Kernel;
 
 use super::solids::{self, two_blocks_with};
-use super::support::{SETTINGS, change_rows, deviations, fluid_in_box, solids_in_box, unit_box};
+use super::support::{
+    SETTINGS, Solids, change_rows, deviations, fluid_in_box, solids_in_box, unit_box,
+};
 
 const FLUID: Fluid = Fluid { density: 2.0, wave_speed: 10.0, viscosity: 0.0 };
 const MOST: f64 = 0.5;
@@ -30,21 +32,19 @@ fn noise(k: usize) -> f64 {
 }
 
 /// Puts densities and pressures at random into a state, some pressures zero, and returns both.
-fn scatter<const D: usize>(scheme: &TransportVelocity<D>, state: &mut [f64]) -> Vec<(f64, f64)> {
+fn scatter(scheme: &dyn Scheme, state: &mut [f64]) -> Vec<(f64, f64)> {
+    let density = 2 * scheme.dimension();
     let mut both = Vec::new();
     change_rows(scheme, state, |number, row| {
-        row[2 * D] *= 1.0 + 0.02 * noise(3 * number);
-        row[2 * D + 1] = if number % 5 == 0 { 0.0 } else { 30.0 * noise(5 * number + 1) };
-        both.push((row[2 * D], row[2 * D + 1]));
+        row[density] *= 1.0 + 0.02 * noise(3 * number);
+        row[density + 1] = if number % 5 == 0 { 0.0 } else { 30.0 * noise(5 * number + 1) };
+        both.push((row[density], row[density + 1]));
     });
     both
 }
 
 /// The deviations that a drift of [`STEP`] is made with.
-fn drifted<const D: usize>(
-    scheme: &mut TransportVelocity<D>,
-    mut state: Vec<f64>,
-) -> Vec<Vector<D>> {
+fn drifted<const D: usize>(scheme: &mut dyn Scheme, mut state: Vec<f64>) -> Vec<Vector<D>> {
     scheme.split().expect("it can be split").drift(0.0, STEP, &mut state);
     deviations(scheme, &state)
 }
@@ -123,7 +123,7 @@ fn a_particle_off_its_place_is_pushed_back_under_any_pressure() {
         let settings = Settings { density: DensityRule::Continuity, ..background(SETTINGS) };
         let mut scheme = fluid_in_box(particles, settings, FLUID, 1.0, start);
         let state = scheme.initial_state();
-        let found = drifted(&mut scheme, state);
+        let found: Vec<Vector<2>> = drifted(&mut scheme, state);
         assert!(found[77].dot(&off) < -0.9 * found[77].norm() * off.norm(), "{}", found[77]);
         // Far away all is even.
         assert!(found[0].norm() < 1e-12 * found[77].norm(), "{}", found[0]);
@@ -160,14 +160,11 @@ fn solids_are_pushed_by_their_own_body_and_walls() {
         value: std::sync::Arc::new(0.0_f64),
     };
     let settings = background(Settings { free_surface: true, ..solids::SETTINGS });
-    let input = solids_in_box(particles, settings, materials.clone());
+    let (input, solids) = solids_in_box(particles, settings, materials.clone());
     let held_by = vec![condition(0), condition(1)];
-    let input = TransportVelocityInput {
-        solids: input.solids.map(|solids| SolidsInput { held: held_by, ..solids }),
-        walls: vec![Wall { body: 2, slip: Slip::No }],
-        ..input
-    };
-    let mut scheme = TransportVelocity::new(input).expect("the solids can be built");
+    let input = TransportVelocityInput { walls: vec![Wall { body: 2, slip: Slip::No }], ..input };
+    let solids = SolidsInput { held: held_by, ..solids };
+    let mut scheme = Solids::new(input, solids).expect("the solids can be built");
     let mut state = scheme.initial_state();
     let values = scatter(&scheme, &mut state);
     let found = drifted(&mut scheme, state);

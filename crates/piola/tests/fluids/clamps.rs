@@ -4,13 +4,11 @@
 use piola::Vector;
 use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
-use piola::schemes::transport_velocity::{
-    Forces, Slip, SolidsInput, TransportVelocity, TransportVelocityInput, Wall,
-};
+use piola::schemes::transport_velocity::{Forces, Slip, SolidsInput, TransportVelocityInput, Wall};
 use piola::schemes::{Observation, Scheme};
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{change_rows, solids_in_box, unit_box};
+use super::support::{Solids, change_rows, solids_in_box, unit_box};
 
 const SIDE: usize = 16;
 /// Layers of each platen, as many as the support of the kernel reaches.
@@ -38,17 +36,17 @@ fn between_platens(
         faces.push(if is_clamp { Faces::new(vec![normal], depth) } else { Faces::default() });
     }
     let (kept, count) = (particles.clone(), particles.len());
-    let input = solids_in_box(particles, SETTINGS, vec![SOLID; 2]);
+    let (input, solids) = solids_in_box(particles, SETTINGS, vec![SOLID; 2]);
     let h = kept.spacing[0];
     let input = TransportVelocityInput {
         smoothing_length: h,
         faces,
         domain: Domain::new([Some([0.0, 1.0]), None]).expect("the bounds are in order"),
-        solids: input.solids.map(|solids| SolidsInput { corrected, ..solids }),
         walls: vec![Wall { body: 1, slip }],
         ..input
     };
-    let mut scheme = TransportVelocity::new(input).expect("the block can be built");
+    let solids = SolidsInput { corrected, ..solids };
+    let mut scheme = Solids::new(input, solids).expect("the block can be built");
     let mut state = scheme.initial_state();
     let start = state.len() - 9 * count;
     let (pressure, deviator) = stress;

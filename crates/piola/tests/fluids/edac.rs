@@ -6,13 +6,11 @@ use std::sync::Arc;
 
 use piola::boundaries::PrescribedVelocity;
 use piola::schemes::Scheme;
-use piola::schemes::transport_velocity::{
-    PressureRule, Settings, SolidsInput, TransportVelocity, TransportVelocityInput,
-};
+use piola::schemes::transport_velocity::{PressureRule, Settings, SolidsInput};
 use piola::time::IntegratorKind;
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{change_rows, rows, solids_in_box, unit_box};
+use super::support::{Solids, change_rows, rows, solids_in_box, unit_box};
 
 const SIDE: usize = 32;
 const STEP: f64 = 2e-3;
@@ -29,8 +27,8 @@ fn pressures(scheme: &dyn Scheme, state: &[f64]) -> Vec<(f64, f64)> {
 /// Rings of a block that moves at random, after some steps.
 fn moved(settings: Settings) -> Vec<(f64, f64)> {
     let particles = unit_box::<2>(12, 0.1, 3);
-    let input = solids_in_box(particles, settings, vec![SOLID]);
-    let mut scheme = TransportVelocity::new(input).expect("the solid can be built");
+    let (input, solids) = solids_in_box(particles, settings, vec![SOLID]);
+    let mut scheme = Solids::new(input, solids).expect("the solid can be built");
     let mut state = scheme.initial_state();
     change_rows(&scheme, &mut state, |_, row| {
         row[0] = 0.2 * (2.0 * PI * row[2]).sin();
@@ -83,11 +81,10 @@ fn a_pressure_wave_in_a_solid_that_is_held_decays_as_diffusion_says() {
         component,
         value: Arc::new(0.0_f64),
     });
-    let input = solids_in_box(particles, edac(ALPHA), vec![SOLID]);
-    let solids = input.solids.map(|solids| SolidsInput { held: held.collect(), ..solids });
+    let (input, solids) = solids_in_box(particles, edac(ALPHA), vec![SOLID]);
+    let solids = SolidsInput { held: held.collect(), ..solids };
     let h = input.smoothing_length;
-    let input = TransportVelocityInput { solids, ..input };
-    let mut scheme = TransportVelocity::new(input).expect("the solid can be built");
+    let mut scheme = Solids::new(input, solids).expect("the solid can be built");
     let mut state = scheme.initial_state();
     change_rows(&scheme, &mut state, |_, row| row[5] = (2.0 * PI * row[2]).cos());
     let before = pressures(&scheme, &state);

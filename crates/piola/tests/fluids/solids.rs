@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use piola::geometry::Particles;
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Forces, Heat, PressureRule, Rates, Settings,
-    Shifting, Solid, SolidRates, SolidsInput, TransportVelocity, TransportVelocityInput,
+    Shifting, Solid, SolidRates, SolidsInput, TransportVelocityInput,
 };
 use piola::schemes::{Observation, Scheme};
 use piola::{Tensor, Vector};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 
-use super::support::{change_rows, rows, solids_in_box, unit_box};
+use super::support::{Solids, change_rows, rows, solids_in_box, unit_box};
 
 const K: f64 = 2.0 * PI;
 
@@ -47,12 +47,12 @@ fn build<const D: usize>(
     settings: Settings,
     contact: Contact,
     corrected: bool,
-) -> TransportVelocity<D> {
+) -> Solids<D> {
     let bodies = 1 + particles.body.iter().copied().max().unwrap_or(0) as usize;
-    let input = solids_in_box(particles, settings, vec![solid; bodies]);
-    let solids = input.solids.map(|solids| SolidsInput { contact, corrected, ..solids });
+    let (input, solids) = solids_in_box(particles, settings, vec![solid; bodies]);
+    let solids = SolidsInput { contact, corrected, ..solids };
     let smoothing_length = 1.3 * input.smoothing_length;
-    TransportVelocity::new(TransportVelocityInput { smoothing_length, solids, ..input })
+    Solids::new(TransportVelocityInput { smoothing_length, ..input }, solids)
         .expect("the solids can be built")
 }
 
@@ -232,7 +232,7 @@ fn two_blocks<const D: usize>(
     contact: Contact,
     corrected: bool,
     artificial_viscosity: f64,
-) -> (TransportVelocity<D>, Vec<f64>, usize) {
+) -> (Solids<D>, Vec<f64>, usize) {
     let settings =
         Settings { artificial_viscosity, free_surface: true, shifting: Shifting::None, ..SETTINGS };
     two_blocks_with(contact, corrected, settings)
@@ -242,7 +242,7 @@ pub fn two_blocks_with<const D: usize>(
     contact: Contact,
     corrected: bool,
     settings: Settings,
-) -> (TransportVelocity<D>, Vec<f64>, usize) {
+) -> (Solids<D>, Vec<f64>, usize) {
     let mut particles = unit_box::<D>(if D == 3 { 8 } else { 16 }, 0.1, 7);
     for position in &mut particles.position {
         *position *= 0.5;

@@ -2,10 +2,10 @@
 
 use piola::Vector;
 use piola::schemes::Scheme;
-use piola::schemes::transport_velocity::{PressureRule, Settings, Shifting, TransportVelocity};
+use piola::schemes::transport_velocity::{PressureRule, Settings, Shifting};
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{self, change_rows, solids_in_box, unit_box};
+use super::support::{self, Solids, change_rows, solids_in_box, unit_box};
 
 /// In m/s, a twentieth of the wave speed.
 const SPEED: f64 = 0.5;
@@ -28,8 +28,8 @@ fn deviations<const D: usize>(shifting: Shifting, some: &[(usize, Has)]) -> Vec<
     let pressure = PressureRule::Edac { alpha: 0.0 };
     let side = if D == 3 { 8 } else { 12 };
     let settings = Settings { shifting, pressure, ..SETTINGS };
-    let input = solids_in_box(unit_box::<D>(side, 0.2, 5), settings, vec![SOLID]);
-    let mut scheme = TransportVelocity::new(input).expect("the solid can be built");
+    let (input, solids) = solids_in_box(unit_box::<D>(side, 0.2, 5), settings, vec![SOLID]);
+    let mut scheme = Solids::new(input, solids).expect("the solid can be built");
     let (mut state, count) = (scheme.initial_state(), scheme.particle_count());
     let matter = state.len() - 9 * count;
     let (density, wave_speed) = (SOLID.state.density, SOLID.state.wave_speed);

@@ -4,8 +4,8 @@ use piola::Vector;
 use piola::geometry::{Faces, LatticeSpec, Particles, Placement, Shape, fill};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting, Solid,
-    SolidsInput, TransportVelocity, TransportVelocityInput,
+    AtSurface, Contact, Corrections, DensityRule, Fluid, Hypoelastic, PressureRule, Settings,
+    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput,
 };
 use piola::schemes::{Initial, Scheme};
 use piola_formulas::kernels::Kernel;
@@ -45,29 +45,17 @@ pub fn fluid_in_box<const D: usize>(
 ) -> TransportVelocity<D> {
     let values = particles.position.iter().map(start);
     let (velocity, pressure) = values.unzip();
-    TransportVelocity::new(TransportVelocityInput {
-        smoothing_length: h * particles.spacing[0],
-        faces: vec![Faces::default(); particles.len()],
-        particles,
-        domain: periodic(),
-        kernel: Kernel::QuinticSpline,
-        settings,
-        fluid,
-        initial: Initial { velocity, pressure },
-        solids: None,
-        walls: Vec::new(),
-        motion: Vec::new(),
-        sliding: Vec::new(),
-        body_forces: Vec::new(),
-    })
-    .expect("the fluid can be built")
+    let initial = Initial { velocity, pressure };
+    let smoothing_length = h * particles.spacing[0];
+    let input =
+        TransportVelocityInput { smoothing_length, initial, ..at_rest(particles, settings) };
+    TransportVelocity::new(input, fluid).expect("the fluid can be built")
 }
 
-/// Solids at rest in the periodic unit box, a material a body, `h` of one spacing.
-pub fn solids_in_box<const D: usize>(
+/// Particles at rest in the periodic unit box, `h` of one spacing.
+fn at_rest<const D: usize>(
     particles: Particles<D>,
     settings: Settings,
-    materials: Vec<Solid>,
 ) -> TransportVelocityInput<D> {
     let count = particles.len();
     TransportVelocityInput {
@@ -77,20 +65,31 @@ pub fn solids_in_box<const D: usize>(
         domain: periodic(),
         kernel: Kernel::QuinticSpline,
         settings,
-        fluid: Fluid::of_solids(&materials),
-        solids: Some(SolidsInput {
-            materials,
-            contact: Contact::Repulsive,
-            self_contact: None,
-            corrected: false,
-            held: Vec::new(),
-        }),
         initial: Initial { velocity: vec![Vector::zeros(); count], pressure: vec![0.0; count] },
         walls: Vec::new(),
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces: Vec::new(),
     }
+}
+
+/// The system of solids.
+pub type Solids<const D: usize> = TransportVelocity<D, Hypoelastic<D>>;
+
+/// Solids at rest in the periodic unit box, a material a body, `h` of one spacing.
+pub fn solids_in_box<const D: usize>(
+    particles: Particles<D>,
+    settings: Settings,
+    materials: Vec<Solid>,
+) -> (TransportVelocityInput<D>, SolidsInput) {
+    let solids = SolidsInput {
+        materials,
+        contact: Contact::Repulsive,
+        self_contact: None,
+        corrected: false,
+        held: Vec::new(),
+    };
+    (at_rest(particles, settings), solids)
 }
 
 /// Where the columns of a state have a particle: u, r, rho, p, du/dt, d.

@@ -36,22 +36,21 @@ fn under<const D: usize>(
         id: (0..count as u32).collect(),
         ..Particles::default()
     };
-    TransportVelocity::new(TransportVelocityInput {
+    let fluid = Fluid { density: 1000.0, wave_speed: 10.0, viscosity: 0.0 };
+    let input = TransportVelocityInput {
         particles,
         domain: Domain::open(),
         kernel: Kernel::QuinticSpline,
         smoothing_length: SPACING,
         settings: Settings { free_surface: true, ..SETTINGS },
-        fluid: Fluid { density: 1000.0, wave_speed: 10.0, viscosity: 0.0 },
-        solids: None,
         initial: Initial { velocity: vec![Vector::zeros(); count], pressure: vec![0.0; count] },
         walls: Vec::new(),
         faces: vec![Faces::default(); count],
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces,
-    })
-    .expect("the fluid can be built")
+    };
+    TransportVelocity::new(input, fluid).expect("the fluid can be built")
 }
 
 fn sample<const D: usize>(positions: Vec<Vector<D>>, field: &str) -> Vec<f64> {

@@ -4,12 +4,12 @@ use piola::Vector;
 use piola::geometry::Particles;
 use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{
-    Contact, Forces, Settings, Shifting, SolidsInput, TransportVelocity, TransportVelocityError,
+    Contact, Forces, Settings, Shifting, SolidsInput, TransportVelocityError,
     TransportVelocityInput,
 };
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{change_rows, solids_in_box, unit_box};
+use super::support::{Solids, change_rows, solids_in_box, unit_box};
 
 const SIDE: usize = 20;
 const CUT: f64 = 0.5;
@@ -27,7 +27,7 @@ struct Choice {
     self_contact: Option<f64>,
 }
 
-fn input(choice: &Choice) -> (TransportVelocityInput<2>, Particles<2>) {
+fn input(choice: &Choice) -> (TransportVelocityInput<2>, SolidsInput, Particles<2>) {
     let now: Particles<2> = unit_box(SIDE, 0.1, 4);
     let mut particles = now.clone();
     for (body, position) in particles.body.iter_mut().zip(&mut particles.position) {
@@ -39,17 +39,15 @@ fn input(choice: &Choice) -> (TransportVelocityInput<2>, Particles<2>) {
     }
     let settings = Settings { free_surface: true, artificial_viscosity: 0.7, ..SETTINGS };
     let settings = Settings { shifting: choice.shifting, ..settings };
-    let input = solids_in_box(particles, settings, vec![SOLID; 2]);
+    let (input, solids) = solids_in_box(particles, settings, vec![SOLID; 2]);
     let Choice { contact, corrected, self_contact, .. } = *choice;
-    let solids =
-        input.solids.map(|solids| SolidsInput { contact, corrected, self_contact, ..solids });
-    (TransportVelocityInput { solids, ..input }, now)
+    (input, SolidsInput { contact, corrected, self_contact, ..solids }, now)
 }
 
 /// Accelerations, deviations and all that a state has after both parts have come together.
 fn together(choice: &Choice) -> (Vec<Forces<2>>, Vec<f64>) {
-    let (input, now) = input(choice);
-    let mut scheme = TransportVelocity::new(input).expect("the solids can be built");
+    let (input, solids, now) = input(choice);
+    let mut scheme = Solids::new(input, solids).expect("the solids can be built");
     let (mut state, count) = (scheme.initial_state(), scheme.particle_count());
     let matter = state.len() - 9 * count;
     let noise = |k: usize| (k as f64 * 12.9898).sin();
@@ -113,7 +111,8 @@ fn what_are_neighbors_at_the_start_cannot_touch() {
         begins_away: false,
         self_contact: Some(0.149),
     };
-    let refused = TransportVelocity::new(input(&bodies).0).map(|_| ());
+    let (input, solids, _) = input(&bodies);
+    let refused = Solids::new(input, solids).map(|_| ());
     let Err(error @ TransportVelocityError::SelfContact { distance, support }) = refused else {
         panic!("{refused:?}");
     };

@@ -23,6 +23,7 @@ impl Scheme for Pendulum {
     fn description(&self) -> &'static SchemeDescription {
         &SchemeDescription {
             offers: &[piola::schemes::Capability::Rates],
+            matter: None,
             name: "pendulum",
             fields: &[],
             energies: &[],

@@ -21,6 +21,7 @@ fn cases() -> Vec<Case> {
         load("upwind/piston", &["time.end=0.2"]),
         load("upwind/stiff-column", &["time.error=0.1", "time.end=0.4"]),
         load("ctvf/taylor-green", &["time.end=0.05"]),
+        load("ctvf/compression", &["time.end=1e-5"]),
         load("dual-support/free-vibration", &["time.end=0.01"]),
         load("dual-support/tension", &["time.step=0.25"]),
         load("elastodynamics/pulse", &["time.end=4e-6"]),

@@ -7,10 +7,10 @@ use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::geometry::{Faces, Particles, Shape};
-use crate::neighbors::{Domain, spatial_order};
+use crate::neighbors::{Domain, NeighborStatistics, spatial_order};
 use crate::schemes::transport_velocity::{
-    Fluid, Guard, Solid, SolidsInput, TransportVelocity, TransportVelocityError,
-    TransportVelocityInput, Wall,
+    Continuum, Fluid, Guard, Hypoelastic, Solid, SolidsInput, TransportVelocity,
+    TransportVelocityError, TransportVelocityInput, Wall, WeaklyCompressible,
 };
 use crate::schemes::{Initial, Scheme};
 
@@ -30,10 +30,9 @@ pub(super) fn build<const D: usize>(
     particles.reorder(&order.map_err(|error| {
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
-    let solids = materials(case);
-    let fluid = match &solids {
-        Some(materials) => Fluid::of_solids(materials),
-        None => fluid(case)?,
+    let matter = match materials(case) {
+        Some(materials) => Matter::Solids(materials),
+        None => Matter::Fluid(fluid(case)?),
     };
     let (faces, shape) = faces(case, &particles)?;
     let mut problems = Vec::new();
@@ -44,9 +43,9 @@ pub(super) fn build<const D: usize>(
         return Err(problems);
     }
     let walls = walls(case);
-    let (motion, held) = match solids {
-        Some(_) => split(motion, &particles, &walls),
-        None => (motion, Vec::new()),
+    let (motion, held) = match matter {
+        Matter::Solids(_) => split(motion, &particles, &walls),
+        Matter::Fluid(_) => (motion, Vec::new()),
     };
     let mut warnings = Vec::new();
     let no_face = Faces::default();
@@ -66,23 +65,15 @@ pub(super) fn build<const D: usize>(
         warnings.extend(tanks::warnings(case, shape, &particles, &faces, support));
     }
     let initial = initial(case, &particles);
-    if solids.is_none() {
-        warnings.extend(compression(&fluid, &initial));
+    if let Matter::Fluid(fluid) = &matter {
+        warnings.extend(compression(fluid, &initial));
     }
     let sliding = sliding(case, &particles);
-    let built = TransportVelocity::new(TransportVelocityInput {
+    let input = TransportVelocityInput {
         domain,
         kernel,
         smoothing_length,
         settings: settings.settings,
-        fluid,
-        solids: solids.map(|materials| SolidsInput {
-            materials,
-            contact: settings.contact,
-            self_contact: settings.self_contact.as_ref().map(|distance| **distance * spacing),
-            corrected: settings.corrected_gradients,
-            held,
-        }),
         initial,
         walls,
         faces,
@@ -90,8 +81,8 @@ pub(super) fn build<const D: usize>(
         sliding,
         body_forces: loads::body_forces(case),
         particles,
-    });
-    let mut scheme = built.map_err(|error| {
+    };
+    let refuse = |error: TransportVelocityError| {
         let (place, label) = match &error {
             TransportVelocityError::Start { .. } => {
                 (case.bodies[0].name.place, "initial values of a body")
@@ -103,17 +94,46 @@ pub(super) fn build<const D: usize>(
             _ => (place, "with this smoothing length"),
         };
         vec![case.problem_at(place, error.to_string(), label, None)]
-    })?;
-    scheme.guard(Guard {
+    };
+    let guard = Guard {
         bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
         removes: settings.removes_escaped,
-    });
+    };
+    let (scheme, (neighbors, poorly_supported)) = match matter {
+        Matter::Fluid(fluid) => {
+            let built = TransportVelocity::<D, WeaklyCompressible<D>>::new(input, fluid);
+            guarded(built.map_err(refuse)?, guard)
+        }
+        Matter::Solids(materials) => {
+            let solids = SolidsInput {
+                materials,
+                contact: settings.contact,
+                self_contact: settings.self_contact.as_ref().map(|distance| **distance * spacing),
+                corrected: settings.corrected_gradients,
+                held,
+            };
+            let built = TransportVelocity::<D, Hypoelastic<D>>::new(input, solids);
+            guarded(built.map_err(refuse)?, guard)
+        }
+    };
+    Ok((scheme, Built { probes, lines, bodies: reports, neighbors, poorly_supported, warnings }))
+}
+
+/// What the bodies of a case are made of; the reader of cases has refused a mixture.
+enum Matter {
+    Fluid(Fluid),
+    Solids(Vec<Solid>),
+}
+
+/// A system that looks for particles that escape, with the statistics of its neighbours.
+fn guarded<const D: usize, M: Continuum<D>>(
+    mut scheme: TransportVelocity<D, M>,
+    guard: Guard,
+) -> (Box<dyn Scheme>, (NeighborStatistics, Vec<u32>)) {
+    scheme.guard(guard);
     // Particles deep in a wall may be alone.
-    let (neighbors, poorly_supported) = row_statistics(&scheme, |a| !scheme.is_wall(a));
-    Ok((
-        Box::new(scheme),
-        Built { probes, lines, bodies: reports, neighbors, poorly_supported, warnings },
-    ))
+    let statistics = row_statistics(&scheme, |a| !scheme.is_wall(a));
+    (Box::new(scheme), statistics)
 }
 
 /// What of its density a fluid may be compressed by at the start without a warning: that of speeds of a
@@ -154,7 +174,7 @@ fn fluid(case: &Case) -> Result<Fluid, Vec<Problem>> {
     found.ok_or_else(|| vec![case.problem_at(case.scheme.place, "no fluid", "needs one", None)])
 }
 
-/// The solids of all bodies, if they are solids; the reader of cases has refused a mixture.
+/// The solids of all bodies, if they are solids.
 fn materials(case: &Case) -> Option<Vec<Solid>> {
     let solid = |body: &model::Body| match body.material.value {
         model::Material::Hypoelastic(solid) => Some(solid),

@@ -10,11 +10,14 @@ use crate::observe::TANGENT_COLUMNS;
 impl Reader<'_, '_> {
     /// The field called `name`, which stands at `place`.
     pub(super) fn field(&mut self, name: &str, place: Place) -> Option<FieldDescription> {
-        let fields = catalogue::fields(self.names.scheme);
+        let scheme = self.names.described();
+        let fields = catalogue::fields(scheme);
         if let Some(field) = fields.iter().find(|field| field.name == name) {
             return Some(*field);
         }
-        let message = format!("the scheme `{}` has no field `{name}`", self.names.scheme);
+        let of = scheme.and_then(|scheme| scheme.matter);
+        let of = of.map_or_else(String::new, |matter| format!(" for {matter}"));
+        let message = format!("the scheme `{}` has no field `{name}`{of}", self.names.scheme);
         let help = suggestion(name, fields.iter().map(|field| field.name));
         self.refuse(Problem::new(place, message, "unknown field").help(help))
     }
@@ -80,17 +83,21 @@ impl Reader<'_, '_> {
         let owned = column.to_owned();
         let quantity = match table {
             "energy" => {
-                self.known_column(text, column, &catalogue::energy_columns(self.names.scheme))?;
+                self.known_column(
+                    text,
+                    column,
+                    &catalogue::energy_columns(self.names.described()),
+                )?;
                 Quantity::Energy(owned)
             }
             "momentum" => {
-                let known = catalogue::momentum_columns(self.names.scheme, self.dimension);
+                let known = catalogue::momentum_columns(self.names.described(), self.dimension);
                 let known: Vec<&str> = known.iter().map(String::as_str).collect();
                 self.known_column(text, column, &known)?;
                 Quantity::Momentum(owned)
             }
             "step" => {
-                self.known_column(text, column, &catalogue::step_columns(self.names.scheme))?;
+                self.known_column(text, column, &catalogue::step_columns(self.names.described()))?;
                 Quantity::Step(owned)
             }
             "run" => {

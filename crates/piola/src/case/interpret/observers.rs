@@ -182,7 +182,7 @@ impl Reader<'_, '_> {
             self.not_too_often(&table_every, end, MAX_ROWS, "rows");
         }
         let fields = match record.filter(|record| record.has("fields")) {
-            None => catalogue::fields(self.names.scheme),
+            None => catalogue::fields(self.names.described()),
             Some(record) => {
                 let names = record.texts("fields");
                 let fields: Vec<_> =

@@ -57,7 +57,7 @@ impl Reader<'_, '_> {
     fn suits_scheme(&mut self, integrator: &Located<String>, needs: Capability) {
         let (name, scheme, dissipates) =
             (&integrator.value, self.names.scheme, self.names.dissipates);
-        let Some(offers) = SchemeDescription::of(scheme).map(|scheme| scheme.offers) else {
+        let Some(offers) = self.names.described().map(|scheme| scheme.offers) else {
             return;
         };
         let is_offered = |needs: Capability| {
@@ -76,7 +76,9 @@ impl Reader<'_, '_> {
             false => {
                 let others = SchemeDescription::ALL.into_iter();
                 let others = others.filter(|other| other.offers.contains(&needs));
-                let others = one_of(others.map(|scheme| scheme.name));
+                let mut others: Vec<&str> = others.map(|scheme| scheme.name).collect();
+                others.dedup();
+                let others = one_of(others);
                 ("", format!("for `{name}` a scheme that it moves: {others}"))
             }
         };

@@ -24,14 +24,13 @@ pub enum Scheme {
 impl Scheme {
     /// Its name in a case file.
     pub fn name(&self) -> &'static str {
-        let description = match self {
-            Self::Upwind(_) => upwind::DESCRIPTION,
-            Self::TransportVelocity(_) => transport_velocity::DESCRIPTION,
-            Self::DualSupport(_) => dual_support::DESCRIPTION,
-            Self::Elastodynamics(_) => elastodynamics::DESCRIPTION,
-            Self::Interpolation(_) => interpolation::DESCRIPTION,
-        };
-        description.name
+        match self {
+            Self::Upwind(_) => upwind::DESCRIPTION.name,
+            Self::TransportVelocity(_) => transport_velocity::NAME,
+            Self::DualSupport(_) => dual_support::DESCRIPTION.name,
+            Self::Elastodynamics(_) => elastodynamics::DESCRIPTION.name,
+            Self::Interpolation(_) => interpolation::DESCRIPTION.name,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What faulty case files are told, word by word.
 
 use super::*;
+use crate::schemes::SchemeDescription;
 
 /// A small good case that the tests break.
 const GOOD: &str = "\
@@ -46,7 +47,10 @@ fn of_an_unknown_scheme_nothing_else_is_said() {
 fn the_good_case_is_good() {
     let case = read_with(GOOD, &[]).unwrap_or_else(|problems| panic!("{problems}"));
     assert_eq!(case.output.every.value, 0.03);
-    assert_eq!(case.output.fields.len(), catalogue::fields("upwind").len());
+    assert_eq!(
+        case.output.fields.len(),
+        catalogue::fields(SchemeDescription::of("upwind", "")).len()
+    );
 }
 
 /// A part of the good case, what it is replaced by, and what is said then; again and again.

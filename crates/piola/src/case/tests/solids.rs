@@ -284,3 +284,23 @@ fn loads_are_those_of_the_surface_on_any_lattice() {
         }
     }
 }
+
+#[test]
+fn fluids_and_solids_of_one_scheme_show_what_they_have() {
+    let fluid = "kind = \"weakly_compressible\", density = 1000.0, wave_speed = 10.0";
+    let solid =
+        "kind = \"hypoelastic\", density = 1000.0, young_modulus = 1e6, poisson_ratio = 0.3";
+    let read = |material: &str, field: &str| {
+        let text = GOOD.replace("dual_support", "transport_velocity").replace(
+            &GOOD[GOOD.find("kind = \"neo").unwrap()..GOOD.find(" }\n\n").unwrap()],
+            material,
+        );
+        let probe = "[[probe]]\nname = \"most\"\nkind = \"extremum\"\nof = \"largest\"\nfield = ";
+        read_with(&format!("{text}\n{probe}\"{field}\"\n"), &[]).map_err(|found| found.to_string())
+    };
+    for (own, other, field) in [(solid, fluid, "von_mises"), (fluid, solid, "summed_density")] {
+        let other = read(other, field).expect_err(field);
+        assert!(other.contains(&format!("has no field `{field}` for ")), "{other}");
+        read(own, field).unwrap_or_else(|problems| panic!("{problems}"));
+    }
+}

@@ -22,6 +22,7 @@ const CONVEXITY: &str = "the material had lost its convexity before, which small
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "dual_support",
+    matter: None,
     offers: &[Capability::Rates, Capability::Kicks, Capability::Newmark, Capability::Statics],
     fields: Made::FIELDS,
     energies: &ENERGIES,

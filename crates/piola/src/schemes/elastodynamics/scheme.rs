@@ -13,6 +13,7 @@ use crate::schemes::{
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "elastodynamics",
+    matter: None,
     offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &ENERGIES,

@@ -9,6 +9,7 @@ use crate::schemes::{
 /// What the study is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "interpolation",
+    matter: None,
     offers: &[Capability::Kicks],
     fields: Made::FIELDS,
     energies: &[],

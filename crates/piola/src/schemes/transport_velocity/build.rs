@@ -2,24 +2,18 @@
 
 use piola_formulas::fluid;
 use piola_formulas::kernels::Kernel;
-use piola_formulas::pairs::Record;
-use piola_formulas::pairs::fluid::FluidSide;
 use thiserror::Error;
 
-use super::shifting::Iteration;
-use super::{
-    Continua, DensityRule, Fluid, Forces, Hold, LEDGER, Opening, Rates, Settings, Slip, Solids,
-    SolidsInput, TransportVelocity, WallParticle, WallValues,
-};
+use super::walls::WallParticle;
+use super::{AtRest, Common, Continuum, DensityRule, Settings, Slip, TransportVelocity};
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
+use crate::fields::width;
 use crate::geometry::{Faces, Particles};
 use crate::neighbors::{Domain, NeighborError};
 use crate::operators::MovingSupport;
-use crate::schemes::input::{
-    check_index, check_lengths, check_materials, check_particles, check_selected,
-};
+use crate::schemes::input::{check_index, check_lengths, check_materials, check_particles};
 use crate::schemes::stages::{StageFault, Stages};
 use crate::schemes::{Initial, InputError, SplitScheme};
 
@@ -32,9 +26,9 @@ pub struct Wall {
     pub slip: Slip,
 }
 
-/// All that the formulation is bound to.
+/// All that the formulation is bound to but the matter.
 pub struct TransportVelocityInput<const D: usize> {
-    /// The particles of fluid and walls, all of the same spacing.
+    /// The particles of matter and walls, all of the same spacing.
     pub particles: Particles<D>,
     /// The box and its periodic axes.
     pub domain: Domain<D>,
@@ -44,10 +38,6 @@ pub struct TransportVelocityInput<const D: usize> {
     pub smoothing_length: f64,
     /// Numerical settings.
     pub settings: Settings,
-    /// The fluid; of solids the numbers that stand for all of them, [`Fluid::of_solids`].
-    pub fluid: Fluid,
-    /// The solids, if there are some in place of the fluid.
-    pub solids: Option<SolidsInput>,
     /// Initial velocity and pressure.
     pub initial: Initial<D>,
     /// The bodies that are walls.
@@ -131,14 +121,20 @@ pub enum TransportVelocityError {
     },
 }
 
-impl<const D: usize> TransportVelocity<D> {
-    /// Finds neighbours and the accelerations of the start.
+impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
+    /// Finds neighbours and the accelerations of the start. The matter is a [`Fluid`](super::Fluid), or
+    /// solids with [`SolidsInput`](super::SolidsInput).
     ///
     /// # Errors
     /// [`TransportVelocityError`] for parts that do not fit together.
-    pub fn new(input: TransportVelocityInput<D>) -> Result<Self, TransportVelocityError> {
-        check(&input)?;
-        let TransportVelocityInput { particles, settings, fluid, initial, .. } = input;
+    pub fn new(
+        input: TransportVelocityInput<D>,
+        matter: M::Input,
+    ) -> Result<Self, TransportVelocityError> {
+        let bodies = input.particles.body.iter().max().map_or(0, |most| *most as usize + 1);
+        let at_rest = M::at_rest(&matter, bodies);
+        check(&input, &at_rest)?;
+        let TransportVelocityInput { particles, settings, initial, .. } = input;
         let count = particles.len();
         let wall_of =
             |number: usize| input.walls.iter().find(|wall| wall.body == particles.body[number]);
@@ -165,111 +161,77 @@ impl<const D: usize> TransportVelocity<D> {
             input.smoothing_length,
             input.domain,
         )?;
-        let continua = Continua::new(input.solids.as_ref(), &particles, &is_wall, input.domain);
-        let solids = match input.solids {
-            Some(solids) => {
-                Some(Box::new(Solids::new(solids, &particles, &is_wall, &input.domain)?))
-            }
-            None => None,
+        let density = |(body, pressure): (&u32, &f64)| {
+            start_density(settings.density, &at_rest[*body as usize], *pressure)
         };
-        let densities: Vec<f64> = (0..count)
-            .map(|number| match &solids {
-                Some(solids) => solids.density(particles.body[number]),
-                None => start_density(&settings, &fluid, initial.pressure[number]),
-            })
-            .collect();
-        let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
-        let mut scheme = Self {
-            mass: mass.collect(),
-            sides: vec![FluidSide::zero(); count],
-            densities,
-            rates: vec![Rates::default(); count],
-            forces: vec![Forces::default(); count],
-            shear: vec![Vector::zeros(); if walls.is_empty() { 0 } else { count }],
-            holds: vec![
-                Hold::default();
-                if walls.is_empty() || solids.is_some() { 0 } else { count }
-            ],
-            wall_values: vec![WallValues::default(); walls.len()],
-            openings: vec![Opening::default(); if settings.free_surface { count } else { 0 }],
-            found: vec![(Vector::zeros(), false); if settings.free_surface { count } else { 0 }],
-            marks: vec![false; if settings.free_surface { count } else { 0 }],
-            iteration: Iteration::default(),
-            continua,
-            solids,
-            drift: Stages::default(),
-            accelerate: Stages::default(),
-            fastest: 0.0,
-            guard: None,
-            removed: Vec::new(),
-            lost: None,
-            start: Vec::new(),
-            body_forces: input.body_forces,
-            particles,
-            support,
-            settings,
-            fluid,
-            is_wall,
-            walls,
-            motion,
-            sliding,
-        };
+        let densities = particles.body.iter().zip(&initial.pressure).map(density);
+        let densities: Vec<f64> = densities.collect();
+        let (walls, matter_at_rest) = ((is_wall, walls), (at_rest, densities.as_slice()));
+        let mut common = Common::new(particles, support, settings, walls, matter_at_rest);
+        (common.motion, common.sliding) = (motion, sliding);
+        common.body_forces = input.body_forces;
+        let matter = M::bind(matter, &mut common)?;
+        let (drift, accelerate) = (Stages::default(), Stages::default());
+        let mut scheme = Self { common, matter, start: Vec::new(), drift, accelerate };
         scheme.plan()?;
-        scheme.begin(&initial)?;
+        scheme.begin(&initial, &densities)?;
         Ok(scheme)
     }
 
     /// Makes the state of the start, with its accelerations and deviations.
-    fn begin(&mut self, initial: &Initial<D>) -> Result<(), TransportVelocityError> {
-        let count = self.particles.len();
-        let mut state = vec![0.0; self.matter_start() + self.matter_length()];
-        let matter = self.matter_start();
-        self.begin_matter(&mut state[matter..]);
-        let (own, _) = self.parts(&mut state);
-        for number in 0..count {
-            let position = self.particles.position[number];
+    fn begin(
+        &mut self,
+        initial: &Initial<D>,
+        densities: &[f64],
+    ) -> Result<(), TransportVelocityError> {
+        let (common, ledger) = (&self.common, &M::DESCRIPTION.ledger);
+        let columns = common.particles.len() * width(M::DESCRIPTION.fields, D);
+        let mut state = vec![0.0; columns + ledger.length(D) + 1 + self.matter.length(common)];
+        let (own, _) = common.parts(&mut state);
+        for (number, density) in densities.iter().enumerate() {
+            let position = common.particles.position[number];
             let (velocity, pressure) = (initial.velocity[number], initial.pressure[number]);
             let usable = velocity.iter().all(|v| v.is_finite())
                 && pressure.is_finite()
-                && self.mass[number] > 0.0;
+                && common.mass[number] > 0.0;
             if !usable {
                 let position = position.iter().copied().collect();
-                let id = self.particles.id[number];
+                let id = common.particles.id[number];
                 return Err(TransportVelocityError::Start { id, position });
             }
-            if !self.is_wall[number] {
+            if !common.is_wall[number] {
                 own.velocity[number] = velocity;
                 own.pressure[number] = pressure;
             }
-            own.position[number] = self.support.list().domain().wrap(&position);
-            own.density[number] = self.densities[number];
+            own.position[number] = common.support.list().domain().wrap(&position);
+            own.density[number] = *density;
         }
-        self.hold_velocities(0.0, &mut state);
+        self.matter.begin(common, &mut state);
+        self.matter.prescribe(common, 0.0, &mut state);
         self.load(&state);
-        self.note_evenness();
+        self.common.note_evenness();
         self.accelerate(0.0, &mut state);
-        LEDGER.clear(D, self.parts(&mut state).1);
+        ledger.clear(D, self.tail(&mut state));
         self.start = state;
         Ok(())
-    }
-
-    /// The state of the start.
-    pub(super) fn start(&self) -> &[f64] {
-        &self.start
     }
 }
 
 /// The density that the law of state gives for a pressure, or rho0 where sums over masses follow.
-fn start_density(settings: &Settings, fluid: &Fluid, pressure: f64) -> f64 {
-    match settings.density {
-        DensityRule::Continuity => fluid::density(pressure, fluid.density, fluid.wave_speed),
-        DensityRule::Summation => fluid.density,
+fn start_density(rule: DensityRule, matter: &AtRest, pressure: f64) -> f64 {
+    match rule {
+        DensityRule::Continuity => fluid::density(pressure, matter.density, matter.wave_speed),
+        DensityRule::Summation => matter.density,
     }
 }
 
-fn check<const D: usize>(input: &TransportVelocityInput<D>) -> Result<(), TransportVelocityError> {
+fn check<const D: usize>(
+    input: &TransportVelocityInput<D>,
+    at_rest: &[AtRest],
+) -> Result<(), TransportVelocityError> {
     let (particles, initial) = (&input.particles, &input.initial);
     check_particles(particles)?;
+    check_materials(particles, at_rest.len())?;
     check_lengths(
         particles.len(),
         &[
@@ -282,24 +244,11 @@ fn check<const D: usize>(input: &TransportVelocityInput<D>) -> Result<(), Transp
         let what = || format!("`{}`: velocity component", condition.name);
         check_index(what, condition.component, D)?;
     }
-    if let Some(solids) = &input.solids {
-        check_materials(particles, solids.materials.len())?;
-        let support = input.kernel.support_radius(input.smoothing_length);
-        if let Some(distance) = solids.self_contact.filter(|&distance| !(distance > support)) {
-            return Err(TransportVelocityError::SelfContact { distance, support });
-        }
-        for condition in &solids.held {
-            check_selected(&condition.name, &condition.particles, particles.len())?;
-            let what = || format!("`{}`: velocity component", condition.name);
-            check_index(what, condition.component, D)?;
-        }
-    }
-    let positive = [
-        ("the smoothing length", input.smoothing_length),
-        ("the density of the fluid", input.fluid.density),
-        ("the wave speed of the fluid", input.fluid.wave_speed),
-    ];
-    for (what, got) in positive {
+    let of_matter = |matter: &AtRest| {
+        [("the density at rest", matter.density), ("the wave speed at rest", matter.wave_speed)]
+    };
+    let positive = [("the smoothing length", input.smoothing_length)];
+    for (what, got) in positive.into_iter().chain(at_rest.iter().flat_map(of_matter)) {
         if !(got > 0.0 && got.is_finite()) {
             return Err(TransportVelocityError::NotPositive { what, got });
         }

@@ -1,8 +1,8 @@
-//! Particles of the fluid that leave it: through a wall, or out of the box around everything.
+//! Particles that leave the others: through a wall, or out of the box around everything.
 
 use piola_formulas::kernels::Needs;
 
-use super::TransportVelocity;
+use super::Common;
 use crate::Vector;
 use crate::operators::{Among, NeighborBlock, visit};
 use crate::parallel;
@@ -31,14 +31,9 @@ const ADVICE: &str = "if a few lost drops do not matter, `scheme.escaped = \"rem
     out and counts them; otherwise make the wall thicker than the support of the kernel and without \
     holes, raise the wave speed of the fluid, or lower `time.cfl`";
 
-impl<const D: usize> TransportVelocity<D> {
-    /// Lets the scheme look for particles that escape. Without walls there is nothing to escape
-    /// from.
-    ///
-    /// A particle has gone through a wall if it is behind the plane of the nearest wall particle, at
-    /// an edge behind all of them, and not beyond the end of the wall. It has left the box around everything if it is further from that
-    /// of the walls, along an axis that is not periodic, than everything is wide at the start.
-    pub fn guard(&mut self, guard: Guard) {
+impl<const D: usize> Common<D> {
+    /// See [`TransportVelocity::guard`](super::TransportVelocity::guard).
+    pub(super) fn guard(&mut self, guard: Guard) {
         let position = &self.particles.position;
         let Some(&first) = position.first().filter(|_| !self.walls.is_empty()) else { return };
         let low = position.iter().fold(first, |low, x| low.inf(x));
@@ -153,12 +148,12 @@ impl<const D: usize> TransportVelocity<D> {
             return total;
         }
         self.load(state);
-        let (escaped, compliance) = (self.escaped(state), self.compliance());
+        let escaped = self.escaped(state);
         let (own, _) = self.parts(state);
         for number in escaped {
             let mass = self.mass[number];
             let (velocity, pressure) = (own.velocity[number], own.pressure[number]);
-            let energy = velocity.norm_squared() + compliance * pressure * pressure;
+            let energy = velocity.norm_squared() + self.compliance(number) * pressure * pressure;
             total.power -= 0.5 * mass * energy;
             add_moments(&own.position[number], &(velocity * -mass), &mut total.force);
             for column in [&mut *own.velocity, own.deviation, own.kick] {

@@ -1,9 +1,9 @@
-//! The columns of the formulation and its fields.
+//! The columns and fields that all matter has. Each kind has a table of its own behind them.
 
 use crate::fields::columns;
 
 columns! {
-    pub(super) struct Columns, ColumnsMut, enum Made;
+    pub struct Columns, ColumnsMut, enum Made;
     evolved position: Vector, "m", "current position, inside the periodic box";
     evolved velocity: Vector, "m/s", "momentum velocity u";
     kept deviation: Vector, "m/s", "what the particle moves beyond its velocity";
@@ -13,19 +13,12 @@ columns! {
     derived(0) force: Vector, "N", "total force; on a wall that of the fluid";
     evolved pressure: Scalar, "Pa", "pressure p, positive in compression";
     evolved density: Scalar, "kg/m3", "density rho as the scheme has it";
-    derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
     derived(1) vorticity: Scalar, "1/s", "curl of u, in 3D its magnitude";
     derived(1) divergence: Scalar, "1/s", "divergence of u";
     derived(2) surface: Scalar, "1", "1 on a free surface, if they are looked for";
     derived(2) surface_normal: Vector, "1", "unit normal near a free surface";
-    derived(0) wall: Scalar, "1", "1 for particles of walls, 0 for fluid";
+    derived(0) wall: Scalar, "1", "1 for particles of walls, 0 for others";
     constant normal: Vector, "1", "unit normal of walls, towards the fluid";
-    derived(0) cauchy_stress: Tensor, "Pa",
-        "Cauchy stress of solids, positive in tension; 0 for fluids";
-    derived(0) von_mises: Scalar, "Pa",
-        "equivalent stress of von Mises of solids, with the stress across in plane strain";
-    derived(0) plastic_strain: Scalar, "1", "equivalent plastic strain of solids";
-    derived(0) temperature: Scalar, "K", "temperature of solids";
     derived(1) neighbors: Scalar, "1", "number of neighbours inside the support";
     constant mass: Scalar, "kg", "mass, for 1 m in missing dimensions";
 }

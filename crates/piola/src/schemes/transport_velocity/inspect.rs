@@ -1,6 +1,6 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
-use super::TransportVelocity;
+use super::{Continuum, TransportVelocity};
 use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, StepLimit};
 
@@ -23,7 +23,7 @@ pub(super) fn step_limits(
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     /// The health of `state` and the bounds on the step, CTVF (61) corrected, theory (34):
     ///
     /// - `acoustic`: `h / (c + |u|)` of the largest speed; of solids with the speed of longitudinal waves,
@@ -34,26 +34,27 @@ impl<const D: usize> TransportVelocity<D> {
     ///
     /// All are scaled by the CFL number, which the paper has as 0.25.
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
-        if self.guard.is_some() {
-            self.load(state);
+        if self.common.guard.is_some() {
+            self.common.load(state);
         }
+        let common = &self.common;
         let (mut health, [signal, acceleration]) =
-            look(self.particles.len(), [0.0; 2], |number| self.look_at(number, state));
+            look(common.particles.len(), [0.0; 2], |number| self.look_at(number, state));
         let fastest = Most { value: health.largest_speed, particle: health.largest_speed_particle };
-        let signal = match self.solids {
-            Some(_) => signal,
-            None => {
-                health.largest_wave_speed = self.fluid.wave_speed;
-                Most { value: self.fluid.wave_speed + fastest.value, ..fastest }
+        let signal = match self.matter.wave_speed() {
+            None => signal,
+            Some(wave_speed) => {
+                health.largest_wave_speed = wave_speed;
+                Most { value: wave_speed + fastest.value, ..fastest }
             }
         };
-        let h = self.support.smoothing_length();
-        step_limits(h, self.fluid.viscosity, [signal, fastest, acceleration], limits);
-        if let Some((guard, _)) = &self.guard
+        let h = common.support.smoothing_length();
+        step_limits(h, self.matter.viscosity(), [signal, fastest, acceleration], limits);
+        if let Some((guard, _)) = &common.guard
             && !guard.removes
             && health.first_not_finite.is_none()
         {
-            health.first_escaped = self.escaped(state).first().copied();
+            health.first_escaped = common.escaped(state).first().copied();
         }
         health
     }
@@ -62,20 +63,17 @@ impl<const D: usize> TransportVelocity<D> {
     /// squared acceleration.
     #[inline]
     fn look_at(&self, number: usize, state: &[f64]) -> Option<Seen<D, 2>> {
-        let at = self.columns(state);
-        let matter = match self.solids {
-            Some(_) => self.matter_of(number, state),
-            None => &[],
-        };
+        let common = &self.common;
+        let at = common.columns(state);
         let vectors = [&at.position, &at.velocity, &at.deviation, &at.kick];
         let mut vectors = vectors.iter().flat_map(|column| column[number].iter());
         let scalars = [at.density[number], at.pressure[number]];
-        if !vectors.all(|value| value.is_finite())
-            || !scalars.iter().chain(matter).all(|value| value.is_finite())
+        if !vectors.all(|value| value.is_finite()) || !scalars.iter().all(|value| value.is_finite())
         {
             return None;
         }
-        let velocity = at.velocity[number];
+        let (velocity, wave_speed) =
+            (at.velocity[number], self.matter.wave_speed_of(common, number, state)?);
         let mut seen = Seen {
             velocity,
             wave_speed: 0.0,
@@ -83,14 +81,11 @@ impl<const D: usize> TransportVelocity<D> {
             mismatch: 0.0,
             figures: [0.0; 2],
         };
-        if !self.is_wall[number] {
+        if !common.is_wall[number] {
             // The inverse has the sign of the density, and is the volume ratio.
-            seen.ratio = self.reference_density(number) / at.density[number];
-            seen.figures[1] = at.kick[number].norm_squared();
-            if let Some(wave_speed) = self.signal_speed(number, state) {
-                seen.wave_speed = wave_speed;
-                seen.figures[0] = wave_speed + velocity.norm();
-            }
+            seen.ratio = common.at_rest(number).density / at.density[number];
+            seen.wave_speed = wave_speed;
+            seen.figures = [wave_speed + velocity.norm(), at.kick[number].norm_squared()];
         }
         Some(seen)
     }

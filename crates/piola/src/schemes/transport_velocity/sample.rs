@@ -2,55 +2,63 @@
 
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::fluid::FluidSide;
-use piola_formulas::pairs::sums::{Density, VelocityGradient};
+use piola_formulas::pairs::sums::VelocityGradient;
 use piola_formulas::pairs::{MovingPair, Of, PairLaw};
 
 use super::fields::Made;
-use super::{Columns, Forces, Rates, TransportVelocity};
+use super::stages::{Instant, Pass};
+use super::{Columns, Common, Continuum, Forces, Rates, TransportVelocity};
 use crate::geometry::Faces;
 use crate::operators::{Among, NeighborBlock, Term, add_at, visit};
+use crate::schemes::ledger::Totals;
 use crate::{Tensor, Vector};
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     /// All passes at a state as it is: sides, rates and forces are those of `state` afterwards.
     pub(super) fn all_passes(&mut self, time: f64, state: &[f64]) {
-        self.load(state);
-        self.correct_gradients();
-        self.wall_pass(time);
-        self.rate_pass(time);
-        self.tension_pass();
-        self.force_pass();
-        self.add_body_forces(time);
-        self.hold_accelerations();
-        self.hold_off();
-        self.bear();
+        let (instant, mut totals) = (Instant { time, step: 0.0 }, Totals::default());
+        let mut state = state.to_vec();
+        for pass in self.accelerate.passes().to_vec() {
+            match pass {
+                Pass::Load | Pass::Walls | Pass::BodyForces | Pass::Own(_) => {}
+                Pass::Forces => self.matter.find_rates(&self.common, time),
+                _ => continue,
+            }
+            self.run(pass, instant, &mut state, &mut totals);
+        }
     }
 
     /// The terms of the equations at a state, particle by particle, for those who want to see
     /// them apart.
     pub fn terms(&mut self, time: f64, state: &[f64]) -> Vec<(Rates, Forces<D>)> {
         self.all_passes(time, state);
-        let places = self.support.list().places().iter();
-        places.map(|&place| (*self.rates_at(place as usize), self.forces[place as usize])).collect()
+        let common = &self.common;
+        let terms = |&place: &u32| {
+            let place = place as usize;
+            (self.matter.rates_at(common, place).0, common.forces[place])
+        };
+        common.support.list().places().iter().map(terms).collect()
     }
 
     /// The stages of observation: what neighbours show, then free surfaces.
     pub(super) fn make_fields(&mut self, stage: usize, time: f64, state: &[f64]) {
         if stage == 1 {
             self.load(state);
-            self.wall_pass(time);
-        } else if self.settings.free_surface {
-            self.opening_pass();
-            self.find_surfaces();
+            self.common.wall_pass(&mut self.matter, time);
+        } else if self.common.settings.free_surface {
+            self.common.opening_pass();
+            self.common.find_surfaces();
         }
     }
+}
 
+impl<const D: usize> Common<D> {
     /// Appends the components of one field of one particle.
     pub(super) fn push_field(
         &self,
         field: Made,
         number: usize,
-        (at, state): (&Columns<'_, D>, &[f64]),
+        at: &Columns<'_, D>,
         values: &mut Vec<f64>,
     ) {
         let place = self.support.list().places()[number] as usize;
@@ -64,7 +72,6 @@ impl<const D: usize> TransportVelocity<D> {
                 let force = at.kick[number] * self.mass[number];
                 values.extend_from_slice(force.as_slice());
             }
-            Made::summed_density => values.push(self.summed_density(place)),
             Made::vorticity => values.push(self.vorticity(place)),
             Made::divergence => values.push(self.velocity_gradient(place).trace()),
             Made::surface => {
@@ -85,9 +92,6 @@ impl<const D: usize> TransportVelocity<D> {
             }
             Made::neighbors => values.push(self.neighbor_count(place) as f64),
             Made::mass => values.push(self.mass[number]),
-            Made::cauchy_stress | Made::von_mises | Made::plastic_strain | Made::temperature => {
-                self.push_solid_field(field, number, (at, state), values)
-            }
         }
     }
 
@@ -114,7 +118,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// A sum over all neighbours, added to `sums`.
-    fn add_all<L: PairLaw<Pair = MovingPair<D>, Side = FluidSide<D>>>(
+    pub(super) fn add_all<L: PairLaw<Pair = MovingPair<D>, Side = FluidSide<D>>>(
         &self,
         law: L,
         place: usize,
@@ -122,13 +126,6 @@ impl<const D: usize> TransportVelocity<D> {
     ) {
         let sum = Term { law, source: self.sides.as_slice(), among: Among::All };
         add_at(&self.support, &sum, place, &mut NeighborBlock::default(), sums);
-    }
-
-    /// The sum of masses, theory (26).
-    fn summed_density(&self, place: usize) -> f64 {
-        let mut sum = self.sides[place].mass() * self.support.centre();
-        self.add_all(Density, place, &mut sum);
-        sum
     }
 
     /// The faces that a wall particle is behind.

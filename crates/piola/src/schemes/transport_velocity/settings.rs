@@ -2,8 +2,6 @@
 
 use piola_formulas::fluid;
 
-use super::Solid;
-
 /// How the density is found, theory (20) and (26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DensityRule {
@@ -188,19 +186,6 @@ pub struct Fluid {
     pub wave_speed: f64,
     /// Kinematic viscosity in m^2/s.
     pub viscosity: f64,
-}
-
-impl Fluid {
-    /// What stands for some solids where one number is needed: density and wave speed of that with
-    /// the fastest bulk waves, which bounds the speed of shifting. Without any it is a fluid that
-    /// cannot be built.
-    pub fn of_solids(materials: &[Solid]) -> Self {
-        let fastest =
-            materials.iter().max_by(|a, b| a.state.wave_speed.total_cmp(&b.state.wave_speed));
-        let state = fastest.map(|solid| (solid.state.density, solid.state.wave_speed));
-        let (density, wave_speed) = state.unwrap_or_default();
-        Self { density, wave_speed, viscosity: 0.0 }
-    }
 }
 
 /// What a wall does to the fluid that moves along it.

@@ -2,7 +2,7 @@
 
 use piola_formulas::pairs::fluid;
 
-use super::{Columns, TransportVelocity};
+use super::{Columns, Common};
 use crate::{Vector, parallel};
 
 /// A particle as its neighbours see it.
@@ -16,7 +16,7 @@ fn take<const D: usize>(side: &mut Side<D>, mass: f64, at: &Columns<'_, D>, numb
     side.set(mass, at.density[number], at.pressure[number]);
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Common<D> {
     /// Fills the sides again where a new list has renewed the places since they were loaded.
     pub(super) fn follow_places(&mut self, builds: u64, state: &[f64]) {
         if self.support.list().builds() == builds {
@@ -28,7 +28,7 @@ impl<const D: usize> TransportVelocity<D> {
                 take(side, mass[number as usize], &at, number as usize);
             }
         });
-        self.load_matter(state);
+        self.find_continua();
     }
 
     /// Finds the neighbours at the positions of `state` and fills the sides of all particles.
@@ -43,10 +43,16 @@ impl<const D: usize> TransportVelocity<D> {
             take(side, mass[number], &at, number);
             at.position[number]
         });
-        self.load_matter(state);
+        self.find_continua();
         self.lost = updated.is_err().then(|| {
             let lost = |position: &Vector<D>| !position.iter().all(|x| x.is_finite());
             at.position.iter().position(lost).unwrap_or(0)
         });
+    }
+
+    /// Fills what belongs to the places of particles, where a new list has renewed them.
+    fn find_continua(&mut self) {
+        let list = self.support.list();
+        self.continua.follow(list, &self.particles.body, &self.particles.position, &self.is_wall);
     }
 }

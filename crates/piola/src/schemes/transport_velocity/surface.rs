@@ -3,7 +3,7 @@
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::sums;
 
-use super::TransportVelocity;
+use super::Common;
 use crate::geometry::ball_volume;
 use crate::operators::{Among, NeighborBlock, OfOther, Term, add_at, visit};
 use crate::{Vector, parallel};
@@ -52,7 +52,7 @@ impl<const D: usize> Opening<D> {
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Common<D> {
     /// Fills the sums of CTVF (42), theory (29), where no pass over forces has done so.
     pub(super) fn opening_pass(&mut self) {
         let mut forces = std::mem::take(&mut self.forces);
@@ -196,7 +196,7 @@ impl<const D: usize> TransportVelocity<D> {
         add_at(support, &sum, place, block, &mut found);
         let (density, mut normal) = found;
         let number = support.list().numbers()[place] as usize;
-        let alone = density < 0.5 * self.reference_density(number);
+        let alone = density < 0.5 * self.at_rest(number).density;
         if normal.norm_squared() == 0.0 {
             return (normal, alone);
         }

@@ -1,13 +1,15 @@
 //! Walls of ghost particles, CTVF (46) to (53), theory (31), (32), (72).
 
 use piola_formulas::fluid;
-use piola_formulas::pairs::Record;
-use piola_formulas::pairs::wall::{Extrapolation, StressExtrapolation, Surroundings};
 
-use super::{Slip, TransportVelocity};
+use super::{AtRest, Common, Continuum, Slip};
 use crate::geometry::Faces;
-use crate::operators::{Among, NeighborBlock, Term, add_at};
+use crate::operators::NeighborBlock;
 use crate::{Vector, parallel};
+
+/// How far beside a wall particle, in spacings, the one in front of it may be: half of the diagonal of
+/// a face of particles in 3D is 0.71.
+pub(super) const BESIDE: f64 = 0.75;
 
 /// A particle of a wall.
 #[derive(Clone, Debug)]
@@ -20,21 +22,21 @@ pub(super) struct WallParticle<const D: usize> {
 
 /// What a wall particle takes from the fluid.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WallValues<const D: usize> {
+pub struct WallValues<const D: usize> {
     /// Velocity with which the wall moves in m/s.
     pub motion: Vector<D>,
     /// Velocity with which its surface slides besides, in m/s.
     sliding: Vector<D>,
     /// Acceleration of the wall in m/s^2.
     acceleration: Vector<D>,
-    velocity: Vector<D>,
-    deviation: Vector<D>,
-    shear: Vector<D>,
+    pub velocity: Vector<D>,
+    pub deviation: Vector<D>,
+    pub shear: Vector<D>,
     pressure: f64,
     /// Deviatoric stress of solids in Pa, as xx, yy, zz, yz, xz, xy.
-    deviator: [f64; 6],
+    pub deviator: [f64; 6],
     /// The normal towards what is around, if that slides.
-    mirror: Option<Vector<D>>,
+    pub mirror: Option<Vector<D>>,
 }
 
 impl<const D: usize> Default for WallValues<D> {
@@ -54,9 +56,9 @@ impl<const D: usize> Default for WallValues<D> {
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Common<D> {
     /// Completes the sides of wall particles from those of the fluid around them.
-    pub(super) fn wall_pass(&mut self, time: f64) {
+    pub(super) fn wall_pass<M: Continuum<D>>(&mut self, matter: &mut M, time: f64) {
         if self.walls.is_empty() {
             return;
         }
@@ -65,34 +67,21 @@ impl<const D: usize> TransportVelocity<D> {
         parallel::for_each_chunk(&mut values, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
-                self.extrapolate(&self.walls[first + offset], time, row, &mut block);
+                self.extrapolate(matter, &self.walls[first + offset], time, row, &mut block);
             }
         });
         for (wall, values) in self.walls.iter().zip(&values) {
             let number = wall.number as usize;
             let place = self.support.list().places()[number] as usize;
-            let (density, wave_speed) =
-                (self.reference_density(number), self.reference_wave_speed(number));
+            let AtRest { density, wave_speed } = *self.at_rest(number);
             let side = &mut self.sides[place];
             side.velocity = values.velocity;
             side.deviation = values.deviation;
             let pressure = values.pressure;
             side.set(self.mass[number], fluid::density(pressure, density, wave_speed), pressure);
-            self.shear[place] = values.shear;
-        }
-        if self.solids.is_some() {
-            self.stress_walls(&values);
+            matter.set_wall(place, values);
         }
         self.wall_values = values;
-    }
-
-    /// Gives walls of solids their deviatoric stress.
-    fn stress_walls(&mut self, values: &[WallValues<D>]) {
-        for (index, values) in values.iter().enumerate() {
-            let number = self.walls[index].number as usize;
-            let place = self.support.list().places()[number] as usize;
-            self.set_deviator(place, &values.deviator, values.mirror.as_ref());
-        }
     }
 
     /// Sets velocity and acceleration of the walls themselves.
@@ -111,32 +100,16 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Interpolates the fluid at a wall particle, CTVF (46), (47), (52), and reflects its velocities,
     /// CTVF (48) to (51). Without fluid around it moves with the wall and bears no pressure.
-    fn extrapolate(
+    fn extrapolate<M: Continuum<D>>(
         &self,
+        matter: &M,
         wall: &WallParticle<D>,
         time: f64,
         values: &mut WallValues<D>,
         block: &mut NeighborBlock<D>,
     ) {
         let place = self.support.list().places()[wall.number as usize] as usize;
-        let (support, sides) = (&self.support, self.sides.as_slice());
-        let among = Among::Active;
-        let around = match self.matter() {
-            None => {
-                let mut around = Surroundings::zero();
-                let sum = Term { law: Extrapolation::<D>, source: sides, among };
-                add_at(support, &sum, place, block, &mut around);
-                around
-            }
-            Some(matter) => {
-                let mut both = (Surroundings::zero(), values.deviator);
-                let law = StressExtrapolation::<D>;
-                let sum = Term { law, source: (sides, matter), among };
-                add_at(support, &sum, place, block, &mut both);
-                values.deviator = both.1;
-                both.0
-            }
-        };
+        let around = matter.around(self, place, values, block);
         let surface = values.motion + values.sliding;
         if !(around.weight > 0.0) {
             values.velocity = values.motion;
@@ -155,14 +128,20 @@ impl<const D: usize> TransportVelocity<D> {
             Slip::No => ghost.dragged,
             Slip::Free => ghost.velocity,
         };
-        if self.solids.is_some() {
-            match wall.slip {
-                // What is clamped does not slide in its gradients either.
-                Slip::No => {
-                    (values.velocity, values.deviation) = (values.shear, -ghost.carried);
-                }
-                Slip::Free => values.mirror = Some(*normal),
-            }
-        }
+        matter.reflect(wall.slip, normal, &ghost, values);
+    }
+
+    /// Which wall particle has a number.
+    pub(super) fn wall_of(&self, number: u32) -> Option<usize> {
+        self.walls.binary_search_by_key(&number, |wall| wall.number).ok()
+    }
+
+    /// How far a place is in front of the face of wall particle `index` in m, less than zero behind it, for the
+    /// way from there, with the normal of the face; nothing beyond an edge.
+    pub(super) fn over(&self, index: usize, way: &Vector<D>) -> Option<(f64, &Vector<D>)> {
+        let (height, normal) = self.walls[index].faces.in_front(way)?;
+        let aside = way.norm_squared() - way.dot(normal).powi(2);
+        let is_beside = aside <= (BESIDE * self.particles.spacing[0]).powi(2);
+        is_beside.then_some((height, normal))
     }
 }

@@ -16,6 +16,7 @@ use crate::{Tensor, parallel};
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     name: "upwind",
+    matter: None,
     offers: &[Capability::Rates, Capability::Kicks, Capability::Theta],
     fields: Made::FIELDS,
     energies: &ENERGIES,

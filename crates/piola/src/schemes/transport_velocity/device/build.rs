@@ -3,7 +3,6 @@
 use piola_device::lists::Lists;
 use piola_device::{Device, Machine};
 
-use super::super::stages::Pass;
 use super::super::{AtSurface, DensityRule, Shifting, Slip, TransportVelocity};
 use super::passes::{FIGURES, FORCES, drift_terms, kick_terms, side_width};
 use super::{Named, OnDevice, Plan, walls};
@@ -60,61 +59,58 @@ impl<const D: usize> Plan<D> {
 }
 
 /// What of a settled case has no body for devices.
-fn refusal(pass: Pass) -> Option<DeviceRefusal> {
-    let instead = match pass {
-        Pass::Iterate | Pass::Push => "use `scheme.shifting = \"spst\"` or \"none\"",
-        Pass::Prescribe | Pass::Correct | Pass::Tension | Pass::Hold => "use a fluid",
-        _ => return None,
+fn refusal(shifting: Shifting) -> Option<DeviceRefusal> {
+    let stage = match shifting {
+        Shifting::Iterative { .. } => "iterate",
+        Shifting::Background { .. } => "push",
+        Shifting::None | Shifting::Sun { .. } => return None,
     };
-    let what = format!("the stage `{}`", pass.name());
-    Some(DeviceRefusal::Stage { what, instead })
+    let instead = "use `scheme.shifting = \"spst\"` or \"none\"";
+    Some(DeviceRefusal::Stage { what: format!("the stage `{stage}`"), instead })
 }
 
 impl<const D: usize> TransportVelocity<D> {
     /// The steps of the fluid on a device.
-    pub(in super::super) fn to_device(
+    pub(in super::super) fn fluid_to_device(
         &self,
         device: Device,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        let (drift, accelerate) = (self.drift.passes(), self.accelerate.passes());
-        if self.solids.is_some() {
-            return Err(DeviceRefusal::Solids);
-        }
-        if let Some(refusal) = drift.iter().chain(accelerate).find_map(|pass| refusal(*pass)) {
+        let (common, fluid) = (&self.common, self.matter.fluid());
+        if let Some(refusal) = refusal(common.settings.shifting) {
             return Err(refusal);
         }
         let refuse = |what: &str, instead| Err(DeviceRefusal::Stage { what: what.into(), instead });
-        if self.settings.is_algebraic() {
+        if common.settings.is_algebraic() {
             let instead = "use `scheme.pressure = \"edac\"`";
             return refuse("a pressure by the law of state", instead);
         }
-        if self.motion.iter().next().is_some() {
+        if common.motion.iter().next().is_some() {
             return refuse("a wall that moves", "let it slide or rest");
         }
-        if !self.sliding.iter().all(|entry| entry.value.is_steady()) {
+        if !common.sliding.iter().all(|entry| entry.value.is_steady()) {
             return refuse("a wall that slides by a function of time", "let it slide steadily");
         }
-        if self.guard.as_ref().is_some_and(|(guard, _)| guard.removes) {
+        if common.guard.as_ref().is_some_and(|(guard, _)| guard.removes) {
             let instead = "leave out `scheme.escaped = \"remove\"`";
             return refuse("the removal of particles that escape", instead);
         }
-        if !self.body_forces.iter().all(BodyForce::is_uniform) {
+        if !common.body_forces.iter().all(BodyForce::is_uniform) {
             let instead = "take one that is the same everywhere";
             return refuse("a body force that depends on places", instead);
         }
-        let list = self.support.list();
+        let list = common.support.list();
         let periods = *list.domain().periodic();
-        let corrections = self.settings.corrections;
-        let evolves = self.settings.density == DensityRule::Continuity;
-        let by_crowding = matches!(self.settings.shifting, Shifting::Sun { .. });
-        let (rate_constants, rate_kind) = self.rate_law();
-        let (force_constants, force_kind) = self.force_law();
+        let corrections = common.settings.corrections;
+        let evolves = common.settings.density == DensityRule::Continuity;
+        let by_crowding = matches!(common.settings.shifting, Shifting::Sun { .. });
+        let (rate_constants, rate_kind) = self.matter.rate_law(common);
+        let (force_constants, force_kind) = self.matter.force_law(common);
         let plan = Plan {
-            kernel: self.support.kernel(),
-            smoothing_length: self.support.smoothing_length(),
+            kernel: common.support.kernel(),
+            smoothing_length: common.support.smoothing_length(),
             periods,
-            fluid: self.fluid,
-            sums_densities: self.settings.density == DensityRule::Summation,
+            fluid: *fluid,
+            sums_densities: common.settings.density == DensityRule::Summation,
             evolves,
             carries: [corrections.density && evolves, corrections.pressure],
             rate_constants,
@@ -122,22 +118,22 @@ impl<const D: usize> TransportVelocity<D> {
             force_constants,
             force_kind,
             shifts: by_crowding,
-            compliance: self.compliance(),
-            seeks_surfaces: by_crowding && self.settings.free_surface,
-            along_surfaces: self.settings.at_surface == AtSurface::Along,
-            even_count: self.even_count() as f64,
-            falls: !self.body_forces.is_empty(),
+            compliance: self.matter.compliance(),
+            seeks_surfaces: by_crowding && common.settings.free_surface,
+            along_surfaces: common.settings.at_surface == AtSurface::Along,
+            even_count: common.even_count() as f64,
+            falls: !common.body_forces.is_empty(),
             normals: self.most_normals(),
-            spacing: self.particles.spacing[0],
-            bounds: self.bounds(self.start()).map(|(low, high)| [low.into(), high.into()]),
+            spacing: common.particles.spacing[0],
+            bounds: common.bounds(&self.start).map(|(low, high)| [low.into(), high.into()]),
         };
-        let count = self.particles.len();
+        let count = common.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
         let (columns, scratch) = (self.device_columns(), plan.scratch());
         self.fits(&device, &columns, &scratch)?;
         let support = list.support();
         let skin = MovingSupport::<D>::SKIN * support;
-        let lists = Lists::new(&device, &self.is_wall, support, skin, &periods)?;
+        let lists = Lists::new(&device, &common.is_wall, support, skin, &periods)?;
         let mut machine = Machine::new(device, lists, |language| plan.passes(language), CHUNK)?;
         for (_, (name, before, width)) in &columns {
             machine.add_zeros(name, count * width)?;
@@ -146,14 +142,14 @@ impl<const D: usize> TransportVelocity<D> {
         for (name, width) in scratch {
             machine.add_zeros(name, count * width)?;
         }
-        machine.add("mass", &self.mass)?;
-        let wall = self.is_wall.iter().map(|&is_wall| f64::from(u8::from(is_wall)));
+        machine.add("mass", &common.mass)?;
+        let wall = common.is_wall.iter().map(|&is_wall| f64::from(u8::from(is_wall)));
         machine.add("wall", &wall.collect::<Vec<_>>())?;
         if normals > 0 {
             machine.add("faces", &self.face_numbers(faces, normals))?;
             machine.add("sliding", &self.sliding_numbers())?;
         }
-        let tail = self.start()[count * self.width()..].to_vec();
+        let tail = self.start[count * self.width()..].to_vec();
         Ok(Box::new(OnDevice {
             plan,
             machine,
@@ -166,9 +162,9 @@ impl<const D: usize> TransportVelocity<D> {
             is_picked: false,
             is_listed: false,
             fastest: 0.0,
-            speed: self.shifting_speed(),
-            body_forces: self.body_forces.clone(),
-            bodies: self.particles.body.clone(),
+            speed: common.shifting_speed(),
+            body_forces: common.body_forces.clone(),
+            bodies: common.particles.body.clone(),
             is_falling: false,
             skin,
         }))
@@ -181,10 +177,10 @@ impl<const D: usize> TransportVelocity<D> {
         columns: &[(usize, Named)],
         scratch: &[(&'static str, usize)],
     ) -> Result<(), DeviceRefusal> {
-        let number = self.particles.len() * size_of::<f64>();
+        let number = self.common.particles.len() * size_of::<f64>();
         let state = columns.iter().map(|(_, (name, _, width))| (*name, 2 * width * number));
         let others = scratch.iter().map(|(name, width)| (*name, width * number));
-        let lists = ("neighbours", 2 * self.support.list().entries() * size_of::<u32>());
+        let lists = ("neighbours", 2 * self.common.support.list().entries() * size_of::<u32>());
         let all = state.chain(others).chain([lists]).collect();
         match too_much(all, device.memory()) {
             None => Ok(()),
@@ -197,14 +193,14 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Most normals of a wall particle.
     fn most_normals(&self) -> usize {
-        let normals = self.walls.iter().map(|wall| wall.faces.normals().len());
+        let normals = self.common.walls.iter().map(|wall| wall.faces.normals().len());
         normals.max().map_or(0, |most| most.max(1))
     }
 
     /// The faces of wall particles as numbers, by number of the particle.
     fn face_numbers(&self, width: usize, most: usize) -> Vec<f64> {
-        let mut all = vec![0.0; self.particles.len() * width];
-        for wall in &self.walls {
+        let mut all = vec![0.0; self.common.particles.len() * width];
+        for wall in &self.common.walls {
             let (faces, row) = (&wall.faces, &mut all[wall.number as usize * width..][..width]);
             let normals = faces.normals();
             row[0] = normals.len() as f64;
@@ -219,9 +215,9 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Velocities with which walls slide, by number of the particle.
     fn sliding_numbers(&self) -> Vec<f64> {
-        let mut all = vec![0.0; self.particles.len() * D];
-        for entry in self.sliding.iter() {
-            let number = self.walls[entry.particle].number as usize;
+        let mut all = vec![0.0; self.common.particles.len() * D];
+        for entry in self.common.sliding.iter() {
+            let number = self.common.walls[entry.particle].number as usize;
             all[number * D + entry.component] = entry.value.value(entry.place, 0.0);
         }
         all

@@ -15,11 +15,12 @@ use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::fluid::{ForceConstants, RateConstants};
 
 use self::passes::{FIGURES, drift_terms, kick_terms};
+use super::Fluid;
+use super::fluid::{ACCELERATING, Barrier, DRIFTING, LEDGER};
 use super::inspect::step_limits;
 use super::ledger::{Drift, Kick};
 use super::shifting::Speed;
 use super::stages::{Instant, Pass};
-use super::{ACCELERATING, DRIFTING, Fluid, LEDGER};
 use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::parallel::Sums;
@@ -66,8 +67,8 @@ struct Plan<const D: usize> {
 struct OnDevice<const D: usize> {
     plan: Plan<D>,
     machine: Machine,
-    drift: Stages<Pass>,
-    accelerate: Stages<Pass>,
+    drift: Stages<Pass<Barrier>>,
+    accelerate: Stages<Pass<Barrier>>,
     /// Number of particles.
     count: usize,
     /// Where each column begins in a state, with its name and that of its copy.
@@ -135,7 +136,7 @@ impl<const D: usize> OnDevice<D> {
 
     fn run(
         &mut self,
-        pass: Pass,
+        pass: Pass<Barrier>,
         Instant { time, step }: Instant,
         totals: &mut Totals,
     ) -> Result<(), DeviceError> {
@@ -192,8 +193,10 @@ impl<const D: usize> OnDevice<D> {
                 let (scale, most) = self.speed.of(self.fastest);
                 self.start("shift", &[("scale", scale), ("most", most)])
             }
-            Pass::HoldOff => self.start("hold_off", &[]),
-            Pass::Bear => ["add_holds", "bear"].iter().try_for_each(|pass| self.start(pass, &[])),
+            Pass::Own(Barrier::HoldOff) => self.start("hold_off", &[]),
+            Pass::Own(Barrier::Bear) => {
+                ["add_holds", "bear"].iter().try_for_each(|pass| self.start(pass, &[]))
+            }
             Pass::Store => {
                 self.start("store", &[])?;
                 let sums = self.machine.sums(kick_terms(D), self.count)?;

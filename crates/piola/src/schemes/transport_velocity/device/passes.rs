@@ -11,7 +11,7 @@ use piola_formulas::pairs::fluid::{
 use piola_formulas::pairs::sums::Density;
 use piola_formulas::{Number, fluid};
 
-use super::super::{ACCELERATING, DRIFTING};
+use super::super::fluid::{ACCELERATING, DRIFTING};
 use super::Plan;
 use super::walls::{forces, total};
 use crate::schemes::momentum::{moments, momentum_components};

@@ -6,9 +6,9 @@ use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
 use piola_formulas::pairs::{Components, One};
 use piola_formulas::{Number, fluid};
 
-use super::super::ACCELERATING;
-use super::super::barrier::{BESIDE, TOUCH};
 use super::super::escape::TOLERANCE;
+use super::super::fluid::{ACCELERATING, TOUCH};
+use super::super::walls::BESIDE;
 use super::Plan;
 use super::passes::{FORCES, Vector, flat, one, side, side_width, square, take};
 
@@ -56,7 +56,7 @@ impl<const D: usize> Faces<D> {
         pick(is_between, &self.between, &(sum / length))
     }
 
-    /// As [`super::super::TransportVelocity::over`]: whether a place is over a face, how far in front of
+    /// As [`super::super::Common::over`]: whether a place is over a face, how far in front of
     /// it, and the normal.
     fn over(&self, way: &Vector<D>, spacing: f64) -> (<Traced as Number>::Mask, Traced, Vector<D>) {
         let height = |normal: &Vector<D>| way.dot(normal) - self.depth;

@@ -3,7 +3,7 @@
 use piola_formulas::pairs::sums::Background;
 
 use crate::operators::{Among, NeighborBlock, Term, add_at};
-use crate::schemes::transport_velocity::{Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{AtRest, Common, Shifting};
 use crate::{Vector, parallel};
 
 /// Smoothing length of the push in units of that of the forces: it sees the nearest neighbours alone.
@@ -12,7 +12,7 @@ const NARROW: f64 = 0.5;
 /// Background pressure in units of the size of a particle's own.
 const SHARE: f64 = 10.0;
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Common<D> {
     /// Puts the deviations of GTVF into the sides, which have been loaded, and into the `state` that they
     /// were loaded from: what a background pressure does in half of a step of `step` s,
     /// `d_a = dt/2 (du_a/dt)_c`, `(du_a/dt)_c = -p0_a sum_b m_b / rho_a^2 grad W(r_ab, h/2)`,
@@ -43,7 +43,7 @@ impl<const D: usize> TransportVelocity<D> {
         let (support, list) = (&self.support, self.support.list());
         let place = list.places()[number] as usize;
         let me = &self.sides[place];
-        if list.is_passive(place) || me.pressure == 0.0 || self.is_held(number) {
+        if list.is_passive(place) || me.pressure == 0.0 || self.is_unshifted(number) {
             return Vector::zeros();
         }
         let smoothing_length = NARROW * support.smoothing_length();
@@ -51,8 +51,8 @@ impl<const D: usize> TransportVelocity<D> {
         let source = (self.sides.as_slice(), &self.continua);
         let (mut sum, block) = (Vector::zeros(), &mut NeighborBlock::default());
         add_at(support, &Term { law, source, among: Among::All }, place, block, &mut sum);
-        let stiffness = self.reference_density(number) * self.reference_wave_speed(number).powi(2);
-        let background = (SHARE * me.pressure.abs()).min(most * stiffness);
+        let AtRest { density, wave_speed } = self.at_rest(number);
+        let background = (SHARE * me.pressure.abs()).min(most * (density * wave_speed.powi(2)));
         sum * (-background / (me.density * me.density))
     }
 }

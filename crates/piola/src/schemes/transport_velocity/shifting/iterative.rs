@@ -3,8 +3,7 @@
 use piola_formulas::pairs::sums::Displacement;
 
 use crate::operators::{Among, NeighborBlock, Term, add_at};
-use crate::schemes::transport_velocity::LEDGER;
-use crate::schemes::transport_velocity::{AtSurface, Opening, Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{AtSurface, Common, Opening, Shifting};
 use crate::{Vector, parallel};
 
 /// Scratch and figures of the iteration.
@@ -28,20 +27,26 @@ impl<const D: usize> Default for Iteration<D> {
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
-    /// Puts the deviations into `state` that move particles in a step of `step` s by the iterated
-    /// displacement `sum_m max |u| dt sum_b V_b r_ab / |r_ab| W_ab`, CTVF (37) to (41), beyond
-    /// their own velocity, theory (28).
+impl<const D: usize> Common<D> {
+    /// Puts the deviations into `state`, which has been loaded, that move particles in a step of `step` s
+    /// by the iterated displacement `sum_m max |u| dt sum_b V_b r_ab / |r_ab| W_ab`, CTVF (37) to (41),
+    /// beyond their own velocity, theory (28), for the largest speed in m/s. Returns the number of passes.
     ///
     /// The whole displacement is made in the step: (41) has the acceleration that does so by half
     /// a kick. Fields are not corrected for it, as the transport terms are there for that.
-    pub(in super::super) fn iterate_positions(&mut self, step: f64, state: &mut [f64]) {
-        let Shifting::Iterative { tolerance, most_passes } = self.settings.shifting else { return };
+    pub(in super::super) fn iterate_positions(
+        &mut self,
+        fastest: f64,
+        step: f64,
+        state: &mut [f64],
+    ) -> f64 {
+        let Shifting::Iterative { tolerance, most_passes } = self.settings.shifting else {
+            return 0.0;
+        };
         let mut iteration = std::mem::take(&mut self.iteration);
         iteration.positions.clear();
         iteration.positions.extend_from_slice(self.columns(state).position);
-        self.load(state);
-        let reach = self.largest_speed() * step;
+        let reach = fastest * step;
         if self.settings.free_surface {
             self.opening_pass();
             self.find_surfaces();
@@ -66,33 +71,22 @@ impl<const D: usize> TransportVelocity<D> {
             let (found, places) = (&iteration.found, self.support.list().places());
             parallel::for_each_chunk(&mut iteration.positions, |first, rows| {
                 for (offset, (row, &place)) in rows.iter_mut().zip(&places[first..]).enumerate() {
-                    if !self.is_held(first + offset) {
+                    if !self.is_unshifted(first + offset) {
                         *row += found[place as usize].0;
                     }
                 }
             });
         }
         let positions = &iteration.positions;
-        let (own, tail) = self.parts(state);
+        let (own, _) = self.parts(state);
         let places = own.position;
         parallel::for_each_chunk(own.deviation, |first, deviation| {
             for (number, deviation) in (first..).zip(deviation) {
                 *deviation = (positions[number] - places[number]) / step;
             }
         });
-        LEDGER.behind_mut(D, tail)[0] = passes;
         self.iteration = iteration;
-    }
-
-    /// Largest speed in m/s, of solids by theory (76).
-    fn largest_speed(&self) -> f64 {
-        let list = self.support.list();
-        let square =
-            parallel::maximum(self.sides.len(), 0.0, |place| match list.is_passive(place) {
-                true => 0.0,
-                false => self.shifting_speed_squared(place),
-            });
-        square.sqrt()
+        passes
     }
 
     /// Notes how even the particles are at the places loaded last.

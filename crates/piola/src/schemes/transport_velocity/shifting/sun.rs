@@ -4,7 +4,7 @@ use piola_formulas::fluid;
 use piola_formulas::pairs::sums::CrowdingWithin;
 
 use crate::operators::{Among, NeighborBlock, OfCenter, Term, add_at};
-use crate::schemes::transport_velocity::{AtSurface, Shifting, TransportVelocity};
+use crate::schemes::transport_velocity::{AtSurface, Common, Shifting};
 use crate::{Vector, parallel};
 
 /// Largest Mach number of CTVF (35). A fluid that is faster is not weakly compressible: such a
@@ -29,7 +29,7 @@ impl Speed {
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Common<D> {
     /// Replaces the deviations of the sides by those of the current places,
     /// `d_a = -f Ma 2h c sum V_b (1 + R (W_ab / W(dx))^4) grad W_ab`, CTVF (35), where the Mach
     /// number is that of the largest speed now, of solids by theory (76): `Ma c = max |u|`. Near
@@ -39,9 +39,8 @@ impl<const D: usize> TransportVelocity<D> {
         let (scale, most) = self.shifting_speed().of(self.fastest);
         let mut sides = std::mem::take(&mut self.sides);
         if self.settings.free_surface {
-            let volumes = &mut self.densities;
-            volumes.clear();
-            volumes.extend(sides.iter().map(|side| side.volume));
+            self.volumes.clear();
+            self.volumes.extend(sides.iter().map(|side| side.volume));
         }
         let (list, h) = (self.support.list(), self.support.smoothing_length());
         parallel::for_each_chunk(&mut sides, |first, sides| {
@@ -51,7 +50,7 @@ impl<const D: usize> TransportVelocity<D> {
                 if list.is_passive(place) {
                     continue;
                 }
-                if self.is_held(list.numbers()[place] as usize) {
+                if self.is_unshifted(list.numbers()[place] as usize) {
                     side.deviation = Vector::zeros();
                     continue;
                 }
@@ -79,18 +78,19 @@ impl<const D: usize> TransportVelocity<D> {
             Shifting::Sun { factor } => factor,
             _ => 0.0,
         };
-        let most = MOST_MACH * self.fluid.wave_speed;
+        let speeds = self.at_rest.iter().map(|matter| matter.wave_speed);
+        let most = MOST_MACH * speeds.fold(0.0, f64::max);
         Speed { factor, most, smoothing_length: self.support.smoothing_length() }
     }
 
     /// The sum of CTVF (35) with a smaller support, for the few particles near surfaces. Volumes
-    /// stand in `densities`.
+    /// stand in `volumes`.
     fn crowding_within(&self, place: usize, h: f64, block: &mut NeighborBlock<D>) -> Vector<D> {
         let smoothing_length = self.support.smoothing_length();
         let crowding = 1.0 / self.value_at_spacing(smoothing_length);
         let kernel = self.support.kernel();
         let law = CrowdingWithin::<D> { kernel, smoothing_length, crowding };
-        let source = ((self.densities.as_slice(), &self.continua), OfCenter(|_| h));
+        let source = ((self.volumes.as_slice(), &self.continua), OfCenter(|_| h));
         let mut sum = Vector::zeros();
         add_at(&self.support, &Term { law, source, among: Among::All }, place, block, &mut sum);
         sum

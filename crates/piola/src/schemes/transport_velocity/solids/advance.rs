@@ -2,11 +2,14 @@
 
 use piola_formulas::hypoelastic::{Strength, advance, shear_energy, von_mises};
 
-use super::{ENERGY, Matter, PLASTIC, Solid, SolidRates, TEMPERATURE, full, store};
+use super::{
+    Common, ENERGY, Hypoelastic, Matter, PLASTIC, Solid, SolidRates, TEMPERATURE, full, matter_of,
+    matter_start, store,
+};
 use crate::Tensor;
 use crate::parallel;
+use crate::schemes::transport_velocity::ColumnsMut;
 use crate::schemes::transport_velocity::ledger::Drift;
-use crate::schemes::transport_velocity::{ColumnsMut, TransportVelocity};
 
 /// What a step brings to the matter of a particle besides its own rates.
 struct Surroundings {
@@ -17,49 +20,46 @@ struct Surroundings {
     step: f64,
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Hypoelastic<D> {
     /// The drift of solids, CTVF (56) to (59), with the rates of the last pass: theory (33), (69) to (71).
-    pub(in super::super) fn drift_solids(&self, step: f64, state: &mut [f64]) -> Drift {
-        let (front, matter) = state.split_at_mut(self.matter_start());
+    pub(super) fn drift(&self, common: &Common<D>, step: f64, state: &mut [f64]) -> Drift {
+        let (front, matter) = state.split_at_mut(matter_start(common));
         let matter: &mut [Matter] = bytemuck::cast_slice_mut(matter);
-        let (own, _) = self.parts(front);
-        let scheme = self;
-        let Some(solids) = &scheme.solids else { return Drift::default() };
-        let (places, rates) = (scheme.support.list().places(), &solids.rates);
-        let evolves = !scheme.settings.is_algebraic();
+        let (own, _) = common.parts(front);
+        let places = common.support.list().places();
+        let evolves = !common.settings.is_algebraic();
         let drift = |[number, k]: [usize; 2],
                      own: &mut ColumnsMut<'_, D>,
                      matter: &mut Matter,
                      sums: &mut Drift| {
-            if scheme.is_wall[number] {
+            if common.is_wall[number] {
                 return;
             }
             let place = places[number] as usize;
-            let (side, material) =
-                (&scheme.sides[place], &solids.materials[scheme.particles.body[number] as usize]);
+            let (side, rates) = (&common.sides[place], &self.rates[place]);
+            let material = self.solid(common, number);
             let around = Surroundings {
                 density: side.density,
                 pressure: side.pressure,
-                divergence: scheme.rates_at(place).divergence,
+                divergence: rates.common.divergence,
                 step,
             };
             let energy = |density: f64, matter: &Matter| {
                 let [compression, shear] = material.energies(density, matter);
-                scheme.mass[number] * (compression + shear)
+                common.mass[number] * (compression + shear)
             };
             let before = energy(own.density[k], matter);
-            let work = side.volume * material.advance(&rates[place], &around, matter);
+            let work = side.volume * material.advance(rates, &around, matter);
             let (velocity, deviation) = (&own.velocity[k], &own.deviation[k]);
-            let moving = (own.pressure[k], velocity, deviation);
-            scheme.add_drift((number, place), (step, false), moving, sums);
-            own.density[k] += step * scheme.density_rate(place);
+            common.add_turning(number, step, [velocity, deviation], sums);
+            own.density[k] += step * rates.density_rate(side.density);
             if evolves {
-                let rate = scheme.pressure_rates(place).iter().sum::<f64>();
+                let rate = rates.pressure_rates(side.density, material).iter().sum::<f64>();
                 let pressure = &mut own.pressure[k];
                 *pressure = (*pressure + step * rate).max(-material.state.spall_strength);
             }
-            scheme.advect(step, &mut own.position[k], velocity + deviation);
-            let [pressure, .., plasticity] = sums;
+            common.advect(step, &mut own.position[k], velocity + deviation);
+            let [pressure, _, plasticity] = sums;
             pressure.power += energy(own.density[k], matter) - before + work;
             plasticity.power -= work;
         };
@@ -72,17 +72,31 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Energies of compression and shear in J.
-    pub(in super::super) fn energies_of_solids(&self, state: &[f64]) -> [f64; 2] {
-        let at = self.columns(state);
-        parallel::sums(self.particles.len(), |number, sums: &mut [f64; 2]| {
-            if !self.is_wall[number] {
-                let Some(solid) = self.solid(number) else { return };
-                let energies = solid.energies(at.density[number], self.matter_of(number, state));
+    pub(super) fn elastic_energies(&self, common: &Common<D>, state: &[f64]) -> [f64; 2] {
+        let at = common.columns(state);
+        parallel::sums(common.particles.len(), |number, sums: &mut [f64; 2]| {
+            if !common.is_wall[number] {
+                let matter = matter_of(common, number, state);
+                let energies = self.solid(common, number).energies(at.density[number], matter);
                 for (sum, energy) in sums.iter_mut().zip(energies) {
-                    *sum += self.mass[number] * energy;
+                    *sum += common.mass[number] * energy;
                 }
             }
         })
+    }
+}
+
+impl<const D: usize> SolidRates<D> {
+    /// Rate of the density in kg/(m^3 s) at a density in kg/m^3.
+    pub(super) fn density_rate(&self, density: f64) -> f64 {
+        self.common.density_transport - density * self.common.divergence
+    }
+
+    /// Rates of the pressure in Pa/s by compression, transport and diffusion.
+    pub(super) fn pressure_rates(&self, density: f64, solid: &Solid) -> [f64; 3] {
+        let (rates, stiffness) = (&self.common, solid.state.wave_speed.powi(2));
+        let compression = -density * stiffness * rates.divergence;
+        [compression, rates.pressure_transport, rates.pressure_diffusion]
     }
 }
 

@@ -3,9 +3,8 @@
 use piola_formulas::pairs::One;
 use piola_formulas::{Lanes, Lanes4, WIDTH};
 
-use super::{Contact, SolidsInput};
-use crate::geometry::Particles;
-use crate::neighbors::Domain;
+use super::{Common, Contact, SolidsInput};
+use crate::neighbors::{Domain, SkinList};
 use crate::operators::Source;
 use crate::{Vector, parallel};
 
@@ -15,7 +14,7 @@ const WALL: u32 = u32::MAX;
 /// To which continuum particles belong, by place.
 #[derive(Clone, Debug)]
 pub(in super::super) struct Continua<const D: usize> {
-    /// [`WALL`], or the body where bodies are apart; empty for fluids, where all is one.
+    /// [`WALL`], or the body where bodies are apart; empty where all are of one.
     labels: Vec<u32>,
     /// Where particles began, in m; empty unless bodies touch themselves.
     starts: Vec<Vector<D>>,
@@ -24,28 +23,38 @@ pub(in super::super) struct Continua<const D: usize> {
     domain: Domain<D>,
     /// Whether there are several bodies, or parts of one, that are apart from each other.
     several: bool,
+    /// For which places, counted by lists of neighbours, the rest stands.
+    builds: Option<u64>,
 }
 
 impl<const D: usize> Continua<D> {
-    /// Of the particles of solids, or of fluids.
-    pub fn new(
-        solids: Option<&SolidsInput>,
-        particles: &Particles<D>,
-        is_wall: &[bool],
-        domain: Domain<D>,
-    ) -> Self {
-        let apart = solids.filter(|solids| solids.contact != Contact::Full);
-        let farthest = apart.and_then(|solids| solids.self_contact);
-        let mut bodies = particles.body.iter().zip(is_wall).filter(|(_, is_wall)| !*is_wall);
-        let first = bodies.next().map(|(body, _)| *body);
-        let is_one = bodies.all(|(body, _)| Some(*body) == first);
-        let count = if solids.is_some() { particles.len() } else { 0 };
+    /// All particles are of one continuum.
+    pub fn one(domain: Domain<D>) -> Self {
+        Self {
+            labels: Vec::new(),
+            starts: Vec::new(),
+            farthest: f64::INFINITY,
+            domain,
+            several: false,
+            builds: None,
+        }
+    }
+
+    /// Of the particles of solids.
+    pub fn of(solids: &SolidsInput, common: &Common<D>) -> Self {
+        let is_apart = solids.contact != Contact::Full;
+        let farthest = solids.self_contact.filter(|_| is_apart);
+        let (bodies, is_wall) = (&common.particles.body, &common.is_wall);
+        let mut own = bodies.iter().zip(is_wall).filter(|(_, is_wall)| !*is_wall);
+        let first = own.next().map(|(body, _)| *body);
+        let is_one = own.all(|(body, _)| Some(*body) == first);
+        let count = bodies.len();
         Self {
             labels: vec![0; count],
             starts: vec![Vector::zeros(); if farthest.is_some() { count } else { 0 }],
             farthest: farthest.unwrap_or(f64::INFINITY),
-            domain,
-            several: apart.is_some() && (!is_one || farthest.is_some()),
+            several: is_apart && (!is_one || farthest.is_some()),
+            ..Self::one(*common.support.list().domain())
         }
     }
 
@@ -54,26 +63,38 @@ impl<const D: usize> Continua<D> {
         self.several
     }
 
-    /// Fills what belongs to the places of the particles with these `numbers`.
-    pub fn load(&mut self, numbers: &[u32], particles: &Particles<D>, is_wall: &[bool]) {
+    /// Fills what belongs to the places of particles of bodies, of walls or not, that began somewhere in m,
+    /// where a new list has renewed them.
+    pub fn follow(
+        &mut self,
+        list: &SkinList<D>,
+        bodies: &[u32],
+        begin: &[Vector<D>],
+        is_wall: &[bool],
+    ) {
+        if self.builds == Some(list.builds()) {
+            return;
+        }
+        self.builds = Some(list.builds());
+        let numbers = list.numbers();
         let several = self.several;
         parallel::for_each_chunk(&mut self.labels, |first, labels| {
             for (label, &number) in labels.iter_mut().zip(&numbers[first..]) {
                 *label = match (is_wall[number as usize], several) {
                     (true, _) => WALL,
-                    (false, true) => particles.body[number as usize],
+                    (false, true) => bodies[number as usize],
                     (false, false) => 0,
                 };
             }
         });
         parallel::for_each_chunk(&mut self.starts, |first, starts| {
             for (start, &number) in starts.iter_mut().zip(&numbers[first..]) {
-                *start = particles.position[number as usize];
+                *start = begin[number as usize];
             }
         });
     }
 
-    /// Whether two particles (places) belong to the same continuum: always in fluids; of solids one
+    /// Whether two particles (places) belong to the same continuum: one
     /// body and walls, and of a body that touches itself what began close to each other, theory (75).
     #[inline]
     pub fn is_own(&self, place: usize, other: usize) -> bool {

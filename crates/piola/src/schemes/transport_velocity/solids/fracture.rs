@@ -1,8 +1,7 @@
 //! Whether bodies have come apart in the numbers: gaps between what were first neighbours, and pieces.
 
-use super::TransportVelocity;
-use crate::geometry::Particles;
-use crate::neighbors::{Domain, NeighborError, search};
+use super::{Common, Hypoelastic};
+use crate::neighbors::{NeighborError, search};
 
 /// First neighbours of the start are those within so many spacings, and particles hang together
 /// within that.
@@ -19,11 +18,9 @@ impl Bonds {
     ///
     /// # Errors
     /// When the search refuses the positions.
-    pub fn new<const D: usize>(
-        particles: &Particles<D>,
-        is_wall: &[bool],
-        domain: &Domain<D>,
-    ) -> Result<Self, NeighborError> {
+    pub fn new<const D: usize>(common: &Common<D>) -> Result<Self, NeighborError> {
+        let (particles, is_wall) = (&common.particles, &common.is_wall);
+        let domain = common.support.list().domain();
         let reach: Vec<f64> = particles.spacing.iter().map(|spacing| FIRST * spacing).collect();
         let list = search(&particles.position, &reach, domain)?;
         let mut pairs = Vec::new();
@@ -36,18 +33,18 @@ impl Bonds {
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
-    /// The largest gap between particles that were first neighbours at the start, in spacings; 0 for fluids.
+impl<const D: usize> Hypoelastic<D> {
+    /// The largest gap between particles that were first neighbours at the start, in spacings.
     ///
     /// It is the diameter of the empty ball around the middle between the two: their distance, unless another particle
     /// of their body, in the support of one of the two, is nearer to the middle. Shifting and flow move particles past each other in matter that is whole.
-    pub(in super::super) fn largest_gap(&self, state: &[f64]) -> f64 {
-        let Some(solids) = &self.solids else { return 0.0 };
-        let list = self.support.list();
-        let reach = self.support.kernel().support_radius(self.support.smoothing_length()).powi(2);
-        let at = self.columns(state);
+    pub(super) fn largest_gap(&self, common: &Common<D>, state: &[f64]) -> f64 {
+        let list = common.support.list();
+        let reach =
+            common.support.kernel().support_radius(common.support.smoothing_length()).powi(2);
+        let at = common.columns(state);
         let position = |a: u32| at.position[a as usize];
-        let largest = solids.bonds.pairs.iter().fold(0.0, |largest: f64, &[a, b]| {
+        let largest = self.bonds.pairs.iter().fold(0.0, |largest: f64, &[a, b]| {
             let across = list.domain().separation(&position(a), &position(b));
             let square = across.norm_squared();
             if square <= largest {
@@ -62,7 +59,7 @@ impl<const D: usize> TransportVelocity<D> {
                 numbers.filter(move |&c| way(c).norm_squared() < reach)
             };
             let of_body =
-                |c: &u32| self.particles.body[*c as usize] == self.particles.body[a as usize];
+                |c: &u32| common.particles.body[*c as usize] == common.particles.body[a as usize];
             near(a)
                 .chain(near(b))
                 .filter(of_body)
@@ -72,44 +69,39 @@ impl<const D: usize> TransportVelocity<D> {
                 })
                 .max(largest)
         });
-        largest.sqrt() / self.particles.spacing[0]
+        largest.sqrt() / common.particles.spacing[0]
     }
+}
 
-    /// The number of pieces that hang together by links of up to 1.5 spacings inside of their body;
-    /// 0 for fluids.
-    pub(in super::super) fn piece_count(&self, state: &[f64]) -> f64 {
-        if self.solids.is_none() {
-            return 0.0;
+/// The number of pieces that hang together by links of up to 1.5 spacings inside of their body.
+pub(super) fn piece_count<const D: usize>(common: &Common<D>, state: &[f64]) -> f64 {
+    let list = common.support.list();
+    let at = common.columns(state);
+    let position = |a: usize| at.position[a];
+    let square = (LINK * common.particles.spacing[0]).powi(2);
+    let mut root: Vec<u32> = (0..common.particles.len() as u32).collect();
+    let mut pieces = common.is_wall.iter().filter(|is_wall| !**is_wall).count();
+    // Candidates of the list are all that are near, at any state since it was made.
+    for (place, &number) in list.numbers().iter().enumerate() {
+        let a = number as usize;
+        if common.is_wall[a] {
+            continue;
         }
-        let list = self.support.list();
-        let at = self.columns(state);
-        let position = |a: usize| at.position[a];
-        let square = (LINK * self.particles.spacing[0]).powi(2);
-        let mut root: Vec<u32> = (0..self.particles.len() as u32).collect();
-        let mut pieces = self.is_wall.iter().filter(|is_wall| !**is_wall).count();
-        // Candidates of the list are all that are near, at any state since it was made.
-        for (place, &number) in list.numbers().iter().enumerate() {
-            let a = number as usize;
-            if self.is_wall[a] {
-                continue;
-            }
-            for &other in list.active_row(place) {
-                let b = list.numbers()[other as usize] as usize;
-                let is_linked = b > a
-                    && self.particles.body[a] == self.particles.body[b]
-                    && list.domain().separation(&position(a), &position(b)).norm_squared()
-                        <= square;
-                if is_linked {
-                    let (one, two) = (root_of(&mut root, a), root_of(&mut root, b));
-                    if one != two {
-                        root[one.max(two)] = one.min(two) as u32;
-                        pieces -= 1;
-                    }
+        for &other in list.active_row(place) {
+            let b = list.numbers()[other as usize] as usize;
+            let is_linked = b > a
+                && common.particles.body[a] == common.particles.body[b]
+                && list.domain().separation(&position(a), &position(b)).norm_squared() <= square;
+            if is_linked {
+                let (one, two) = (root_of(&mut root, a), root_of(&mut root, b));
+                if one != two {
+                    root[one.max(two)] = one.min(two) as u32;
+                    pieces -= 1;
                 }
             }
         }
-        pieces as f64
     }
+    pieces as f64
 }
 
 /// The particle that stands for the piece of another, with shorter ways to it from then on.

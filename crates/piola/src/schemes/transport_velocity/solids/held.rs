@@ -1,21 +1,24 @@
 //! Particles of solids that move as prescribed.
 
-use super::Solids;
+use super::{Common, Hypoelastic};
 use crate::Vector;
 use crate::schemes::ledger::Total;
 use crate::schemes::momentum::add_moments;
-use crate::schemes::transport_velocity::TransportVelocity;
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Hypoelastic<D> {
     /// Sets prescribed velocities of solids in a state at a time in s. What that takes, of energy and of
     /// momentum, is from walls, so that the ledger is exact for velocities that change.
-    pub(in super::super) fn hold_velocities(&self, time: f64, state: &mut [f64]) -> Total {
+    pub(super) fn hold_velocities(
+        &self,
+        common: &Common<D>,
+        time: f64,
+        state: &mut [f64],
+    ) -> Total {
         let mut total = Total::default();
-        let Some(Solids { held, .. }) = self.solids.as_deref() else { return total };
-        let (own, _) = self.parts(state);
-        for entry in held.iter() {
+        let (own, _) = common.parts(state);
+        for entry in self.held.iter() {
             let velocity = &mut own.velocity[entry.particle][entry.component];
-            let (mass, old) = (self.mass[entry.particle], *velocity);
+            let (mass, old) = (common.mass[entry.particle], *velocity);
             let new = entry.value.value(entry.place, time);
             if new != old {
                 *velocity = new;
@@ -30,11 +33,10 @@ impl<const D: usize> TransportVelocity<D> {
 
     /// Takes from the accelerations what prescribed velocities do not follow: the reaction, which
     /// is booked as that of walls. Such velocities are set, not integrated.
-    pub(in super::super) fn hold_accelerations(&mut self) {
-        let Some(Solids { held, .. }) = self.solids.as_deref() else { return };
-        let places = self.support.list().places();
-        for entry in held.iter() {
-            let forces = &mut self.forces[places[entry.particle] as usize];
+    pub(super) fn hold_accelerations(&self, common: &mut Common<D>) {
+        let places = common.support.list().places();
+        for entry in self.held.iter() {
+            let forces = &mut common.forces[places[entry.particle] as usize];
             let total = forces.total()[entry.component];
             forces.walls[entry.component] -= total;
         }

@@ -6,10 +6,10 @@ use piola_formulas::pairs::solid::{
     ALONE, ANY, ELASTIC, RateConstants, RateSums, Rates as Law, is_carried,
 };
 
-use super::{Contact, MATTER, Solids, ZZ};
+use super::{Common, Contact, Hypoelastic, MATTER, ZZ};
 use crate::Tensor;
 use crate::operators::{Among, Same, Source, Term, gather};
-use crate::schemes::transport_velocity::{Divergence, Rates, TransportVelocity};
+use crate::schemes::transport_velocity::{Divergence, Rates};
 
 /// Rates of a particle of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,59 +33,51 @@ impl<const D: usize> Default for SolidRates<D> {
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> Hypoelastic<D> {
     /// Fills the rates of solids from what has been loaded.
-    pub(in super::super) fn solid_rate_pass(&mut self) {
-        let Some(solids) = &mut self.solids else { return };
-        let mut rates = std::mem::take(&mut solids.rates);
-        let Some(solids) = self.solids.as_deref() else { return };
-        let (h, corrections) = (self.support.smoothing_length(), self.settings.corrections);
+    pub(super) fn rate_pass(&mut self, common: &Common<D>) {
+        let mut rates = std::mem::take(&mut self.rates);
+        let (h, corrections) = (common.support.smoothing_length(), common.settings.corrections);
         let constants = RateConstants {
             softening: fluid::softening(h),
-            artificial: self.settings.artificial_viscosity * h,
-            diffusion: self.settings.diffusivity(h, 1.0),
+            artificial: common.settings.artificial_viscosity * h,
+            diffusion: common.settings.diffusivity(h, 1.0),
             moves: f64::from(u8::from(corrections.divergence == Divergence::Transport)),
         };
         let carries = corrections.density || corrections.pressure;
-        let is_plain = solids.is_elastic() && self.settings.is_algebraic();
-        let (own, out) = (&self.continua, rates.as_mut_slice());
+        let is_plain = self.is_elastic() && common.settings.is_algebraic();
+        let (own, out) = (&common.continua, rates.as_mut_slice());
         match (is_plain, own.are_several(), carries) {
             (true, false, false) => {
-                self.rates_of_solids::<ALONE, false>(solids, constants, Same(1.0), out)
+                self.gather_rates::<ALONE, false>(common, constants, Same(1.0), out)
             }
             (true, false, true) => {
-                self.rates_of_solids::<ALONE, true>(solids, constants, Same(1.0), out)
+                self.gather_rates::<ALONE, true>(common, constants, Same(1.0), out)
             }
-            (true, true, false) => {
-                self.rates_of_solids::<ELASTIC, false>(solids, constants, own, out)
-            }
-            (true, true, true) => {
-                self.rates_of_solids::<ELASTIC, true>(solids, constants, own, out)
-            }
-            (false, _, false) => self.rates_of_solids::<ANY, false>(solids, constants, own, out),
-            (false, _, true) => self.rates_of_solids::<ANY, true>(solids, constants, own, out),
+            (true, true, false) => self.gather_rates::<ELASTIC, false>(common, constants, own, out),
+            (true, true, true) => self.gather_rates::<ELASTIC, true>(common, constants, own, out),
+            (false, _, false) => self.gather_rates::<ANY, false>(common, constants, own, out),
+            (false, _, true) => self.gather_rates::<ANY, true>(common, constants, own, out),
         }
-        if let Some(solids) = &mut self.solids {
-            solids.rates = rates;
-        }
+        self.rates = rates;
     }
 
-    fn rates_of_solids<const KIND: u8, const CARRIES: bool>(
+    fn gather_rates<const KIND: u8, const CARRIES: bool>(
         &self,
-        solids: &Solids<D>,
+        common: &Common<D>,
         constants: RateConstants,
         own: impl Source<One>,
         rates: &mut [SolidRates<D>],
     ) {
         let one_if = |is_on: bool| f64::from(u8::from(is_on));
-        let corrections = self.settings.corrections;
-        let couples = one_if(solids.contact == Contact::Repulsive);
+        let corrections = common.settings.corrections;
+        let couples = one_if(self.contact == Contact::Repulsive);
         let [density, pressure] = [corrections.density, corrections.pressure].map(one_if);
-        let sides = (self.sides.as_slice(), solids.tensions.as_slice());
-        let source = (sides, (solids.matter.as_slice(), own));
+        let sides = (common.sides.as_slice(), self.tensions.as_slice());
+        let source = (sides, (self.matter.as_slice(), own));
         let sum = Term { law: Law::<D, KIND, CARRIES>(constants), source, among: Among::All };
         let close = |place: usize, sums: &RateSums<f64, D>, row: &mut SolidRates<D>| {
-            let gradient = match solids.corrections.get(place) {
+            let gradient = match self.corrections.get(place) {
                 Some(correction) => sums.gradient * correction,
                 None => sums.gradient,
             };
@@ -107,6 +99,6 @@ impl<const D: usize> TransportVelocity<D> {
             };
             *row = SolidRates { gradient, transport, heating: sums.heating, common };
         };
-        gather(&self.support, &sum, rates, |place| self.active(place), close);
+        gather(&common.support, &sum, rates, |place| common.active(place), close);
     }
 }

@@ -2,15 +2,13 @@
 
 use piola_formulas::kernels::Needs;
 
-use super::{Shifting, TransportVelocity};
+use super::WeaklyCompressible;
 use crate::operators::{Among, NeighborBlock, visit};
+use crate::schemes::transport_velocity::{Common, Shifting};
 use crate::{Vector, parallel};
 
 /// What of a spacing in front of a face a particle touches it.
-pub(super) const TOUCH: f64 = 0.25;
-/// How far beside a wall particle, in spacings, the one in front of it may be: half of the diagonal of
-/// a face of particles in 3D is 0.71.
-pub(super) const BESIDE: f64 = 0.75;
+pub(in super::super) const TOUCH: f64 = 0.25;
 /// What of a spacing behind a face a particle counts as behind it: more than round-off.
 const BEHIND: f64 = 0.01;
 
@@ -31,7 +29,7 @@ impl<const D: usize> Default for Hold<D> {
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> WeaklyCompressible<D> {
     /// Holds off particles of the fluid that touch a wall: closer than a quarter of a spacing to the face
     /// their acceleration into it vanishes, and their velocity into it decays in dx/c,
     ///
@@ -42,24 +40,21 @@ impl<const D: usize> TransportVelocity<D> {
     ///
     /// The pressure of a particle that has no neighbours but walls follows from nothing, so that
     /// a film of single particles is pulled in by its own tension.
-    pub(super) fn hold_off(&mut self) {
-        if self.holds.is_empty() {
-            return;
-        }
+    pub(super) fn hold_off(&mut self, common: &mut Common<D>) {
         let mut holds = std::mem::take(&mut self.holds);
-        let list = self.support.list();
+        let list = common.support.list();
         parallel::for_each_chunk(&mut holds, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 *row = match list.is_passive(place) {
                     true => Hold::default(),
-                    false => self.hold_at(place, &mut block),
+                    false => self.hold_at(common, place, &mut block),
                 };
             }
         });
-        if let Shifting::Sun { .. } = self.settings.shifting {
-            parallel::for_each_pair_of_chunks(&mut self.sides, &mut holds, |_, sides, holds| {
+        if let Shifting::Sun { .. } = common.settings.shifting {
+            parallel::for_each_pair_of_chunks(&mut common.sides, &mut holds, |_, sides, holds| {
                 for (side, hold) in sides.iter_mut().zip(holds) {
                     side.deviation -= hold.deviation;
                 }
@@ -69,14 +64,14 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// Adds what walls do to the fluid to the forces of both.
-    pub(super) fn bear(&mut self) {
+    pub(super) fn bear(&self, common: &mut Common<D>) {
         let holds = &self.holds;
         let holds_any = |place: usize| f64::from(u8::from(holds[place].wall != u32::MAX));
         if parallel::maximum(holds.len(), 0.0, holds_any) == 0.0 {
             return;
         }
-        let mut forces = std::mem::take(&mut self.forces);
-        let (list, sides, holds) = (self.support.list(), &self.sides, &self.holds);
+        let mut forces = std::mem::take(&mut common.forces);
+        let (list, sides, holds) = (common.support.list(), &common.sides, &self.holds);
         parallel::for_each_chunk(&mut forces, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
@@ -91,24 +86,24 @@ impl<const D: usize> TransportVelocity<D> {
                         row.walls -= holds[other].acceleration * ratio;
                     }
                 };
-                let (pairs, needs) = (&self.support, Needs::Nothing);
+                let (pairs, needs) = (&common.support, Needs::Nothing);
                 visit(pairs, place, Among::Active, needs, &mut block, add);
             }
         });
-        self.forces = forces;
+        common.forces = forces;
     }
 
     /// What walls do to the particle at `place`. In a corner several faces do.
-    fn hold_at(&self, place: usize, block: &mut NeighborBlock<D>) -> Hold<D> {
+    fn hold_at(&self, common: &Common<D>, place: usize, block: &mut NeighborBlock<D>) -> Hold<D> {
         let mut hold = Hold::default();
-        let [_, walls] = self.support.places_of(place);
+        let [_, walls] = common.support.places_of(place);
         if walls.is_empty() {
             return hold;
         }
-        let load = self.forces[place].total();
-        let (pairs, needs) = (&self.support, Needs::Nothing);
+        let load = common.forces[place].total();
+        let (pairs, needs) = (&common.support, Needs::Nothing);
         visit(pairs, place, Among::Passive, needs, block, |wall, pair| {
-            self.hold_by(wall, &pair.separation, place, &load, &mut hold);
+            self.hold_by(common, wall, &pair.separation, place, &load, &mut hold);
         });
         hold
     }
@@ -117,22 +112,23 @@ impl<const D: usize> TransportVelocity<D> {
     /// `separation` from it under a `load` of m/s^2.
     fn hold_by(
         &self,
+        common: &Common<D>,
         wall: usize,
         separation: &Vector<D>,
         place: usize,
         load: &Vector<D>,
         hold: &mut Hold<D>,
     ) {
-        let (side, spacing) = (&self.sides[place], self.particles.spacing[0]);
-        let Some(index) = self.wall_of(self.support.list().numbers()[wall]) else { return };
-        let Some((height, normal)) = self.over(index, separation) else { return };
+        let (side, spacing) = (&common.sides[place], common.particles.spacing[0]);
+        let Some(index) = common.wall_of(common.support.list().numbers()[wall]) else { return };
+        let Some((height, normal)) = common.over(index, separation) else { return };
         if !(-spacing..TOUCH * spacing).contains(&height) {
             return;
         }
-        let motion = &self.wall_values[index].motion;
+        let motion = &common.wall_values[index].motion;
         let shift = (side.deviation - hold.deviation).dot(normal).min(0.0);
         let mut approach = (side.velocity - motion).dot(normal);
-        match self.settings.shifting {
+        match common.settings.shifting {
             Shifting::Sun { .. } => hold.deviation += normal * shift,
             _ => approach += shift,
         }
@@ -144,48 +140,34 @@ impl<const D: usize> TransportVelocity<D> {
         }
     }
 
-    /// Which wall particle has a number.
-    pub(super) fn wall_of(&self, number: u32) -> Option<usize> {
-        self.walls.binary_search_by_key(&number, |wall| wall.number).ok()
-    }
-
-    /// Number of particles of the fluid that are behind a face of a wall in `state`; 0 for solids.
-    pub(super) fn behind_count(&self, state: &[f64]) -> f64 {
+    /// Number of particles of the fluid that are behind a face of a wall in `state`.
+    pub(super) fn behind_count(&self, common: &Common<D>, state: &[f64]) -> f64 {
         if self.holds.is_empty() {
             return 0.0;
         }
-        let list = self.support.list();
+        let list = common.support.list();
         parallel::sum(list.numbers().len(), |place| {
-            f64::from(u8::from(!list.is_passive(place) && self.is_behind(place, state)))
+            f64::from(u8::from(!list.is_passive(place) && is_behind(common, place, state)))
         })
     }
+}
 
-    /// How far a place is in front of the face of wall particle `index` in m, less than zero behind it, for the
-    /// way from there, with the normal of the face; nothing beyond an edge.
-    pub(super) fn over(&self, index: usize, way: &Vector<D>) -> Option<(f64, &Vector<D>)> {
-        let (height, normal) = self.walls[index].faces.in_front(way)?;
-        let aside = way.norm_squared() - way.dot(normal).powi(2);
-        let is_beside = aside <= (BESIDE * self.particles.spacing[0]).powi(2);
-        is_beside.then_some((height, normal))
-    }
-
-    /// Whether the particle at `place` is behind the face of the wall particle that is nearest.
-    fn is_behind(&self, place: usize, state: &[f64]) -> bool {
-        let list = self.support.list();
-        let at = self.columns(state);
-        let position = |place: usize| at.position[list.numbers()[place] as usize];
-        let (me, mut nearest) = (position(place), None::<(f64, usize)>);
-        // Candidates of the list are all that are near, at any state since it was made.
-        for &other in list.passive_row(place) {
-            let square = list.domain().separation(&me, &position(other as usize)).norm_squared();
-            if nearest.is_none_or(|(least, _)| square < least) {
-                nearest = Some((square, other as usize));
-            }
+/// Whether the particle at `place` is behind the face of the wall particle that is nearest.
+fn is_behind<const D: usize>(common: &Common<D>, place: usize, state: &[f64]) -> bool {
+    let list = common.support.list();
+    let at = common.columns(state);
+    let position = |place: usize| at.position[list.numbers()[place] as usize];
+    let (me, mut nearest) = (position(place), None::<(f64, usize)>);
+    // Candidates of the list are all that are near, at any state since it was made.
+    for &other in list.passive_row(place) {
+        let square = list.domain().separation(&me, &position(other as usize)).norm_squared();
+        if nearest.is_none_or(|(least, _)| square < least) {
+            nearest = Some((square, other as usize));
         }
-        nearest.is_some_and(|(_, wall)| {
-            let way = list.domain().separation(&position(wall), &me);
-            let over = self.wall_of(list.numbers()[wall]).and_then(|index| self.over(index, &way));
-            over.is_some_and(|(height, _)| height < -BEHIND * self.particles.spacing[0])
-        })
     }
+    nearest.is_some_and(|(_, wall)| {
+        let way = list.domain().separation(&position(wall), &me);
+        let over = common.wall_of(list.numbers()[wall]).and_then(|index| common.over(index, &way));
+        over.is_some_and(|(height, _)| height < -BEHIND * common.particles.spacing[0])
+    })
 }

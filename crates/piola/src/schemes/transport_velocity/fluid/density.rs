@@ -3,18 +3,18 @@
 use piola_formulas::fluid;
 use piola_formulas::pairs::sums::Density;
 
-use super::{DensityRule, Side, TransportVelocity};
+use super::{Common, DensityRule, WeaklyCompressible};
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::parallel;
+use crate::schemes::transport_velocity::Side;
 
-impl<const D: usize> TransportVelocity<D> {
+impl<const D: usize> WeaklyCompressible<D> {
     /// Fills `densities` with `rho_a = sum_b m_b W_ab`, walls and a itself included.
-    pub(super) fn sum_densities(&mut self) {
-        let mut densities = std::mem::take(&mut self.densities);
-        let (support, sides) = (&self.support, self.sides.as_slice());
+    fn sum_densities(&mut self, common: &Common<D>) {
+        let (support, sides) = (&common.support, common.sides.as_slice());
         let sum = Term { law: Density::<D>, source: sides, among: Among::All };
         let centre = support.centre();
-        parallel::for_each_chunk(&mut densities, |first, rows| {
+        parallel::for_each_chunk(&mut self.densities, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, density) in rows.iter_mut().enumerate() {
                 let place = first + offset;
@@ -22,23 +22,19 @@ impl<const D: usize> TransportVelocity<D> {
                 add_at(support, &sum, place, &mut block, density);
             }
         });
-        self.densities = densities;
     }
 
     /// Gives the fluid the density and pressure that are functions of where particles are, or of
     /// each other. Returns the largest speed of the fluid in m/s, as it passes over all particles
     /// anyhow.
-    pub(super) fn update_density_and_pressure(&mut self) -> f64 {
-        if self.solids.is_some() {
-            return self.update_pressure_of_solids();
-        }
-        let sums = self.settings.density == DensityRule::Summation;
-        let algebraic = self.settings.is_algebraic();
+    pub(super) fn update_density_and_pressure(&mut self, common: &mut Common<D>) -> f64 {
+        let sums = common.settings.density == DensityRule::Summation;
+        let algebraic = common.settings.is_algebraic();
         if sums {
-            self.sum_densities();
+            self.sum_densities(common);
         }
-        let (densities, list, fluid) = (&self.densities, self.support.list(), self.fluid);
-        let nothing = &mut vec![(); self.sides.len()];
+        let (densities, list, fluid) = (&self.densities, common.support.list(), self.fluid);
+        let nothing = &mut vec![(); common.sides.len()];
         let update = |first: usize, sides: &mut [Side<D>], _: &mut [()]| {
             let mut fastest = 0.0;
             for (offset, side) in sides.iter_mut().enumerate() {
@@ -58,6 +54,6 @@ impl<const D: usize> TransportVelocity<D> {
             }
             fastest
         };
-        parallel::maximum_of_chunks(&mut self.sides, nothing, 0.0, update).sqrt()
+        parallel::maximum_of_chunks(&mut common.sides, nothing, 0.0, update).sqrt()
     }
 }

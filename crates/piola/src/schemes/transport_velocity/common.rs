@@ -1,0 +1,156 @@
+//! What fluids and solids share: particles that move with a transport velocity, their neighbours, walls,
+//! surfaces and shifting. Nothing here knows of what matter they are.
+
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::fluid::FluidSide;
+
+use super::fields::{Columns, ColumnsMut};
+use super::shifting::Iteration;
+use super::sides::Side;
+use super::surface::Opening;
+use super::walls::{WallParticle, WallValues};
+use super::{Continua, Forces, Guard, Settings};
+use crate::Vector;
+use crate::boundaries::BodyForce;
+use crate::boundaries::prescribed::PrescribedComponents;
+use crate::geometry::Particles;
+use crate::operators::MovingSupport;
+
+/// The matter of a body where nothing presses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtRest {
+    /// Density rho0 in kg/m^3.
+    pub density: f64,
+    /// Speed of bulk waves in m/s.
+    pub wave_speed: f64,
+}
+
+/// Particles of any continuum in the formulation.
+pub struct Common<const D: usize> {
+    /// Reference state; the number of a particle is its index here.
+    pub(super) particles: Particles<D>,
+    pub(super) support: MovingSupport<D>,
+    pub(super) settings: Settings,
+    /// By body.
+    pub(super) at_rest: Vec<AtRest>,
+    /// Mass by number, kg.
+    pub(super) mass: Vec<f64>,
+    pub(super) is_wall: Vec<bool>,
+    /// The particles that are not shifted, by number; empty where all are.
+    pub(super) unshifted: Vec<bool>,
+    pub(super) walls: Vec<WallParticle<D>>,
+    pub(super) wall_values: Vec<WallValues<D>>,
+    /// Velocity with which walls move, and with which their surface slides where it is.
+    pub(super) motion: PrescribedComponents,
+    pub(super) sliding: PrescribedComponents,
+    pub(super) body_forces: Vec<BodyForce<D>>,
+    /// To which continuum a particle belongs, by place.
+    pub(super) continua: Continua<D>,
+    /// The largest speed that the last pass over densities has seen, in m/s.
+    pub(super) fastest: f64,
+    // Scratch, by place.
+    pub(super) sides: Vec<Side<D>>,
+    pub(super) forces: Vec<Forces<D>>,
+    /// Where free surfaces are, if they are looked for, and scratch of the search.
+    pub(super) openings: Vec<Opening<D>>,
+    pub(super) found: Vec<(Vector<D>, bool)>,
+    pub(super) marks: Vec<bool>,
+    pub(super) volumes: Vec<f64>,
+    pub(super) iteration: Iteration<D>,
+    /// Who looks for particles that escape, with the width of everything at the start in m.
+    pub(super) guard: Option<(Guard, f64)>,
+    /// The particles that have been removed, by number; empty where none ever is. They are passive,
+    /// as walls are.
+    pub(super) removed: Vec<bool>,
+    /// The first particle whose place was no number, if the neighbours could not be found.
+    pub(super) lost: Option<usize>,
+}
+
+impl<const D: usize> Common<D> {
+    /// Particles with their neighbours, each with a density in kg/m^3.
+    pub(super) fn new(
+        particles: Particles<D>,
+        support: MovingSupport<D>,
+        settings: Settings,
+        (is_wall, walls): (Vec<bool>, Vec<WallParticle<D>>),
+        (at_rest, densities): (Vec<AtRest>, &[f64]),
+    ) -> Self {
+        let count = particles.len();
+        let looked_for = if settings.free_surface { count } else { 0 };
+        let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
+        Self {
+            mass: mass.collect(),
+            sides: vec![FluidSide::zero(); count],
+            forces: vec![Forces::default(); count],
+            wall_values: vec![WallValues::default(); walls.len()],
+            openings: vec![Opening::default(); looked_for],
+            found: vec![(Vector::zeros(), false); looked_for],
+            marks: vec![false; looked_for],
+            volumes: Vec::with_capacity(looked_for),
+            continua: Continua::one(*support.list().domain()),
+            iteration: Iteration::default(),
+            unshifted: Vec::new(),
+            motion: PrescribedComponents::default(),
+            sliding: PrescribedComponents::default(),
+            body_forces: Vec::new(),
+            fastest: 0.0,
+            guard: None,
+            removed: Vec::new(),
+            lost: None,
+            particles,
+            support,
+            settings,
+            at_rest,
+            is_wall,
+            walls,
+        }
+    }
+
+    /// The columns of a state, and what stands behind them.
+    pub(super) fn columns<'a>(&self, state: &'a [f64]) -> Columns<'a, D> {
+        Columns::of(state, self.particles.len())
+    }
+
+    /// The same, to be changed.
+    pub(super) fn parts<'a>(&self, state: &'a mut [f64]) -> (ColumnsMut<'a, D>, &'a mut [f64]) {
+        ColumnsMut::of(state, self.particles.len())
+    }
+
+    /// Matter of a particle (number) where nothing presses.
+    pub(super) fn at_rest(&self, number: usize) -> &AtRest {
+        &self.at_rest[self.particles.body[number] as usize]
+    }
+
+    /// `1 / (rho0 c)^2` of a particle (number).
+    pub(super) fn compliance(&self, number: usize) -> f64 {
+        let AtRest { density, wave_speed } = self.at_rest(number);
+        (density * wave_speed).powi(-2)
+    }
+
+    /// Whether a particle (number) is not shifted.
+    pub(super) fn is_unshifted(&self, number: usize) -> bool {
+        self.unshifted.get(number).is_some_and(|is_unshifted| *is_unshifted)
+    }
+
+    /// A place, if the particle there is not passive.
+    pub(super) fn active(&self, place: usize) -> Option<usize> {
+        (!self.support.list().is_passive(place)).then_some(place)
+    }
+
+    /// A place, if the particle there is passive: of a wall, or removed.
+    pub(super) fn passive(&self, place: usize) -> Option<usize> {
+        self.support.list().is_passive(place).then_some(place)
+    }
+
+    /// The body forces in m/s^2 at a particle, where it is now.
+    pub(super) fn body_force_at(&self, number: usize, place: usize, time: f64) -> Vector<D> {
+        let position = &self.support.list().positions()[place];
+        BodyForce::sum(&self.body_forces, self.particles.body[number], position, time)
+    }
+
+    /// Bytes of arrays by particle.
+    pub(super) fn memory(&self) -> usize {
+        let particle = size_of::<Side<D>>() + size_of::<Forces<D>>() + 2 * size_of::<f64>();
+        self.support.memory() + self.particles.len() * particle
+    }
+}

@@ -1,0 +1,191 @@
+//! What a kind of matter brings to the particles that all kinds share.
+
+use piola_device::Device;
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::wall::{Around, Extrapolation, Ghost, Surroundings};
+
+use super::ledger::{ACCELERATIONS, Drift};
+use super::stages::Pass;
+use super::walls::WallValues;
+use super::{AtRest, Columns, Common, Rates, Slip, TransportVelocity, TransportVelocityError};
+use crate::Vector;
+use crate::fields::FieldDescription;
+use crate::operators::{Among, NeighborBlock, Term, add_at};
+use crate::schemes::ledger::{Entry, Total, Totals};
+use crate::schemes::stages::Stage;
+use crate::schemes::{DeviceRefusal, DeviceSteps, SchemeDescription};
+
+/// The names of columns that stages show, which a kind of matter may add to.
+pub struct Shown {
+    /// The columns of the state.
+    pub state: &'static [&'static str],
+    /// What a drift changes of them.
+    pub moved: &'static [&'static str],
+    /// What neighbours see of a particle after [`Pass::Load`].
+    pub side: &'static [&'static str],
+    /// What they see of a particle of a wall.
+    pub wall: &'static [&'static str],
+}
+
+/// Matter bound to the particles of [`Common`].
+pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
+    /// What it is made of.
+    type Input;
+    /// Passes that it alone has.
+    type Own: Copy + PartialEq + Send + Sync;
+
+    /// Its fields, energies and ledger.
+    const DESCRIPTION: &'static SchemeDescription;
+    /// Its mechanisms that accelerate, in the order of [`Forces::terms`](super::Forces).
+    const ACCELERATING: [Option<Entry>; ACCELERATIONS];
+    /// Its mechanisms of a drift: pressure, transport and one of its own.
+    const DRIFTING: [Entry; 3];
+    /// What particles that are removed take along.
+    const REMOVED: Entry;
+    /// What walls do, and what holds particles as prescribed.
+    const WALLS: Entry;
+    /// Columns of its stages.
+    const SHOWN: Shown;
+
+    /// Density and wave speed at rest of so many bodies.
+    fn at_rest(input: &Self::Input, bodies: usize) -> Vec<AtRest>;
+
+    /// Binds it to particles.
+    ///
+    /// # Errors
+    /// Parts that do not fit together.
+    fn bind(input: Self::Input, common: &mut Common<D>) -> Result<Self, TransportVelocityError>;
+
+    /// Fills what a state of the start has besides the columns of all matter.
+    fn begin(&self, _common: &Common<D>, _state: &mut [f64]) {}
+
+    /// The passes of a drift, and those that find accelerations.
+    fn passes(&self, common: &Common<D>) -> [Vec<Pass<Self::Own>>; 2];
+
+    /// What a pass of its own reads and writes.
+    fn stage(pass: Self::Own) -> Stage;
+
+    /// Runs a pass of its own at a time in s.
+    fn run(
+        &mut self,
+        pass: Self::Own,
+        common: &mut Common<D>,
+        time: f64,
+        state: &mut [f64],
+        totals: &mut Totals,
+    );
+
+    /// Fills what neighbours see besides their sides, which have been loaded.
+    fn load(&mut self, _common: &Common<D>, _state: &[f64]) {}
+
+    /// Sets what is prescribed of its particles in a state at a time in s; the work and the impulse
+    /// are of walls.
+    fn prescribe(&self, _common: &Common<D>, _time: f64, _state: &mut [f64]) -> Total {
+        Total::default()
+    }
+
+    /// Gives sides the density and pressure that are functions of places or of each other, and returns
+    /// the largest speed for shifting in m/s.
+    fn update(&mut self, common: &mut Common<D>) -> f64;
+
+    /// Fills its rates from the sides.
+    fn find_rates(&mut self, common: &Common<D>, time: f64);
+
+    /// Moves its particles with these rates by a step in s.
+    fn advance(&self, common: &Common<D>, step: f64, state: &mut [f64]) -> Drift;
+
+    /// Fills the forces of `common` from the sides, without body forces.
+    fn find_forces(&mut self, common: &mut Common<D>);
+
+    /// Writes what the passes have found to a state.
+    fn store(&self, common: &Common<D>, state: &mut [f64], totals: &mut Totals) {
+        common.store::<Self>(state, totals);
+    }
+
+    /// What is around the wall particle at `place`.
+    fn around(
+        &self,
+        common: &Common<D>,
+        place: usize,
+        _values: &mut WallValues<D>,
+        block: &mut NeighborBlock<D>,
+    ) -> Around<f64, D> {
+        let mut around = Surroundings::zero();
+        let source = common.sides.as_slice();
+        let sum = Term { law: Extrapolation::<D>, source, among: Among::Active };
+        add_at(&common.support, &sum, place, block, &mut around);
+        around
+    }
+
+    /// Changes the values of a wall particle with a normal, beside which the matter is a ghost.
+    fn reflect(
+        &self,
+        _slip: Slip,
+        _normal: &Vector<D>,
+        _ghost: &Ghost<f64, D>,
+        _values: &mut WallValues<D>,
+    ) {
+    }
+
+    /// Takes the values of the wall particle at `place`.
+    fn set_wall(&mut self, place: usize, values: &WallValues<D>);
+
+    /// Square of the speed in m^2/s^2 of the particle at `place` that shifting takes for its own.
+    fn speed_squared(&self, common: &Common<D>, place: usize) -> f64 {
+        common.sides[place].velocity.norm_squared()
+    }
+
+    /// Its rates at a place, with the rates of density in kg/(m^3 s) and of pressure in Pa/s by
+    /// compression, transport and diffusion.
+    fn rates_at(&self, common: &Common<D>, place: usize) -> (Rates, f64, [f64; 3]);
+
+    /// Speed of the fastest waves in m/s, if it is the same everywhere.
+    fn wave_speed(&self) -> Option<f64> {
+        None
+    }
+
+    /// That of a particle (number), if what it has besides the columns of all matter is finite.
+    fn wave_speed_of(&self, _common: &Common<D>, _number: usize, _state: &[f64]) -> Option<f64> {
+        Some(0.0)
+    }
+
+    /// Kinematic viscosity in m^2/s.
+    fn viscosity(&self) -> f64 {
+        0.0
+    }
+
+    /// Energies in J behind the kinetic one.
+    fn energies(&self, common: &Common<D>, state: &[f64], energies: &mut [f64]);
+
+    /// Appends its own figures.
+    fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>);
+
+    /// Appends a field of its own table, numbered there, of a particle (number).
+    fn push_field(
+        &self,
+        common: &Common<D>,
+        field: &FieldDescription,
+        number: usize,
+        state: (&Columns<'_, D>, &[f64]),
+        values: &mut Vec<f64>,
+    );
+
+    /// Numbers behind the ledger of a state.
+    fn length(&self, _common: &Common<D>) -> usize {
+        0
+    }
+
+    /// Bytes a particle.
+    fn memory() -> usize;
+
+    /// Its steps on a device.
+    ///
+    /// # Errors
+    /// It has none, or the device refuses.
+    fn to_device(
+        _system: &TransportVelocity<D, Self>,
+        _device: Device,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        Err(DeviceRefusal::Solids)
+    }
+}

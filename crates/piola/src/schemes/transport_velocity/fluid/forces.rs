@@ -1,0 +1,110 @@
+//! The accelerations.
+
+use piola_formulas::fluid;
+use piola_formulas::pairs::fluid::{
+    FULL, ForceConstants, ForceSums, Forces as Law, MIXED, NONE, Wall, WallForces,
+};
+
+use super::{Common, WeaklyCompressible};
+use crate::Vector;
+use crate::operators::{Among, Term, gather};
+use crate::schemes::transport_velocity::{Dilatation, Forces, Shifting, Side};
+
+impl<const D: usize> WeaklyCompressible<D> {
+    /// Fills `forces` from the sides, without body forces. On wall particles it is the reaction
+    /// of the fluid.
+    pub(super) fn force_pass(&self, common: &mut Common<D>) {
+        let mut forces = std::mem::take(&mut common.forces);
+        let (constants, kind) = self.force_law(common);
+        let fill = match kind {
+            (NONE, false, false) => Self::gather_forces::<NONE, false, false>,
+            (NONE, false, true) => Self::gather_forces::<NONE, false, true>,
+            (NONE, true, false) => Self::gather_forces::<NONE, true, false>,
+            (NONE, true, true) => Self::gather_forces::<NONE, true, true>,
+            (FULL, false, false) => Self::gather_forces::<FULL, false, false>,
+            (FULL, false, true) => Self::gather_forces::<FULL, false, true>,
+            (FULL, true, false) => Self::gather_forces::<FULL, true, false>,
+            (FULL, true, true) => Self::gather_forces::<FULL, true, true>,
+            (_, false, false) => Self::gather_forces::<MIXED, false, false>,
+            (_, false, true) => Self::gather_forces::<MIXED, false, true>,
+            (_, true, false) => Self::gather_forces::<MIXED, true, false>,
+            (_, true, true) => Self::gather_forces::<MIXED, true, true>,
+        };
+        fill(self, common, constants, &mut forces);
+        if !common.walls.is_empty() {
+            self.react(common, &constants, &mut forces);
+        }
+        common.forces = forces;
+    }
+
+    /// The constants of the law between particles of a fluid, and which one it is: its corrections,
+    /// whether there is artificial viscosity, whether particles are shifted by SPST.
+    pub(in super::super) fn force_law(
+        &self,
+        common: &Common<D>,
+    ) -> (ForceConstants, (u8, bool, bool)) {
+        let h = common.support.smoothing_length();
+        let corrections = &common.settings.corrections;
+        let one_if = |is_on: bool| f64::from(u8::from(is_on));
+        let crowding = match common.settings.shifting {
+            Shifting::Sun { .. } => Some(1.0 / common.value_at_spacing(h)),
+            _ => None,
+        };
+        let constants = ForceConstants {
+            softening: fluid::softening(h),
+            viscosity: self.fluid.viscosity,
+            artificial: common.settings.artificial_viscosity * h * self.fluid.wave_speed,
+            stress: one_if(corrections.stress),
+            dilatation: one_if(corrections.dilatation == Dilatation::Deviation),
+            transport: one_if(corrections.dilatation == Dilatation::Transport),
+            crowding: crowding.unwrap_or(0.0),
+        };
+        let kind = match (corrections.stress, corrections.dilatation) {
+            (false, Dilatation::None) => NONE,
+            (true, Dilatation::Deviation) => FULL,
+            _ => MIXED,
+        };
+        (constants, (kind, constants.artificial > 0.0, crowding.is_some()))
+    }
+
+    fn gather_forces<const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING: bool>(
+        &self,
+        common: &Common<D>,
+        constants: ForceConstants,
+        forces: &mut [Forces<D>],
+    ) {
+        let law = Law::<D, CORRECTS, ARTIFICIAL, CROWDING>(constants);
+        let (sides, shear) = (common.sides.as_slice(), self.shear.as_slice());
+        let fluid = Term { law, source: sides, among: Among::Active };
+        let walls = Term { law: WallForces(law), source: (sides, shear), among: Among::Passive };
+        let close = |place: usize, sums: &_, row: &mut _| *row = accelerations(sums, &sides[place]);
+        gather(&common.support, &(fluid, walls), forces, |place| common.active(place), close);
+    }
+
+    /// The forces of the fluid on wall particles, over their mass: what they do to the fluid, turned
+    /// round.
+    fn react(&self, common: &Common<D>, constants: &ForceConstants, forces: &mut [Forces<D>]) {
+        let ForceConstants { softening, viscosity, .. } = *constants;
+        let law = Wall::<D> { softening, viscosity };
+        let source = (common.sides.as_slice(), self.shear.as_slice());
+        let sum = Term { law, source, among: Among::Active };
+        let close = |_: usize, walls: &Vector<D>, row: &mut _| {
+            *row = Forces { walls: *walls, ..Forces::default() };
+        };
+        gather(&common.support, &sum, forces, |place| common.passive(place), close);
+    }
+}
+
+/// The accelerations of a particle with these sums, without body forces.
+fn accelerations<const D: usize>(sums: &ForceSums<f64, D>, me: &Side<D>) -> Forces<D> {
+    Forces {
+        pressure: sums.pressure,
+        viscosity: sums.viscosity,
+        artificial_viscosity: sums.artificial_viscosity,
+        transport: me.velocity * sums.stretch + sums.carried,
+        walls: sums.walls,
+        body_force: Vector::zeros(),
+        crowding: sums.crowding,
+        opening: -sums.volume,
+    }
+}

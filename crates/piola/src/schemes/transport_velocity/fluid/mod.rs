@@ -1,0 +1,295 @@
+//! A weakly compressible fluid in the transport-velocity formulation, CTVF section 2.
+
+mod barrier;
+mod density;
+mod drift;
+mod forces;
+mod rates;
+
+use piola_device::Device;
+use piola_formulas::pairs::sums::Density;
+
+use super::fields::Made;
+use super::ledger::{ACCELERATIONS, Drift};
+use super::stages::{Pass, stage};
+use super::walls::WallValues;
+use super::{
+    AtRest, Columns, Common, Continuum, DensityRule, Fluid, Rates, Shown, TransportVelocity,
+    TransportVelocityError,
+};
+use crate::Vector;
+use crate::fields::{FieldDescription, columns};
+use crate::schemes::ledger::{Entry, Total, Totals};
+use crate::schemes::stages::Stage;
+use crate::schemes::{Accounts, Capability, DeviceRefusal, DeviceSteps, SchemeDescription};
+
+use barrier::Hold;
+pub(super) use barrier::TOUCH;
+
+columns! {
+    enum Own;
+    derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
+}
+
+/// The fields of all matter, then those of fluids.
+const FIELDS: [FieldDescription; Made::FIELDS.len() + Own::FIELDS.len()] =
+    FieldDescription::joined(Made::FIELDS, Own::FIELDS);
+
+/// What a fluid is called and what it shows.
+pub const DESCRIPTION: SchemeDescription = SchemeDescription {
+    name: super::NAME,
+    matter: Some("fluids"),
+    offers: &[Capability::Kicks],
+    fields: &FIELDS,
+    energies: &["kinetic", "compression"],
+    ledger: LEDGER,
+    figures: &[("shifting_passes", "1"), ("removed", "1"), ("behind", "1")],
+};
+
+/// The ledger of a fluid.
+///
+/// `pressure` is what the exchange between kinetic energy and that of compression fails to
+/// conserve: the discrete force and divergence are not exact adjoints.
+///
+/// Viscous forces act along `u_ab` and turn the fluid; the corrections neither come in pairs, nor do
+/// particles move along their velocity. What is removed takes its momentum along.
+pub(super) const LEDGER: Accounts = Accounts {
+    mechanisms: &[
+        "pressure",
+        "viscosity",
+        "artificial_viscosity",
+        "transport",
+        "walls",
+        "body_force",
+        "pressure_diffusion",
+        "removed",
+    ],
+    impulses: &["walls", "body_force", "viscosity", "corrections", "removed"],
+    is_kicked: true,
+};
+const PRESSURE: Entry = LEDGER.entry("pressure");
+const TRANSPORT: Entry = LEDGER.entry_by("transport", "corrections");
+const WALLS: Entry = LEDGER.entry("walls");
+
+/// The mechanisms that accelerate.
+pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
+    PRESSURE,
+    LEDGER.entry("viscosity"),
+    LEDGER.entry("artificial_viscosity"),
+    TRANSPORT,
+    WALLS,
+    LEDGER.entry("body_force"),
+];
+
+/// The mechanisms of a drift.
+pub(super) const DRIFTING: [Entry; 3] = [PRESSURE, TRANSPORT, LEDGER.entry("pressure_diffusion")];
+
+/// A fluid bound to its particles, with scratch by place.
+pub struct WeaklyCompressible<const D: usize> {
+    fluid: Fluid,
+    densities: Vec<f64>,
+    rates: Vec<Rates>,
+    /// Velocity of each wall particle that viscous forces see.
+    shear: Vec<Vector<D>>,
+    /// What walls do to fluid that touches them; empty without walls.
+    holds: Vec<Hold<D>>,
+}
+
+/// Passes of fluids alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Barrier {
+    /// What walls do to fluid that touches them.
+    HoldOff,
+    /// What they get for it.
+    Bear,
+}
+
+impl<const D: usize> WeaklyCompressible<D> {
+    /// What it is made of.
+    pub(super) fn fluid(&self) -> &Fluid {
+        &self.fluid
+    }
+
+    /// `1 / (rho0 c)^2`.
+    pub(super) fn compliance(&self) -> f64 {
+        (self.fluid.density * self.fluid.wave_speed).powi(-2)
+    }
+}
+
+impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
+    type Input = Fluid;
+    type Own = Barrier;
+
+    const DESCRIPTION: &'static SchemeDescription = &DESCRIPTION;
+    const ACCELERATING: [Option<Entry>; ACCELERATIONS] = {
+        let [a, b, c, d, e, f] = ACCELERATING;
+        [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)]
+    };
+    const DRIFTING: [Entry; 3] = DRIFTING;
+    const REMOVED: Entry = LEDGER.entry("removed");
+    const WALLS: Entry = WALLS;
+    const SHOWN: Shown = Shown {
+        state: &[
+            "position",
+            "velocity",
+            "density",
+            "pressure",
+            "acceleration",
+            "shifting_velocity",
+        ],
+        moved: &["position", "density", "pressure"],
+        side: &["side.velocity", "side.shifting_velocity", "side.density", "side.pressure"],
+        wall: &[
+            "side.velocity",
+            "side.shifting_velocity",
+            "side.density",
+            "side.pressure",
+            "shear",
+        ],
+    };
+
+    fn at_rest(fluid: &Fluid, bodies: usize) -> Vec<AtRest> {
+        vec![AtRest { density: fluid.density, wave_speed: fluid.wave_speed }; bodies]
+    }
+
+    fn bind(fluid: Fluid, common: &mut Common<D>) -> Result<Self, TransportVelocityError> {
+        let count = common.particles.len();
+        let touched = if common.walls.is_empty() { 0 } else { count };
+        Ok(Self {
+            fluid,
+            densities: vec![0.0; count],
+            rates: vec![Rates::default(); count],
+            shear: vec![Vector::zeros(); touched],
+            holds: vec![Hold::default(); touched],
+        })
+    }
+
+    fn passes(&self, common: &Common<D>) -> [Vec<Pass<Barrier>>; 2] {
+        let settings = &common.settings;
+        let has_rates = settings.density == DensityRule::Continuity || !settings.is_algebraic();
+        let [walls, body_forces, shift] = common.passes();
+        let rates = if has_rates { vec![Pass::Rates] } else { Vec::new() };
+        let barrier = match self.holds.is_empty() {
+            true => Vec::new(),
+            false => vec![Pass::Own(Barrier::HoldOff), Pass::Own(Barrier::Bear)],
+        };
+        let drift = [common.spread(), walls.clone(), rates, vec![Pass::Move]];
+        let (found, stored) = (vec![Pass::Remove, Pass::Load, Pass::State], vec![Pass::Store]);
+        let forces = vec![Pass::Forces];
+        let accelerate = [found, walls, forces, body_forces, shift, barrier, stored];
+        [drift.concat(), accelerate.concat()]
+    }
+
+    fn stage(pass: Barrier) -> Stage {
+        match pass {
+            Barrier::HoldOff => {
+                let reads = &["forces", "side.velocity", "side.shifting_velocity", "wall_motion"];
+                let shows = &["barrier", "side.shifting_velocity"];
+                stage("hold_off", [reads, &["position"], &[], shows])
+            }
+            Barrier::Bear => {
+                stage("bear", [&["forces", "barrier"], &["barrier"], &["forces"], &[]])
+            }
+        }
+    }
+
+    fn run(
+        &mut self,
+        pass: Barrier,
+        common: &mut Common<D>,
+        _time: f64,
+        _state: &mut [f64],
+        _totals: &mut Totals,
+    ) {
+        match pass {
+            Barrier::HoldOff => self.hold_off(common),
+            Barrier::Bear => self.bear(common),
+        }
+    }
+
+    fn update(&mut self, common: &mut Common<D>) -> f64 {
+        self.update_density_and_pressure(common)
+    }
+
+    fn find_rates(&mut self, common: &Common<D>, time: f64) {
+        self.rate_pass(common, time);
+    }
+
+    fn advance(&self, common: &Common<D>, step: f64, state: &mut [f64]) -> Drift {
+        self.drift(common, step, state)
+    }
+
+    fn find_forces(&mut self, common: &mut Common<D>) {
+        self.force_pass(common);
+    }
+
+    /// A pressure that follows from the density changes at once.
+    fn store(&self, common: &Common<D>, state: &mut [f64], totals: &mut Totals) {
+        if !common.settings.is_algebraic() {
+            return common.store::<Self>(state, totals);
+        }
+        let before = self.compression_energy(common, state);
+        common.store::<Self>(state, totals);
+        let gained = self.compression_energy(common, state) - before;
+        totals.book(PRESSURE, &Total::of(gained));
+    }
+
+    fn set_wall(&mut self, place: usize, values: &WallValues<D>) {
+        self.shear[place] = values.shear;
+    }
+
+    fn rates_at(&self, common: &Common<D>, place: usize) -> (Rates, f64, [f64; 3]) {
+        let (density, pressure) =
+            (self.density_rate(common, place), self.pressure_rates(common, place));
+        (self.rates[place], density, pressure)
+    }
+
+    fn wave_speed(&self) -> Option<f64> {
+        Some(self.fluid.wave_speed)
+    }
+
+    fn viscosity(&self) -> f64 {
+        self.fluid.viscosity
+    }
+
+    fn energies(&self, common: &Common<D>, state: &[f64], energies: &mut [f64]) {
+        energies[0] = self.compression_energy(common, state);
+    }
+
+    fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>) {
+        figures.push(self.behind_count(common, state));
+    }
+
+    fn push_field(
+        &self,
+        common: &Common<D>,
+        field: &FieldDescription,
+        number: usize,
+        _state: (&Columns<'_, D>, &[f64]),
+        values: &mut Vec<f64>,
+    ) {
+        match Own::of(field) {
+            Some(Own::summed_density) => values.push(summed_density(common, number)),
+            None => {}
+        }
+    }
+
+    fn memory() -> usize {
+        size_of::<Rates>() + size_of::<Hold<D>>() + size_of::<Vector<D>>() + size_of::<f64>()
+    }
+
+    fn to_device(
+        system: &TransportVelocity<D, Self>,
+        device: Device,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        system.fluid_to_device(device)
+    }
+}
+
+/// The sum of masses, theory (26).
+fn summed_density<const D: usize>(common: &Common<D>, number: usize) -> f64 {
+    let place = common.support.list().places()[number] as usize;
+    let mut sum = common.sides[place].mass() * common.support.centre();
+    common.add_all(Density, place, &mut sum);
+    sum
+}
