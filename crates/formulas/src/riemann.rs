@@ -5,11 +5,10 @@
 //! `S_p = 1/(2 rho0 c) n (x) n` (corrected). Areas are the antisymmetric averages of (3.41) and
 //! (3.42, sign corrected), so that what a particle receives its neighbour loses.
 
-use std::ops::Mul;
-
 use nalgebra::{SMatrix, SVector};
 
 use crate::Number;
+use crate::pairs::{Components, Record, dot};
 
 /// The interface between particles a and b.
 ///
@@ -20,7 +19,7 @@ pub struct Interface<T, const D: usize> {
     /// Current separation `x_b - x_a` in m.
     current: SVector<T, D>,
     /// Reference separation `X_b - X_a` in m.
-    reference: SVector<f64, D>,
+    reference: SVector<T, D>,
     /// Impedance `z = rho0 c` in kg/(m^2 s).
     impedance: T,
     /// `1 / (2 z |X_ab| |x_ab|^2)`: turns the unnormalised `x_ab (x) x_ab` and `X_ab` of the fluxes
@@ -31,11 +30,11 @@ pub struct Interface<T, const D: usize> {
 impl<T: Number, const D: usize> Interface<T, D> {
     /// The interface of a pair with current separation `x_b - x_a` and reference separation
     /// `X_b - X_a`, both in m, and impedance `z = rho0 c` in kg/(m^2 s).
-    #[inline]
-    pub fn new(current: SVector<T, D>, reference: SVector<f64, D>, impedance: T) -> Self {
+    #[inline(always)]
+    pub fn new(current: SVector<T, D>, reference: SVector<T, D>, impedance: T) -> Self {
         let square = dot(&current, &current);
         let distance = dot(&reference, &reference).sqrt();
-        let scale = (square * impedance * T::from(2.0 * distance)).recip();
+        let scale = (square * impedance * (distance * 2.0)).recip();
         Self { current, reference, impedance, scale }
     }
 
@@ -44,12 +43,16 @@ impl<T: Number, const D: usize> Interface<T, D> {
     ///
     /// `jump` dv = v_f+ - v_f- in m/s; `area` the antisymmetric `C_ab = V_a G_ab - V_b G_ba` in
     /// m^(D-1).
-    #[inline]
-    pub fn force(&self, jump: &SVector<T, D>, area: &SVector<f64, D>) -> SVector<T, D> {
+    #[inline(always)]
+    pub fn force(&self, jump: &SVector<T, D>, area: &SVector<T, D>) -> SVector<T, D> {
         let normal_area = dot(&self.reference, area);
         let flux = self.scale * self.impedance * self.impedance * dot(&self.current, jump);
-        let size = flux * T::from(normal_area);
-        self.current.map(|component| component * size)
+        let size = flux * normal_area;
+        let mut force = self.current;
+        for i in 0..D {
+            force[i] *= size;
+        }
+        force
     }
 
     /// Dissipative volume rate of a in m^D/s, `-(dp / 2z) (n . H^Ave N) (n . C^H)`,
@@ -58,18 +61,22 @@ impl<T: Number, const D: usize> Interface<T, D> {
     /// `jump` dp = p_f+ - p_f- in Pa; `cofactors` H_a and H_b, of which H^Ave is the average;
     /// `areas` V_a G_ab and V_b G_ba in m^(D-1), which give the antisymmetric
     /// `C^H_ab = V_a H_a G_ab - V_b H_b G_ba`.
-    #[inline]
+    #[inline(always)]
     pub fn volume_rate(
         &self,
         jump: T,
         cofactors: [&SMatrix<T, D, D>; 2],
-        areas: [&SVector<f64, D>; 2],
+        areas: [&SVector<T, D>; 2],
     ) -> T {
         // What a cofactor maps is needed along x_ab only: two products with its transpose do.
-        let [mine, theirs] = cofactors.map(|h| transposed_product(h, &self.current));
-        let both = SVector::from_fn(|i, _| mine[i] + theirs[i]);
+        let mine = transposed_product(cofactors[0], &self.current);
+        let theirs = transposed_product(cofactors[1], &self.current);
+        let mut both = mine;
+        for i in 0..D {
+            both[i] += theirs[i];
+        }
         let area = dot(&mine, areas[0]) - dot(&theirs, areas[1]);
-        -(jump * self.scale * T::from(0.5) * dot(&both, &self.reference) * area)
+        -(jump * self.scale * 0.5 * dot(&both, &self.reference) * area)
     }
 }
 
@@ -89,29 +96,19 @@ pub fn referential_wave_speed<T: Number>(acoustic: T, determinant: T, smallest_e
     acoustic * determinant / smallest_eigenvalue.sqrt()
 }
 
-#[inline]
-fn dot<T: Number + Mul<U, Output = T>, U: nalgebra::Scalar + Copy, const D: usize>(
-    a: &SVector<T, D>,
-    b: &SVector<U, D>,
-) -> T {
-    let mut sum = a[0] * b[0];
-    for i in 1..D {
-        sum += a[i] * b[i];
-    }
-    sum
-}
-
 /// `H^T x`.
-#[inline]
+#[inline(always)]
 fn transposed_product<T: Number, const D: usize>(
     matrix: &SMatrix<T, D, D>,
     vector: &SVector<T, D>,
 ) -> SVector<T, D> {
-    SVector::from_fn(|j, _| {
+    let mut product = Components::<D>::zero();
+    for j in 0..D {
         let mut sum = matrix[(0, j)] * vector[0];
         for i in 1..D {
             sum += matrix[(i, j)] * vector[i];
         }
-        sum
-    })
+        product[j] = sum;
+    }
+    product
 }

@@ -158,18 +158,20 @@ fn check_derivatives<const D: usize>(
     };
     let along =
         |x: &Vector<D>| SVector::<Dual64, D>::from_fn(|i, _| Dual64::new(x[i], direction[i]));
+    let fixed = |x: &Vector<D>| x.map(Dual64::from);
     let along_square = |h: &Matrix<D>, sign: f64| {
         SMatrix::<Dual64, D, D>::from_fn(|i, j| {
             Dual64::new(h[(i, j)], sign * direction[i] * direction[j])
         })
     };
     let impedance = Dual64::new(pair.impedance, pair.impedance);
-    let interface = Interface::new(along(&pair.current), pair.reference, impedance);
-    let force = interface.force(&along(&pair.velocity_jump), &pair.area());
+    let interface = Interface::new(along(&pair.current), fixed(&pair.reference), impedance);
+    let force = interface.force(&along(&pair.velocity_jump), &fixed(&pair.area()));
+    let areas = pair.areas.each_ref().map(fixed);
     let rate = interface.volume_rate(
         Dual64::new(pair.pressure_jump, 2.0 * pair.pressure_jump),
         [&along_square(&pair.cofactors[0], 1.0), &along_square(&pair.cofactors[1], -1.0)],
-        pair.areas.each_ref(),
+        areas.each_ref(),
     );
     // Separations of 0.1 m and more: third derivatives are below 1e4 times the sizes, so that
     // central differences of 1e-5 are good to 1e-6 of them; rounding is below that.

@@ -9,6 +9,7 @@ pub mod fluid;
 mod record;
 pub mod solid;
 pub mod sums;
+pub mod upwind;
 pub mod wall;
 
 pub use record::{Components, Many, Of, One, Record, Square};
@@ -29,6 +30,18 @@ record! {
         /// `W'_ab / r_ab` in m^-(D+2), if the law needs it: the gradient `grad_a W_ab` is this times
         /// the separation.
         pub slope: One,
+    }
+}
+
+record! {
+    /// A pair of a frozen list.
+    pub struct Frozen<D> in FrozenPair {
+        /// Area `V_a G_ab` in m^(D-1).
+        pub area: Components<D>,
+        /// Area `V_b G_ba` in m^(D-1).
+        pub transposed: Components<D>,
+        /// 1, or 0 for what fills up the last lanes, where areas are zero, too.
+        pub counts: One,
     }
 }
 

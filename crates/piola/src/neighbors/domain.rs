@@ -75,21 +75,6 @@ impl<const D: usize> Domain<D> {
         separation
     }
 
-    /// Turns differences `to - from` of several pairs into their minimal images, component by
-    /// component: [`Self::separation`] for loops over many pairs, few of which cross a bound.
-    #[inline(always)]
-    pub fn shorten<const N: usize>(&self, differences: &mut [[f64; N]; D]) {
-        for (distances, bounds) in differences.iter_mut().zip(&self.periodic) {
-            if let &Some([lower, upper]) = bounds {
-                let period = upper - lower;
-                // A look at all of them together costs little; only a few need the remainder.
-                if distances.iter().fold(false, |any, d| any | !(d.abs() <= 0.5 * period)) {
-                    shorten_each(distances, period);
-                }
-            }
-        }
-    }
-
     /// The image of `point` inside the bounds: at or above the lower, below the upper one.
     pub fn wrap(&self, point: &Vector<D>) -> Vector<D> {
         let mut wrapped = *point;
@@ -131,15 +116,6 @@ pub(crate) fn shorter_way(distance: f64, period: f64) -> f64 {
     let half = 0.5 * period;
     let down = if distance > half { distance - period } else { distance };
     if distance < -half { distance + period } else { down }
-}
-
-/// [`shortest`] for some distances, apart from the loops that rarely need it.
-#[cold]
-#[inline(never)]
-fn shorten_each(distances: &mut [f64], period: f64) {
-    for distance in distances {
-        *distance = shortest(*distance, period);
-    }
 }
 
 #[cfg(test)]

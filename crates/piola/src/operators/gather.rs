@@ -11,10 +11,10 @@
 use multiversion::multiversion;
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::{Of, One, PairLaw, Record};
-use piola_formulas::{Lanes, Lanes4, WIDTH};
+use piola_formulas::{Lanes, Lanes4, Number, WIDTH};
 
 use super::LANES;
-use crate::parallel;
+use crate::parallel::{self, Parts, Sums};
 
 /// Which neighbours of a particle a sum runs over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -293,28 +293,47 @@ pub fn gather<P: Pairs, M: Sum<P>, O: Send>(
     slot: impl Fn(usize) -> Option<usize> + Sync,
     close: impl Fn(usize, &Of<M::Sums, f64>, &mut O) + Sync,
 ) {
-    parallel::for_each_chunk(out, |first, out| rows(pairs, sum, first, out, &slot, &close));
+    parallel::for_each_chunk(out, |first, out| {
+        rows(pairs, sum, first..first + out.len(), &slot, &mut |slot, k, sums| {
+            close(slot, sums, &mut out[k]);
+        });
+    });
+}
+
+/// As [`gather`], of the first `count` slots, for arrays beside each other and with totals of all
+/// particles: `close([slot, k], sums, out, totals)` fills in row `k` of the part `out`.
+pub fn gather_parts<P: Pairs, M: Sum<P>, O: Parts, T: Sums>(
+    pairs: &P,
+    sum: &M,
+    (count, out): (usize, O),
+    close: impl Fn([usize; 2], &Of<M::Sums, f64>, &mut O, &mut T) + Sync,
+) -> T {
+    parallel::sums_over_parts(count, out, |first, mut out, totals| {
+        let slots = first..(first + parallel::CHUNK).min(count);
+        rows(pairs, sum, slots, &Some, &mut |slot, k, sums| {
+            close([slot, k], sums, &mut out, totals);
+        });
+    })
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn rows<P: Pairs, M: Sum<P>, O>(
+fn rows<P: Pairs, M: Sum<P>>(
     pairs: &P,
     sum: &M,
-    first: usize,
-    out: &mut [O],
+    range: std::ops::Range<usize>,
     slot: &impl Fn(usize) -> Option<usize>,
-    close: &impl Fn(usize, &Of<M::Sums, f64>, &mut O),
+    close: &mut impl FnMut(usize, usize, &Of<M::Sums, f64>),
 ) {
     let mut block = P::Block::default();
-    for (offset, out) in out.iter_mut().enumerate() {
-        if let Some(slot) = slot(first + offset) {
+    for (k, row) in range.enumerate() {
+        if let Some(slot) = slot(row) {
             let zero = [M::Sums::zero(), M::Sums::zero()];
             let [lower, upper] = sum.lanes(pairs, slot, &mut block, zero);
             let total = M::Sums::map([&lower, &upper], &|[lower, upper]: [Lanes4; 2]| {
                 let [a, b, c, d] = (lower + upper).store();
                 (a + c) + (b + d)
             });
-            close(slot, &total, out);
+            close(slot, k, &total);
         }
     }
 }
@@ -328,6 +347,22 @@ pub fn add_at<P: Pairs, M: Sum<P>>(
     sums: &mut Of<M::Sums, f64>,
 ) {
     sum.single(pairs, slot, block, sums);
+}
+
+/// What a law sums over all neighbours of the particle in one slot, in numbers of any type, one after the
+/// other: `show` has the sides.
+pub fn sum_at<T: Number, P: Pairs, L: PairLaw<Pair = P::Pair>>(
+    pairs: &P,
+    law: &L,
+    slot: usize,
+    show: impl Fn(usize) -> Of<L::Side, T>,
+) -> Of<L::Sums, T> {
+    let (me, mut sums) = (show(slot), L::Sums::zero());
+    visit(pairs, slot, Among::All, L::NEEDS, &mut P::Block::default(), |other, pair| {
+        let pair = P::Pair::map([pair], &|[x]: [f64; 1]| T::from(x));
+        law.add(&me, &show(other), &pair, &mut sums);
+    });
+    sums
 }
 
 /// Shows the neighbours of the particle in one slot, one after the other.

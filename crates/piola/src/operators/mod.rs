@@ -30,8 +30,7 @@ mod stencil;
 mod support;
 mod trace;
 
-pub(crate) use areas::total;
-pub use areas::{Block, LANES, Lanes, PairAreas};
+pub use areas::{Block, LANES, Lanes, PairAreas, Row};
 pub use block::NeighborBlock;
 pub use boundary_values::{BoundaryValueError, ModifiedMatrix, POOR_CONDITION, raise_ghosts};
 pub use continued::{Ghost, Share};
@@ -40,7 +39,10 @@ pub use dual_gradient::DualGradient;
 pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
 pub use folded::{FoldedGradient, FoldedHourglass, PlaneData};
-pub use gather::{Among, OfCenter, OfOther, Pairs, Same, Source, Sum, Term, add_at, gather, visit};
+pub use gather::{
+    Among, OfCenter, OfOther, Pairs, Same, Source, Sum, Term, add_at, gather, gather_parts, sum_at,
+    visit,
+};
 pub use gradient::{Correction, GradientOperator};
 pub use hourglass::ScalarHourglass;
 pub use images::{Continuation, Image, Mirror, images};

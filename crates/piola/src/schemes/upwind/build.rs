@@ -1,11 +1,11 @@
 //! From particles and settings to a scheme that is ready to run.
 
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::upwind::{UpwindSide, UpwindSlope};
 use piola_formulas::volumetric::{Prestressed, VolumetricResponse};
 use thiserror::Error;
 
 use super::implicit::{Implicit, ImplicitSettings};
-use super::local::Side;
-use super::reconstruction::Slope;
 use super::{Initial, Material, Reference, Settings, Upwind};
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
@@ -109,8 +109,8 @@ impl<const D: usize> Upwind<D> {
             steady_body_force: input.body_forces.iter().all(BodyForce::is_steady),
             body_acceleration: vec![Vector::zeros(); count],
             loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
-            sides: vec![Side::default(); count],
-            slopes: vec![Slope::ZERO; if settings.reconstruction { count } else { 0 }],
+            sides: vec![UpwindSide::zero(); count],
+            slopes: vec![UpwindSlope::zero(); if settings.reconstruction { count } else { 0 }],
             observed: Vec::new(),
             body_forces: input.body_forces,
             initial_velocity: initial.velocity,

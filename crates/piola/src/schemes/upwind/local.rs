@@ -1,47 +1,13 @@
 //! The pass over particles alone: what each of them shows its neighbours.
 
 use nalgebra::{SMatrix, SVector};
+use piola_formulas::pairs::upwind::Side;
 use piola_formulas::volumetric::VolumetricResponse;
 use piola_formulas::{Number, riemann, tensor};
 
 use super::fields::Columns;
 use super::{Upwind, WaveSpeed};
-use crate::{Vector, parallel};
-
-/// What the pass over pairs gathers of a particle, in one place so that a neighbour costs one
-/// stretch of memory, which begins with a cache line so that it takes as few of them as can be.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(super) struct Side<T, const D: usize> {
-    /// Current position x in m.
-    pub position: SVector<T, D>,
-    /// Reference position X in m.
-    pub reference: Vector<D>,
-    /// Velocity v in m/s.
-    pub velocity: SVector<T, D>,
-    /// Cofactor H = det(F) F^-T of the deformation gradient.
-    pub cofactor: SMatrix<T, D, D>,
-    /// Pressure p(J) of the evolved J in Pa.
-    pub pressure: T,
-    /// Reference density in kg/m^3.
-    pub density: f64,
-    /// Speed of the shock in the dissipation in m/s.
-    pub wave_speed: T,
-}
-
-impl<T: Number, const D: usize> Default for Side<T, D> {
-    fn default() -> Self {
-        Self {
-            position: SVector::zeros(),
-            reference: Vector::zeros(),
-            velocity: SVector::zeros(),
-            cofactor: SMatrix::zeros(),
-            pressure: T::zero(),
-            density: 0.0,
-            wave_speed: T::zero(),
-        }
-    }
-}
+use crate::parallel;
 
 /// The unknowns of a particle.
 #[derive(Clone, Copy, Debug)]
@@ -96,11 +62,11 @@ impl<const D: usize> Upwind<D> {
         };
         Side {
             position: unknowns.position,
-            reference: self.particles.position[a],
+            reference: self.particles.position[a].map(T::from),
             velocity: unknowns.velocity,
             cofactor: tensor::cofactor(&unknowns.deformation),
             pressure: self.law(a).pressure(unknowns.ratio),
-            density: reference.density,
+            density: T::from(reference.density),
             wave_speed,
         }
     }

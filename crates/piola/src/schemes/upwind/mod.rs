@@ -19,11 +19,9 @@
 mod build;
 mod fields;
 mod folding;
-mod gather;
 mod implicit;
 mod inspect;
 mod local;
-mod pair;
 mod pairs;
 mod partitioned;
 mod passes;
@@ -31,6 +29,7 @@ mod reconstruction;
 mod scheme;
 mod settings;
 
+use piola_formulas::pairs::upwind::{Side, Slope};
 use piola_formulas::volumetric::{Prestressed, VolumetricLaw};
 
 use crate::Vector;
@@ -51,8 +50,6 @@ pub use crate::boundaries::BodyForce;
 pub use crate::schemes::Initial;
 
 use implicit::Implicit;
-use local::Side;
-use reconstruction::Slope;
 
 /// The upwind formulation bound to its particles.
 pub struct Upwind<const D: usize> {

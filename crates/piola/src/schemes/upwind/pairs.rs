@@ -1,13 +1,12 @@
 //! The pass over pairs: forces, deformation rates and upwind dissipation in one gather.
 
-use multiversion::multiversion;
+use piola_formulas::pairs::upwind::{Exchange, ExchangeSum, ExchangeSums, Reconstructed};
 
 use super::fields::ColumnsMut;
-use super::gather::Sums;
 use super::{BODY_FORCE, BOUNDARY_MOTION, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
+use crate::operators::{Among, PairAreas, Sum, Term, gather_parts};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::outside::{Acted, prescribe, push};
-use crate::{Tensor, Vector, parallel};
 
 /// The mechanisms of the pass, in the order of its sums.
 const MECHANISMS: [Entry; 3] = [BODY_FORCE, UPWIND_VELOCITY, UPWIND_PRESSURE];
@@ -17,21 +16,76 @@ impl<const D: usize> Upwind<D> {
     pub(super) fn pair_pass(&self, rate: &mut [f64], totals: &mut Totals) {
         let settings = &self.settings;
         let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure != 0.0);
-        let rate_rows = match (velocity, pressure, settings.reconstruction) {
-            (false, false, _) => rate_rows::<D, false, false, false>,
-            (true, false, false) => rate_rows::<D, true, false, false>,
-            (false, true, false) => rate_rows::<D, false, true, false>,
-            (true, true, false) => rate_rows::<D, true, true, false>,
-            (true, false, true) => rate_rows::<D, true, false, true>,
-            (false, true, true) => rate_rows::<D, false, true, true>,
-            (true, true, true) => rate_rows::<D, true, true, true>,
-        };
+        match (velocity, pressure, settings.reconstruction) {
+            (false, false, _) => self.exchange::<false, false>(rate, totals),
+            (true, false, false) => self.exchange::<true, false>(rate, totals),
+            (false, true, false) => self.exchange::<false, true>(rate, totals),
+            (true, true, false) => self.exchange::<true, true>(rate, totals),
+            (true, false, true) => self.reconstructed::<true, false>(rate, totals),
+            (false, true, true) => self.reconstructed::<false, true>(rate, totals),
+            (true, true, true) => self.reconstructed::<true, true>(rate, totals),
+        }
+    }
+
+    fn exchange<const VELOCITY: bool, const PRESSURE: bool>(
+        &self,
+        rate: &mut [f64],
+        totals: &mut Totals,
+    ) {
+        let law = Exchange::<D, VELOCITY, PRESSURE>(self.periods());
+        self.write_rates(&Term { law, source: &*self.sides, among: Among::All }, rate, totals);
+    }
+
+    fn reconstructed<const VELOCITY: bool, const PRESSURE: bool>(
+        &self,
+        rate: &mut [f64],
+        totals: &mut Totals,
+    ) {
+        let law = Reconstructed(Exchange::<D, VELOCITY, PRESSURE>(self.periods()));
+        let source = (&*self.sides, &*self.slopes);
+        self.write_rates(&Term { law, source, among: Among::All }, rate, totals);
+    }
+
+    fn write_rates(
+        &self,
+        sum: &impl Sum<PairAreas<D>, Sums = ExchangeSum<D>>,
+        rate: &mut [f64],
+        totals: &mut Totals,
+    ) {
         let count = self.particles.len();
         let (own, _) = ColumnsMut::<D>::of(rate, count);
-        let sums = parallel::sums_over_parts(count, own, |first, mut own, sums| {
-            rate_rows(self, first, &mut own, sums);
+        let found = gather_parts(&self.areas, sum, (count, own), |row, sums, own, found| {
+            self.write_row(row, sums, own, found);
         });
-        MECHANISMS.iter().zip(&sums).for_each(|(entry, sum)| totals.drive(*entry, sum));
+        MECHANISMS.iter().zip(&found).for_each(|(entry, sum)| totals.drive(*entry, sum));
+    }
+
+    /// Turns the sums of particle a into its rates, which stand at place k of their columns.
+    #[inline]
+    fn write_row(
+        &self,
+        [a, k]: [usize; 2],
+        sums: &ExchangeSums<f64, D>,
+        own: &mut ColumnsMut<'_, D>,
+        [body_force, by_velocity, by_pressure]: &mut [Total; MECHANISMS.len()],
+    ) {
+        let me = &self.sides[a];
+        let (settings, volume) = (&self.settings, self.particles.volume[a]);
+        let by_itself = me.cofactor * self.areas.diagonal(a) * me.pressure;
+        let upwind_force = sums.upwind_force * settings.tau_velocity;
+        let upwind_volume_rate = sums.upwind_volume_rate * settings.tau_pressure;
+        let gravity = self.body_acceleration[a];
+        let mass = self.mass(a);
+        let acceleration = (sums.internal_force + by_itself + upwind_force) / mass + gravity;
+        own.velocity[k] = acceleration;
+        let deformation_rate = sums.volume_deformation_rate / volume;
+        let dilatation = me.cofactor.dot(&deformation_rate);
+        own.volume_ratio[k] = dilatation + upwind_volume_rate / volume;
+        own.position[k] = me.velocity;
+        own.deformation_gradient[k] = deformation_rate;
+        body_force.push(&me.position, &me.velocity, &(gravity * mass));
+        by_velocity.power += upwind_force.dot(&me.velocity);
+        by_pressure.power -= me.pressure * upwind_volume_rate;
     }
 
     /// Adds tractions and replaces the acceleration of prescribed components by the rate of
@@ -49,53 +103,5 @@ impl<const D: usize> Upwind<D> {
         prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
         totals.drive(TRACTION, &traction);
         totals.drive(BOUNDARY_MOTION, &boundary);
-    }
-
-    /// Turns the sums of particle a into its rates, which stand at place k of their columns.
-    #[inline]
-    fn write_row(
-        &self,
-        [a, k]: [usize; 2],
-        sums: &Sums<f64, D>,
-        own: &mut ColumnsMut<'_, D>,
-        [body_force, by_velocity, by_pressure]: &mut [Total; MECHANISMS.len()],
-    ) {
-        let me = &self.sides[a];
-        let (settings, volume) = (&self.settings, self.particles.volume[a]);
-        let by_itself = me.cofactor * self.areas.diagonal(a) * me.pressure;
-        let upwind_force = Vector::from(sums.upwind_force) * settings.tau_velocity;
-        let upwind_volume_rate = sums.upwind_volume_rate * settings.tau_pressure;
-        let gravity = self.body_acceleration[a];
-        let mass = self.mass(a);
-        let acceleration =
-            (Vector::from(sums.internal_force) + by_itself + upwind_force) / mass + gravity;
-        own.velocity[k] = acceleration;
-        let deformation_rate =
-            Tensor::<D>::from_fn(|i, j| sums.volume_deformation_rate[i][j] / volume);
-        let dilatation = me.cofactor.dot(&deformation_rate);
-        own.volume_ratio[k] = dilatation + upwind_volume_rate / volume;
-        own.position[k] = me.velocity;
-        own.deformation_gradient[k] = deformation_rate;
-        body_force.push(&me.position, &me.velocity, &(gravity * mass));
-        by_velocity.power += upwind_force.dot(&me.velocity);
-        by_pressure.power -= me.pressure * upwind_volume_rate;
-    }
-}
-
-#[multiversion(targets("x86_64+avx2"))]
-fn rate_rows<
-    const D: usize,
-    const VELOCITY: bool,
-    const PRESSURE: bool,
-    const RECONSTRUCTION: bool,
->(
-    scheme: &Upwind<D>,
-    first: usize,
-    own: &mut ColumnsMut<'_, D>,
-    totals: &mut [Total; MECHANISMS.len()],
-) {
-    for k in 0..own.velocity.len() {
-        let sums = scheme.gather::<VELOCITY, PRESSURE, RECONSTRUCTION>(first + k);
-        scheme.write_row([first + k, k], &sums.total(), own, totals);
     }
 }

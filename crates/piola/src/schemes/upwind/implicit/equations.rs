@@ -1,6 +1,7 @@
 //! The equations of an implicit step as Newton's method sees them.
 
 use num_dual::Dual64;
+use piola_formulas::pairs::upwind::Divergence;
 use piola_formulas::tensor;
 use piola_formulas::volumetric::VolumetricResponse;
 
@@ -220,11 +221,8 @@ fn precondition<const D: usize>(
     parallel::for_each_chunk(&mut momentum, |first, momentum| {
         for (offset, momentum) in momentum.iter_mut().enumerate() {
             let a = first + offset;
-            let mut force = stress[a] * scheme.areas.diagonal(a);
-            for (b, _, transposed) in stage.pairs(a) {
-                force += stress[b] * transposed;
-            }
-            *momentum = force * stage.weight;
+            let own = stress[a] * scheme.areas.diagonal(a);
+            *momentum = (own + stage.sum(&Divergence, a, |b| stress[b])) * stage.weight;
         }
     });
     let mut corrected = vec![0.0; split];

@@ -128,7 +128,11 @@ impl<const D: usize> Implicit<D> {
             steps_with_factors: None,
             linear_steps: 0,
         };
-        let area = |a: usize| new.stage(scheme).pairs(a).map(|(_, _, area)| area.norm()).sum();
+        let area = |a: usize| {
+            let mut area = 0.0;
+            new.stage(scheme).pairs(a, |_, pair| area += pair.transposed.norm());
+            area
+        };
         new.area = (0..count).map(area).collect();
         Ok(new)
     }

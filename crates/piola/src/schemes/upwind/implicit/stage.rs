@@ -1,14 +1,17 @@
 //! The state that an implicit step asks for, as a function of its velocities.
 
 use nalgebra::{SMatrix, SVector};
-use piola_formulas::Scalar;
+use piola_formulas::kernels::Needs;
+use piola_formulas::pairs::upwind::{
+    Exchange, Gradient, Reconstructed, Side, Slope, Slopes, UpwindSide, UpwindSlope,
+};
+use piola_formulas::pairs::{Frozen, FrozenPair, Of, PairLaw, Record};
+use piola_formulas::{Number, Scalar};
 
 use super::super::Upwind;
-use super::super::gather::{Sums, at};
-use super::super::local::{Side, Unknowns};
-use super::super::pair::{Pair, applied};
-use super::super::reconstruction::Slope;
-use crate::operators::LANES;
+use super::super::local::Unknowns;
+use super::super::reconstruction::solved;
+use crate::operators::{Among, Row, sum_at, visit};
 use crate::{Vector, parallel};
 
 /// `s = b + k f(s)` with a known base b and weight k, theory (55), of a formulation. Position and
@@ -29,7 +32,7 @@ pub(super) struct Stage<'a, const D: usize> {
 
 /// All that a stage consists of, particle by particle.
 #[derive(Clone, Debug)]
-pub(super) struct Fields<T, const D: usize> {
+pub(super) struct Fields<T: Number, const D: usize> {
     /// v in m/s: an unknown.
     pub velocity: Vec<SVector<T, D>>,
     /// J, where it is an unknown.
@@ -39,12 +42,12 @@ pub(super) struct Fields<T, const D: usize> {
     /// Slopes, zero without reconstruction.
     pub slopes: Vec<Slope<T, D>>,
     /// What particles do to each other.
-    pub exchanges: Vec<Exchange<T, D>>,
+    pub exchanges: Vec<Exchanged<T, D>>,
 }
 
 /// What follows from velocities for a particle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Local<T, const D: usize> {
+pub(super) struct Local<T: Number, const D: usize> {
     /// dF/dt in 1/s.
     pub gradient: SMatrix<T, D, D>,
     /// H : dF/dt in 1/s.
@@ -57,7 +60,7 @@ pub(super) struct Local<T, const D: usize> {
 
 /// What a particle gets from its neighbours.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Exchange<T, const D: usize> {
+pub(super) struct Exchanged<T, const D: usize> {
     /// Internal force with dissipation in N.
     pub force: SVector<T, D>,
     /// Volume rate of the pressure dissipation in m^D/s.
@@ -71,31 +74,34 @@ impl<T: Scalar, const D: usize> Fields<T, D> {
             gradient: SMatrix::zeros(),
             dilatation: T::zero(),
             ratio: T::zero(),
-            side: Side::default(),
+            side: UpwindSide::zero(),
         };
-        let slope = Slope { velocity: SMatrix::zeros(), pressure: SVector::zeros() };
-        let exchange = Exchange { force: SVector::zeros(), volume_rate: T::zero() };
+        let exchange = Exchanged { force: SVector::zeros(), volume_rate: T::zero() };
         Self {
             velocity: vec![SVector::zeros(); count],
             ratio: vec![T::zero(); count],
             locals: vec![local; count],
-            slopes: vec![slope; count],
+            slopes: vec![UpwindSlope::zero(); count],
             exchanges: vec![exchange; count],
         }
     }
 }
 
-/// Calls a pair law with the terms that are on.
-type Terms<T, const D: usize> = fn(&Pair<'_, T, D>, usize, &mut Sums<[T; 1], D>);
-
 impl<const D: usize> Stage<'_, D> {
-    /// The neighbours of a with their areas `V_a G_ab` and `V_b G_ba`.
-    pub fn pairs(&self, a: usize) -> impl Iterator<Item = (usize, Vector<D>, Vector<D>)> {
-        let blocks = self.scheme.areas.row(a);
-        self.scheme.support.list.row(a).iter().enumerate().map(move |(entry, &b)| {
-            let (block, lane) = (&blocks[entry / LANES], entry % LANES);
-            (b as usize, at(&block.forward, lane), at(&block.adjoint, lane))
-        })
+    /// Shows the neighbours of particle a.
+    pub fn pairs(&self, a: usize, look: impl FnMut(usize, &Frozen<f64, D>)) {
+        let needs = Needs::Nothing;
+        visit(&self.scheme.areas, a, Among::All, needs, &mut Row::default(), look);
+    }
+
+    /// What a law sums over the neighbours of particle a.
+    pub fn sum<T: Number, L: PairLaw<Pair = FrozenPair<D>>>(
+        &self,
+        law: &L,
+        a: usize,
+        show: impl Fn(usize) -> Of<L::Side, T>,
+    ) -> Of<L::Sums, T> {
+        sum_at(&self.scheme.areas, law, a, show)
     }
 
     /// `dF_a/dt`, theory (10).
@@ -104,15 +110,7 @@ impl<const D: usize> Stage<'_, D> {
         velocity: &[SVector<T, D>],
         a: usize,
     ) -> SMatrix<T, D, D> {
-        let mut sum = SMatrix::<T, D, D>::zeros();
-        for (b, area, _) in self.pairs(a) {
-            let jump = velocity[b] - velocity[a];
-            for j in 0..D {
-                for i in 0..D {
-                    sum[(i, j)] += jump[i] * area[j];
-                }
-            }
-        }
+        let sum = self.sum(&Gradient, a, |b| velocity[b]);
         sum.map(|entry| entry / self.scheme.particles.volume[a])
     }
 
@@ -149,38 +147,9 @@ impl<const D: usize> Stage<'_, D> {
         Local { gradient, dilatation, ratio: unknowns.ratio, side }
     }
 
-    /// Slopes of velocity and pressure at a, theory (4).
-    fn slope<T: Scalar>(&self, locals: &[Local<T, D>], a: usize) -> Slope<T, D> {
-        let mut slope = Slope { velocity: SMatrix::zeros(), pressure: SVector::zeros() };
-        let Some(least_squares) = &self.scheme.least_squares else { return slope };
-        let me = &locals[a].side;
-        for &b in self.scheme.support.list.row(a) {
-            let coefficient = least_squares.coefficient(a, &self.reference(a, b as usize));
-            let other = &locals[b as usize].side;
-            let velocity_jump = other.velocity - me.velocity;
-            let pressure_jump = other.pressure - me.pressure;
-            for j in 0..D {
-                for i in 0..D {
-                    slope.velocity[(i, j)] += velocity_jump[i] * coefficient[j];
-                }
-                slope.pressure[j] += pressure_jump * coefficient[j];
-            }
-        }
-        slope
-    }
-
     /// `X_b - X_a`.
     pub fn reference(&self, a: usize, b: usize) -> Vector<D> {
         self.scheme.support.separation(&self.scheme.particles.position, a, b as u32)
-    }
-
-    /// `x_b - x_a`, the shortest way round in a periodic box.
-    pub fn current<T: Scalar>(&self, a: &Side<T, D>, b: &Side<T, D>) -> SVector<T, D> {
-        let separation = b.position - a.position;
-        let plain = separation.map(|component| component.re());
-        let mut shortest: [[f64; 1]; D] = std::array::from_fn(|i| [plain[i]]);
-        self.scheme.support.domain.shorten(&mut shortest);
-        SVector::from_fn(|i, _| separation[i] + (shortest[i][0] - plain[i]))
     }
 
     /// What a gets from its neighbours, theory (8) and (9), by the pair laws of the explicit passes.
@@ -189,38 +158,28 @@ impl<const D: usize> Stage<'_, D> {
         locals: &[Local<T, D>],
         slopes: &[Slope<T, D>],
         a: usize,
-    ) -> Exchange<T, D> {
-        let settings = &self.scheme.settings;
+    ) -> Exchanged<T, D> {
+        let (settings, way) = (&self.scheme.settings, self.scheme.periods());
         let (velocity, pressure) = (settings.tau_velocity > 0.0, settings.tau_pressure != 0.0);
-        let add_terms: Terms<T, D> = match (velocity, pressure, settings.reconstruction) {
-            (false, false, _) => {
-                |pair, lane, sums| pair.add_terms::<false, false, false, 1>(lane, sums)
-            }
-            (true, false, false) => {
-                |pair, lane, sums| pair.add_terms::<true, false, false, 1>(lane, sums)
-            }
-            (true, false, true) => {
-                |pair, lane, sums| pair.add_terms::<true, false, true, 1>(lane, sums)
-            }
-            (_, _, false) => |pair, lane, sums| pair.add_terms::<true, true, false, 1>(lane, sums),
-            (_, _, true) => |pair, lane, sums| pair.add_terms::<true, true, true, 1>(lane, sums),
+        let side = |b: usize| locals[b].side;
+        let both = |b: usize| (locals[b].side, slopes[b]);
+        let sums = match (velocity, pressure, settings.reconstruction) {
+            (false, false, _) => self.sum(&Exchange::<D, false, false>(way), a, side),
+            (true, false, false) => self.sum(&Exchange::<D, true, false>(way), a, side),
+            (_, _, false) => self.sum(&Exchange::<D, true, true>(way), a, side),
+            (true, false, _) => self.sum(&Reconstructed(Exchange::<D, true, false>(way)), a, both),
+            _ => self.sum(&Reconstructed(Exchange::<D, true, true>(way)), a, both),
         };
-        let me = &locals[a].side;
-        let mut sums = Sums::zero();
-        for (b, area, transposed) in self.pairs(a) {
-            let other = &locals[b].side;
-            let current = self.current(me, other);
-            let reference = self.reference(a, b);
-            let slopes = [&slopes[a], &slopes[b]];
-            let pair = Pair { me, other, area, transposed, current, reference, slopes };
-            add_terms(&pair, 0, &mut sums);
-        }
-        let own = applied(&me.cofactor, &self.scheme.areas.diagonal(a));
+        let (me, diagonal) = (&locals[a].side, self.scheme.areas.diagonal(a));
         let force = SVector::from_fn(|i, _| {
-            let [internal, upwind] = [sums.internal_force[i][0], sums.upwind_force[i][0]];
-            internal + own[i] * me.pressure + upwind * settings.tau_velocity
+            let mut own = me.cofactor[(i, 0)] * diagonal[0];
+            for j in 1..D {
+                own += me.cofactor[(i, j)] * diagonal[j];
+            }
+            let upwind = sums.upwind_force[i] * settings.tau_velocity;
+            sums.internal_force[i] + own * me.pressure + upwind
         });
-        Exchange { force, volume_rate: sums.upwind_volume_rate[0] * settings.tau_pressure }
+        Exchanged { force, volume_rate: sums.upwind_volume_rate * settings.tau_pressure }
     }
 
     /// Fills all that follows from velocities, and volume ratios where they are unknowns.
@@ -233,10 +192,12 @@ impl<const D: usize> Stage<'_, D> {
             }
         });
         let locals = &*locals;
-        if self.scheme.settings.reconstruction {
+        if let Some(least_squares) = &self.scheme.least_squares {
+            let law = Slopes(self.scheme.periods());
             parallel::for_each_chunk(slopes, |first, slopes| {
                 for (offset, slope) in slopes.iter_mut().enumerate() {
-                    *slope = self.slope(locals, first + offset);
+                    let moments = self.sum(&law, first + offset, |b| locals[b].side);
+                    *slope = solved(&moments, least_squares.inverse(first + offset));
                 }
             });
         }

@@ -5,14 +5,13 @@
 //! particle. So the chain rule has derivatives of small functions inside, which dual numbers give
 //! through the same bodies as the residual, and linear coefficients outside: theory (57).
 
-use nalgebra::{SMatrix, SVector};
 use num_dual::Dual64;
+use piola_formulas::pairs::upwind::{
+    Exchange, ExchangeSum, Reconstructed, Side, UpwindSide, UpwindSlope,
+};
+use piola_formulas::pairs::{Frozen, FrozenPair, Of, PairLaw, Record};
 
 use super::super::WaveSpeed;
-use super::super::gather::Sums;
-use super::super::local::Side;
-use super::super::pair::Pair;
-use super::super::reconstruction::Slope;
 use super::stage::{Fields, Stage};
 use crate::{Tensor, Vector, parallel};
 
@@ -88,10 +87,10 @@ impl<const D: usize> Stage<'_, D> {
         let settings = &self.scheme.settings;
         add(a as u32, &(Tensor::identity() * self.scheme.mass(a)));
         let mut own = through_area(&responses[a], &self.scheme.areas.diagonal(a));
-        for (b, area, transposed) in self.pairs(a) {
-            let mut theirs = through_area(&responses[b], &transposed);
+        self.pairs(a, |b, pair| {
+            let mut theirs = through_area(&responses[b], &pair.transposed);
             if settings.tau_velocity > 0.0 {
-                let dissipation = self.dissipation(fields, a, b, &area, &transposed);
+                let dissipation = self.dissipation(fields, a, b, pair);
                 let by_velocity = dissipation.jump + dissipation.separation * self.weight;
                 let block = by_velocity * self.weight;
                 add(a as u32, &block);
@@ -112,7 +111,7 @@ impl<const D: usize> Stage<'_, D> {
                 }
             }
             self.add_gradient(&theirs, b, add);
-        }
+        });
         self.add_gradient(&own, a, add);
     }
 
@@ -120,13 +119,13 @@ impl<const D: usize> Stage<'_, D> {
     fn add_gradient(&self, force: &ByGradient<D>, p: usize, add: &mut dyn FnMut(u32, &Tensor<D>)) {
         let scale = -self.weight / self.scheme.particles.volume[p];
         let mut sum = Tensor::zeros();
-        for (c, area, _) in self.pairs(p) {
+        self.pairs(p, |c, pair| {
             let block = Tensor::from_fn(|i, j| {
-                scale * (0..D).map(|l| force[j][l][i] * area[l]).sum::<f64>()
+                scale * (0..D).map(|l| force[j][l][i] * pair.area[l]).sum::<f64>()
             });
             sum += block;
             add(c as u32, &block);
-        }
+        });
         add(p as u32, &-sum);
     }
 
@@ -156,24 +155,23 @@ impl<const D: usize> Stage<'_, D> {
         fields: &Fields<f64, D>,
         a: usize,
         b: usize,
-        area: &Vector<D>,
-        transposed: &Vector<D>,
+        pair: &Frozen<f64, D>,
     ) -> Dissipation<D> {
         let settings = &self.scheme.settings;
-        let [me, other] = [a, b].map(|p| lifted(&fields.locals[p].side));
-        let [mine, theirs] = [a, b].map(|p| lifted_slope(&fields.slopes[p]));
-        let (area, transposed) = (*area, *transposed);
-        let current = self.current(&me, &other);
-        let reference = self.reference(a, b);
-        let force = |me: &Side<Dual64, D>, other: &Side<Dual64, D>, current| -> Vector<D> {
-            let slopes = [&mine, &theirs];
-            let pair = Pair { me, other, area, transposed, current, reference, slopes };
-            let mut sums = Sums::<[Dual64; 1], D>::zero();
+        let [me, other] = [a, b].map(|p| lifted::<UpwindSide<D>>(&fields.locals[p].side));
+        let slopes = [a, b].map(|p| lifted::<UpwindSlope<D>>(&fields.slopes[p]));
+        let pair = lifted::<FrozenPair<D>>(pair);
+        let law = Exchange::<D, true, false>(self.scheme.periods());
+        let force = |me: Side<Dual64, D>, other: Side<Dual64, D>| -> Vector<D> {
+            let mut sums = ExchangeSum::zero();
             match settings.reconstruction {
-                true => pair.add_terms::<true, false, true, 1>(0, &mut sums),
-                false => pair.add_terms::<true, false, false, 1>(0, &mut sums),
+                true => {
+                    let [mine, theirs] = slopes;
+                    Reconstructed(law).add(&(me, mine), &(other, theirs), &pair, &mut sums);
+                }
+                false => law.add(&me, &other, &pair, &mut sums),
             }
-            Vector::from_fn(|i, _| settings.tau_velocity * sums.upwind_force[i][0].eps)
+            sums.upwind_force.map(|force| settings.tau_velocity * force.eps)
         };
         let mut result = Dissipation::<D> {
             jump: Tensor::zeros(),
@@ -183,17 +181,16 @@ impl<const D: usize> Stage<'_, D> {
         for i in 0..D {
             let mut moved = other;
             moved.velocity[i].eps = 1.0;
-            result.jump.set_column(i, &force(&me, &moved, current));
-            let mut farther = current;
-            farther[i].eps = 1.0;
-            result.separation.set_column(i, &force(&me, &other, farther));
+            result.jump.set_column(i, &force(me, moved));
+            let mut farther = other;
+            farther.position[i].eps = 1.0;
+            result.separation.set_column(i, &force(me, farther));
         }
         if settings.wave_speed == WaveSpeed::Stretch {
             let (mut faster, mut other_faster) = (me, other);
             faster.wave_speed.eps = 1.0;
             other_faster.wave_speed.eps = 1.0;
-            result.wave_speeds =
-                [force(&faster, &other, current), force(&me, &other_faster, current)];
+            result.wave_speeds = [force(faster, other), force(me, other_faster)];
         }
         result
     }
@@ -204,20 +201,7 @@ fn through_area<const D: usize>(response: &Response<D>, area: &Vector<D>) -> ByG
     response.stress.map(|row| row.map(|stress| stress * area))
 }
 
-fn lifted<const D: usize>(side: &Side<f64, D>) -> Side<Dual64, D> {
-    Side {
-        position: side.position.map(Dual64::from),
-        reference: side.reference,
-        velocity: side.velocity.map(Dual64::from),
-        cofactor: side.cofactor.map(Dual64::from),
-        pressure: Dual64::from(side.pressure),
-        density: side.density,
-        wave_speed: Dual64::from(side.wave_speed),
-    }
-}
-
-fn lifted_slope<const D: usize>(slope: &Slope<f64, D>) -> Slope<Dual64, D> {
-    let velocity: SMatrix<Dual64, D, D> = slope.velocity.map(Dual64::from);
-    let pressure: SVector<Dual64, D> = slope.pressure.map(Dual64::from);
-    Slope { velocity, pressure }
+/// The same record in dual numbers without derivatives.
+fn lifted<R: Record>(record: &Of<R, f64>) -> Of<R, Dual64> {
+    R::map([record], &|[x]: [f64; 1]| Dual64::from(x))
 }
