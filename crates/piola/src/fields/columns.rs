@@ -35,6 +35,7 @@ macro_rules! columns {
     (@type Scalar) => { f64 };
     (@type Vector) => { $crate::Vector<D> };
     (@type Tensor) => { $crate::Tensor<D> };
+    (@type Symmetric) => { [f64; 6] };
     (@describe $name:ident $kind:ident $life:expr, $unit:literal, $meaning:literal) => {
         $crate::fields::FieldDescription {
             life: $life,
@@ -94,6 +95,7 @@ macro_rules! columns {
             $( #[doc = $meaning] pub $k: &'a [$crate::fields::columns!(@type $kk)], )?
             )*
             /// What stands behind them.
+            #[allow(dead_code, reason = "where nothing does but the ledger nobody asks")]
             pub tail: &'a [f64],
         }
 
@@ -200,7 +202,7 @@ impl FieldDescription {
                 FieldKind::Tensor => values.extend(
                     (0..components).map(|k| own[k % dimension * dimension + k / dimension]),
                 ),
-                FieldKind::Scalar | FieldKind::Vector => values.extend_from_slice(own),
+                _ => values.extend_from_slice(own),
             }
         }
     }

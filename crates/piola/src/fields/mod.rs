@@ -18,6 +18,8 @@ pub enum FieldKind {
     Vector,
     /// `D * D` numbers a particle, row by row.
     Tensor,
+    /// Six numbers a particle in any dimension: xx, yy, zz, yz, xz, xy.
+    Symmetric,
 }
 
 /// The name, unit and layout of one field.
@@ -103,6 +105,7 @@ impl FieldKind {
             Self::Scalar => "scalar",
             Self::Vector => "vector",
             Self::Tensor => "tensor",
+            Self::Symmetric => "symmetric tensor",
         }
     }
 
@@ -112,6 +115,7 @@ impl FieldKind {
             Self::Scalar => 1,
             Self::Vector => dimension,
             Self::Tensor => dimension * dimension,
+            Self::Symmetric => 6,
         }
     }
 }

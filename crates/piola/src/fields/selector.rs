@@ -54,6 +54,7 @@ pub fn component_name(kind: FieldKind, number: usize, dimension: usize) -> Strin
             let column = number % dimension.max(1);
             format!("{}{}", AXES[row.min(2)], AXES[column.min(2)])
         }
+        FieldKind::Symmetric => ["xx", "yy", "zz", "yz", "xz", "xy"][number.min(5)].to_owned(),
     }
 }
 

@@ -103,6 +103,7 @@ fn layout(snapshot: &Snapshot, compression: Compression) -> (String, Vec<Vec<u8>
             FieldKind::Scalar => "",
             FieldKind::Vector => " NumberOfComponents=\"3\"",
             FieldKind::Tensor => " NumberOfComponents=\"9\"",
+            FieldKind::Symmetric => " NumberOfComponents=\"6\"",
         };
         let data = padded_bytes(&field.values, field.description.kind, dimension);
         let (name, unit) = (field.description.name, field.description.unit);
@@ -184,7 +185,7 @@ fn bytes_of_integers(values: &[u32]) -> Vec<u8> {
 
 /// Values with the components of three dimensions, the missing ones zero.
 fn padded_bytes(values: &[f64], kind: FieldKind, dimension: usize) -> Vec<u8> {
-    if kind == FieldKind::Scalar || dimension == 3 {
+    if matches!(kind, FieldKind::Scalar | FieldKind::Symmetric) || dimension == 3 {
         return values.iter().flat_map(|value| value.to_le_bytes()).collect();
     }
     let rows_of_one = if kind == FieldKind::Tensor { 3 } else { 1 };

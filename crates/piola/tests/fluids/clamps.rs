@@ -8,7 +8,7 @@ use piola::schemes::transport_velocity::{Forces, Slip, SolidsInput, TransportVel
 use piola::schemes::{Observation, Scheme};
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{Solids, change_rows, solids_in_box, unit_box};
+use super::support::{Solids, change_matter, change_rows, solids_in_box, unit_box};
 
 const SIDE: usize = 16;
 /// Layers of each platen, as many as the support of the kernel reaches.
@@ -48,7 +48,6 @@ fn between_platens(
     let solids = SolidsInput { corrected, ..solids };
     let mut scheme = Solids::new(input, solids).expect("the block can be built");
     let mut state = scheme.initial_state();
-    let start = state.len() - 9 * count;
     let (pressure, deviator) = stress;
     change_rows(&scheme, &mut state, |number, row| {
         if kept.body[number] == 0 {
@@ -56,9 +55,11 @@ fn between_platens(
             row[5] = pressure;
         }
     });
-    for number in (0..count).filter(|&a| kept.body[a] == 0) {
-        state[start + 9 * number..][..6].copy_from_slice(&deviator);
-    }
+    change_matter(&scheme, &mut state, |number, row| {
+        if kept.body[number] == 0 {
+            row[..6].copy_from_slice(&deviator);
+        }
+    });
     let terms = scheme.terms(0.0, &state);
     let numbers: Vec<u32> = (0..count as u32).collect();
     let masses = Observation::new(&mut scheme, 0.0, &state).values("mass", &numbers);

@@ -11,7 +11,7 @@ use piola::schemes::{Observation, Scheme};
 use piola::{Tensor, Vector};
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 
-use super::support::{Solids, change_rows, rows, solids_in_box, unit_box};
+use super::support::{Solids, change_matter, change_rows, rows, solids_in_box, unit_box};
 
 const K: f64 = 2.0 * PI;
 
@@ -115,14 +115,12 @@ fn terms<const D: usize>(side: usize, jitter: f64, solid: Solid, corrected: bool
         *volume *= DENSITY.value(x) / SOLID.state.density;
     }
     let positions = particles.position.clone();
-    let count = positions.len();
     let settings = match solid.strength {
         Strength::Elastic => SETTINGS,
         _ => Settings { pressure: PressureRule::Edac { alpha: 0.0 }, ..SETTINGS },
     };
     let mut scheme = build(solid, particles, settings, Contact::Repulsive, corrected);
     let mut state = scheme.initial_state();
-    let start = state.len() - 9 * count;
     change_rows(&scheme, &mut state, |number, row| {
         let x = &positions[number];
         for i in 0..D {
@@ -132,9 +130,10 @@ fn terms<const D: usize>(side: usize, jitter: f64, solid: Solid, corrected: bool
         row[2 * D] = DENSITY.value(x);
         row[2 * D + 1] = PRESSURE.value(x);
     });
-    for (row, x) in state[start..].chunks_mut(9).zip(&positions) {
+    change_matter(&scheme, &mut state, |number, row| {
+        let x = &positions[number];
         row.iter_mut().enumerate().for_each(|(k, value)| *value = matter(k).value(x));
-    }
+    });
     let terms = scheme.terms(0.0, &state);
     let solid = scheme.solid_rates();
     let all = positions.into_iter().zip(terms).zip(solid);
@@ -255,7 +254,6 @@ pub fn two_blocks_with<const D: usize>(
     let count = particles.len();
     let scheme = build(SOLID, particles, settings, contact, corrected);
     let mut state = scheme.initial_state();
-    let start = state.len() - 9 * count;
     // Any numbers that are no function of place.
     let noise = |k: usize| (k as f64 * 12.9898).sin();
     change_rows(&scheme, &mut state, |number, row| {
@@ -263,9 +261,9 @@ pub fn two_blocks_with<const D: usize>(
         row[2 * D] *= 1.0 + 0.02 * noise(3 * number);
         row[2 * D + 1] = 5.0 * noise(5 * number + 1);
     });
-    for (number, row) in state[start..].chunks_mut(9).enumerate() {
+    change_matter(&scheme, &mut state, |number, row| {
         (0..6).for_each(|k| row[k] = 4.0 * noise(11 * number + k));
-    }
+    });
     (scheme, state, count)
 }
 
@@ -347,8 +345,7 @@ fn corrected_gradients_are_exact_for_linear_fields() {
 fn bodies_push_and_never_pull() {
     for contact in [Contact::Repulsive, Contact::Penalty { stiffness: 1.0 }] {
         let (mut scheme, mut state, count) = two_blocks::<2>(contact, false, 0.0);
-        let start = state.len() - 9 * count;
-        state[start..].fill(0.0);
+        change_matter(&scheme, &mut state, |_, row| row.fill(0.0));
         // Tension in both: each pulls itself together, and none the other.
         let mut force_on_the_left = |pressure: f64| {
             change_rows(&scheme, &mut state, |_, row| row[5] = pressure);

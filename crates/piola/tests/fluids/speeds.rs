@@ -5,7 +5,7 @@ use piola::schemes::Scheme;
 use piola::schemes::transport_velocity::{PressureRule, Settings, Shifting};
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{self, Solids, change_rows, solids_in_box, unit_box};
+use super::support::{self, Solids, change_matter, change_rows, solids_in_box, unit_box};
 
 /// In m/s, a twentieth of the wave speed.
 const SPEED: f64 = 0.5;
@@ -30,8 +30,7 @@ fn deviations<const D: usize>(shifting: Shifting, some: &[(usize, Has)]) -> Vec<
     let settings = Settings { shifting, pressure, ..SETTINGS };
     let (input, solids) = solids_in_box(unit_box::<D>(side, 0.2, 5), settings, vec![SOLID]);
     let mut scheme = Solids::new(input, solids).expect("the solid can be built");
-    let (mut state, count) = (scheme.initial_state(), scheme.particle_count());
-    let matter = state.len() - 9 * count;
+    let mut state = scheme.initial_state();
     let (density, wave_speed) = (SOLID.state.density, SOLID.state.wave_speed);
     for (number, has) in some {
         change_rows(&scheme, &mut state, |other, row| {
@@ -42,8 +41,11 @@ fn deviations<const D: usize>(shifting: Shifting, some: &[(usize, Has)]) -> Vec<
         });
         // s : s = 2 G rho u^2, half of it by two normal components and half by shear.
         let stress = has.shear * SPEED * (2.0 * SOLID.shear_modulus * density).sqrt();
-        let row = &mut state[matter + 9 * number..];
-        (row[0], row[2], row[5]) = (0.5 * stress, -0.5 * stress, 0.5 * stress);
+        change_matter(&scheme, &mut state, |other, row| {
+            if other == *number {
+                (row[0], row[2], row[5]) = (0.5 * stress, -0.5 * stress, 0.5 * stress);
+            }
+        });
     }
     let split = scheme.split().expect("it can be split");
     match shifting {

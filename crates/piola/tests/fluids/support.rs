@@ -92,10 +92,19 @@ pub fn solids_in_box<const D: usize>(
     (at_rest(particles, settings), solids)
 }
 
-/// Where the columns of a state have a particle: u, r, rho, p, du/dt, d.
-fn places(scheme: &dyn Scheme, number: usize) -> impl Iterator<Item = usize> {
-    let names = ["velocity", "position", "density", "pressure", "kick", "deviation"];
-    names.into_iter().flat_map(move |name| {
+/// The columns of a particle of any matter.
+const COMMON: [&str; 6] = ["velocity", "position", "density", "pressure", "kick", "deviation"];
+
+/// What a particle of a solid has besides: the deviatoric stress as xx, yy, zz, yz, xz, xy and three numbers.
+const OWN: [&str; 4] = ["deviatoric_stress", "plastic_strain", "temperature", "internal_energy"];
+
+/// Where the columns of a state have a particle.
+fn places(
+    scheme: &dyn Scheme,
+    names: &'static [&'static str],
+    number: usize,
+) -> impl Iterator<Item = usize> {
+    names.iter().flat_map(move |name| {
         let field = scheme.description().field(name).expect("a known field");
         let components = field.kind.components(scheme.dimension());
         let start = scheme.column(field).start + number * components;
@@ -105,20 +114,31 @@ fn places(scheme: &dyn Scheme, number: usize) -> impl Iterator<Item = usize> {
 
 /// What a state says of each particle: u, r, rho, p, du/dt, d.
 pub fn rows(scheme: &dyn Scheme, state: &[f64]) -> Vec<Vec<f64>> {
-    let row = |number| places(scheme, number).map(|place| state[place]).collect();
+    let row = |number| places(scheme, &COMMON, number).map(|place| state[place]).collect();
     (0..scheme.particle_count()).map(row).collect()
 }
 
-/// Lets `change` change that, particle by particle.
-pub fn change_rows(
+fn change(
     scheme: &dyn Scheme,
+    names: &'static [&'static str],
     state: &mut [f64],
     mut change: impl FnMut(usize, &mut [f64]),
 ) {
-    for (number, row) in rows(scheme, state).iter_mut().enumerate() {
-        change(number, row);
-        places(scheme, number).zip(row).for_each(|(place, value)| state[place] = *value);
+    for number in 0..scheme.particle_count() {
+        let mut row: Vec<f64> = places(scheme, names, number).map(|place| state[place]).collect();
+        change(number, &mut row);
+        places(scheme, names, number).zip(row).for_each(|(place, value)| state[place] = value);
     }
+}
+
+/// Lets `how` change that, particle by particle.
+pub fn change_rows(scheme: &dyn Scheme, state: &mut [f64], how: impl FnMut(usize, &mut [f64])) {
+    change(scheme, &COMMON, state, how);
+}
+
+/// Lets `how` change what each particle of a solid has besides: s, plastic strain, temperature, energy.
+pub fn change_matter(scheme: &dyn Scheme, state: &mut [f64], how: impl FnMut(usize, &mut [f64])) {
+    change(scheme, &OWN, state, how);
 }
 
 /// The deviations in a state.

@@ -9,7 +9,7 @@ use piola::schemes::transport_velocity::{
 };
 
 use super::solids::{SETTINGS, SOLID};
-use super::support::{Solids, change_rows, solids_in_box, unit_box};
+use super::support::{Solids, change_matter, change_rows, solids_in_box, unit_box};
 
 const SIDE: usize = 20;
 const CUT: f64 = 0.5;
@@ -48,17 +48,16 @@ fn input(choice: &Choice) -> (TransportVelocityInput<2>, SolidsInput, Particles<
 fn together(choice: &Choice) -> (Vec<Forces<2>>, Vec<f64>) {
     let (input, solids, now) = input(choice);
     let mut scheme = Solids::new(input, solids).expect("the solids can be built");
-    let (mut state, count) = (scheme.initial_state(), scheme.particle_count());
-    let matter = state.len() - 9 * count;
+    let mut state = scheme.initial_state();
     let noise = |k: usize| (k as f64 * 12.9898).sin();
     change_rows(&scheme, &mut state, |number, row| {
         row[..2].iter_mut().enumerate().for_each(|(i, u)| *u = noise(7 * number + i));
         row[2..4].copy_from_slice(now.position[number].as_slice());
         row[4] *= 1.0 + 0.02 * noise(3 * number);
     });
-    for (number, row) in state[matter..].chunks_mut(9).enumerate() {
+    change_matter(&scheme, &mut state, |number, row| {
         (0..6).for_each(|k| row[k] = 4.0 * noise(11 * number + k));
-    }
+    });
     let forces = scheme.terms(0.0, &state).into_iter().map(|(_, forces)| forces).collect();
     let split = scheme.split().expect("it can be split");
     split.accelerate(0.0, &mut state);

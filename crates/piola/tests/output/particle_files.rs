@@ -17,6 +17,7 @@ const PRESSURE: FieldDescription = description("pressure", "Pa", FieldKind::Scal
 const VELOCITY: FieldDescription = description("velocity", "m/s", FieldKind::Vector);
 /// A name and a unit with what XML must not hold as it is.
 const STRETCH: FieldDescription = description("F<\"&\">", "1", FieldKind::Tensor);
+const STRESS: FieldDescription = description("stress", "Pa", FieldKind::Symmetric);
 
 /// A snapshot whose numbers all differ, with the special ones among them.
 fn snapshot(dimension: usize, count: usize, seed: u64) -> Snapshot {
@@ -29,7 +30,7 @@ fn snapshot(dimension: usize, count: usize, seed: u64) -> Snapshot {
             })
             .collect()
     };
-    let fields = [PRESSURE, VELOCITY, STRETCH].into_iter().zip(1..);
+    let fields = [PRESSURE, VELOCITY, STRETCH, STRESS].into_iter().zip(1..);
     Snapshot {
         dimension,
         time: 0.1 + seed as f64,
@@ -181,7 +182,9 @@ fn check(snapshot: &Snapshot, compression: Compression) {
         let got = array("PointData", field.description.name);
         assert_eq!(got.unit.as_deref(), Some(field.description.unit));
         let expected = match field.description.kind {
-            FieldKind::Scalar => field.values.iter().map(|value| value.to_bits()).collect(),
+            FieldKind::Scalar | FieldKind::Symmetric => {
+                field.values.iter().map(|value| value.to_bits()).collect()
+            }
             FieldKind::Vector => padded(&field.values, dimension, 1),
             FieldKind::Tensor => padded(&field.values, dimension, 2),
         };

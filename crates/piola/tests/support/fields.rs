@@ -50,7 +50,10 @@ pub fn fields_are_complete(scheme: &mut dyn Scheme, state: &[f64], counted: &Cou
     }
     assert!(end == 0 || end == count * scheme.width());
     counted.take();
-    scheme.rates(0.5, state, &mut vec![0.0; state.len()]);
+    match scheme.split() {
+        Some(split) => split.accelerate(0.5, &mut state.to_vec()),
+        None => scheme.rates(0.5, state, &mut vec![0.0; state.len()]),
+    }
     let evaluation = counted.take();
     for turn in 0..2 {
         let mut fields: Vec<_> = description.fields.iter().collect();

@@ -125,11 +125,13 @@ fn opened(path: &Path, dimension: usize) -> Result<Opened, ParticleFileError> {
         let kind = match array.components {
             1 => FieldKind::Scalar,
             3 => FieldKind::Vector,
+            6 => FieldKind::Symmetric,
             _ => FieldKind::Tensor,
         };
         let numbers = match kind {
             FieldKind::Scalar => vec![0],
             FieldKind::Vector => (0..dimension).collect(),
+            FieldKind::Symmetric => (0..6).collect(),
             FieldKind::Tensor => {
                 (0..dimension * dimension).map(|i| i / dimension * 3 + i % dimension).collect()
             }

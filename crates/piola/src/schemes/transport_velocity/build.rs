@@ -186,7 +186,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     ) -> Result<(), TransportVelocityError> {
         let (common, ledger) = (&self.common, &M::DESCRIPTION.ledger);
         let columns = common.particles.len() * width(M::DESCRIPTION.fields, D);
-        let mut state = vec![0.0; columns + ledger.length(D) + 1 + self.matter.length(common)];
+        let mut state = vec![0.0; columns + ledger.length(D) + 1];
         let (own, _) = common.parts(&mut state);
         for (number, density) in densities.iter().enumerate() {
             let position = common.particles.position[number];

@@ -15,18 +15,6 @@ use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::{DeviceRefusal, DeviceSteps, SchemeDescription};
 
-/// The names of columns that stages show, which a kind of matter may add to.
-pub struct Shown {
-    /// The columns of the state.
-    pub state: &'static [&'static str],
-    /// What a drift changes of them.
-    pub moved: &'static [&'static str],
-    /// What neighbours see of a particle after [`Pass::Load`].
-    pub side: &'static [&'static str],
-    /// What they see of a particle of a wall.
-    pub wall: &'static [&'static str],
-}
-
 /// Matter bound to the particles of [`Common`].
 pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// What it is made of.
@@ -44,8 +32,8 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     const REMOVED: Entry;
     /// What walls do, and what holds particles as prescribed.
     const WALLS: Entry;
-    /// Columns of its stages.
-    const SHOWN: Shown;
+    /// Whether it has columns of its own that evolve and that neighbours see.
+    const HAS_MATERIAL: bool;
 
     /// Density and wave speed at rest of so many bodies.
     fn at_rest(input: &Self::Input, bodies: usize) -> Vec<AtRest>;
@@ -65,15 +53,8 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// What a pass of its own reads and writes.
     fn stage(pass: Self::Own) -> Stage;
 
-    /// Runs a pass of its own at a time in s.
-    fn run(
-        &mut self,
-        pass: Self::Own,
-        common: &mut Common<D>,
-        time: f64,
-        state: &mut [f64],
-        totals: &mut Totals,
-    );
+    /// Runs a pass of its own.
+    fn run(&mut self, pass: Self::Own, common: &mut Common<D>);
 
     /// Fills what neighbours see besides their sides, which have been loaded.
     fn load(&mut self, _common: &Common<D>, _state: &[f64]) {}
@@ -135,9 +116,8 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         common.sides[place].velocity.norm_squared()
     }
 
-    /// Its rates at a place, with the rates of density in kg/(m^3 s) and of pressure in Pa/s by
-    /// compression, transport and diffusion.
-    fn rates_at(&self, common: &Common<D>, place: usize) -> (Rates, f64, [f64; 3]);
+    /// The rates of the last pass at a place that all matter has.
+    fn rates_at(&self, place: usize) -> &Rates;
 
     /// Speed of the fastest waves in m/s, if it is the same everywhere.
     fn wave_speed(&self) -> Option<f64> {
@@ -169,11 +149,6 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         state: (&Columns<'_, D>, &[f64]),
         values: &mut Vec<f64>,
     );
-
-    /// Numbers behind the ledger of a state.
-    fn length(&self, _common: &Common<D>) -> usize {
-        0
-    }
 
     /// Bytes a particle.
     fn memory() -> usize;

@@ -31,6 +31,7 @@
 
 mod build;
 mod common;
+mod continua;
 mod continuum;
 mod device;
 mod escape;
@@ -65,11 +66,10 @@ pub use solids::{
 };
 
 use common::{AtRest, Common};
+use continua::Continua;
 pub(crate) use continuum::Continuum;
-use continuum::Shown;
 use fields::{Columns, ColumnsMut};
 use sides::Side;
-use solids::Continua;
 use stages::Pass;
 use surface::Opening;
 

@@ -35,7 +35,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         let common = &self.common;
         let terms = |&place: &u32| {
             let place = place as usize;
-            (self.matter.rates_at(common, place).0, common.forces[place])
+            (*self.matter.rates_at(place), common.forces[place])
         };
         common.support.list().places().iter().map(terms).collect()
     }

@@ -29,23 +29,9 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         self.start.clone()
     }
 
-    /// Rates with the deviations of the state. The stored accelerations and deviations are not
-    /// unknowns and have none, and neither has what only matter of a kind has, which does not only follow
-    /// from rates.
-    fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
-        self.all_passes(time, state);
+    /// None: it is moved by kicks and drifts alone.
+    fn rates(&mut self, _time: f64, _state: &[f64], rate: &mut [f64]) {
         rate.fill(0.0);
-        let common = &self.common;
-        let (own, _) = common.parts(rate);
-        for number in (0..common.particles.len()).filter(|&number| !common.is_wall[number]) {
-            let place = common.support.list().places()[number] as usize;
-            let side = &common.sides[place];
-            let (_, density, pressure) = self.matter.rates_at(common, place);
-            own.velocity[number] = common.forces[place].total();
-            own.position[number] = side.velocity + side.deviation;
-            own.density[number] = density;
-            own.pressure[number] = pressure.iter().sum();
-        }
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {

@@ -9,6 +9,8 @@ use crate::schemes::stages::{Stage, StageFault, Stages};
 pub enum Pass<O> {
     /// Particles that have escaped are taken out.
     Remove,
+    /// Prescribed velocities are set.
+    Prescribe,
     /// IPST.
     Iterate,
     /// Sides are filled from the state.
@@ -41,6 +43,34 @@ pub enum Pass<O> {
     Own(O),
 }
 
+/// The columns of the state, the last of matter that has columns of its own. Neighbours are found by positions,
+/// which all may see.
+const STATE: [&str; 7] = [
+    "position",
+    "velocity",
+    "density",
+    "pressure",
+    "acceleration",
+    "shifting_velocity",
+    "material_state",
+];
+
+/// What a drift changes of them.
+const MOVED: [&str; 4] = ["position", "density", "pressure", "material_state"];
+
+/// What neighbours see of a particle after [`Pass::Load`].
+const SIDE: [&str; 5] =
+    ["side.velocity", "side.shifting_velocity", "side.density", "side.pressure", "side.material"];
+
+/// What they see of walls of matter that has no columns of its own.
+const WALL: [&str; 5] =
+    ["side.velocity", "side.shifting_velocity", "side.density", "side.pressure", "shear"];
+
+/// The columns, without the last where matter has no columns of its own.
+fn of<const D: usize, M: Continuum<D>>(all: &'static [&'static str]) -> &'static [&'static str] {
+    if M::HAS_MATERIAL { all } else { &all[..all.len() - 1] }
+}
+
 /// A stage with what it reads, gathers, writes and shows.
 pub(super) const fn stage(
     name: &'static str,
@@ -51,17 +81,19 @@ pub(super) const fn stage(
 
 /// What the pass of a kind of matter reads and writes.
 pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> Stage {
-    let shown = M::SHOWN;
+    let side = of::<D, M>(&SIDE);
+    let wall: &[&str] = if M::HAS_MATERIAL { side } else { &WALL };
     let (name, columns): (_, [&[&str]; 4]) = match pass {
         Pass::Remove => {
             let all = &["position", "velocity", "density", "pressure"];
             ("remove", [all, &["position"], &[], all])
         }
+        Pass::Prescribe => ("prescribe", [&["position"], &[], &[], &["velocity"]]),
         Pass::Iterate => {
             let shows = &["shifting_velocity"];
             ("iterate", [&["position", "velocity"], &["position"], &[], shows])
         }
-        Pass::Load => ("load", [shown.state, &[], &[], shown.side]),
+        Pass::Load => ("load", [of::<D, M>(&STATE), &[], &[], side]),
         Pass::Push => {
             let reads = &["side.pressure", "side.density"];
             let (writes, shows) = (&["shifting_velocity"], &["side.shifting_velocity"]);
@@ -69,16 +101,16 @@ pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> S
         }
         Pass::State => {
             let shows = &["side.density", "side.pressure"];
-            ("equation_of_state", [shown.side, &["side.density"], &["fastest"], shows])
+            ("equation_of_state", [side, &["side.density"], &["fastest"], shows])
         }
-        Pass::Walls => ("walls", [&["position"], shown.side, &["wall_motion"], shown.wall]),
-        Pass::Rates => ("rates", [shown.side, shown.side, &["rates"], &[]]),
+        Pass::Walls => ("walls", [&["position"], side, &["wall_motion"], wall]),
+        Pass::Rates => ("rates", [side, side, &["rates"], &[]]),
         Pass::Move => {
-            ("move", [&["rates", "velocity", "shifting_velocity"], &[], &[], shown.moved])
+            ("move", [&["rates", "velocity", "shifting_velocity"], &[], &[], of::<D, M>(&MOVED)])
         }
         Pass::Forces => {
             let writes = &["forces", "crowding", "opening"];
-            ("forces", [shown.side, shown.side, writes, &[]])
+            ("forces", [side, side, writes, &[]])
         }
         Pass::BodyForces => ("body_forces", [&["position", "forces"], &[], &["forces"], &[]]),
         Pass::Sharpen => ("sharpen", [&["opening"], &[], &[], &["sharp_normal"]]),
@@ -142,10 +174,11 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     pub(super) fn plan(&mut self) -> Result<(), StageFault> {
         let [drift, accelerate] = self.matter.passes(&self.common);
         // Without rates nothing is moved by them.
-        let mut state = M::SHOWN.state.to_vec();
+        let all = of::<D, M>(&STATE);
+        let mut state = all.to_vec();
         state.extend((!drift.contains(&Pass::Rates)).then_some("rates"));
         self.drift = Stages::new("drift", &state, drift, stage_of::<D, M>)?;
-        self.accelerate = Stages::new("accelerate", M::SHOWN.state, accelerate, stage_of::<D, M>)?;
+        self.accelerate = Stages::new("accelerate", all, accelerate, stage_of::<D, M>)?;
         Ok(())
     }
 
@@ -166,6 +199,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         let Self { common, matter, .. } = self;
         match pass {
             Pass::Remove => totals.book(M::REMOVED, &common.remove_escaped(state)),
+            Pass::Prescribe => totals.book(M::WALLS, &matter.prescribe(common, time, state)),
             Pass::Iterate => {
                 self.load(state);
                 self.iterate(step, state);
@@ -187,7 +221,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             Pass::Reach => common.reach_surfaces(),
             Pass::Shift => common.shift(),
             Pass::Store => matter.store(common, state, totals),
-            Pass::Own(pass) => matter.run(pass, common, time, state, totals),
+            Pass::Own(pass) => matter.run(pass, common),
         }
     }
 }

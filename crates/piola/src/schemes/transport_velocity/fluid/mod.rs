@@ -14,7 +14,7 @@ use super::ledger::{ACCELERATIONS, Drift};
 use super::stages::{Pass, stage};
 use super::walls::WallValues;
 use super::{
-    AtRest, Columns, Common, Continuum, DensityRule, Fluid, Rates, Shown, TransportVelocity,
+    AtRest, Columns, Common, Continuum, DensityRule, Fluid, Rates, TransportVelocity,
     TransportVelocityError,
 };
 use crate::Vector;
@@ -128,25 +128,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     const DRIFTING: [Entry; 3] = DRIFTING;
     const REMOVED: Entry = LEDGER.entry("removed");
     const WALLS: Entry = WALLS;
-    const SHOWN: Shown = Shown {
-        state: &[
-            "position",
-            "velocity",
-            "density",
-            "pressure",
-            "acceleration",
-            "shifting_velocity",
-        ],
-        moved: &["position", "density", "pressure"],
-        side: &["side.velocity", "side.shifting_velocity", "side.density", "side.pressure"],
-        wall: &[
-            "side.velocity",
-            "side.shifting_velocity",
-            "side.density",
-            "side.pressure",
-            "shear",
-        ],
-    };
+    const HAS_MATERIAL: bool = false;
 
     fn at_rest(fluid: &Fluid, bodies: usize) -> Vec<AtRest> {
         vec![AtRest { density: fluid.density, wave_speed: fluid.wave_speed }; bodies]
@@ -193,14 +175,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         }
     }
 
-    fn run(
-        &mut self,
-        pass: Barrier,
-        common: &mut Common<D>,
-        _time: f64,
-        _state: &mut [f64],
-        _totals: &mut Totals,
-    ) {
+    fn run(&mut self, pass: Barrier, common: &mut Common<D>) {
         match pass {
             Barrier::HoldOff => self.hold_off(common),
             Barrier::Bear => self.bear(common),
@@ -238,10 +213,8 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         self.shear[place] = values.shear;
     }
 
-    fn rates_at(&self, common: &Common<D>, place: usize) -> (Rates, f64, [f64; 3]) {
-        let (density, pressure) =
-            (self.density_rate(common, place), self.pressure_rates(common, place));
-        (self.rates[place], density, pressure)
+    fn rates_at(&self, place: usize) -> &Rates {
+        &self.rates[place]
     }
 
     fn wave_speed(&self) -> Option<f64> {

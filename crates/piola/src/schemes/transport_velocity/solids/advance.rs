@@ -3,13 +3,13 @@
 use piola_formulas::hypoelastic::{Strength, advance, shear_energy, von_mises};
 
 use super::{
-    Common, ENERGY, Hypoelastic, Matter, PLASTIC, Solid, SolidRates, TEMPERATURE, full, matter_of,
-    matter_start, store,
+    Common, ENERGY, Hypoelastic, Matter, PLASTIC, Solid, SolidRates, Stored, StoredMut,
+    TEMPERATURE, full, store,
 };
 use crate::Tensor;
 use crate::parallel;
-use crate::schemes::transport_velocity::ColumnsMut;
 use crate::schemes::transport_velocity::ledger::Drift;
+use crate::schemes::transport_velocity::{ColumnsMut, Rates};
 
 /// What a step brings to the matter of a particle besides its own rates.
 struct Surroundings {
@@ -23,18 +23,14 @@ struct Surroundings {
 impl<const D: usize> Hypoelastic<D> {
     /// The drift of solids, CTVF (56) to (59), with the rates of the last pass: theory (33), (69) to (71).
     pub(super) fn drift(&self, common: &Common<D>, step: f64, state: &mut [f64]) -> Drift {
-        let (front, matter) = state.split_at_mut(matter_start(common));
-        let matter: &mut [Matter] = bytemuck::cast_slice_mut(matter);
-        let (own, _) = common.parts(front);
         let places = common.support.list().places();
+        let (own, rest) = common.parts(state);
+        let (stored, _) = StoredMut::<D>::of(rest, places.len());
         let evolves = !common.settings.is_algebraic();
         let drift = |[number, k]: [usize; 2],
                      own: &mut ColumnsMut<'_, D>,
                      matter: &mut Matter,
                      sums: &mut Drift| {
-            if common.is_wall[number] {
-                return;
-            }
             let place = places[number] as usize;
             let (side, rates) = (&common.sides[place], &self.rates[place]);
             let material = self.solid(common, number);
@@ -52,9 +48,13 @@ impl<const D: usize> Hypoelastic<D> {
             let work = side.volume * material.advance(rates, &around, matter);
             let (velocity, deviation) = (&own.velocity[k], &own.deviation[k]);
             common.add_turning(number, step, [velocity, deviation], sums);
-            own.density[k] += step * rates.density_rate(side.density);
+            let Rates { divergence, density_transport, .. } = rates.common;
+            own.density[k] += step * (density_transport - side.density * divergence);
             if evolves {
-                let rate = rates.pressure_rates(side.density, material).iter().sum::<f64>();
+                let stiffness = material.state.wave_speed.powi(2);
+                let compression = -side.density * stiffness * divergence;
+                let Rates { pressure_transport, pressure_diffusion, .. } = rates.common;
+                let rate = compression + pressure_transport + pressure_diffusion;
                 let pressure = &mut own.pressure[k];
                 *pressure = (*pressure + step * rate).max(-material.state.spall_strength);
             }
@@ -63,40 +63,28 @@ impl<const D: usize> Hypoelastic<D> {
             pressure.power += energy(own.density[k], matter) - before + work;
             plasticity.power -= work;
         };
-        let parts = (own, matter);
-        parallel::sums_over_parts(places.len(), parts, |first, (mut own, all), sums| {
-            for (k, matter) in all.iter_mut().enumerate() {
-                drift([first + k, k], &mut own, matter, sums);
+        let parts = (own, stored);
+        parallel::sums_over_parts(places.len(), parts, |first, (mut own, mut stored), sums| {
+            for k in (0..own.position.len()).filter(|k| !common.is_wall[first + k]) {
+                let mut matter = stored.matter(k);
+                drift([first + k, k], &mut own, &mut matter, sums);
+                stored.set(k, &matter);
             }
         })
     }
 
     /// Energies of compression and shear in J.
     pub(super) fn elastic_energies(&self, common: &Common<D>, state: &[f64]) -> [f64; 2] {
-        let at = common.columns(state);
+        let (at, own) = (common.columns(state), Stored::in_state(common, state));
         parallel::sums(common.particles.len(), |number, sums: &mut [f64; 2]| {
             if !common.is_wall[number] {
-                let matter = matter_of(common, number, state);
-                let energies = self.solid(common, number).energies(at.density[number], matter);
+                let (solid, density) = (self.solid(common, number), at.density[number]);
+                let energies = solid.energies(density, &own.matter(number));
                 for (sum, energy) in sums.iter_mut().zip(energies) {
                     *sum += common.mass[number] * energy;
                 }
             }
         })
-    }
-}
-
-impl<const D: usize> SolidRates<D> {
-    /// Rate of the density in kg/(m^3 s) at a density in kg/m^3.
-    pub(super) fn density_rate(&self, density: f64) -> f64 {
-        self.common.density_transport - density * self.common.divergence
-    }
-
-    /// Rates of the pressure in Pa/s by compression, transport and diffusion.
-    pub(super) fn pressure_rates(&self, density: f64, solid: &Solid) -> [f64; 3] {
-        let (rates, stiffness) = (&self.common, solid.state.wave_speed.powi(2));
-        let compression = -density * stiffness * rates.divergence;
-        [compression, rates.pressure_transport, rates.pressure_diffusion]
     }
 }
 

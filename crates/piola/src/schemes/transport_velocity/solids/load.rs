@@ -1,9 +1,8 @@
 //! What solids take from a state and put into it: matter by place, pressures, stresses.
 
-use piola_formulas::hypoelastic::{shear_energy, von_mises};
+use piola_formulas::hypoelastic::shear_energy;
 
-use super::{Common, ENERGY, Hypoelastic, MATTER, Matter, Own, Solid, TEMPERATURE};
-use super::{entry, full, matter_start};
+use super::{Common, ENERGY, Hypoelastic, Matter, Solid, Stored, entry, full};
 use crate::parallel;
 use crate::schemes::transport_velocity::Side;
 use crate::{Tensor, Vector};
@@ -11,10 +10,10 @@ use crate::{Tensor, Vector};
 impl<const D: usize> Hypoelastic<D> {
     /// Fills what neighbours see of solids, by place, from a state whose neighbours are known.
     pub(super) fn load_matter(&mut self, common: &Common<D>, state: &[f64]) {
-        let (list, rows) = (common.support.list(), &state[matter_start(common)..]);
+        let (list, own) = (common.support.list(), Stored::in_state(common, state));
         parallel::for_each_chunk(&mut self.matter, |first, places| {
             for (matter, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
-                matter.copy_from_slice(&rows[number as usize * MATTER..][..MATTER]);
+                *matter = own.matter(number as usize);
             }
         });
         if self.builds != Some(list.builds()) {
@@ -34,13 +33,6 @@ impl<const D: usize> Hypoelastic<D> {
                 tension.stiffness = material.bulk_modulus();
             }
         });
-    }
-
-    /// Fills the matter of the start.
-    pub(super) fn begin_matter(&self, bodies: &[u32], rows: &mut [f64]) {
-        for (row, &body) in rows.chunks_exact_mut(MATTER).zip(bodies) {
-            row[TEMPERATURE] = self.materials[body as usize].heat.temperature;
-        }
     }
 
     /// Gives solids the pressure of their density, if it is not integrated. Returns the largest
@@ -103,25 +95,6 @@ impl<const D: usize> Hypoelastic<D> {
                 let mirror = Tensor::<3>::identity() - normal * normal.transpose() * 2.0;
                 super::store(&(mirror * full(deviator) * mirror), stored);
             }
-        }
-    }
-
-    /// Appends a field of solids.
-    pub(super) fn push_own(
-        &self,
-        field: Own,
-        pressure: f64,
-        matter: &[f64],
-        values: &mut Vec<f64>,
-    ) {
-        match field {
-            Own::cauchy_stress => values.extend((0..D * D).map(|k| {
-                let (i, j) = (k / D, k % D);
-                matter[entry(i, j)] - if i == j { pressure } else { 0.0 }
-            })),
-            Own::von_mises => values.push(von_mises(&full(matter))),
-            Own::plastic_strain => values.push(matter[super::PLASTIC]),
-            Own::temperature => values.push(matter[TEMPERATURE]),
         }
     }
 }

@@ -3,7 +3,7 @@
 use piola_formulas::pairs::One;
 use piola_formulas::{Lanes, Lanes4, WIDTH};
 
-use super::{Common, Contact, SolidsInput};
+use super::Common;
 use crate::neighbors::{Domain, SkinList};
 use crate::operators::Source;
 use crate::{Vector, parallel};
@@ -13,7 +13,7 @@ const WALL: u32 = u32::MAX;
 
 /// To which continuum particles belong, by place.
 #[derive(Clone, Debug)]
-pub(in super::super) struct Continua<const D: usize> {
+pub(super) struct Continua<const D: usize> {
     /// [`WALL`], or the body where bodies are apart; empty where all are of one.
     labels: Vec<u32>,
     /// Where particles began, in m; empty unless bodies touch themselves.
@@ -21,8 +21,6 @@ pub(in super::super) struct Continua<const D: usize> {
     /// How far apart particles of one continuum may have begun, in m.
     farthest: f64,
     domain: Domain<D>,
-    /// Whether there are several bodies, or parts of one, that are apart from each other.
-    several: bool,
     /// For which places, counted by lists of neighbours, the rest stands.
     builds: Option<u64>,
 }
@@ -35,32 +33,31 @@ impl<const D: usize> Continua<D> {
             starts: Vec::new(),
             farthest: f64::INFINITY,
             domain,
-            several: false,
             builds: None,
         }
     }
 
-    /// Of the particles of solids.
-    pub fn of(solids: &SolidsInput, common: &Common<D>) -> Self {
-        let is_apart = solids.contact != Contact::Full;
-        let farthest = solids.self_contact.filter(|_| is_apart);
+    /// Each body is one by itself, and what began farther apart than that in m, if it is given, is not of one.
+    pub fn of_bodies(common: &Common<D>, farthest: Option<f64>) -> Self {
+        let one = Self::one(*common.support.list().domain());
         let (bodies, is_wall) = (&common.particles.body, &common.is_wall);
         let mut own = bodies.iter().zip(is_wall).filter(|(_, is_wall)| !*is_wall);
         let first = own.next().map(|(body, _)| *body);
         let is_one = own.all(|(body, _)| Some(*body) == first);
-        let count = bodies.len();
-        Self {
-            labels: vec![0; count],
-            starts: vec![Vector::zeros(); if farthest.is_some() { count } else { 0 }],
-            farthest: farthest.unwrap_or(f64::INFINITY),
-            several: is_apart && (!is_one || farthest.is_some()),
-            ..Self::one(*common.support.list().domain())
+        let labels = vec![0; bodies.len()];
+        match farthest {
+            None if is_one => one,
+            None => Self { labels, ..one },
+            Some(farthest) => {
+                let starts = vec![Vector::zeros(); bodies.len()];
+                Self { labels, starts, farthest, ..one }
+            }
         }
     }
 
     /// Whether there are several bodies, or parts of one, that are apart from each other.
     pub fn are_several(&self) -> bool {
-        self.several
+        !self.labels.is_empty()
     }
 
     /// Fills what belongs to the places of particles of bodies, of walls or not, that began somewhere in m,
@@ -77,13 +74,11 @@ impl<const D: usize> Continua<D> {
         }
         self.builds = Some(list.builds());
         let numbers = list.numbers();
-        let several = self.several;
         parallel::for_each_chunk(&mut self.labels, |first, labels| {
             for (label, &number) in labels.iter_mut().zip(&numbers[first..]) {
-                *label = match (is_wall[number as usize], several) {
-                    (true, _) => WALL,
-                    (false, true) => bodies[number as usize],
-                    (false, false) => 0,
+                *label = match is_wall[number as usize] {
+                    true => WALL,
+                    false => bodies[number as usize],
                 };
             }
         });
