@@ -109,7 +109,8 @@ fn explicit_steps_of_all_schemes_allocate_nothing() {
     let undamped = "scheme={ kind='upwind', smoothing_length=0.7 }";
     let cells = "parameters.n=40";
     let beam = "parameters.dx=0.25";
-    let flows: [(&str, &[&str]); 11] = [
+    let flows: [(&str, &[&str]); 12] = [
+        ("coupled/slab", &["parameters.n=60", "parameters.width='20 * dx'"]),
         ("ctvf/taylor-green", &["parameters.side=40"]),
         ("ctvf/taylor-green", &["parameters.side=40", "scheme.shifting='ipst'"]),
         ("ctvf/dam-break", &["parameters.dx=0.025"]),

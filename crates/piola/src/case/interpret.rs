@@ -8,7 +8,8 @@ use super::catalogue;
 use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
 use super::model::{
-    Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Scheme, StepControl, Time, Variant,
+    Body, Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Scheme, StepControl, Time,
+    Variant,
 };
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
@@ -27,6 +28,7 @@ mod physics;
 mod plastic;
 mod solids;
 mod sweeps;
+mod systems;
 mod time;
 mod waves;
 
@@ -64,33 +66,65 @@ pub(super) fn case(
     // Without a scheme nothing is known of what the rest of the case may say.
     let described = record.record("scheme")?;
     let scheme = reader.scheme(described);
-    reader.names.scheme = described.kind;
-    reader.names.dissipates = match scheme.as_ref().map(|scheme| &scheme.value) {
-        Some(Scheme::Upwind(upwind)) => upwind.tau_velocity > 0.0 || upwind.tau_pressure > 0.0,
-        _ => false,
-    };
+    reader.names.current = systems::Known::of("", described.kind, scheme.as_ref());
+    let systems = reader.systems(record);
     let domain = reader.domain(record.record("domain"));
-    let bodies: Vec<_> = record.records("body").map(|body| reader.body(body)).collect();
+    let bodies = record.records("body").enumerate().map(|(number, body)| {
+        let system = reader.names.system_of[number];
+        // Of the bodies of an unknown system nothing else is said.
+        (system.is_some() || !body.has("system")).then_some(())?;
+        reader.enter(system);
+        Some(Body { system, ..reader.body(body)? })
+    });
+    let bodies: Vec<_> = bodies.collect();
+    reader.enter(None);
     let time = reader.clock(record);
     reader.names.is_static = time.as_ref().is_some_and(|time| {
         IntegratorKind::from_name(&time.integrator).is_some_and(IntegratorKind::is_static)
     });
     let end = time.as_ref().map(|time| *time.end);
+    let systems: Vec<_> = (systems.into_iter().enumerate())
+        .map(|(number, (record, scheme))| {
+            reader.enter(Some(number));
+            reader.system(record, scheme, time.as_ref())
+        })
+        .collect();
     let checkpoint = match record.record("checkpoint") {
         Some(record) => Reader::checkpoint(record),
         None => Some(Checkpoint::default()),
     };
-    let loads: Vec<_> = record.records("load").map(|load| reader.load(load)).collect();
-    let boundaries: Vec<_> = record.records("boundary").map(|wall| reader.boundary(wall)).collect();
+    let loads = record.records("load").map(|load| {
+        reader.enter_system_of(load);
+        reader.load(load)
+    });
+    let loads: Vec<_> = loads.collect();
+    let boundaries = record.records("boundary").map(|boundary| {
+        reader.enter_system_of(boundary);
+        reader.names_its_body(boundary, "boundary");
+        reader.boundary(boundary)
+    });
+    let boundaries: Vec<_> = boundaries.collect();
     let bodies: Option<Vec<_>> = bodies.into_iter().collect();
     let boundaries: Option<Vec<_>> = boundaries.into_iter().collect();
     if let (Some(bodies), Some(boundaries)) = (&bodies, &boundaries) {
-        reader.fits_scheme(bodies, boundaries);
+        reader.fits_system(bodies);
+        let others = (0..reader.names.systems.len()).map(Some);
+        for system in std::iter::once(None).chain(others) {
+            reader.enter(system);
+            reader.fits_scheme(bodies, boundaries, system);
+        }
     }
+    reader.enter(None);
     if let (Some(bodies), Some(scheme)) = (&bodies, &scheme) {
         reader.one_cloud(bodies, scheme);
     }
-    let probes: Vec<_> = record.records("probe").map(|probe| reader.probe(probe)).collect();
+    let probes = record.records("probe").map(|probe| {
+        reader.enter_system_of(probe);
+        reader.names_its_body(probe, "probe");
+        reader.probe(probe)
+    });
+    let probes: Vec<_> = probes.collect();
+    reader.enter_all();
     let probes: Option<Vec<_>> = probes.into_iter().collect();
     if let (Some(probes), Some(time)) = (&probes, &time) {
         reader.tangents_exist(probes, time);
@@ -124,6 +158,7 @@ pub(super) fn case(
         domain: domain?,
         bodies: bodies?,
         scheme: scheme?,
+        systems: systems.into_iter().collect::<Option<_>>()?,
         time: time?,
         checkpoint: checkpoint?,
         device: (record.record("compute").and_then(|compute| compute.text("device")))
@@ -169,18 +204,22 @@ struct Late {
 struct Names {
     bodies: Vec<String>,
     variants: Vec<String>,
-    scheme: &'static str,
+    /// The system that is being read, and the main one.
+    current: systems::Known,
+    main: systems::Known,
+    /// The others, and to which of them each body belongs.
+    systems: Vec<systems::Known>,
+    system_of: Vec<Option<usize>>,
     is_static: bool,
-    /// Whether the scheme dissipates by itself.
-    dissipates: bool,
-    /// Whether a body is of a hypoelastic solid.
+    /// Whether a body of the main system is of a hypoelastic solid.
     is_solid: bool,
 }
 
 impl Names {
-    /// The formulation, with the matter of the case.
+    /// The formulation that is being read, with its matter.
     fn described(&self) -> catalogue::Described {
-        SchemeDescription::of(self.scheme, if self.is_solid { "solids" } else { "fluids" })
+        let matter = if self.is_solid { "solids" } else { "fluids" };
+        SchemeDescription::of(self.current.scheme, matter)
     }
 }
 
@@ -197,7 +236,9 @@ impl Reader<'_, '_> {
     /// Collects the names of bodies and variants, and checks the names of all named tables.
     fn collect_names(&mut self, record: &Record) {
         self.names.bodies = self.unique_names(record, "body", &[]);
-        let materials = record.records("body").filter_map(|body| body.record("material"));
+        self.systems_of_bodies(record);
+        let bodies = record.records("body").filter(|body| !body.has("system"));
+        let materials = bodies.filter_map(|body| body.record("material"));
         self.names.is_solid = materials.into_iter().any(|material| material.kind == "hypoelastic");
         self.names.variants = self.unique_names(record, "variant", &["base"]);
         self.unique_names(record, "sweep", &[]);

@@ -18,6 +18,7 @@ mod materials;
 mod observers;
 mod schemes;
 mod sweeps;
+mod systems;
 mod time;
 
 pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reduction, Trend, When};
@@ -31,6 +32,7 @@ pub use schemes::{
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
 pub(super) use sweeps::{member_name, member_of};
+pub use systems::System;
 pub use time::{Checkpoint, StepControl, Time};
 
 /// One case: everything that a run needs to know.
@@ -50,6 +52,8 @@ pub struct Case {
     pub bodies: Vec<Body>,
     /// The formulation with its settings.
     pub scheme: Located<Scheme>,
+    /// Formulations of other bodies than those of the main one.
+    pub systems: Vec<System>,
     /// Clock and integrator.
     pub time: Time,
     /// When checkpoints are written.

@@ -61,6 +61,13 @@ pub static CASE: TableSpec = TableSpec {
         ),
         key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),
         key(
+            "system",
+            Kind::List(&Kind::Table(&time::SYSTEM)),
+            "",
+            Optional,
+            "solids in the fluid of `[scheme]`, each a table `[[system]]`",
+        ),
+        key(
             "time",
             Kind::Table(&time::TIME),
             "",

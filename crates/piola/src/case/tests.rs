@@ -14,6 +14,7 @@ mod integrators;
 mod overrides;
 mod solids;
 mod sweeps;
+mod systems;
 
 /// A case that uses every table and nearly every key.
 pub(super) const FULL: &str = include_str!("tests/full.toml");

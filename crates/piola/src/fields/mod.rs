@@ -9,6 +9,15 @@ pub use columns::{column, width};
 pub(crate) use columns::{columns, take_column, take_column_mut};
 pub use selector::{Component, FieldSelector, component_name};
 
+/// What stands in a field for particles that do not have it, as those of another system: not a number, and
+/// other bits than any number that a computation fails with.
+pub const ABSENT: f64 = f64::from_bits(0x7ff8_0000_0a85_e270);
+
+/// Whether a value is [`ABSENT`].
+pub fn is_absent(value: f64) -> bool {
+    value.to_bits() == ABSENT.to_bits()
+}
+
 /// How the components of a field are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldKind {

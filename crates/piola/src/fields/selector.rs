@@ -1,6 +1,6 @@
 //! One number out of a field's components.
 
-use super::{FieldDescription, FieldKind};
+use super::{ABSENT, FieldDescription, FieldKind, is_absent};
 
 /// A field or one component of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +16,9 @@ impl FieldSelector {
     /// [`FieldValues`](super::FieldValues). Not a number if there are too few components,
     /// or if the whole of a vector or tensor is selected.
     pub fn value(&self, components: &[f64]) -> f64 {
+        if components.first().is_some_and(|value| is_absent(*value)) {
+            return ABSENT;
+        }
         match (self.component, self.field.kind) {
             (Component::Whole, FieldKind::Scalar) => components.first().copied(),
             (Component::Whole, _) => None,

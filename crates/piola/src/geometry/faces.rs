@@ -1,6 +1,8 @@
 //! The faces of a wall that a point inside it is behind.
 
-use crate::Vector;
+use piola_formulas::tensor;
+
+use crate::{Tensor, Vector};
 
 /// The outward unit normals of those faces of a shape that are nearest to a point inside it: one as a
 /// rule, several behind an edge, none where there is no way out.
@@ -25,6 +27,21 @@ impl<const D: usize> Faces<D> {
     /// How far the point is behind the faces in m.
     pub fn depth(&self) -> f64 {
         self.depth
+    }
+
+    /// Becomes those faces at `rest` as a deformation gradient leaves them: planes turn to
+    /// `n = F^-T N / |F^-T N|`, and a layer between them and the point is `1 / |F^-T N|` as thick as it was. One that
+    /// has no inverse leaves them as they are.
+    pub fn follow(&mut self, rest: &Self, deformation: &Tensor<D>) {
+        let Some(inverse) = tensor::inverse(deformation) else { return };
+        let mut thinned = f64::INFINITY;
+        self.normals.clear();
+        self.normals.extend(rest.normals.iter().map(|normal| {
+            let turned = inverse.transpose() * normal;
+            thinned = thinned.min(1.0 / turned.norm());
+            turned.normalize()
+        }));
+        self.depth = if thinned.is_finite() { rest.depth * thinned } else { rest.depth };
     }
 
     /// The unit normal between those of the faces; zero if there is none.
@@ -58,6 +75,22 @@ impl<const D: usize> Faces<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn faces_follow_a_deformation() {
+        let rest = Faces::new(vec![Vector::<2>::new(0.0, 1.0)], 0.1);
+        let mut faces = rest.clone();
+        // Sheared along the face it stays where it is, and pulled across it is twice as thick.
+        faces.follow(&rest, &Tensor::from([[1.0, 0.0], [0.7, 1.0]]));
+        assert!((faces.normals[0] - rest.normals[0]).norm() < 1e-15 && faces.depth == 0.1);
+        faces.follow(&rest, &Tensor::from([[1.0, 0.0], [0.0, 2.0]]));
+        assert_eq!((faces.normals[0], faces.depth), (rest.normals[0], 0.2));
+        // A quarter turn to the left.
+        faces.follow(&rest, &Tensor::from([[0.0, 1.0], [-1.0, 0.0]]));
+        assert!((faces.normals[0] - Vector::<2>::new(-1.0, 0.0)).norm() < 1e-15);
+        faces.follow(&rest, &Tensor::zeros());
+        assert!((faces.normals[0] - Vector::<2>::new(-1.0, 0.0)).norm() < 1e-15);
+    }
 
     #[test]
     fn an_edge_faces_where_it_is_looked_at_from() {

@@ -51,6 +51,17 @@ impl<const D: usize> Shape<D> {
         Faces::new(faces.into_iter().map(|face| face.1).collect(), depth)
     }
 
+    /// Length of the way out of the shape along a direction from a point inside it, in m, infinite if it
+    /// leads beyond `bounds`.
+    pub fn way_out_along(
+        &self,
+        point: &Vector<D>,
+        direction: &Vector<D>,
+        bounds: &(Vector<D>, Vector<D>),
+    ) -> f64 {
+        self.walk(point, direction, bounds, (bounds.1 - bounds.0).norm())
+    }
+
     /// Length of the way out along a direction, infinite if it leaves the bounds.
     fn walk(
         &self,

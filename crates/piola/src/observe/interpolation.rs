@@ -40,6 +40,11 @@ struct Around {
 }
 
 impl Interpolated {
+    /// Gives its particles other indices; those without one do not count any more.
+    pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
+        self.particles = self.particles.iter().filter_map(|&a| index(a)).collect();
+    }
+
     /// Appends to `rows` for each place all components of all fields. `scratch` is overwritten.
     pub(super) fn record(
         &self,

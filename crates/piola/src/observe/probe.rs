@@ -96,6 +96,22 @@ impl Probe {
         }
     }
 
+    /// Gives its particles other indices; those without one do not count any more.
+    pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
+        match &mut self.kind {
+            ProbeKind::Particle { particle, .. } => {
+                *particle = index(*particle).unwrap_or(*particle);
+            }
+            ProbeKind::Extremum { particles, .. }
+            | ProbeKind::Sum { particles, .. }
+            | ProbeKind::Error(Deviation { particles, .. }) => {
+                *particles = particles.iter().filter_map(|&a| index(a)).collect();
+            }
+            ProbeKind::Point(point) => point.renumber(index),
+            ProbeKind::Tangent { .. } => (),
+        }
+    }
+
     /// Appends its numbers to `row`. `scratch` is overwritten.
     pub fn record(&self, now: &mut Observation, scratch: &mut Vec<f64>, row: &mut Vec<f64>) {
         match &self.kind {

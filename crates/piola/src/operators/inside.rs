@@ -64,6 +64,32 @@ impl InsideRows {
         );
     }
 
+    /// Takes out those pairs of an active and a one-sided passive particle, by place, that do not see each
+    /// other.
+    pub fn retain<const D: usize>(
+        &mut self,
+        list: &SkinList<D>,
+        is_sided: impl Fn(usize) -> bool + Sync,
+        sees: impl Fn(usize, usize) -> bool + Sync,
+    ) {
+        let filter = |first: usize, places: &mut [u32], rows: &mut [Row]| {
+            let from = start(list, first);
+            for (offset, row) in rows.iter_mut().enumerate() {
+                let (place, begin) = (first + offset, row.start - from);
+                if is_sided(place) {
+                    let own = &mut places[begin..];
+                    row.active = compact(own, row.active, |other| sees(other, place));
+                } else if row.passive > 0 {
+                    let own = &mut places[begin + (row.active as usize).next_multiple_of(LANES)..];
+                    let stays = |other| !is_sided(other) || sees(place, other);
+                    row.passive = compact(own, row.passive, stays);
+                }
+            }
+        };
+        let starts = |row: usize| start(list, row);
+        parallel::for_each_span(&mut self.places, &mut self.rows, &starts, filter);
+    }
+
     /// The neighbours of a particle that are not passive, in whole groups, and how many they are.
     #[inline]
     pub fn active(&self, place: usize) -> (&[u32], usize) {
@@ -85,6 +111,24 @@ impl InsideRows {
     pub fn memory(&self) -> usize {
         size_of_val(self.places.as_slice()) + size_of_val(self.rows.as_slice())
     }
+}
+
+/// Moves the first `count` places that stay to the front, in their order, and fills up their last group.
+/// Returns how many they are.
+fn compact(places: &mut [u32], count: u32, stays: impl Fn(usize) -> bool) -> u32 {
+    let mut kept = 0;
+    for k in 0..count as usize {
+        let place = places[k];
+        if stays(place as usize) {
+            places[kept] = place;
+            kept += 1;
+        }
+    }
+    if let Some(last) = kept.checked_sub(1) {
+        let last = places[last];
+        places[kept..kept.next_multiple_of(LANES)].fill(last);
+    }
+    kept as u32
 }
 
 /// Where there is room for a row.

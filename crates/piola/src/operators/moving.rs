@@ -31,6 +31,11 @@ pub struct MovingSupport<const D: usize> {
     reach: Reach<D>,
     list: SkinList<D>,
     inside: InsideRows,
+    /// The unit vectors towards the side on which passive particles are seen, by number, and zero where
+    /// they are on all; empty if there are none.
+    sides: Vec<Vector<D>>,
+    /// Whether the sides have changed since the rows were picked.
+    is_turned: bool,
 }
 
 impl<const D: usize> MovingSupport<D> {
@@ -66,6 +71,8 @@ impl<const D: usize> MovingSupport<D> {
             reach,
             list,
             inside,
+            sides: Vec::new(),
+            is_turned: false,
         })
     }
 
@@ -90,10 +97,36 @@ impl<const D: usize> MovingSupport<D> {
         rows: &mut [T],
         take: impl Fn(usize, &mut T) -> Vector<D> + Sync,
     ) -> Result<(), NeighborError> {
-        if self.list.update(rows, take)? {
+        if self.list.update(rows, take)? || self.is_turned {
             self.inside.pick(&self.list, &self.reach);
+            self.part_sides();
+            self.is_turned = false;
         }
         Ok(())
+    }
+
+    /// Lets a passive particle (number) be seen, from the next update on, only by those that `side` points
+    /// to from where it is, a vector of any length; by all if it is zero.
+    pub fn show_on(&mut self, number: u32, side: Vector<D>) {
+        self.sides.resize(self.list.len(), Vector::zeros());
+        let known = &mut self.sides[number as usize];
+        self.is_turned |= *known != side;
+        *known = side;
+    }
+
+    /// Takes out the pairs that do not see each other.
+    fn part_sides(&mut self) {
+        if self.sides.is_empty() {
+            return;
+        }
+        let (list, sides) = (&self.list, &self.sides);
+        let side = |place: usize| &sides[list.numbers()[place] as usize];
+        let zero = Vector::<D>::zeros();
+        let sees = |active: usize, passive: usize| {
+            let (from, to) = (&list.positions()[passive], &list.positions()[active]);
+            list.domain().separation(from, to).dot(side(passive)) >= 0.0
+        };
+        self.inside.retain(list, |place| *side(place) != zero, sees);
     }
 
     /// Sets which particles are passive, and which have no neighbours and are none, by number, from

@@ -30,7 +30,9 @@ impl Capability {
             Self::Rates => scheme.has_rates(),
             // Where there is nothing to move, that is done.
             Self::Kicks => {
-                scheme.width() == 0 || scheme.split().is_some() || scheme.partitioned().is_some()
+                scheme.initial_state().is_empty()
+                    || scheme.split().is_some()
+                    || scheme.partitioned().is_some()
             }
             Self::Newmark => scheme.newmark().is_some(),
             Self::Theta => scheme.theta().is_some(),

@@ -191,7 +191,7 @@ impl Accounts {
     }
 
     /// Number of the integrals.
-    fn integrals(&self, dimension: usize) -> usize {
+    pub(crate) fn integrals(&self, dimension: usize) -> usize {
         self.mechanisms.len() + self.impulses.len() * momentum_components(dimension).len()
     }
 
@@ -292,7 +292,7 @@ pub struct Ledger<'a> {
 impl<'a> Ledger<'a> {
     /// The integrals of `state`.
     pub fn of(scheme: &dyn Scheme, state: &'a [f64]) -> Self {
-        let tail = &state[scheme.particle_count() * scheme.width()..];
+        let tail = &state[scheme.ledger_start()..];
         let accounts = &scheme.description().ledger;
         let integrals = &tail[..accounts.integrals(scheme.dimension())];
         let (work, impulses) = integrals.split_at(accounts.mechanisms.len());

@@ -1,5 +1,6 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
+pub(crate) mod coupled;
 mod description;
 mod device;
 pub mod dual_support;
@@ -22,7 +23,9 @@ pub(crate) mod stages;
 mod theta;
 pub mod transport_velocity;
 pub mod upwind;
+pub mod world;
 
+pub use coupled::CoupledScheme;
 pub use description::{Capability, NEWTON_ITERATIONS, SchemeDescription};
 pub use device::{DeviceRefusal, DeviceSteps};
 pub use equilibrium::{Missed, NoSolution, StaticScheme};

@@ -52,10 +52,10 @@ impl<'a> Observation<'a> {
             self.stages += 1;
             self.scheme.observe(self.stages, self.time, self.state);
         }
-        if !field.is_stored() {
+        let column = self.scheme.column(field);
+        if column.is_empty() {
             return self.scheme.derive(self.state, field, particles, values);
         }
-        let column = self.scheme.column(field);
         field.read(&self.state[column], self.scheme.dimension(), particles, values);
     }
 

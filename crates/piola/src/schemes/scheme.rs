@@ -6,8 +6,8 @@ use piola_device::Device;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DeviceRefusal, DeviceSteps, NewmarkScheme, PartitionedScheme, Phase, SchemeDescription,
-    SplitScheme, StaticScheme, ThetaScheme,
+    CoupledScheme, DeviceRefusal, DeviceSteps, NewmarkScheme, PartitionedScheme, Phase,
+    SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
 use crate::solve::Costs;
@@ -38,6 +38,11 @@ pub trait Scheme: Send {
     fn column(&self, field: &FieldDescription) -> Range<usize> {
         let fields = self.description().fields;
         fields::column(fields, self.dimension(), self.particle_count(), field)
+    }
+
+    /// Where the ledger begins in a state.
+    fn ledger_start(&self) -> usize {
+        self.particle_count() * self.width()
     }
 
     /// The state at the start, with zero integrals.
@@ -100,6 +105,9 @@ pub trait Scheme: Send {
     /// Number of each particle in the order of creation.
     fn ids(&self) -> &[u32];
 
+    /// Mass in kg of a particle (index in memory), for 1 m in missing dimensions.
+    fn mass(&self, index: usize) -> f64;
+
     /// Reference position in m and number in the order of creation of each particle.
     fn particle(&self, index: usize) -> Particle;
 
@@ -145,6 +153,11 @@ pub trait Scheme: Send {
     /// The formulation as one whose accelerations depend on places alone, if it is one and nothing in
     /// it dissipates.
     fn partitioned(&mut self) -> Option<&mut dyn PartitionedScheme> {
+        None
+    }
+
+    /// The formulation as one of several systems that act on each other, if it is one.
+    fn coupled(&mut self) -> Option<&mut dyn CoupledScheme> {
         None
     }
 

@@ -208,6 +208,8 @@ impl Executor {
         self.scheme.constrain(clock.time, state);
         if let Some(scheme) = self.scheme.split() {
             scheme.accelerate(clock.time, state);
+        } else if let Some(scheme) = self.scheme.coupled() {
+            scheme.refresh(clock.time, state);
         }
         *history = History::new(Mark::of(clock, tally, due, state));
         self.is_seen = false;

@@ -2,6 +2,7 @@
 
 mod checkpoint;
 mod clock;
+mod coupled;
 mod executor;
 mod failure;
 mod history;
@@ -18,6 +19,7 @@ mod step;
 mod summary;
 
 pub use checkpoint::{Checkpoint, CheckpointPolicy, CheckpointStore, Checkpoints, Misfit};
+pub use coupled::Coupled;
 pub use executor::Executor;
 pub use failure::Failure;
 pub use history::Trace;

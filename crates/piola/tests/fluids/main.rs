@@ -14,6 +14,7 @@ mod operators;
 mod runs;
 mod solids;
 mod speeds;
+mod structures;
 mod support;
 mod surfaces;
 mod taylor_green;

@@ -69,6 +69,10 @@ impl Scheme for Pendulum {
 
     fn derive(&self, _: &[f64], _: &FieldDescription, _: &[u32], _: &mut Vec<f64>) {}
 
+    fn mass(&self, _: usize) -> f64 {
+        1.0
+    }
+
     fn bodies(&self) -> &[u32] {
         &[0]
     }

@@ -7,7 +7,8 @@ use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::geometry::{Faces, Particles, Shape};
-use crate::neighbors::{Domain, NeighborStatistics, spatial_order};
+use crate::neighbors::{Domain, spatial_order};
+use crate::observe::{Line, Probe};
 use crate::schemes::transport_velocity::{
     Continuum, Fluid, Guard, Hypoelastic, Solid, SolidsInput, TransportVelocity,
     TransportVelocityError, TransportVelocityInput, Wall, WeaklyCompressible,
@@ -18,23 +19,71 @@ use crate::schemes::{Initial, Scheme};
 pub(super) fn build<const D: usize>(
     case: &Case,
     settings: &model::TransportVelocity,
-    mut particles: Particles<D>,
+    particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
 ) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
+    let prepared = prepare(case, settings, particles, reports, domain)?;
+    if let Some(materials) = materials(case) {
+        let spacing = prepared.input.particles.spacing.first().copied().unwrap_or_default();
+        let solids = SolidsInput {
+            materials,
+            contact: settings.contact,
+            self_contact: settings.self_contact.as_ref().map(|distance| **distance * spacing),
+            corrected: settings.corrected_gradients,
+            held: prepared.held.clone(),
+        };
+        let (solids, built) = prepared.finish::<Hypoelastic<D>>(case, settings, solids)?;
+        return Ok((Box::new(solids), built));
+    }
+    let (fluid, built) = prepared.finish::<WeaklyCompressible<D>>(case, settings, fluid(case)?)?;
+    Ok((Box::new(fluid), built))
+}
+
+/// Builds a fluid of that scheme.
+pub(super) fn build_fluid<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    particles: Particles<D>,
+    reports: Vec<BodyReport>,
+    domain: Domain<D>,
+) -> Result<(TransportVelocity<D>, Built), Vec<Problem>> {
+    prepare(case, settings, particles, reports, domain)?.finish(case, settings, fluid(case)?)
+}
+
+/// All but the matter, with what is known of the rest.
+struct Prepared<const D: usize> {
+    input: TransportVelocityInput<D>,
+    held: Vec<PrescribedVelocity>,
+    probes: Vec<Probe>,
+    lines: Vec<Line>,
+    reports: Vec<BodyReport>,
+    warnings: Vec<String>,
+}
+
+fn prepare<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    mut particles: Particles<D>,
+    reports: Vec<BodyReport>,
+    domain: Domain<D>,
+) -> Result<Prepared<D>, Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
     let smoothing_length = *settings.smoothing_length * spacing;
+    let first_twin = double_thin(case, &mut particles, kernel.support_radius(smoothing_length))?;
     let order = spatial_order(&particles.position, kernel.support_radius(smoothing_length));
     let place = settings.smoothing_length.place;
     particles.reorder(&order.map_err(|error| {
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
-    let matter = match materials(case) {
-        Some(materials) => Matter::Solids(materials),
-        None => Matter::Fluid(fluid(case)?),
-    };
-    let (faces, shape) = faces(case, &particles)?;
+    let (mut faces, shape) = faces(case, &particles)?;
+    part_faces(
+        case,
+        &particles,
+        (first_twin, kernel.support_radius(smoothing_length)),
+        &mut faces,
+    )?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
@@ -43,9 +92,9 @@ pub(super) fn build<const D: usize>(
         return Err(problems);
     }
     let walls = walls(case);
-    let (motion, held) = match matter {
-        Matter::Solids(_) => split(motion, &particles, &walls),
-        Matter::Fluid(_) => (motion, Vec::new()),
+    let (motion, held) = match materials(case) {
+        Some(_) => split(motion, &particles, &walls),
+        None => (motion, Vec::new()),
     };
     let mut warnings = Vec::new();
     let no_face = Faces::default();
@@ -65,8 +114,8 @@ pub(super) fn build<const D: usize>(
         warnings.extend(tanks::warnings(case, shape, &particles, &faces, support));
     }
     let initial = initial(case, &particles);
-    if let Matter::Fluid(fluid) = &matter {
-        warnings.extend(compression(fluid, &initial));
+    if materials(case).is_none() {
+        warnings.extend(compression(&fluid(case)?, &initial));
     }
     let sliding = sliding(case, &particles);
     let input = TransportVelocityInput {
@@ -82,58 +131,41 @@ pub(super) fn build<const D: usize>(
         body_forces: loads::body_forces(case),
         particles,
     };
-    let refuse = |error: TransportVelocityError| {
-        let (place, label) = match &error {
-            TransportVelocityError::Start { .. } => {
-                (case.bodies[0].name.place, "initial values of a body")
-            }
-            TransportVelocityError::SelfContact { .. } => {
-                (settings.self_contact.as_ref().map_or(place, |it| it.place), "make it larger")
-            }
-            TransportVelocityError::Spacing { .. } => (case.bodies[0].spacing.place, "spacing"),
-            _ => (place, "with this smoothing length"),
-        };
-        vec![case.problem_at(place, error.to_string(), label, None)]
-    };
-    let guard = Guard {
-        bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
-        removes: settings.removes_escaped,
-    };
-    let (scheme, (neighbors, poorly_supported)) = match matter {
-        Matter::Fluid(fluid) => {
-            let built = TransportVelocity::<D, WeaklyCompressible<D>>::new(input, fluid);
-            guarded(built.map_err(refuse)?, guard)
-        }
-        Matter::Solids(materials) => {
-            let solids = SolidsInput {
-                materials,
-                contact: settings.contact,
-                self_contact: settings.self_contact.as_ref().map(|distance| **distance * spacing),
-                corrected: settings.corrected_gradients,
-                held,
+    Ok(Prepared { input, held, probes, lines, reports, warnings })
+}
+
+impl<const D: usize> Prepared<D> {
+    /// Binds it to matter.
+    fn finish<M: Continuum<D>>(
+        self,
+        case: &Case,
+        settings: &model::TransportVelocity,
+        matter: M::Input,
+    ) -> Result<(TransportVelocity<D, M>, Built), Vec<Problem>> {
+        let Self { input, probes, lines, reports: bodies, warnings, .. } = self;
+        let place = settings.smoothing_length.place;
+        let refuse = |error: TransportVelocityError| {
+            let (place, label) = match &error {
+                TransportVelocityError::Start { .. } => {
+                    (case.bodies[0].name.place, "initial values of a body")
+                }
+                TransportVelocityError::SelfContact { .. } => {
+                    (settings.self_contact.as_ref().map_or(place, |it| it.place), "make it larger")
+                }
+                TransportVelocityError::Spacing { .. } => (case.bodies[0].spacing.place, "spacing"),
+                _ => (place, "with this smoothing length"),
             };
-            let built = TransportVelocity::<D, Hypoelastic<D>>::new(input, solids);
-            guarded(built.map_err(refuse)?, guard)
-        }
-    };
-    Ok((scheme, Built { probes, lines, bodies: reports, neighbors, poorly_supported, warnings }))
-}
-
-/// What the bodies of a case are made of; the reader of cases has refused a mixture.
-enum Matter {
-    Fluid(Fluid),
-    Solids(Vec<Solid>),
-}
-
-/// A system that looks for particles that escape, with the statistics of its neighbours.
-fn guarded<const D: usize, M: Continuum<D>>(
-    mut scheme: TransportVelocity<D, M>,
-    guard: Guard,
-) -> (Box<dyn Scheme>, (NeighborStatistics, Vec<u32>)) {
-    scheme.guard(guard);
-    // Particles deep in a wall may be alone.
-    let statistics = row_statistics(&scheme, |a| !scheme.is_wall(a));
-    (Box::new(scheme), statistics)
+            vec![case.problem_at(place, error.to_string(), label, None)]
+        };
+        let mut scheme = TransportVelocity::<D, M>::new(input, matter).map_err(refuse)?;
+        scheme.guard(Guard {
+            bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
+            removes: settings.removes_escaped,
+        });
+        // Particles deep in a wall may be alone.
+        let (neighbors, poorly_supported) = row_statistics(&scheme, |a| !scheme.is_wall(a));
+        Ok((scheme, Built { probes, lines, bodies, neighbors, poorly_supported, warnings }))
+    }
 }
 
 /// What of its density a fluid may be compressed by at the start without a warning: that of speeds of a
@@ -219,21 +251,27 @@ fn faces<const D: usize>(
     if !is_wall.contains(&true) {
         return Ok((faces, None));
     }
-    let (mut shapes, mut bounds) = (Vec::new(), None::<(Vector<D>, Vector<D>)>);
+    let (mut shapes, mut moving) = (Vec::new(), Vec::new());
+    let mut bounds = None::<(Vector<D>, Vector<D>)>;
     for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
         let (low, high) = match (&body.shape.value, is_wall) {
             (shape, false) if shape.is_from_file() => box_around(particles, number),
             (shape, true) if shape.is_from_file() => {
-                let message = "points from a file have no faces, which a wall needs";
-                let help = Some("describe the wall by shapes".to_owned());
+                let message = match body.system {
+                    Some(_) => "points from a file have no faces, which a solid in a fluid needs",
+                    None => "points from a file have no faces, which a wall needs",
+                };
+                let help = Some("describe it by shapes".to_owned());
                 return Err(vec![case.problem_at(body.shape.place, message, "of a wall", help)]);
             }
             _ => {
                 let shape: Shape<D> =
                     bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
                 let ends = shape.bounding_box();
-                if *is_wall {
-                    shapes.push(shape);
+                match (is_wall, body.system) {
+                    (true, None) => shapes.push(shape),
+                    (true, Some(_)) => moving.push((number as u32, shape)),
+                    _ => (),
                 }
                 ends
             }
@@ -241,18 +279,104 @@ fn faces<const D: usize>(
         let (least, most) = bounds.unwrap_or((low, high));
         bounds = Some((least.inf(&low), most.sup(&high)));
     }
-    let (Some(bounds), Ok(walls)) = (bounds, Shape::union(shapes)) else {
-        return Ok((faces, None));
-    };
+    let Some(bounds) = bounds else { return Ok((faces, None)) };
+    // Bodies of other systems come away from the walls: their faces are their own.
+    let walls = Shape::union(shapes).ok();
     crate::parallel::for_each_chunk(&mut faces, |first, rows| {
         for (offset, row) in rows.iter_mut().enumerate() {
-            let number = first + offset;
-            if is_wall[particles.body[number] as usize] {
-                *row = walls.ways_out(&particles.position[number], &bounds);
+            let (x, body) = (&particles.position[first + offset], particles.body[first + offset]);
+            let own = moving.iter().find(|(number, _)| *number == body).map(|(_, shape)| shape);
+            let is_wall = is_wall[body as usize];
+            if let Some(shape) = own.or(walls.as_ref()).filter(|_| is_wall) {
+                let bounds = if own.is_some() { everywhere(shape) } else { bounds };
+                *row = shape.ways_out(x, &bounds);
             }
         }
     });
-    Ok((faces, Some(walls)))
+    Ok((faces, walls))
+}
+
+/// Doubles the wall particles of thin bodies of other systems, so that each side has its own. Returns the
+/// number in the order of creation of the first that was added.
+fn double_thin<const D: usize>(
+    case: &Case,
+    particles: &mut Particles<D>,
+    support: f64,
+) -> Result<u32, Vec<Problem>> {
+    let first = particles.len();
+    for (number, shape) in moving(case)? {
+        let own = (0..first).filter(|&a| particles.body[a] == number);
+        let is_thin = |a: &usize| Thin::of(&shape, &particles.position[*a], support).is_some();
+        let thin: Vec<usize> = own.filter(is_thin).collect();
+        for a in thin {
+            particles.position.push(particles.position[a]);
+            particles.volume.push(particles.volume[a]);
+            particles.weight.push(particles.weight[a]);
+            particles.spacing.push(particles.spacing[a]);
+            particles.body.push(number);
+            particles.id.push(particles.id.len() as u32);
+        }
+    }
+    Ok(first as u32)
+}
+
+/// Gives each of two wall particles in one place the faces on its side: the one that was there the nearest
+/// ones but the opposite, the other, whose number is `first_twin` or later, that behind it.
+fn part_faces<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    (first_twin, support): (u32, f64),
+    faces: &mut [Faces<D>],
+) -> Result<(), Vec<Problem>> {
+    let shapes = moving(case)?;
+    for a in 0..particles.len() {
+        let shape = shapes.iter().find(|(number, _)| *number == particles.body[a]);
+        let Some((_, shape)) = shape else { continue };
+        if let Some(thin) = Thin::of(shape, &particles.position[a], support) {
+            faces[a] = if particles.id[a] < first_twin { thin.front } else { thin.back };
+        }
+    }
+    Ok(())
+}
+
+/// The two sides of a point in a thin part of a body, where the face opposite to the nearest is within the
+/// support: fluid beyond it would be seen through the body. The first face of each is across the thin part.
+struct Thin<const D: usize> {
+    front: Faces<D>,
+    back: Faces<D>,
+}
+
+impl<const D: usize> Thin<D> {
+    fn of(shape: &Shape<D>, x: &Vector<D>, support: f64) -> Option<Self> {
+        let bounds = everywhere(shape);
+        let nearest = shape.ways_out(x, &bounds);
+        let back = |normal: &Vector<D>| shape.way_out_along(x, &-normal, &bounds);
+        let across = nearest.normals().iter().find(|normal| back(normal) < support)?;
+        let others = nearest.normals().iter().filter(|normal| normal.dot(across).abs() < 0.5);
+        let front = std::iter::once(across).chain(others).copied().collect();
+        Some(Self {
+            front: Faces::new(front, nearest.depth()),
+            back: Faces::new(vec![-across], back(across)),
+        })
+    }
+}
+
+/// The shapes of bodies of other systems, by the number of the body.
+fn moving<const D: usize>(case: &Case) -> Result<Vec<(u32, Shape<D>)>, Vec<Problem>> {
+    let bodies = (0u32..).zip(&case.bodies).filter(|(_, body)| body.system.is_some());
+    let shapes = bodies.filter(|(_, body)| !body.shape.value.is_from_file());
+    let shape = |(number, body): (u32, &model::Body)| {
+        let shape = bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
+        Ok((number, shape))
+    };
+    shapes.map(shape).collect()
+}
+
+/// A box that all ways out of a shape end inside of.
+fn everywhere<const D: usize>(shape: &Shape<D>) -> (Vector<D>, Vector<D>) {
+    let (low, high) = shape.bounding_box();
+    let margin = Vector::repeat((high - low).norm());
+    (low - margin, high + margin)
 }
 
 /// The corners of the box around the particles of a body.

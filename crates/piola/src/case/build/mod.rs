@@ -11,6 +11,7 @@ mod selections;
 mod solids;
 mod tanks;
 mod waves;
+mod world;
 
 use std::time::Duration;
 
@@ -58,10 +59,26 @@ pub(super) struct Built {
 }
 
 fn build_in<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
+    let (scheme, integrator, mut built) = match case.systems.is_empty() {
+        true => {
+            let (mut scheme, built) = system::<D>(case)?;
+            let integrator = integrator(case, scheme.as_mut())?;
+            (scheme, integrator, built)
+        }
+        false => world::build::<D>(case)?,
+    };
+    built.warnings.splice(0..0, case.remarks.iter().cloned());
+    built.warnings.extend(uneven_steps(case));
+    built.warnings.extend(beyond_stable(case));
+    Ok((scheme, integrator, built))
+}
+
+/// Builds one system.
+fn system<const D: usize>(case: &Case) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
     let domain = domain::<D>(case)?;
     let (particles, bodies) = bodies::particles::<D>(case, &domain)?;
     let far = probes::far(case, &particles);
-    let (mut scheme, mut built) = match &case.scheme.value {
+    let (scheme, mut built) = match &case.scheme.value {
         model::Scheme::Upwind(settings) => build_upwind(case, settings, particles, bodies, domain)?,
         model::Scheme::TransportVelocity(settings) => {
             fluids::build(case, settings, particles, bodies, domain)?
@@ -76,12 +93,8 @@ fn build_in<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
             interpolation::build(case, settings, particles, bodies, domain)?
         }
     };
-    built.warnings.splice(0..0, case.remarks.iter().cloned());
     built.warnings.extend(far);
-    built.warnings.extend(uneven_steps(case));
-    built.warnings.extend(beyond_stable(case));
-    let integrator = integrator(case, scheme.as_mut())?;
-    Ok((scheme, integrator, built))
+    Ok((scheme, built))
 }
 
 /// Central differences whose steps are as long as is stable one by one may grow when long and short ones

@@ -16,7 +16,10 @@ pub(super) fn warnings<const D: usize>(
     faces: &[Faces<D>],
     support: f64,
 ) -> Vec<String> {
-    let is_wall = |a: &usize| case.bodies[particles.body[*a] as usize].wall.is_some();
+    let is_wall = |a: &usize| {
+        let body = &case.bodies[particles.body[*a] as usize];
+        body.wall.is_some() && body.system.is_none()
+    };
     let all: Vec<usize> = (0..particles.len()).filter(is_wall).collect();
     let thin = first(&all, particles, |a| {
         let spacing = particles.spacing[a];

@@ -28,6 +28,7 @@ impl Reader<'_, '_> {
             material: material?,
             initial: initial?,
             wall: record.record("wall").and_then(fluids::wall),
+            system: None,
         })
     }
 
@@ -179,7 +180,7 @@ impl Reader<'_, '_> {
     }
 
     fn initial(&mut self, record: &Record) -> Option<Initial> {
-        if self.names.scheme != "elastodynamics" {
+        if self.names.current.scheme != "elastodynamics" {
             self.meaningless(record, "displacement", "in this scheme");
         }
         let components = |key: &str| match record.has(key) {

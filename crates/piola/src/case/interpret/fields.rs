@@ -10,14 +10,14 @@ use crate::observe::TANGENT_COLUMNS;
 impl Reader<'_, '_> {
     /// The field called `name`, which stands at `place`.
     pub(super) fn field(&mut self, name: &str, place: Place) -> Option<FieldDescription> {
-        let scheme = self.names.described();
-        let fields = catalogue::fields(scheme);
+        let fields = self.fields();
         if let Some(field) = fields.iter().find(|field| field.name == name) {
             return Some(*field);
         }
-        let of = scheme.and_then(|scheme| scheme.matter);
+        let scheme = self.names.current.scheme;
+        let of = self.names.described().and_then(|scheme| scheme.matter);
         let of = of.map_or_else(String::new, |matter| format!(" for {matter}"));
-        let message = format!("the scheme `{}` has no field `{name}`{of}", self.names.scheme);
+        let message = format!("the scheme `{scheme}` has no field `{name}`{of}");
         let help = suggestion(name, fields.iter().map(|field| field.name));
         self.refuse(Problem::new(place, message, "unknown field").help(help))
     }
@@ -83,21 +83,17 @@ impl Reader<'_, '_> {
         let owned = column.to_owned();
         let quantity = match table {
             "energy" => {
-                self.known_column(
-                    text,
-                    column,
-                    &catalogue::energy_columns(self.names.described()),
-                )?;
+                self.known_column(text, column, &catalogue::energy_columns(self.shown_by_all()))?;
                 Quantity::Energy(owned)
             }
             "momentum" => {
-                let known = catalogue::momentum_columns(self.names.described(), self.dimension);
+                let known = catalogue::momentum_columns(self.shown_by_all(), self.dimension);
                 let known: Vec<&str> = known.iter().map(String::as_str).collect();
                 self.known_column(text, column, &known)?;
                 Quantity::Momentum(owned)
             }
             "step" => {
-                self.known_column(text, column, &catalogue::step_columns(self.names.described()))?;
+                self.known_column(text, column, &catalogue::step_columns(self.shown_by_all()))?;
                 Quantity::Step(owned)
             }
             "run" => {

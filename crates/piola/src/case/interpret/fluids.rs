@@ -101,10 +101,16 @@ pub(super) fn wall(record: &Record) -> Option<Located<Wall>> {
 
 impl Reader<'_, '_> {
     /// Reports materials, walls and boundaries that the scheme has no use for.
-    pub(super) fn fits_scheme(&mut self, bodies: &[Body], boundaries: &[Boundary]) {
-        let scheme = self.names.scheme;
+    /// For the bodies of a system.
+    pub(super) fn fits_scheme(
+        &mut self,
+        bodies: &[Body],
+        boundaries: &[Boundary],
+        system: Option<usize>,
+    ) {
+        let scheme = self.names.current.scheme;
         let is_fluid = scheme == "transport_velocity";
-        for body in bodies {
+        for body in bodies.iter().filter(|body| body.system == system) {
             let help = match (scheme, &body.material.value) {
                 (
                     "transport_velocity",
@@ -140,7 +146,7 @@ impl Reader<'_, '_> {
                 let problem = Problem::new(body.name.place, message, "no meaning in this scheme");
                 self.report(problem.help("remove `initial.pressure`"));
             }
-            if let (Some(wall), false) = (&body.wall, is_fluid) {
+            if let (Some(wall), false, None) = (&body.wall, is_fluid, system) {
                 let message = format!("the scheme `{scheme}` has no walls of ghost particles");
                 self.report(
                     Problem::new(wall.place, message, "no meaning here")
@@ -148,7 +154,11 @@ impl Reader<'_, '_> {
                 );
             }
         }
-        for boundary in boundaries.iter().filter(|_| is_fluid) {
+        let is_of = |boundary: &&Boundary| {
+            let body = boundary.body.as_ref().and_then(|body| bodies.get(body.value));
+            body.and_then(|body| body.system) == system
+        };
+        for boundary in boundaries.iter().filter(|_| is_fluid).filter(is_of) {
             let of_wall = |body: &Located<usize>| {
                 bodies.get(body.value).is_some_and(|body| body.wall.is_some())
             };

@@ -24,7 +24,7 @@ pub(super) fn settings(record: &Record) -> Option<Interpolation> {
 impl Reader<'_, '_> {
     /// The material of a body: of one that is only a cloud, a placeholder.
     pub(super) fn body_material(&mut self, record: &Record) -> Option<Located<Material>> {
-        if self.names.scheme == NAME {
+        if self.names.current.scheme == NAME {
             for key in ["material", "initial", "wall"] {
                 self.meaningless(record, key, "with the scheme `interpolation`");
             }
@@ -42,7 +42,7 @@ impl Reader<'_, '_> {
 
     /// Clock and integrator, which a case in which nothing moves does without.
     pub(super) fn clock(&mut self, record: &Record) -> Option<Time> {
-        if self.names.scheme == NAME {
+        if self.names.current.scheme == NAME {
             for key in ["time", "checkpoint", "load", "boundary"] {
                 self.meaningless(record, key, "with the scheme `interpolation`");
             }

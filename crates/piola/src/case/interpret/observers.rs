@@ -1,7 +1,6 @@
 //! Probes, output, pictures and plots.
 
 use super::*;
-use crate::case::catalogue;
 use crate::case::model::{
     Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind, Quantity,
 };
@@ -182,7 +181,7 @@ impl Reader<'_, '_> {
             self.not_too_often(&table_every, end, MAX_ROWS, "rows");
         }
         let fields = match record.filter(|record| record.has("fields")) {
-            None => catalogue::fields(self.names.described()),
+            None => self.fields(),
             Some(record) => {
                 let names = record.texts("fields");
                 let fields: Vec<_> =

@@ -99,7 +99,7 @@ impl Reader<'_, '_> {
     /// The part of the surface that a load acts on.
     fn loaded_region(&mut self, record: &Record) -> Option<Located<Region>> {
         let kind = record.kind;
-        let scheme = self.names.scheme;
+        let scheme = self.names.current.scheme;
         let knows = match kind {
             "pressure" => scheme == "dual_support",
             _ => scheme != "transport_velocity",
@@ -146,7 +146,7 @@ impl Reader<'_, '_> {
         let mirror = record
             .boolean("mirror")
             .map(|on| Located::new(on, record.key_place("mirror").unwrap_or(record.place)));
-        if self.names.scheme != "elastodynamics" {
+        if self.names.current.scheme != "elastodynamics" {
             self.meaningless(record, "mirror", "in this scheme");
         }
         let roller = record.record("roller").map(|roller| self.roller(roller));

@@ -6,13 +6,22 @@ use crate::schemes::{Capability, ImplicitRule, Newmark, SchemeDescription, Theta
 use crate::solve::LinearMethod;
 
 /// Whether steps are found without solving equations.
-fn is_explicit(needs: Capability) -> bool {
+pub(super) fn is_explicit(needs: Capability) -> bool {
     matches!(needs, Capability::Rates | Capability::Kicks)
+}
+
+/// How linear equations are solved, if the file says it.
+pub(super) fn linear_solver(record: &Record) -> Option<LinearMethod> {
+    Some(match record.text("linear_solver")?.as_str() {
+        "direct" => LinearMethod::Direct,
+        "krylov" => LinearMethod::Krylov,
+        _ => LinearMethod::Automatic,
+    })
 }
 
 impl Reader<'_, '_> {
     pub(super) fn time(&mut self, record: &Record) -> Option<Time> {
-        let natural = match self.names.dissipates {
+        let natural = match self.names.current.dissipates {
             true => IntegratorKind::TvdRk2,
             false => IntegratorKind::KickDriftKick,
         };
@@ -40,11 +49,7 @@ impl Reader<'_, '_> {
             rule: rule?,
             error: record.number("error").map(|it| it.value),
             tolerance: record.number("tolerance").map(|it| it.value),
-            linear_solver: match record.text("linear_solver").as_deref().map(String::as_str) {
-                Some("direct") => LinearMethod::Direct,
-                Some("krylov") => LinearMethod::Krylov,
-                _ => LinearMethod::Automatic,
-            },
+            linear_solver: linear_solver(record).unwrap_or(LinearMethod::Automatic),
             step: step?,
             max_steps: record.whole("max_steps").map(|steps| steps.value),
             min_step: record.number("min_step").map(|step| step.value),
@@ -54,9 +59,9 @@ impl Reader<'_, '_> {
     }
 
     /// Reports an integrator that the scheme does not work with, with those that do.
-    fn suits_scheme(&mut self, integrator: &Located<String>, needs: Capability) {
+    pub(super) fn suits_scheme(&mut self, integrator: &Located<String>, needs: Capability) {
         let (name, scheme, dissipates) =
-            (&integrator.value, self.names.scheme, self.names.dissipates);
+            (&integrator.value, self.names.current.scheme, self.names.current.dissipates);
         let Some(offers) = self.names.described().map(|scheme| scheme.offers) else {
             return;
         };
@@ -87,6 +92,16 @@ impl Reader<'_, '_> {
         self.report(Problem::new(integrator.place, message, "of another scheme").help(help));
     }
 
+    /// The CFL number of explicit steps, unless the file has one.
+    pub(super) fn natural_cfl(&self) -> f64 {
+        match self.names.current.scheme {
+            "transport_velocity" => 0.25,
+            "dual_support" => 0.8,
+            "elastodynamics" => 0.9,
+            _ => 0.3,
+        }
+    }
+
     /// How the step is chosen.
     fn step(&mut self, record: &Record, needs: Capability) -> Option<Located<StepControl>> {
         let (cfl, step) = (record.number("cfl"), record.number("step"));
@@ -107,12 +122,7 @@ impl Reader<'_, '_> {
             }
             (_, Some(cfl), None) => Some(cfl.map(StepControl::Cfl)),
             (Capability::Rates | Capability::Kicks, None, None) => {
-                let cfl = match self.names.scheme {
-                    "transport_velocity" => 0.25,
-                    "dual_support" => 0.8,
-                    "elastodynamics" => 0.9,
-                    _ => 0.3,
-                };
+                let cfl = self.natural_cfl();
                 Some(Located::new(StepControl::Cfl(cfl), record.place))
             }
             (Capability::Newmark | Capability::Theta, None, None) => {
@@ -127,7 +137,7 @@ impl Reader<'_, '_> {
     }
 
     /// The rule of an implicit step: `Some(None)` for integrators that have none.
-    fn rule(
+    pub(super) fn rule(
         &mut self,
         record: &Record,
         kind: Option<IntegratorKind>,

@@ -31,6 +31,8 @@ pub struct Body {
     pub initial: Initial,
     /// What makes it a wall, if it is one.
     pub wall: Option<Located<Wall>>,
+    /// Number of the system that it belongs to, if that is not the main one.
+    pub system: Option<usize>,
 }
 
 /// A region that particles fill.

@@ -196,5 +196,5 @@ pub(super) static WALL: TableSpec = TableSpec {
     ],
 };
 
-const SLIPS: Choices =
+pub(super) const SLIPS: Choices =
     choices(&[choice("no", "the fluid sticks to it"), choice("free", "the fluid slides along it")]);

@@ -20,6 +20,13 @@ pub(super) static BODY: TableSpec = TableSpec {
     keys: &[
         key("name", Kind::Text, "", Required, "unique name"),
         key(
+            "system",
+            Kind::Text,
+            "",
+            Derived("that of `[scheme]`"),
+            "the `[[system]]` that it belongs to",
+        ),
+        key(
             "shape",
             Kind::Tagged(&SHAPE),
             "",

@@ -7,24 +7,8 @@ pub(super) static TIME: TableSpec = TableSpec {
     meaning: "Clock and integrator. The time starts at 0.",
     keys: &[
         key("end", Kind::Number(Interval::POSITIVE), "s", Required, "time at which the run ends"),
-        key(
-            "integrator",
-            Kind::Name(Choices::Registry(catalogue::integrators)),
-            "",
-            Derived(
-                "`kick_drift_kick`; `tvd_rk2` for the scheme `upwind` where `tau_velocity` or `tau_pressure` is above 0",
-            ),
-            "time integrator",
-        ),
-        key(
-            "cfl",
-            Kind::Number(Interval::POSITIVE),
-            "1",
-            Derived(
-                "0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8, `elastodynamics`: 0.9) unless `step` is given; none with an implicit integrator",
-            ),
-            "share of the time that a wave needs from particle to particle; with `dual_support` and `elastodynamics`, of the largest stable step of central differences",
-        ),
+        INTEGRATOR,
+        CFL,
         key(
             "step",
             Kind::Number(Interval::POSITIVE),
@@ -32,41 +16,11 @@ pub(super) static TIME: TableSpec = TableSpec {
             Derived("none; a tenth of `end` with the integrators `static` and `arc_length`"),
             "fixed time step instead of `cfl`, checked against the stable step; with an implicit integrator, `static` or `arc_length` the largest step, shortened to meet output",
         ),
-        key(
-            "beta",
-            Kind::Number(Interval::between(0.25, 1.0)),
-            "1",
-            Derived("0.25, with the integrator `newmark`"),
-            "weight of the new acceleration in the displacement, at least half of `gamma`",
-        ),
-        key(
-            "gamma",
-            Kind::Number(Interval::between(0.5, 1.0)),
-            "1",
-            Derived("0.5, with the integrator `newmark`"),
-            "weight of the new acceleration in the velocity: above 0.5 all periods are damped, and steps are of first order",
-        ),
-        key(
-            "alpha",
-            Kind::Number(Interval::between(0.0, 1.0 / 3.0)),
-            "1",
-            Derived("0.05, with the integrator `hht_alpha`"),
-            "share of the forces at the start of a step: the larger, the more short periods are damped",
-        ),
-        key(
-            "spectral_radius",
-            Kind::Number(Interval::between(0.0, 1.0)),
-            "1",
-            Derived("0.8, with the integrator `generalised_alpha`"),
-            "what a step multiplies the shortest periods by; 1 is the implicit midpoint rule, without damping",
-        ),
-        key(
-            "theta",
-            Kind::Number(Interval::between(0.5, 1.0)),
-            "1",
-            Derived("0.55, with the integrator `theta`"),
-            "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
-        ),
+        BETA,
+        GAMMA,
+        ALPHA,
+        SPECTRAL_RADIUS,
+        THETA,
         key(
             "error",
             Kind::Number(Interval::between(1e-10, 0.5)),
@@ -76,23 +30,8 @@ pub(super) static TIME: TableSpec = TableSpec {
              that all energy would give. Each step is taken as a whole and in two halves, and is as long \
              as the difference of both allows, `step` at most",
         ),
-        key(
-            "tolerance",
-            Kind::Number(Interval::between(1e-13, 1e-2)),
-            "1",
-            Derived(
-                "1e-8 with `static`, `arc_length` or an implicit integrator, 1e-10 with `upwind`",
-            ),
-            "what Newton's method may leave of the forces, over loads and reactions; with `upwind` of \
-             the momentum of a step, over what there is and what forces change of it",
-        ),
-        key(
-            "linear_solver",
-            Kind::Name(LINEAR_SOLVERS),
-            "",
-            Derived("`automatic` with `static`, `arc_length` or an implicit integrator"),
-            "how the linear equations of Newton's method are solved",
-        ),
+        TOLERANCE,
+        LINEAR_SOLVER,
         key(
             "max_steps",
             Kind::Integer(Interval::at_least(1.0)),
@@ -127,6 +66,108 @@ pub(super) static TIME: TableSpec = TableSpec {
             "1",
             Derived("5 with `on_failure = \"retry\"`"),
             "how often the run may go back; the steps are halved each time, and grow again where Newton's method is quick",
+        ),
+    ],
+};
+
+const INTEGRATOR: KeySpec = key(
+    "integrator",
+    Kind::Name(Choices::Registry(catalogue::integrators)),
+    "",
+    Derived(
+        "`kick_drift_kick`; `tvd_rk2` for the scheme `upwind` where `tau_velocity` or `tau_pressure` is above 0",
+    ),
+    "time integrator",
+);
+
+const CFL: KeySpec = key(
+    "cfl",
+    Kind::Number(Interval::POSITIVE),
+    "1",
+    Derived(
+        "0.3 (`transport_velocity`: 0.25, `dual_support`: 0.8, `elastodynamics`: 0.9) unless `step` is given; none with an implicit integrator",
+    ),
+    "share of the time that a wave needs from particle to particle; with `dual_support` and `elastodynamics`, of the largest stable step of central differences",
+);
+
+const BETA: KeySpec = key(
+    "beta",
+    Kind::Number(Interval::between(0.25, 1.0)),
+    "1",
+    Derived("0.25, with the integrator `newmark`"),
+    "weight of the new acceleration in the displacement, at least half of `gamma`",
+);
+
+const GAMMA: KeySpec = key(
+    "gamma",
+    Kind::Number(Interval::between(0.5, 1.0)),
+    "1",
+    Derived("0.5, with the integrator `newmark`"),
+    "weight of the new acceleration in the velocity: above 0.5 all periods are damped, and steps are of first order",
+);
+
+const ALPHA: KeySpec = key(
+    "alpha",
+    Kind::Number(Interval::between(0.0, 1.0 / 3.0)),
+    "1",
+    Derived("0.05, with the integrator `hht_alpha`"),
+    "share of the forces at the start of a step: the larger, the more short periods are damped",
+);
+
+const SPECTRAL_RADIUS: KeySpec = key(
+    "spectral_radius",
+    Kind::Number(Interval::between(0.0, 1.0)),
+    "1",
+    Derived("0.8, with the integrator `generalised_alpha`"),
+    "what a step multiplies the shortest periods by; 1 is the implicit midpoint rule, without damping",
+);
+
+const THETA: KeySpec = key(
+    "theta",
+    Kind::Number(Interval::between(0.5, 1.0)),
+    "1",
+    Derived("0.55, with the integrator `theta`"),
+    "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
+);
+
+const TOLERANCE: KeySpec = key(
+    "tolerance",
+    Kind::Number(Interval::between(1e-13, 1e-2)),
+    "1",
+    Derived("1e-8 with `static`, `arc_length` or an implicit integrator, 1e-10 with `upwind`"),
+    "what Newton's method may leave of the forces, over loads and reactions; with `upwind` of \
+     the momentum of a step, over what there is and what forces change of it",
+);
+
+const LINEAR_SOLVER: KeySpec = key(
+    "linear_solver",
+    Kind::Name(LINEAR_SOLVERS),
+    "",
+    Derived("`automatic` with `static`, `arc_length` or an implicit integrator"),
+    "how the linear equations of Newton's method are solved",
+);
+/// How a system beside the main one goes on in time.
+static METHOD: TableSpec = TableSpec {
+    title: "[system.time]",
+    meaning: "How the system takes its own steps within one of the fluid: as many as its stable step asks for, \
+              or one with an implicit integrator.",
+    keys: &[INTEGRATOR, CFL, BETA, GAMMA, ALPHA, SPECTRAL_RADIUS, THETA, TOLERANCE, LINEAR_SOLVER],
+};
+
+pub(super) static SYSTEM: TableSpec = TableSpec {
+    title: "[[system]]",
+    meaning: "A solid in a fluid: a formulation of its own for the bodies that name it with `system`. The bodies \
+              without that key are those of `[scheme]`, the fluid, for which these are walls that bend.",
+    keys: &[
+        key("name", Kind::Text, "", Required, "unique name, which bodies refer to"),
+        key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),
+        key("time", Kind::Table(&METHOD), "", Optional, "how it takes its steps"),
+        key(
+            "slip",
+            Kind::Name(fluids::SLIPS),
+            "",
+            Default("\"no\""),
+            "what its surface does to fluid that moves along it",
         ),
     ],
 };

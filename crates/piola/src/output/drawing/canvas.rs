@@ -20,6 +20,8 @@ pub const INK: Colour = [38; 3];
 pub const FAINT: Colour = [222; 3];
 /// Of particles without a finite value.
 pub const MAGENTA: Colour = [255, 0, 255];
+/// What has no number.
+pub const GREY: Colour = [160; 3];
 
 /// How far beyond the canvas lines are drawn.
 const MARGIN: f32 = 1000.0;

@@ -5,6 +5,7 @@ use super::super::drawing::canvas::{Canvas, MAGENTA, Pen};
 use super::super::drawing::colours::CURVES;
 use super::super::drawing::{Area, GAP};
 use super::{LONG, Picture};
+use crate::fields::is_absent;
 
 const HEIGHT: f32 = 720.0;
 
@@ -50,7 +51,7 @@ pub fn draw(picture: &Picture) -> Canvas {
             if point.1.is_finite() {
                 canvas.dot(point, radius, CURVES[0], 0.0, area);
             }
-        } else {
+        } else if !is_absent(value) {
             let (along, bottom) = frame.at(at, y[0]);
             canvas.dot((along, bottom - 8.0), radius.max(5.0), MAGENTA, 0.0, area);
         }

@@ -10,11 +10,12 @@ mod space;
 
 use std::path::Path;
 
-use super::drawing::canvas::MAGENTA;
+use super::drawing::canvas::{GREY, MAGENTA};
 use super::drawing::colour_bar::ColourBar;
 use super::drawing::ticks;
 use super::head::Head;
 use super::{OutputError, atomic};
+use crate::fields::is_absent;
 
 /// Length of the longer side of a picture in pixels, about.
 const LONG: f32 = 1200.0;
@@ -34,7 +35,8 @@ pub struct Picture<'a> {
     pub dimension: usize,
     /// Positions in m, `particles * dimension` numbers.
     pub positions: &'a [f64],
-    /// One number a particle. Those that are not finite are drawn in magenta, and a note says so.
+    /// One number a particle. Those that are not finite are drawn in magenta, and a note says so; those
+    /// that are [absent](crate::fields::ABSENT) in grey.
     pub values: &'a [f64],
     /// Spacing of the particles in m: the diameter of a dot.
     pub spacing: f64,
@@ -171,7 +173,8 @@ impl Picture<'_> {
             }
             None => {}
         }
-        let magenta = self.particles().filter(|(_, value)| !value.is_finite()).count();
+        let is_broken = |value: f64| !value.is_finite() && !is_absent(value);
+        let magenta = self.particles().filter(|(_, value)| is_broken(*value)).count();
         let placeless = self.values.len() - self.particles().count();
         if self.values.is_empty() {
             notes.push("no particles".into());
@@ -195,7 +198,11 @@ fn widest(bounds: Bounds) -> f64 {
 
 /// The colour of `value` on `bar`.
 fn colour(bar: &ColourBar, value: f64) -> super::drawing::canvas::Colour {
-    if value.is_finite() { bar.colour(value) } else { MAGENTA }
+    match value {
+        _ if value.is_finite() => bar.colour(value),
+        _ if is_absent(value) => GREY,
+        _ => MAGENTA,
+    }
 }
 
 /// Radius in pixels of a dot for particles that are `spacing` pixels apart: they touch. Where they

@@ -12,17 +12,20 @@ use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
+use crate::fields::is_absent;
+
 /// Bytes of one number before zlib.
 pub const BYTES_OF_NUMBER: usize = 3;
 
 /// The upper three bytes of `value` as a 32-bit float, rounded to nearest; what is not finite is
-/// not a number.
+/// not a number, and what particles do not have is less than all numbers.
 fn rounded(value: f64) -> u32 {
+    const ABSENT: u32 = 0xff_8000;
     const NOT_A_NUMBER: u32 = 0x7f_c000;
     const LARGEST: u32 = 0x7f_7fff;
     let single = value as f32;
     if !value.is_finite() {
-        return NOT_A_NUMBER;
+        return if is_absent(value) { ABSENT } else { NOT_A_NUMBER };
     }
     let bits = single.to_bits();
     let sign = (bits >> 31) << 23;
@@ -73,6 +76,7 @@ mod tests {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(read(rounded(value)).is_nan());
         }
+        assert_eq!(read(rounded(crate::fields::ABSENT)), f32::NEG_INFINITY);
         // Finite, but beyond a single float: the largest one, not infinity.
         assert!(read(rounded(1e300)).is_finite() && read(rounded(1e300)) > 3.4e38);
         assert!(read(rounded(-1e300)).is_finite() && read(rounded(-1e300)) < -3.4e38);

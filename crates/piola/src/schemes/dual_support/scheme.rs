@@ -150,6 +150,10 @@ impl<const D: usize> Scheme for DualSupport<D> {
         &self.discrete.particles.id
     }
 
+    fn mass(&self, index: usize) -> f64 {
+        self.mass[index]
+    }
+
     fn particle(&self, index: usize) -> Particle {
         let particles = &self.discrete.particles;
         Particle {

@@ -115,6 +115,10 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
         &self.particles.id
     }
 
+    fn mass(&self, index: usize) -> f64 {
+        self.mass[index]
+    }
+
     fn particle(&self, index: usize) -> Particle {
         Particle {
             id: self.particles.id[index],

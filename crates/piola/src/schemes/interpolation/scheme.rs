@@ -114,6 +114,11 @@ impl<const D: usize> Scheme for Interpolation<D> {
         &self.particles.id
     }
 
+    /// Nothing moves.
+    fn mass(&self, _index: usize) -> f64 {
+        0.0
+    }
+
     fn particle(&self, index: usize) -> Particle {
         Particle {
             id: self.particles.id[index],

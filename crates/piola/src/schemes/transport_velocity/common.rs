@@ -9,7 +9,7 @@ use super::shifting::Iteration;
 use super::sides::Side;
 use super::surface::Opening;
 use super::walls::{WallParticle, WallValues};
-use super::{Continua, Forces, Guard, Settings};
+use super::{Continua, Forces, Guard, Guided, Settings};
 use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -43,6 +43,8 @@ pub struct Common<const D: usize> {
     /// Velocity with which walls move, and with which their surface slides where it is.
     pub(super) motion: PrescribedComponents,
     pub(super) sliding: PrescribedComponents,
+    /// The walls that somebody else moves.
+    pub(super) guided: Guided<D>,
     pub(super) body_forces: Vec<BodyForce<D>>,
     /// To which continuum a particle belongs, by place.
     pub(super) continua: Continua<D>,
@@ -92,6 +94,7 @@ impl<const D: usize> Common<D> {
             unshifted: Vec::new(),
             motion: PrescribedComponents::default(),
             sliding: PrescribedComponents::default(),
+            guided: Guided::default(),
             body_forces: Vec::new(),
             fastest: 0.0,
             guard: None,

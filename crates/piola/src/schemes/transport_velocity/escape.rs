@@ -1,10 +1,7 @@
 //! Particles that leave the others: through a wall, or out of the box around everything.
 
-use piola_formulas::kernels::Needs;
-
 use super::Common;
 use crate::Vector;
-use crate::operators::{Among, NeighborBlock, visit};
 use crate::parallel;
 use crate::schemes::Escape;
 use crate::schemes::ledger::Total;
@@ -126,18 +123,41 @@ impl<const D: usize> Common<D> {
         }) {
             return Some(None);
         }
-        let mut nearest = None::<(f64, Vector<D>, usize)>;
-        let block = &mut NeighborBlock::default();
-        visit(&self.support, place, Among::Passive, Needs::Nothing, block, |other, pair| {
-            if nearest.is_none_or(|(square, ..)| pair.square < square) {
-                nearest = Some((pair.square, pair.separation, other));
+        let depth = -TOLERANCE * self.particles.spacing[0];
+        let reach = self.support.kernel().support_radius(self.support.smoothing_length());
+        let (number, way) = self.wall_behind(place, reach, |place| list.positions()[place])?;
+        let (_, normal) = self.over(self.wall_of(number)?, &way)?;
+        (way.dot(normal) < depth).then_some(Some(number))
+    }
+
+    /// The number of the wall particle that is nearest to the one at `place`, with the way from there; nothing
+    /// without one within `reach` m. Of those in one place, which stand for the sides of a thin body, that whose
+    /// face the particle is furthest in front of.
+    pub(super) fn wall_behind(
+        &self,
+        place: usize,
+        reach: f64,
+        position: impl Fn(usize) -> Vector<D>,
+    ) -> Option<(u32, Vector<D>)> {
+        let list = self.support.list();
+        let (me, mut nearest) = (position(place), None::<(f64, f64, u32, Vector<D>)>);
+        for &other in list.passive_row(place) {
+            let way = list.domain().separation(&position(other as usize), &me);
+            let (square, number) = (way.norm_squared(), list.numbers()[other as usize]);
+            let height = || {
+                let index = self.wall_of(number);
+                let found = index.and_then(|index| self.walls[index].faces.in_front(&way));
+                found.map_or(f64::NEG_INFINITY, |(height, _)| height)
+            };
+            let is_nearer = nearest.is_none_or(|(least, highest, ..)| {
+                square < least
+                    || square == least && self.guided.is_sided(number) && height() > highest
+            });
+            if is_nearer && square < reach * reach {
+                nearest = Some((square, height(), number, way));
             }
-        });
-        let (_, separation, wall) = nearest?;
-        let number = list.numbers()[wall];
-        let (_, normal) = self.over(self.wall_of(number)?, &separation)?;
-        let is_through = separation.dot(normal) < -TOLERANCE * self.particles.spacing[0];
-        is_through.then_some(Some(number))
+        }
+        nearest.map(|(_, _, number, way)| (number, way))
     }
 
     /// Removes what has escaped in `state`, if that is what is to be done: such particles rest where

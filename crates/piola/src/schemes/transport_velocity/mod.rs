@@ -39,6 +39,7 @@ mod fields;
 mod fluid;
 mod forces;
 mod inspect;
+mod interface;
 mod ledger;
 mod sample;
 mod scheme;
@@ -57,6 +58,7 @@ pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
 pub use escape::Guard;
 pub use fluid::{DESCRIPTION as FLUIDS, WeaklyCompressible};
 pub use forces::{Forces, Rates};
+pub(crate) use interface::Guide;
 pub use settings::{
     AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,
     Shifting, Slip,
@@ -69,6 +71,7 @@ use common::{AtRest, Common};
 use continua::Continua;
 pub(crate) use continuum::Continuum;
 use fields::{Columns, ColumnsMut};
+use interface::Guided;
 use sides::Side;
 use stages::Pass;
 use surface::Opening;

@@ -112,6 +112,10 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         &self.common.particles.id
     }
 
+    fn mass(&self, index: usize) -> f64 {
+        self.common.mass[index]
+    }
+
     fn particle(&self, index: usize) -> Particle {
         Particle {
             id: self.common.particles.id[index],

@@ -92,6 +92,9 @@ impl<const D: usize> Common<D> {
             wall.motion[entry.component] = entry.value.value(entry.place, time);
             wall.acceleration[entry.component] = entry.value.rate(entry.place, time);
         }
+        for (index, wall) in values.iter_mut().enumerate() {
+            wall.motion = self.guided.velocity(index).unwrap_or(wall.motion);
+        }
         for entry in self.sliding.iter() {
             let wall = &mut values[entry.particle];
             wall.sliding[entry.component] = entry.value.value(entry.place, time);

@@ -118,6 +118,10 @@ impl<const D: usize> Scheme for Upwind<D> {
         &self.particles.id
     }
 
+    fn mass(&self, index: usize) -> f64 {
+        Upwind::mass(self, index)
+    }
+
     fn particle(&self, index: usize) -> Particle {
         Particle {
             id: self.particles.id[index],

@@ -157,17 +157,9 @@ fn is_behind<const D: usize>(common: &Common<D>, place: usize, state: &[f64]) ->
     let list = common.support.list();
     let at = common.columns(state);
     let position = |place: usize| at.position[list.numbers()[place] as usize];
-    let (me, mut nearest) = (position(place), None::<(f64, usize)>);
     // Candidates of the list are all that are near, at any state since it was made.
-    for &other in list.passive_row(place) {
-        let square = list.domain().separation(&me, &position(other as usize)).norm_squared();
-        if nearest.is_none_or(|(least, _)| square < least) {
-            nearest = Some((square, other as usize));
-        }
-    }
-    nearest.is_some_and(|(_, wall)| {
-        let way = list.domain().separation(&position(wall), &me);
-        let over = common.wall_of(list.numbers()[wall]).and_then(|index| common.over(index, &way));
+    common.wall_behind(place, f64::INFINITY, position).is_some_and(|(number, way)| {
+        let over = common.wall_of(number).and_then(|index| common.over(index, &way));
         over.is_some_and(|(height, _)| height < -BEHIND * common.particles.spacing[0])
     })
 }

@@ -38,6 +38,7 @@ function column(bytes, number) {
 }
 
 function text(value, digits = 5) {
+  if (value === -Infinity) return "none";
   if (!Number.isFinite(value)) return "not finite";
   if (value === 0) return "0";
   const size = Math.abs(value);

@@ -29,7 +29,7 @@ void main() {
   float far = dot(at, at);
   if (far > 1.0) discard;
   float height = sqrt(1.0 - far);
-  vec3 own = tone_ < 0.0 ? vec3(1.0, 0.0, 1.0) : texture(map, vec2((tone_ * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+  vec3 own = tone_ < -1.5 ? vec3(0.63) : tone_ < 0.0 ? vec3(1.0, 0.0, 1.0) : texture(map, vec2((tone_ * 255.0 + 0.5) / 256.0, 0.5)).rgb;
   float light = max(dot(vec3(at.x, -at.y, height), normalize(vec3(-0.35, 0.55, 0.85))), 0.0);
   float shade = mix(1.0, 0.42 + 0.66 * light, lit);
   colour = vec4(min(own * shade, 1.0), 1.0);
@@ -99,7 +99,7 @@ function upload() {
       // Far outside of any view.
       places[3 * i + axis] = Number.isFinite(at) ? at : 1e20;
     }
-    tones[i] = Number.isFinite(own[i]) ? Math.min(Math.max(width > 0 ? (own[i] - state.low) / width : 0.5, 0), 1) : -1;
+    tones[i] = Number.isFinite(own[i]) ? Math.min(Math.max(width > 0 ? (own[i] - state.low) / width : 0.5, 0), 1) : own[i] === -Infinity ? -2 : -1;
     sizes[i] = diameters[i];
     if (state.hidden.has(data.body[i])) places[3 * i] = 1e20;
   }

@@ -1,0 +1,137 @@
+//! Walls that somebody else moves: the surfaces of solids in the fluid.
+
+use super::TransportVelocity;
+use super::fluid::LEDGER;
+use crate::geometry::Faces;
+use crate::neighbors::{Domain, search};
+use crate::{Tensor, Vector};
+
+/// How a wall particle that somebody else moves does so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Guide<const D: usize> {
+    /// The number of the particle.
+    pub number: u32,
+    /// Its velocity in m/s.
+    pub velocity: Vector<D>,
+    /// Its deformation gradient, which its faces follow.
+    pub deformation: Tensor<D>,
+}
+
+/// The wall particles that somebody else moves.
+#[derive(Clone, Debug)]
+pub(super) struct Guided<const D: usize> {
+    /// By index among walls: the velocity, and the faces at the start; nothing for other walls.
+    walls: Vec<Option<(Vector<D>, Faces<D>)>>,
+    /// By number: whether the wall particle is seen on the side of its face alone.
+    is_sided: Vec<bool>,
+}
+
+impl<const D: usize> Guided<D> {
+    /// Whether a particle (number) is a wall particle that is seen on the side of its face alone.
+    pub fn is_sided(&self, number: u32) -> bool {
+        self.is_sided.get(number as usize).is_some_and(|is_sided| *is_sided)
+    }
+
+    /// Velocity of a wall by its index, if somebody else moves it.
+    pub fn velocity(&self, index: usize) -> Option<Vector<D>> {
+        self.walls.get(index)?.as_ref().map(|(velocity, _)| *velocity)
+    }
+}
+
+impl<const D: usize> Default for Guided<D> {
+    fn default() -> Self {
+        Self { walls: Vec::new(), is_sided: Vec::new() }
+    }
+}
+
+impl<const D: usize> TransportVelocity<D> {
+    /// The particles of walls that are of some bodies: numbers, bodies and reference positions in m.
+    pub(crate) fn walls_of(&self, bodies: &[u32]) -> Vec<(u32, u32, Vector<D>)> {
+        let particles = &self.common.particles;
+        let walls = self.common.walls.iter().map(|wall| wall.number as usize);
+        let own = walls.filter(|&a| bodies.contains(&particles.body[a]));
+        own.map(|a| (a as u32, particles.body[a], particles.position[a])).collect()
+    }
+
+    /// The first particle (number) that is no such wall and closer to one of these where the bodies begin than
+    /// two lattices side by side are: less than 0.72 spacings, at which one lattice is in the middle of the cells of
+    /// another in the plane.
+    pub(crate) fn too_close_to(&self, walls: &[(u32, u32, Vector<D>)]) -> Option<usize> {
+        let position = &self.common.particles.position;
+        let reach = vec![0.72 * self.spacing(); position.len()];
+        let near = search(position, &reach, self.domain()).ok()?;
+        let mut is_own = vec![false; position.len()];
+        walls.iter().for_each(|(number, ..)| is_own[*number as usize] = true);
+        let is_near = |a: &usize| near.row(*a).iter().any(|&b| is_own[b as usize]);
+        (0..position.len()).find(|a| !is_own[*a] && is_near(a))
+    }
+
+    /// Particle spacing in m.
+    pub(crate) fn spacing(&self) -> f64 {
+        self.common.particles.spacing[0]
+    }
+
+    /// The box that it is in.
+    pub(crate) fn domain(&self) -> &Domain<D> {
+        self.common.support.list().domain()
+    }
+
+    /// Lets somebody else move wall particles, by number. Where two of them are in one place each stands
+    /// for one side of a thin body: fluid on its other side does not see it.
+    pub(crate) fn let_walls_be_guided(&mut self, numbers: &[u32]) {
+        let common = &mut self.common;
+        let place = |number: &u32| common.particles.position[*number as usize].map(f64::to_bits);
+        let mut placed: Vec<_> = numbers.iter().map(|it| (place(it).data.0, *it)).collect();
+        placed.sort_unstable();
+        common.guided.is_sided = vec![false; common.particles.len()];
+        for pair in placed.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            pair.iter().for_each(|(_, number)| common.guided.is_sided[*number as usize] = true);
+        }
+        common.guided.walls = vec![None; common.walls.len()];
+        for &number in numbers {
+            let Some(index) = common.wall_of(number) else { continue };
+            let faces = common.walls[index].faces.clone();
+            common.guided.walls[index] = Some((Vector::zeros(), faces));
+        }
+    }
+
+    /// Says how a wall particle moves at the moment.
+    pub(crate) fn guide(&mut self, guide: &Guide<D>) {
+        let common = &mut self.common;
+        let Some(index) = common.wall_of(guide.number) else { return };
+        if let Some((velocity, rest)) = &mut common.guided.walls[index] {
+            *velocity = guide.velocity;
+            let faces = &mut common.walls[index].faces;
+            faces.follow(rest, &guide.deformation);
+            if common.guided.is_sided(guide.number)
+                && let Some(side) = faces.normals().first()
+            {
+                common.support.show_on(guide.number, *side);
+            }
+        }
+    }
+
+    /// Puts a wall particle (number) somewhere in a state.
+    pub(crate) fn place_wall(
+        &self,
+        state: &mut [f64],
+        number: u32,
+        place: &Vector<D>,
+        velocity: &Vector<D>,
+    ) {
+        let place = self.domain().wrap(place);
+        let (own, _) = self.common.parts(state);
+        own.position[number as usize] = place;
+        own.velocity[number as usize] = *velocity;
+    }
+
+    /// The force of the fluid on a wall particle (number) in N, as a state has it.
+    pub(crate) fn force_on(&self, state: &[f64], number: u32) -> Vector<D> {
+        self.common.columns(state).kick[number as usize] * self.common.mass[number as usize]
+    }
+
+    /// Begins the ledger of a state anew.
+    pub(crate) fn clear_ledger(&self, state: &mut [f64]) {
+        LEDGER.clear(D, self.common.parts(state).1);
+    }
+}

@@ -1,0 +1,176 @@
+//! What the systems of a world do to each other in a step.
+
+use std::ops::Range;
+
+use super::{MOST_STEPS, Part, Solid, World};
+use crate::Vector;
+use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
+use crate::schemes::transport_velocity::Guide;
+use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme, StepLimit};
+
+impl<const D: usize> Solid<D> {
+    /// Place and velocity of the wall particle in `row` of the interface.
+    fn wall(&self, own: &[f64], row: usize) -> [Vector<D>; 2] {
+        let place = self.interface.place(row, |b| self.displacement(own, b));
+        [place, self.interface.carried(row, |b| self.velocity(own, b))]
+    }
+}
+
+impl<const D: usize> World<D> {
+    /// The solids with their parts of a state.
+    fn with_parts(&self) -> impl Iterator<Item = (&Solid<D>, &Part)> {
+        self.solids.iter().zip(&self.parts[1..])
+    }
+
+    /// Puts the walls of the fluid where the solids are, with their velocities.
+    pub(super) fn carry_walls(&self, state: &mut [f64]) {
+        let (fluid, solids) = state.split_at_mut(self.parts[0].state.end);
+        for (solid, part) in self.with_parts() {
+            let own = &solids[part.state.start - fluid.len()..part.state.end - fluid.len()];
+            for (row, &number) in solid.interface.walls().iter().enumerate() {
+                let [place, velocity] = solid.wall(own, row);
+                self.fluid.place_wall(fluid, number, &place, &velocity);
+            }
+        }
+    }
+
+    /// Tells the fluid how its walls move and which way they face in a state.
+    pub(super) fn guide(&mut self, state: &[f64]) {
+        self.guide_with(state, |_, [_, velocity]| velocity);
+    }
+
+    /// The same, with a velocity made of the number of the wall, from 0 on, and of its place and velocity.
+    fn guide_with(&mut self, state: &[f64], velocity: impl Fn(usize, [Vector<D>; 2]) -> Vector<D>) {
+        let mut count = 0;
+        for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
+            let own = &state[part.state.clone()];
+            for (row, &number) in solid.interface.walls().iter().enumerate() {
+                let displacement = |b: usize| solid.displacement(own, b);
+                self.fluid.guide(&Guide {
+                    number,
+                    velocity: velocity(count, solid.wall(own, row)),
+                    deformation: solid.interface.deformation(row, displacement),
+                });
+                count += 1;
+            }
+        }
+    }
+
+    /// Index of the work of the interface of a solid among the works of all, and that of its impulse among
+    /// the ways in.
+    fn entries(&self, solid: usize) -> [usize; 2] {
+        let ledger = |k: usize| self.system(k).description().ledger;
+        let works = (0..=solid + 1).map(|k| ledger(k).mechanisms.len()).sum::<usize>();
+        let ways = (0..=solid + 1).map(|k| ledger(k).impulses.len()).sum::<usize>();
+        [works + solid, ways + solid]
+    }
+}
+
+impl<const D: usize> CoupledScheme for World<D> {
+    fn solid_count(&self) -> usize {
+        self.solids.len()
+    }
+
+    fn solid(&mut self, number: usize) -> (&mut dyn Scheme, Range<usize>) {
+        (self.solids[number].scheme.as_mut(), self.parts[number + 1].state.clone())
+    }
+
+    fn steps_of(&mut self, number: usize, step: f64, state: &[f64]) -> u64 {
+        let solid = &mut self.solids[number];
+        let Some(cfl) = solid.cfl else { return 1 };
+        solid.scheme.inspect(&state[self.parts[number + 1].state.clone()], &mut solid.limits);
+        let own = |limit: &StepLimit| limit.step * if limit.scaled { cfl } else { 1.0 };
+        let least = solid.limits.iter().map(own).fold(f64::INFINITY, f64::min);
+        // What has broken down is found by the look at the state that this step leads to.
+        let steps = (step / least * (1.0 - 1e-12)).ceil();
+        if steps >= 1.0 { (steps as u64).min(MOST_STEPS) } else { 1 }
+    }
+
+    fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {
+        let (works, components) =
+            (self.description.ledger.mechanisms.len(), momentum_components(D).len());
+        let (states, tail) = state.split_at_mut(self.ledger_at());
+        for number in 0..self.solids.len() {
+            let [mechanism, way] = self.entries(number);
+            let (solid, part) = (&self.solids[number], &self.parts[number + 1].state);
+            let (front, rest) = states.split_at_mut(part.start);
+            let (fluid, own) = (&front[self.parts[0].state.clone()], &mut rest[..part.len()]);
+            self.forces.clear();
+            self.forces.resize(solid.mass.len(), Vector::zeros());
+            for (row, &wall) in solid.interface.walls().iter().enumerate() {
+                let force = self.fluid.force_on(fluid, wall);
+                solid.interface.bear(row, &force, &mut self.forces);
+            }
+            let column = &mut own[solid.velocities.clone()];
+            let column: &mut [Vector<D>] = bytemuck::cast_slice_mut(column);
+            self.before.clear();
+            self.before.extend_from_slice(column);
+            for ((velocity, force), mass) in column.iter_mut().zip(&self.forces).zip(&solid.mass) {
+                *velocity += force * (duration / mass);
+            }
+            // What moves as prescribed takes nothing from the fluid: its support does.
+            solid.scheme.constrain(time, own);
+            let mut impulse = [0.0; MOST_COMPONENTS];
+            for (a, (mass, before)) in solid.mass.iter().zip(&self.before).enumerate() {
+                let (after, place) = (solid.velocity(own, a), solid.place(own, a));
+                let change = (after - before) * *mass;
+                tail[mechanism] += 0.5 * change.dot(&(after + before));
+                add_moments(&place, &change, &mut impulse);
+            }
+            let sums = tail[works + way * components..].iter_mut().zip(&impulse[..components]);
+            sums.for_each(|(sum, part)| *sum += part);
+        }
+    }
+
+    fn settle(&mut self, time: f64, state: &mut [f64]) {
+        for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
+            // What implicit steps keep is of their own making.
+            if let (Some(solid), Some(_)) = (solid.scheme.split(), solid.cfl) {
+                solid.accelerate(time, &mut state[part.state.clone()]);
+            }
+        }
+    }
+
+    fn flow(&mut self, time: f64, step: f64, old: &[f64], new: &mut [f64]) {
+        let mut after = std::mem::take(&mut self.places);
+        after.clear();
+        for (solid, part) in self.with_parts() {
+            let rows = 0..solid.interface.walls().len();
+            after.extend(rows.map(|row| solid.wall(&new[part.state.clone()], row)[0]));
+        }
+        // The drift sees walls where they were, as it sees the fluid.
+        self.guide_with(old, |number, [place, _]| (after[number] - place) / step);
+        self.places = after;
+        let fluid = self.parts[0].state.clone();
+        self.fluid.kick(0.5 * step, &mut new[fluid.clone()]);
+        self.fluid.drift(time, step, &mut new[fluid.clone()]);
+        self.carry_walls(new);
+        self.guide(new);
+        self.fluid.constrain(time + step, &mut new[fluid.clone()]);
+        self.fluid.accelerate(time + step, &mut new[fluid.clone()]);
+        self.fluid.kick(0.5 * step, &mut new[fluid]);
+    }
+
+    fn add_up(&mut self, state: &mut [f64]) {
+        self.carry_walls(state);
+        let (states, tail) = state.split_at_mut(self.ledger_at());
+        let (works, impulses) = tail.split_at_mut(self.description.ledger.mechanisms.len());
+        let components = momentum_components(D).len();
+        let [mut work, mut impulse] = [0; 2];
+        for (k, part) in self.parts.iter().enumerate() {
+            let ledger = Ledger::of(self.system(k), &states[part.state.clone()]);
+            works[work..][..ledger.work.len()].copy_from_slice(ledger.work);
+            impulses[impulse..][..ledger.impulses.len()].copy_from_slice(ledger.impulses);
+            // Behind those of a solid stands what the fluid does to it.
+            let shared = usize::from(k > 0);
+            work += ledger.work.len() + shared;
+            impulse += ledger.impulses.len() + shared * components;
+        }
+    }
+
+    fn refresh(&mut self, time: f64, state: &mut [f64]) {
+        self.carry_walls(state);
+        self.guide(state);
+        self.fluid.accelerate(time, &mut state[self.parts[0].state.clone()]);
+    }
+}

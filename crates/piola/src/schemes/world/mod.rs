@@ -1,0 +1,324 @@
+//! Several systems in one run: a fluid, and solids that it flows around.
+//!
+//! The fluid is [`TransportVelocity`]; a solid is any formulation whose particles keep their neighbours. To the
+//! fluid a solid is a wall that moves: particles of its own, at its own spacing, fill the solid and are
+//! carried by it, see [`interface`]. Their ghost values are those of all walls, theory (31), (32), with the
+//! velocity of the solid and with normals that follow its deformation, `n = F^-T N / |F^-T N|`. What the fluid
+//! does to them, from the same pairs turned round, is what the solid gets.
+//!
+//! A step splits what the systems do alone from what they do to each other, theory (82):
+//!
+//! ```text
+//! v_s <- v_s + dt/2 f(t)/m          the solid takes half of the impulse of the fluid
+//! (x_s, v_s, ...) <- n own steps    of the solid, by its own integrator
+//! the fluid's kick, drift, kick     with walls that go from the old to the new places of the solid
+//! v_s <- v_s + dt/2 f(t + dt)/m
+//! ```
+//!
+//! Each part is of second order, but for terms of first order that the fluid has by itself, and the order of the
+//! parts is symmetric; both systems take the same force at the same two times, so linear momentum is kept to round-off. A solid
+//! with faster waves takes more steps of its own, and one in implicit steps takes one.
+//!
+//! The ghost pressure of a solid's surface leaves out the acceleration of the surface, `-rho a . r` over
+//! less than a spacing, which is an added mass that acts a step late: with it solids lighter than the fluid
+//! are unstable. What it leaves out is of first order in the spacing.
+
+mod coupled;
+mod description;
+mod interface;
+mod scheme;
+
+use std::ops::Range;
+
+use thiserror::Error;
+
+use self::interface::Interface;
+pub use self::interface::{InterfaceError, MOST_RATIO};
+use crate::Vector;
+use crate::fields::{FieldDescription, FieldKind};
+use crate::neighbors::Domain;
+use crate::schemes::transport_velocity::TransportVelocity;
+use crate::schemes::{Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
+
+/// Most steps of a solid in one of the fluid.
+pub const MOST_STEPS: u64 = 1000;
+
+/// A solid of a world.
+pub struct SolidInput {
+    /// The name of its system.
+    pub name: String,
+    /// The formulation, bound to its particles.
+    pub scheme: Box<dyn Scheme>,
+    /// Its spacing in m.
+    pub spacing: f64,
+    /// Which bodies of the fluid stand for it.
+    pub bodies: Vec<u32>,
+    /// The numbers of its bodies in the run.
+    pub numbers: Vec<u32>,
+    /// The CFL number of its own steps; `None` where they are as long as those of the fluid.
+    pub cfl: Option<f64>,
+}
+
+/// Systems that make no world.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum WorldError {
+    /// Fluid and solid cannot be coupled.
+    #[error("{error}")]
+    Interface {
+        /// The number of the solid.
+        solid: usize,
+        /// Why.
+        error: InterfaceError,
+    },
+    /// Two bodies are in the same place.
+    #[error(
+        "the body of the system `{system}` overlaps another one: particle {id} is at {position:?} m, inside of \
+         it or closer to it than half a spacing of the fluid"
+    )]
+    Overlap {
+        /// Name of the system.
+        system: String,
+        /// Number of the particle of the other body in the order of creation.
+        id: u32,
+        /// Where it is in m.
+        position: Vec<f64>,
+    },
+    /// The formulation has no velocities that a fluid could change.
+    #[error("the scheme `{scheme}` of the system `{system}` cannot move with a fluid")]
+    Motion {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Name of the system.
+        system: String,
+    },
+}
+
+/// A solid bound to the fluid around it.
+struct Solid<const D: usize> {
+    scheme: Box<dyn Scheme>,
+    interface: Interface<D>,
+    cfl: Option<f64>,
+    mass: Vec<f64>,
+    reference: Vec<Vector<D>>,
+    /// Whether its state has displacements, and not positions.
+    is_displaced: bool,
+    /// Where displacements or positions, and velocities, stand in its part of a state.
+    places: Range<usize>,
+    velocities: Range<usize>,
+    /// The numbers of its bodies in the run.
+    numbers: Vec<u32>,
+    limits: Vec<StepLimit>,
+}
+
+/// Where a system stands in the state and among the particles of all.
+struct Part {
+    /// Its part of a state.
+    state: Range<usize>,
+    /// Its particles that are shown, by index in its memory, and the index of the first of them in the run.
+    shown: Vec<u32>,
+    first: usize,
+    /// The index in the run of each of its particles; of one that is not shown that of who carries it.
+    index: Vec<u32>,
+}
+
+/// A fluid with solids in it.
+pub struct World<const D: usize> {
+    description: &'static SchemeDescription,
+    fluid: TransportVelocity<D>,
+    solids: Vec<Solid<D>>,
+    /// Those of the fluid, then of each solid.
+    parts: Vec<Part>,
+    bodies: Vec<u32>,
+    ids: Vec<u32>,
+    start: Vec<f64>,
+    // Scratch: forces on the particles of a solid, their velocities before, and places of walls.
+    forces: Vec<Vector<D>>,
+    before: Vec<Vector<D>>,
+    places: Vec<Vector<D>>,
+}
+
+impl<const D: usize> World<D> {
+    /// Couples `solids` with a `fluid` that has walls in their place.
+    ///
+    /// # Errors
+    /// [`WorldError`] for systems that do not fit together.
+    pub fn new(
+        mut fluid: TransportVelocity<D>,
+        solids: Vec<SolidInput>,
+        domain: &Domain<D>,
+    ) -> Result<Self, WorldError> {
+        let names: Vec<(String, &'static SchemeDescription)> =
+            solids.iter().map(|solid| (solid.name.clone(), solid.scheme.description())).collect();
+        let mut guided = Vec::new();
+        let mut bound = Vec::new();
+        for (number, input) in solids.into_iter().enumerate() {
+            let walls = fluid.walls_of(&input.bodies);
+            if let Some(other) = fluid.too_close_to(&walls) {
+                let Particle { id, reference: position } = fluid.particle(other);
+                return Err(WorldError::Overlap { system: input.name, id, position });
+            }
+            guided.extend(walls.iter().map(|(wall, ..)| *wall));
+            bound.push(Solid::new(number, input, &walls, fluid.spacing(), domain)?);
+        }
+        fluid.let_walls_be_guided(&guided);
+        let description = fluid.description().with_solids(&names);
+        let mut world = Self {
+            description,
+            parts: Vec::new(),
+            bodies: Vec::new(),
+            ids: Vec::new(),
+            start: Vec::new(),
+            forces: Vec::new(),
+            before: Vec::new(),
+            places: Vec::new(),
+            fluid,
+            solids: bound,
+        };
+        let mut start = world.line_up(&guided);
+        start.resize(start.len() + description.ledger.integrals(D), 0.0);
+        world.begin(&mut start);
+        world.start = start;
+        Ok(world)
+    }
+
+    /// Puts states and particles of all systems one after another, but for those of the fluid that stand for
+    /// solids; returns the states.
+    fn line_up(&mut self, hidden: &[u32]) -> Vec<f64> {
+        let mut is_hidden = vec![false; self.fluid.particle_count()];
+        hidden.iter().for_each(|&number| is_hidden[number as usize] = true);
+        let mut start = Vec::new();
+        for number in 0..=self.solids.len() {
+            let system = self.system(number);
+            let count = system.particle_count() as u32;
+            let shown: Vec<u32> =
+                (0..count).filter(|&a| number > 0 || !is_hidden[a as usize]).collect();
+            let first = self.bodies.len();
+            let mut index = vec![0; count as usize];
+            (first as u32..).zip(&shown).for_each(|(own, &a)| index[a as usize] = own);
+            let body = |&a: &u32| {
+                let own = system.bodies()[a as usize];
+                let solid = number.checked_sub(1).map(|solid| &self.solids[solid]);
+                solid.map_or(own, |solid| solid.numbers[own as usize])
+            };
+            let bodies: Vec<u32> = shown.iter().map(body).collect();
+            let before = self.ids.iter().max().map_or(0, |last| last + 1);
+            let ids: Vec<u32> = shown.iter().map(|&a| before + system.ids()[a as usize]).collect();
+            let from = start.len();
+            start.extend(system.initial_state());
+            self.bodies.extend(bodies);
+            self.ids.extend(ids);
+            self.parts.push(Part { state: from..start.len(), shown, first, index });
+        }
+        for (number, solid) in self.solids.iter().enumerate() {
+            for (row, &wall) in solid.interface.walls().iter().enumerate() {
+                let carrier = solid.interface.carrier(row) as usize;
+                self.parts[0].index[wall as usize] = self.parts[number + 1].index[carrier];
+            }
+        }
+        start
+    }
+
+    /// Gives the fluid the motion of the solids at the start, which its accelerations follow.
+    fn begin(&mut self, state: &mut [f64]) {
+        for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
+            solid.scheme.constrain(0.0, &mut state[part.state.clone()]);
+        }
+        self.carry_walls(state);
+        self.guide(state);
+        let own = &mut state[self.parts[0].state.clone()];
+        self.fluid.accelerate(0.0, own);
+        self.fluid.clear_ledger(own);
+    }
+
+    /// The index in the run of a particle of a system: 0 is the fluid, the solids follow. Particles that
+    /// stand for a solid in the fluid have none.
+    pub fn index_of(&self, system: usize, particle: u32) -> Option<u32> {
+        let part = self.parts.get(system)?;
+        part.shown.binary_search(&particle).ok().map(|number| (part.first + number) as u32)
+    }
+
+    /// The system of a particle (index in the run), and its index there.
+    fn local(&self, index: usize) -> (usize, usize) {
+        let system = self.parts.partition_point(|part| part.first <= index) - 1;
+        let part = &self.parts[system];
+        (system, part.shown[index - part.first] as usize)
+    }
+
+    /// A system: 0 is the fluid.
+    fn system(&self, number: usize) -> &dyn Scheme {
+        match number.checked_sub(1) {
+            None => &self.fluid,
+            Some(solid) => self.solids[solid].scheme.as_ref(),
+        }
+    }
+
+    /// Where the ledger of all begins in a state.
+    fn ledger_at(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.state.end)
+    }
+}
+
+impl<const D: usize> Solid<D> {
+    fn new(
+        number: usize,
+        input: SolidInput,
+        walls: &[(u32, u32, Vector<D>)],
+        fluid_spacing: f64,
+        domain: &Domain<D>,
+    ) -> Result<Self, WorldError> {
+        let SolidInput { name, scheme, spacing, numbers, cfl, .. } = input;
+        let count = scheme.particle_count();
+        let reference = (0..count).map(|a| Vector::from_vec(scheme.particle(a).reference));
+        let reference: Vec<Vector<D>> = reference.collect();
+        let column = |name: &str| {
+            let field = scheme.description().field(name).filter(|field| field.is_stored())?;
+            (field.kind == FieldKind::Vector).then(|| scheme.column(field))
+        };
+        let (Some(velocities), Some(places)) =
+            (column("velocity"), column("displacement").or_else(|| column("position")))
+        else {
+            let scheme = scheme.description().name;
+            return Err(WorldError::Motion { scheme, system: name });
+        };
+        let spacings = [fluid_spacing, spacing];
+        let bodies = scheme.bodies().iter().map(|&own| numbers[own as usize]);
+        let bodies: Vec<u32> = bodies.collect();
+        let interface = Interface::new(walls, (&reference, &bodies), spacings, domain)
+            .map_err(|error| WorldError::Interface { solid: number, error })?;
+        let is_displaced = column("displacement").is_some();
+        Ok(Self {
+            mass: (0..count).map(|a| scheme.mass(a)).collect(),
+            reference,
+            is_displaced,
+            interface,
+            cfl,
+            places,
+            velocities,
+            numbers,
+            limits: Vec::new(),
+            scheme,
+        })
+    }
+
+    /// The displacement of its particle `a` in its part of a state, in m.
+    fn displacement(&self, own: &[f64], a: usize) -> Vector<D> {
+        let column: &[Vector<D>] = bytemuck::cast_slice(&own[self.places.clone()]);
+        if self.is_displaced { column[a] } else { column[a] - self.reference[a] }
+    }
+
+    /// Where its particle `a` is in its part of a state, in m.
+    fn place(&self, own: &[f64], a: usize) -> Vector<D> {
+        self.reference[a] + self.displacement(own, a)
+    }
+
+    /// How fast its particle `a` is in its part of a state, in m/s.
+    fn velocity(&self, own: &[f64], a: usize) -> Vector<D> {
+        let column: &[Vector<D>] = bytemuck::cast_slice(&own[self.velocities.clone()]);
+        column[a]
+    }
+}
+
+/// The field of one system that a field of all stands for.
+fn own_field(system: &dyn Scheme, field: &FieldDescription) -> Option<FieldDescription> {
+    system.description().field(field.name).filter(|own| own.kind == field.kind).copied()
+}

@@ -1,0 +1,218 @@
+//! A world as clock, observers and output see it: one formulation with the particles of all.
+
+use super::{MOST_STEPS, World, own_field};
+use crate::fields::{ABSENT, FieldDescription};
+use crate::schemes::momentum::MOST_COMPONENTS;
+use crate::schemes::{
+    CoupledScheme, Escape, Health, Particle, Phase, Scheme, SchemeDescription, StepLimit,
+};
+
+impl<const D: usize> Scheme for World<D> {
+    fn description(&self) -> &'static SchemeDescription {
+        self.description
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn particle_count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// The fields are columns of its systems, and of no state of all.
+    fn width(&self) -> usize {
+        0
+    }
+
+    fn column(&self, _field: &FieldDescription) -> std::ops::Range<usize> {
+        0..0
+    }
+
+    fn ledger_start(&self) -> usize {
+        self.ledger_at()
+    }
+
+    fn initial_state(&self) -> Vec<f64> {
+        self.start.clone()
+    }
+
+    /// The rates of each system alone.
+    fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
+        rate.fill(0.0);
+        let own = |k: usize| self.parts[k].state.clone();
+        self.fluid.rates(time, &state[own(0)], &mut rate[own(0)]);
+        for (k, solid) in (1..).zip(&mut self.solids) {
+            let own = self.parts[k].state.clone();
+            solid.scheme.rates(time, &state[own.clone()], &mut rate[own]);
+        }
+    }
+
+    fn constrain(&self, time: f64, state: &mut [f64]) {
+        for (k, part) in self.parts.iter().enumerate() {
+            self.system(k).constrain(time, &mut state[part.state.clone()]);
+        }
+    }
+
+    /// The bounds on the step are those of the fluid, and of each solid that of so many of its own steps
+    /// that no run would end.
+    fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        self.guide(state);
+        let mut all = self.fluid.inspect(&state[self.parts[0].state.clone()], limits);
+        let named = |of: usize, particle: usize| self.parts[of].index[particle] as usize;
+        all = rename(all, &|particle| named(0, particle));
+        limits.iter_mut().for_each(|limit| limit.particle = named(0, limit.particle));
+        for (k, solid) in (1..).zip(&mut self.solids) {
+            let mut own = std::mem::take(&mut solid.limits);
+            let health = solid.scheme.inspect(&state[self.parts[k].state.clone()], &mut own);
+            all = all.worse(rename(health, &|particle| named(k, particle)));
+            let bounds = own.iter().filter(|_| solid.cfl.is_some());
+            limits.extend(bounds.map(|limit| StepLimit {
+                step: limit.step
+                    * MOST_STEPS as f64
+                    * solid.cfl.filter(|_| limit.scaled).unwrap_or(1.0),
+                particle: named(k, limit.particle),
+                scaled: false,
+                growth: f64::INFINITY,
+                ..*limit
+            }));
+            solid.limits = own;
+        }
+        all
+    }
+
+    fn warning(&self) -> Option<String> {
+        (0..self.parts.len()).find_map(|k| self.system(k).warning())
+    }
+
+    fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
+        let (k, own) = self.local(index);
+        self.system(k).escape(own, &state[self.parts[k].state.clone()])
+    }
+
+    fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
+        for (k, part) in self.parts.iter().enumerate() {
+            self.system(k).figures(&state[part.state.clone()], figures);
+        }
+    }
+
+    fn energies(&self, state: &[f64], mut energies: &mut [f64]) {
+        for (k, part) in self.parts.iter().enumerate() {
+            let system = self.system(k);
+            let (own, rest) = energies.split_at_mut(system.description().energies.len());
+            system.energies(&state[part.state.clone()], own);
+            energies = rest;
+        }
+    }
+
+    fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        momentum.fill(0.0);
+        for (k, part) in self.parts.iter().enumerate() {
+            let mut own = [0.0; MOST_COMPONENTS];
+            let own = &mut own[..momentum.len()];
+            self.system(k).momentum(&state[part.state.clone()], own);
+            momentum.iter_mut().zip(own).for_each(|(sum, own)| *sum += *own);
+        }
+    }
+
+    fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
+        self.guide(state);
+        self.fluid.observe(stage, time, &state[self.parts[0].state.clone()]);
+        for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
+            solid.scheme.observe(stage, time, &state[part.state.clone()]);
+        }
+    }
+
+    /// Of a field that a system does not have its particles show [`ABSENT`].
+    fn derive(
+        &self,
+        state: &[f64],
+        field: &FieldDescription,
+        particles: &[u32],
+        values: &mut Vec<f64>,
+    ) {
+        let own: Vec<Option<FieldDescription>> =
+            (0..self.parts.len()).map(|k| own_field(self.system(k), field)).collect();
+        for &particle in particles {
+            let (k, local) = self.local(particle as usize);
+            let (system, part) = (self.system(k), &state[self.parts[k].state.clone()]);
+            match &own[k] {
+                None => {
+                    let components = field.kind.components(D);
+                    values.extend(std::iter::repeat_n(ABSENT, components));
+                }
+                Some(own) if own.is_stored() => {
+                    own.read(&part[system.column(own)], D, &[local as u32], values);
+                }
+                Some(own) => system.derive(part, own, &[local as u32], values),
+            }
+        }
+    }
+
+    fn phases(&self) -> Vec<&Phase> {
+        (0..self.parts.len()).flat_map(|k| self.system(k).phases()).collect()
+    }
+
+    fn bodies(&self) -> &[u32] {
+        &self.bodies
+    }
+
+    fn ids(&self) -> &[u32] {
+        &self.ids
+    }
+
+    fn mass(&self, index: usize) -> f64 {
+        let (k, own) = self.local(index);
+        self.system(k).mass(own)
+    }
+
+    fn particle(&self, index: usize) -> Particle {
+        let (k, own) = self.local(index);
+        Particle { id: self.ids[index], ..self.system(k).particle(own) }
+    }
+
+    fn neighborhood(&self, index: usize) -> Vec<u32> {
+        let (k, own) = self.local(index);
+        let near = self.system(k).neighborhood(own);
+        near.into_iter().map(|particle| self.parts[k].index[particle as usize]).collect()
+    }
+
+    fn stability_advice(&self) -> &'static str {
+        self.fluid.stability_advice()
+    }
+
+    fn collapse_advice(&self, index: usize) -> String {
+        let (k, own) = self.local(index);
+        self.system(k).collapse_advice(own)
+    }
+
+    fn memory(&self) -> usize {
+        let systems: usize = (0..self.parts.len()).map(|k| self.system(k).memory()).sum();
+        let interfaces: usize = self.solids.iter().map(|solid| solid.interface.memory()).sum();
+        systems + interfaces + size_of_val(self.start.as_slice())
+    }
+
+    /// Its systems are moved by integrators of their own.
+    fn has_rates(&self) -> bool {
+        false
+    }
+
+    fn settable(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn coupled(&mut self) -> Option<&mut dyn CoupledScheme> {
+        Some(self)
+    }
+}
+
+/// Health of a system by the index of particles in the run.
+fn rename(health: Health, index: &dyn Fn(usize) -> usize) -> Health {
+    Health {
+        largest_speed_particle: index(health.largest_speed_particle),
+        smallest_ratio_particle: index(health.smallest_ratio_particle),
+        first_not_finite: health.first_not_finite.map(index),
+        first_escaped: health.first_escaped.map(index),
+        ..health
+    }
+}

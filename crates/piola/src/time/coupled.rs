@@ -1,0 +1,68 @@
+//! Steps of several systems that act on each other.
+
+use super::failure::Failure;
+use super::integrator::{Integrator, Unserved};
+use super::kick_drift_kick::KickDriftKick;
+use crate::schemes::Scheme;
+
+/// A fluid by kick-drift-kick, and each solid in it by an integrator of its own, as often as its stable
+/// step asks for: theory (82).
+pub struct Coupled {
+    solids: Vec<Box<dyn Integrator>>,
+    /// The states of a solid at both ends of one of its steps.
+    old: Vec<f64>,
+    new: Vec<f64>,
+}
+
+impl Coupled {
+    /// With the integrators of the solids.
+    pub fn new(solids: Vec<Box<dyn Integrator>>) -> Self {
+        Self { solids, old: Vec::new(), new: Vec::new() }
+    }
+}
+
+impl Integrator for Coupled {
+    fn name(&self) -> &'static str {
+        KickDriftKick::NAME
+    }
+
+    fn evaluations(&self, _scheme: &mut dyn Scheme) -> u64 {
+        1
+    }
+
+    fn step(
+        &mut self,
+        scheme: &mut dyn Scheme,
+        time: f64,
+        step: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<(), Failure> {
+        let name = self.name();
+        if scheme.coupled().is_none_or(|world| world.solid_count() != self.solids.len()) {
+            return Err(Unserved::new(name, scheme).into());
+        }
+        let Some(world) = scheme.coupled() else { return Ok(()) };
+        new.copy_from_slice(old);
+        world.push(time, 0.5 * step, new);
+        world.settle(time, new);
+        for (number, integrator) in self.solids.iter_mut().enumerate() {
+            let count = world.steps_of(number, step, new);
+            let (solid, part) = world.solid(number);
+            self.old.clear();
+            self.old.extend_from_slice(&new[part.clone()]);
+            self.new.resize(part.len(), 0.0);
+            let own = step / count as f64;
+            for k in 0..count {
+                let begin = time + k as f64 * own;
+                integrator.step(solid, begin, own, &self.old, &mut self.new)?;
+                std::mem::swap(&mut self.old, &mut self.new);
+            }
+            new[part].copy_from_slice(&self.old);
+        }
+        world.flow(time, step, old, new);
+        world.push(time + step, 0.5 * step, new);
+        world.add_up(new);
+        Ok(())
+    }
+}

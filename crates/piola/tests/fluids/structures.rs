@@ -1,0 +1,217 @@
+//! A fluid with solids in it.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use piola::case::{self, Case, LoadOptions, Session};
+
+fn slab(set: &[&str]) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/coupled/slab/case.toml");
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, ..LoadOptions::default() };
+    case::load(&path, &options).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// Where the slab is at the end of a run.
+fn end_of(case: &Case) -> f64 {
+    let session = Session::new(case).unwrap_or_else(|problems| panic!("{problems}"));
+    let finished = session.run(&AtomicBool::new(false), &mut |_| {}).expect("it runs");
+    assert_eq!(finished.summary.outcome.summary(), "completed");
+    let rows = finished.tables.probes.values("slab.displacement.y").expect("it is recorded");
+    *rows.last().expect("there are rows")
+}
+
+/// What the systems do to each other is taken at the same two times by both, so that the step as a whole is
+/// of second order: halving it takes three quarters of what it changes. The slab is soft enough for its own
+/// steps to be as many at all three sizes, and another time in implicit steps. The amplitude is small and nothing
+/// diffuses, as the drift of the fluid has terms of first order: it takes rates where particles begin.
+#[test]
+fn steps_of_both_together_are_of_second_order() {
+    let implicit = "system.slab.time={ integrator = 'newmark' }";
+    let explicit = "system.slab.time={ cfl = 0.9 }";
+    for method in [explicit, implicit] {
+        let end = |step: f64| {
+            let step = format!("time.step={step}");
+            end_of(&slab(&[
+                "parameters.n=8",
+                "parameters.g=0",
+                "parameters.kick=1e-6",
+                "scheme.shifting='none'",
+                "scheme.pressure_diffusion=0",
+                "system.slab.scheme={ kind = 'dual_support' }",
+                "body.slab.material={ kind = 'linear_elastic', density = 1.0, young_modulus = 50.0, poisson_ratio = 0.0 }",
+                "time.end=0.2",
+                "output.every=0.2",
+                "output.table_every=0.2",
+                method,
+                &step,
+            ]))
+        };
+        let [long, middle, short] = [2e-3, 1e-3, 5e-4].map(end);
+        let order = ((long - middle) / (middle - short)).abs().log2();
+        assert!((order - 2.0).abs() < 0.1, "{method}: order {order}");
+    }
+}
+
+/// A solid that is held everywhere is a wall to the fluid: the same particles, the same bits.
+#[test]
+fn a_held_solid_is_a_wall_to_the_bit() {
+    let velocities = |extra: &[&str]| -> Vec<(u32, Vec<u64>)> {
+        let common = ["parameters.n=8", "time.step=1e-3", "probe.slab="];
+        let case = slab(&[&common, extra].concat());
+        let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+        session.run_until(0.1).expect("it runs");
+        let velocity = session.column("velocity").expect("it is there").values;
+        let bits = |v: &[f64]| v.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        let rows = session.ids().iter().zip(velocity.chunks_exact(2));
+        // The water comes first in the order of creation.
+        let mut rows: Vec<_> =
+            rows.filter(|(id, _)| **id < 80).map(|(id, v)| (*id, bits(v))).collect();
+        rows.sort_unstable();
+        rows
+    };
+    let plain = ["plot.slab=", "check=", "output.fields=['velocity']"];
+    let held = "boundary+={ name = 'held', body = 'slab', where = { kind = 'all' }, velocity = { x = '0', y = '0' } }";
+    let as_wall = [
+        "body.slab.system=",
+        "system=",
+        "body.slab.material={ kind = 'weakly_compressible', density = 'rho', wave_speed = 'c' }",
+        "body.slab.wall={ slip = 'free' }",
+        "variant=",
+    ];
+    let solid = velocities(&[&plain[..], &[held]].concat());
+    let wall = velocities(&[&plain[..], &as_wall].concat());
+    assert_eq!(solid.len(), 80);
+    assert!(solid == wall, "the water around a held solid is not that around a wall");
+    assert!(solid.iter().any(|(_, v)| f64::from_bits(v[1]) != 0.0), "nothing moves");
+}
+
+/// Water on both sides of a plate three particles thick that nothing moves.
+const PARTED: &str = r#"
+version = 1
+title = "Water on both sides of a plate"
+dimension = 2
+[parameters]
+dx = 0.05
+[[body]]
+name = "left"
+shape = { kind = "box", min = [0.0, 0.0], max = [0.5, 0.5] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 10.0 }
+initial = { velocity = ["0.2 * x", "-0.2 * y"] }
+[[body]]
+name = "plate"
+system = "plate"
+shape = { kind = "box", min = [0.5, -0.5], max = [0.65, 1.0] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "linear_elastic", density = 1.0, young_modulus = 1e3, poisson_ratio = 0.0 }
+[[body]]
+name = "right"
+shape = { kind = "box", min = [0.65, 0.0], max = [1.15, 0.5] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 10.0 }
+initial = { velocity = ["-3 * y", "1"], pressure = "10" }
+[scheme]
+kind = "transport_velocity"
+shifting = "none"
+[[system]]
+name = "plate"
+scheme = { kind = "elastodynamics" }
+[[boundary]]
+name = "held"
+body = "plate"
+where = { kind = "all" }
+velocity = { x = "0", y = "0" }
+[time]
+end = 0.02
+step = 5e-4
+"#;
+
+/// What is on one side of a thin plate takes nothing from what is on the other, not a bit: each side has wall
+/// particles of its own.
+#[test]
+fn water_does_not_see_through_a_plate_of_three_particles() {
+    let left = |set: &[&str]| -> Vec<u64> {
+        let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+        let options = LoadOptions { overrides, ..LoadOptions::default() };
+        let case = case::parse(PARTED, "parted.toml", &options);
+        let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+        let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+        session.run_until(0.02).expect("it runs");
+        let pressure = session.column("pressure").expect("it is there").values;
+        let rows = session.ids().iter().zip(pressure);
+        let mut rows: Vec<(u32, f64)> =
+            rows.filter(|(id, _)| **id < 100).map(|(id, p)| (*id, p)).collect();
+        rows.sort_unstable_by_key(|(id, _)| *id);
+        rows.into_iter().map(|(_, p)| p.to_bits()).collect()
+    };
+    let (both, alone) = (left(&[]), left(&["body.right="]));
+    assert_eq!(both.len(), 100);
+    assert!(both == alone, "the water on the left feels that on the right");
+    assert!(both.iter().any(|p| f64::from_bits(*p) != 0.0), "nothing happens");
+}
+
+/// A soft block that drifts in water without walls, in a box that is periodic both ways.
+const DRIFTING: &str = r#"
+version = 1
+title = "A block in water"
+dimension = 2
+[domain]
+periodic = { x = [0.0, 1.0], y = [0.0, 1.0] }
+[[body]]
+name = "water"
+shape = { kind = "difference", from = { kind = "box", min = [0.0, 0.0], max = [1.0, 1.0] }, remove = [
+  { kind = "box", min = [0.3, 0.4], max = [0.7, 0.6] },
+] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 10.0 }
+initial = { velocity = ["1 + 0.3 * sin(2 * pi * y)", "0.2 * cos(2 * pi * x)"], pressure = "5" }
+[[body]]
+name = "block"
+system = "block"
+shape = { kind = "box", min = [0.3, 0.4], max = [0.7, 0.6] }
+spacing = 0.04
+material = { kind = "neo_hookean_logarithmic", density = 3.0, young_modulus = 200.0, poisson_ratio = 0.3 }
+[scheme]
+kind = "transport_velocity"
+corrections = "none"
+shifting = "none"
+[[system]]
+name = "block"
+scheme = { kind = "elastodynamics" }
+slip = "free"
+[time]
+end = 0.1
+"#;
+
+/// What the fluid loses of momentum the solid gets: of nothing else is the sum of both kept. The two systems book
+/// what they do by themselves, so this sees a force that is lost between them.
+#[test]
+fn water_and_block_keep_their_momentum() {
+    let case = case::parse(DRIFTING, "drifting.toml", &LoadOptions::default());
+    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+    let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut momentum = || {
+        let velocity = session.column("velocity").expect("it is there").values;
+        let masses: Vec<f64> = (0..velocity.len() / 2).map(|a| session.scheme().mass(a)).collect();
+        let bodies = session.scheme().bodies().to_vec();
+        let mut all = [[0.0; 2]; 2];
+        for (a, v) in velocity.chunks_exact(2).enumerate() {
+            (0..2).for_each(|i| all[bodies[a] as usize][i] += masses[a] * v[i]);
+        }
+        let end = session.run_until(0.1);
+        end.expect("it runs");
+        all
+    };
+    let (start, end) = (momentum(), momentum());
+    for axis in 0..2 {
+        let [before, after] = [start, end].map(|all| all[0][axis] + all[1][axis]);
+        assert!((after - before).abs() < 1e-12, "{axis}: {before} {after}");
+    }
+    let handed_over = end[1][0] - start[1][0];
+    assert!(handed_over > 0.01, "the water pushes the block along: {handed_over}");
+}
