@@ -12,7 +12,7 @@
 //! `sum_w x_w x f_w = sum_b x_b x f_b`: nothing of momentum is lost between the two spacings, and as
 //! `v_w = sum_b N_wb v_b` no power either. Where the spacings are the
 //! same, a particle of the solid that stands at `X_w` is the only one.
-//! Theory (81).
+//! This is theory (81).
 
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
