@@ -288,7 +288,7 @@ fn faces<const D: usize>(
             let own = moving.iter().find(|(number, _)| *number == body).map(|(_, shape)| shape);
             let is_wall = is_wall[body as usize];
             if let Some(shape) = own.or(walls.as_ref()).filter(|_| is_wall) {
-                let bounds = if own.is_some() { everywhere(shape) } else { bounds };
+                let bounds = if own.is_some() { everywhere(case, shape) } else { bounds };
                 *row = shape.ways_out(x, &bounds);
             }
         }
@@ -306,7 +306,8 @@ fn double_thin<const D: usize>(
     let first = particles.len();
     for (number, shape) in moving(case)? {
         let own = (0..first).filter(|&a| particles.body[a] == number);
-        let is_thin = |a: &usize| Thin::of(&shape, &particles.position[*a], support).is_some();
+        let is_thin =
+            |a: &usize| Thin::of(case, &shape, &particles.position[*a], support).is_some();
         let thin: Vec<usize> = own.filter(is_thin).collect();
         for a in thin {
             particles.position.push(particles.position[a]);
@@ -332,7 +333,7 @@ fn part_faces<const D: usize>(
     for a in 0..particles.len() {
         let shape = shapes.iter().find(|(number, _)| *number == particles.body[a]);
         let Some((_, shape)) = shape else { continue };
-        if let Some(thin) = Thin::of(shape, &particles.position[a], support) {
+        if let Some(thin) = Thin::of(case, shape, &particles.position[a], support) {
             faces[a] = if particles.id[a] < first_twin { thin.front } else { thin.back };
         }
     }
@@ -347,8 +348,8 @@ struct Thin<const D: usize> {
 }
 
 impl<const D: usize> Thin<D> {
-    fn of(shape: &Shape<D>, x: &Vector<D>, support: f64) -> Option<Self> {
-        let bounds = everywhere(shape);
+    fn of(case: &Case, shape: &Shape<D>, x: &Vector<D>, support: f64) -> Option<Self> {
+        let bounds = everywhere(case, shape);
         let nearest = shape.ways_out(x, &bounds);
         let back = |normal: &Vector<D>| shape.way_out_along(x, &-normal, &bounds);
         let across = nearest.normals().iter().find(|normal| back(normal) < support)?;
@@ -372,11 +373,15 @@ fn moving<const D: usize>(case: &Case) -> Result<Vec<(u32, Shape<D>)>, Vec<Probl
     shapes.map(shape).collect()
 }
 
-/// A box that all ways out of a shape end inside of.
-fn everywhere<const D: usize>(shape: &Shape<D>) -> (Vector<D>, Vector<D>) {
+/// A box that all ways out of a shape end inside of; a bound of a periodic axis is no way out.
+fn everywhere<const D: usize>(case: &Case, shape: &Shape<D>) -> (Vector<D>, Vector<D>) {
     let (low, high) = shape.bounding_box();
-    let margin = Vector::repeat((high - low).norm());
-    (low - margin, high + margin)
+    let margin = (high - low).norm();
+    let ends = |axis: usize| case.domain.periodic[axis].as_ref().map(|ends| ends.value);
+    (
+        Vector::from_fn(|axis, _| ends(axis).map_or(low[axis] - margin, |[low, _]| low)),
+        Vector::from_fn(|axis, _| ends(axis).map_or(high[axis] + margin, |[_, high]| high)),
+    )
 }
 
 /// The corners of the box around the particles of a body.
