@@ -353,6 +353,16 @@ impl<const D: usize> Thin<D> {
         let nearest = shape.ways_out(x, &bounds);
         let back = |normal: &Vector<D>| shape.way_out_along(x, &-normal, &bounds);
         let across = nearest.normals().iter().find(|normal| back(normal) < support)?;
+        // Round a free end the fluid on both sides is one.
+        let along = |axis: usize| {
+            let unit = Vector::from_fn(|i, _| f64::from(u8::from(i == axis)));
+            (unit - across * across[axis]).try_normalize(0.1)
+        };
+        let ways = (0..D).filter_map(along).flat_map(|way| [way, -way]);
+        let mut ends = ways.map(|way| shape.way_out_along(x, &way, &bounds));
+        if ends.any(|length| length < support) {
+            return None;
+        }
         let others = nearest.normals().iter().filter(|normal| normal.dot(across).abs() < 0.5);
         let front = std::iter::once(across).chain(others).copied().collect();
         Some(Self {
