@@ -330,11 +330,11 @@ fn part_faces<const D: usize>(
     faces: &mut [Faces<D>],
 ) -> Result<(), Vec<Problem>> {
     let shapes = moving(case)?;
-    for a in 0..particles.len() {
+    for (a, row) in faces.iter_mut().enumerate() {
         let shape = shapes.iter().find(|(number, _)| *number == particles.body[a]);
         let Some((_, shape)) = shape else { continue };
         if let Some(thin) = Thin::of(case, shape, &particles.position[a], support) {
-            faces[a] = if particles.id[a] < first_twin { thin.front } else { thin.back };
+            *row = if particles.id[a] < first_twin { thin.front } else { thin.back };
         }
     }
     Ok(())
