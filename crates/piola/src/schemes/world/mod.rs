@@ -2,7 +2,7 @@
 //!
 //! The fluid is [`TransportVelocity`]; a solid is any formulation whose particles keep their neighbours. To the
 //! fluid a solid is a wall that moves: particles of its own, at its own spacing, fill the solid and are
-//! carried by it, see [`interface`]. Their ghost values are those of all walls, theory (31), (32), with the
+//! carried by it, theory (81). Their ghost values are those of all walls, theory (31), (32), with the
 //! velocity of the solid and with normals that follow its deformation, `n = F^-T N / |F^-T N|`. What the fluid
 //! does to them, from the same pairs turned round, is what the solid gets.
 //!
