@@ -51,15 +51,32 @@ impl<const D: usize> Shape<D> {
         Faces::new(faces.into_iter().map(|face| face.1).collect(), depth)
     }
 
-    /// Length of the way out of the shape along a direction from a point inside it, in m, infinite if it
-    /// leads beyond `bounds`.
-    pub fn way_out_along(
+    /// The faces on the two sides of a point inside a thin part of the shape, where the face opposite to the
+    /// nearest is less than `reach` m away: those that [`Self::ways_out`] finds but the opposite, and that one.
+    /// The first of each are the two of the thin part. `None` in thick parts and within `reach` of a free end, round
+    /// which what is on both sides is one.
+    pub fn sides(
         &self,
         point: &Vector<D>,
-        direction: &Vector<D>,
+        reach: f64,
         bounds: &(Vector<D>, Vector<D>),
-    ) -> f64 {
-        self.walk(point, direction, bounds, (bounds.1 - bounds.0).norm())
+    ) -> Option<[Faces<D>; 2]> {
+        let extent = (bounds.1 - bounds.0).norm();
+        let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
+        let nearest = self.ways_out(point, bounds);
+        let across = nearest.normals().iter().find(|normal| length(&-**normal) < reach)?;
+        let along = |axis: usize| {
+            let unit = Vector::from_fn(|i, _| f64::from(u8::from(i == axis)));
+            (unit - across * across[axis]).try_normalize(0.1)
+        };
+        let ends = (0..D).filter_map(along).flat_map(|way| [way, -way]);
+        if ends.map(|way| length(&way)).any(|length| length < reach) {
+            return None;
+        }
+        let others = nearest.normals().iter().filter(|normal| normal.dot(across).abs() < 0.5);
+        let front = std::iter::once(across).chain(others).copied().collect();
+        let back = Faces::new(vec![-across], length(&-across));
+        Some([Faces::new(front, nearest.depth()), back])
     }
 
     /// Length of the way out along a direction, infinite if it leaves the bounds.
@@ -135,6 +152,20 @@ mod tests {
         assert!(close(way(1.15, 0.97), -1.0, 0.0), "at the rim");
         let diagonal = 0.5_f64.sqrt();
         assert!(close(way(-0.1, -0.1), diagonal, diagonal));
+    }
+
+    #[test]
+    fn a_thin_plate_has_two_sides_but_at_its_end() {
+        let corner = |x, y| Vector::<2>::new(x, y);
+        let plate = Shape::cuboid(corner(0.0, 0.0), corner(0.3, 4.0)).unwrap();
+        let bounds = (Vector::<2>::repeat(-5.0), Vector::<2>::repeat(9.0));
+        let sides = |x, y| plate.sides(&corner(x, y), 0.29, &bounds);
+        let [left, right] = sides(0.05, 2.0).expect("seen from the right, too");
+        assert!((left.between() + right.between()).norm() < 1e-9);
+        assert!((left.between() - corner(-1.0, 0.0)).norm() < 1e-4);
+        assert!((left.depth() - 0.05).abs() < 1e-6 && (right.depth() - 0.25).abs() < 1e-6);
+        assert!(sides(0.15, 2.0).is_some() && sides(0.15, 0.2).is_none(), "the end is 0.2 away");
+        assert_eq!(plate.sides(&corner(0.05, 2.0), 0.24, &bounds), None, "thicker than the reach");
     }
 
     #[test]

@@ -53,6 +53,41 @@ fn steps_of_both_together_are_of_second_order() {
     }
 }
 
+/// A solid that is held everywhere is a wall to the fluid: the same particles, the same bits.
+#[test]
+fn a_held_solid_is_a_wall_to_the_bit() {
+    let velocities = |extra: &[&str]| -> Vec<(u32, Vec<u64>)> {
+        // Thick enough for no fluid to see through it.
+        let common =
+            ["parameters.n=8", "parameters.thickness=0.75", "time.step=1e-3", "probe.slab="];
+        let case = slab(&[&common, extra].concat());
+        let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+        session.run_until(0.1).expect("it runs");
+        let velocity = session.column("velocity").expect("it is there").values;
+        let bits = |v: &[f64]| v.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        let rows = session.ids().iter().zip(velocity.chunks_exact(2));
+        // The water comes first in the order of creation.
+        let mut rows: Vec<_> =
+            rows.filter(|(id, _)| **id < 80).map(|(id, v)| (*id, bits(v))).collect();
+        rows.sort_unstable();
+        rows
+    };
+    let plain = ["plot.slab=", "check=", "output.fields=['velocity']"];
+    let held = "boundary+={ name = 'held', body = 'slab', where = { kind = 'all' }, velocity = { x = '0', y = '0' } }";
+    let as_wall = [
+        "body.slab.system=",
+        "system=",
+        "body.slab.material={ kind = 'weakly_compressible', density = 'rho', wave_speed = 'c' }",
+        "body.slab.wall={ slip = 'free' }",
+        "variant=",
+    ];
+    let solid = velocities(&[&plain[..], &[held]].concat());
+    let wall = velocities(&[&plain[..], &as_wall].concat());
+    assert_eq!(solid.len(), 80);
+    assert!(solid == wall, "the water around a held solid is not that around a wall");
+    assert!(solid.iter().any(|(_, v)| f64::from_bits(v[1]) != 0.0), "nothing moves");
+}
+
 /// Water on both sides of a plate three particles thick that nothing moves.
 const PARTED: &str = r#"
 version = 1

@@ -71,19 +71,14 @@ fn prepare<const D: usize>(
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
     let smoothing_length = *settings.smoothing_length * spacing;
-    let first_twin = double_thin(case, &mut particles, kernel.support_radius(smoothing_length))?;
-    let order = spatial_order(&particles.position, kernel.support_radius(smoothing_length));
+    let support = kernel.support_radius(smoothing_length);
+    let first_twin = double_thin(case, &mut particles, support)?;
+    let order = spatial_order(&particles.position, support);
     let place = settings.smoothing_length.place;
     particles.reorder(&order.map_err(|error| {
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
-    let (mut faces, shape) = faces(case, &particles)?;
-    part_faces(
-        case,
-        &particles,
-        (first_twin, kernel.support_radius(smoothing_length)),
-        &mut faces,
-    )?;
+    let (faces, shape) = faces(case, &particles, (first_twin, support))?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
@@ -109,7 +104,6 @@ fn prepare<const D: usize>(
                 .into(),
         );
     }
-    let support = kernel.support_radius(smoothing_length);
     if let Some(shape) = &shape {
         warnings.extend(tanks::warnings(case, shape, &particles, &faces, support));
     }
@@ -241,17 +235,20 @@ fn walls(case: &Case) -> Vec<Wall> {
 
 /// The shape of all walls together, and the faces that their particles are behind: the shortest ways
 /// out of all walls together, inside the box around all bodies, so that the outer faces of a tank do
-/// not count. In a periodic box the box itself is no wall either.
+/// not count. In a periodic box the box itself is no wall either. Bodies of other systems come away from the walls:
+/// their faces are their own, and where they are thin those of one side, by the number of the first
+/// particle that stands for a second side and the support of the kernel in m.
 fn faces<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
+    (first_twin, support): (u32, f64),
 ) -> Result<(Vec<Faces<D>>, Option<Shape<D>>), Vec<Problem>> {
     let mut faces = vec![Faces::default(); particles.len()];
     let is_wall: Vec<bool> = case.bodies.iter().map(|body| body.wall.is_some()).collect();
     if !is_wall.contains(&true) {
         return Ok((faces, None));
     }
-    let (mut shapes, mut moving) = (Vec::new(), Vec::new());
+    let (mut shapes, moving) = (Vec::new(), moving(case)?);
     let mut bounds = None::<(Vector<D>, Vector<D>)>;
     for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
         let (low, high) = match (&body.shape.value, is_wall) {
@@ -268,10 +265,8 @@ fn faces<const D: usize>(
                 let shape: Shape<D> =
                     bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
                 let ends = shape.bounding_box();
-                match (is_wall, body.system) {
-                    (true, None) => shapes.push(shape),
-                    (true, Some(_)) => moving.push((number as u32, shape)),
-                    _ => (),
+                if *is_wall && body.system.is_none() {
+                    shapes.push(shape);
                 }
                 ends
             }
@@ -280,24 +275,34 @@ fn faces<const D: usize>(
         bounds = Some((least.inf(&low), most.sup(&high)));
     }
     let Some(bounds) = bounds else { return Ok((faces, None)) };
-    // Bodies of other systems come away from the walls: their faces are their own.
     let walls = Shape::union(shapes).ok();
     crate::parallel::for_each_chunk(&mut faces, |first, rows| {
         for (offset, row) in rows.iter_mut().enumerate() {
             let (x, body) = (&particles.position[first + offset], particles.body[first + offset]);
-            let own = moving.iter().find(|(number, _)| *number == body).map(|(_, shape)| shape);
-            let is_wall = is_wall[body as usize];
-            if let Some(shape) = own.or(walls.as_ref()).filter(|_| is_wall) {
-                let bounds = if own.is_some() { everywhere(case, shape) } else { bounds };
-                *row = shape.ways_out(x, &bounds);
+            if let Some((_, shape)) = moving.iter().find(|(number, _)| *number == body) {
+                let bounds = everywhere(case, shape);
+                let is_first = particles.id[first + offset] < first_twin;
+                *row = match shape.sides(x, support, &bounds) {
+                    Some([front, back]) => {
+                        if is_first {
+                            front
+                        } else {
+                            back
+                        }
+                    }
+                    None => shape.ways_out(x, &bounds),
+                };
+            } else if let (Some(walls), true) = (&walls, is_wall[body as usize]) {
+                *row = walls.ways_out(x, &bounds);
             }
         }
     });
     Ok((faces, walls))
 }
 
-/// Doubles the wall particles of thin bodies of other systems, so that each side has its own. Returns the
-/// number in the order of creation of the first that was added.
+/// Doubles the wall particles of thin bodies of other systems, so that each side has its own: fluid on one
+/// side, within the support of the kernel in m, would be seen from the other. Returns the number in the order of
+/// creation of the first that was added.
 fn double_thin<const D: usize>(
     case: &Case,
     particles: &mut Particles<D>,
@@ -305,9 +310,9 @@ fn double_thin<const D: usize>(
 ) -> Result<u32, Vec<Problem>> {
     let first = particles.len();
     for (number, shape) in moving(case)? {
+        let bounds = everywhere(case, &shape);
         let own = (0..first).filter(|&a| particles.body[a] == number);
-        let is_thin =
-            |a: &usize| Thin::of(case, &shape, &particles.position[*a], support).is_some();
+        let is_thin = |a: &usize| shape.sides(&particles.position[*a], support, &bounds).is_some();
         let thin: Vec<usize> = own.filter(is_thin).collect();
         for a in thin {
             particles.position.push(particles.position[a]);
@@ -319,57 +324,6 @@ fn double_thin<const D: usize>(
         }
     }
     Ok(first as u32)
-}
-
-/// Gives each of two wall particles in one place the faces on its side: the one that was there the nearest
-/// ones but the opposite, the other, whose number is `first_twin` or later, that behind it.
-fn part_faces<const D: usize>(
-    case: &Case,
-    particles: &Particles<D>,
-    (first_twin, support): (u32, f64),
-    faces: &mut [Faces<D>],
-) -> Result<(), Vec<Problem>> {
-    let shapes = moving(case)?;
-    for (a, row) in faces.iter_mut().enumerate() {
-        let shape = shapes.iter().find(|(number, _)| *number == particles.body[a]);
-        let Some((_, shape)) = shape else { continue };
-        if let Some(thin) = Thin::of(case, shape, &particles.position[a], support) {
-            *row = if particles.id[a] < first_twin { thin.front } else { thin.back };
-        }
-    }
-    Ok(())
-}
-
-/// The two sides of a point in a thin part of a body, where the face opposite to the nearest is within the
-/// support: fluid beyond it would be seen through the body. The first face of each is across the thin part.
-struct Thin<const D: usize> {
-    front: Faces<D>,
-    back: Faces<D>,
-}
-
-impl<const D: usize> Thin<D> {
-    fn of(case: &Case, shape: &Shape<D>, x: &Vector<D>, support: f64) -> Option<Self> {
-        let bounds = everywhere(case, shape);
-        let nearest = shape.ways_out(x, &bounds);
-        let back = |normal: &Vector<D>| shape.way_out_along(x, &-normal, &bounds);
-        let across = nearest.normals().iter().find(|normal| back(normal) < support)?;
-        // Round a free end the fluid on both sides is one.
-        let along = |axis: usize| {
-            let unit = Vector::from_fn(|i, _| f64::from(u8::from(i == axis)));
-            (unit - across * across[axis]).try_normalize(0.1)
-        };
-        let ways = (0..D).filter_map(along).flat_map(|way| [way, -way]);
-        let mut ends = ways.map(|way| shape.way_out_along(x, &way, &bounds));
-        if ends.any(|length| length < support) {
-            return None;
-        }
-        let others = nearest.normals().iter().filter(|normal| normal.dot(across).abs() < 0.5);
-        let front = std::iter::once(across).chain(others).copied().collect();
-        Some(Self {
-            front: Faces::new(front, nearest.depth()),
-            back: Faces::new(vec![-across], back(across)),
-        })
-    }
 }
 
 /// The shapes of bodies of other systems, by the number of the body.

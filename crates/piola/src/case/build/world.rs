@@ -1,7 +1,7 @@
 //! Several systems built one by one and put together.
 
 use super::bodies::{self, BodyReport};
-use super::{Built, Parts, domain, fluids, integrator, probes, system};
+use super::{Built, Parts, beyond_stable, domain, fluids, integrator, probes, system};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, StepControl};
 use crate::schemes::world::{InterfaceError, SolidInput, World, WorldError};
@@ -22,7 +22,8 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
     let (mut solids, mut integrators) = (Vec::new(), Vec::<Box<dyn Integrator>>::new());
     for (number, named) in case.systems.iter().enumerate() {
         let part = case.part(Some(number));
-        let (mut scheme, built) = system::<D>(&part)?;
+        let (mut scheme, mut built) = system::<D>(&part)?;
+        built.warnings.extend(beyond_stable(&part));
         integrators.push(integrator(&part, scheme.as_mut())?);
         let numbers = case.bodies_of(Some(number)).into_iter().map(|body| body as u32);
         let numbers: Vec<u32> = numbers.collect();

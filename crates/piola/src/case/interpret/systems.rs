@@ -125,10 +125,7 @@ impl Reader<'_, '_> {
         main: Option<&Time>,
     ) -> Option<System> {
         let time = record.record("time");
-        let natural = match self.names.current.dissipates {
-            true => IntegratorKind::TvdRk2,
-            false => IntegratorKind::KickDriftKick,
-        };
+        let natural = self.natural_integrator();
         let place = time.map_or(record.place, |time| time.place);
         let integrator = time.and_then(|time| time.text("integrator"));
         let integrator =
@@ -140,9 +137,8 @@ impl Reader<'_, '_> {
             return self.refuse(problem.help("use `kick_drift_kick`, or an implicit integrator"));
         }
         self.suits_scheme(&integrator, kind.needs());
-        let is_explicit = time::is_explicit(kind.needs());
         let cfl = time.and_then(|time| time.number("cfl"));
-        let step = match (is_explicit, cfl) {
+        let step = match (time::is_explicit(kind.needs()), cfl) {
             (true, Some(cfl)) => cfl.map(StepControl::Cfl),
             (true, None) => Located::new(StepControl::Cfl(self.natural_cfl()), place),
             (false, _) => {
@@ -153,7 +149,10 @@ impl Reader<'_, '_> {
             }
         };
         let rule = match time {
-            Some(time) => self.rule(time, Some(kind))?,
+            Some(time) => {
+                self.solves_equations(time, kind.needs());
+                self.rule(time, Some(kind))?
+            }
             None => None,
         };
         let number = |key: &str| time.and_then(|time| time.number(key)).map(|it| it.value);

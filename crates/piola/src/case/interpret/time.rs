@@ -21,10 +21,7 @@ pub(super) fn linear_solver(record: &Record) -> Option<LinearMethod> {
 
 impl Reader<'_, '_> {
     pub(super) fn time(&mut self, record: &Record) -> Option<Time> {
-        let natural = match self.names.current.dissipates {
-            true => IntegratorKind::TvdRk2,
-            false => IntegratorKind::KickDriftKick,
-        };
+        let natural = self.natural_integrator();
         let integrator = match record.text("integrator") {
             Some(name) => name,
             None => Located::new(natural.name().to_owned(), record.place),
@@ -38,11 +35,7 @@ impl Reader<'_, '_> {
             self.meaningless(record, "error", "without implicit steps in time");
         }
         let is_explicit = is_explicit(needs);
-        if is_explicit {
-            for key in ["tolerance", "linear_solver"] {
-                self.meaningless(record, key, "with this integrator, which solves no equations");
-            }
-        }
+        self.solves_equations(record, needs);
         Some(Time {
             end: record.number("end")?,
             integrator,
@@ -90,6 +83,21 @@ impl Reader<'_, '_> {
         let message = format!("the integrator `{name}` cannot move the scheme `{scheme}`{why}");
         let help = format!("use one of those that can: {able}; or {other}");
         self.report(Problem::new(integrator.place, message, "of another scheme").help(help));
+    }
+
+    /// The integrator, unless the file has one.
+    pub(super) fn natural_integrator(&self) -> IntegratorKind {
+        match self.names.current.dissipates {
+            true => IntegratorKind::TvdRk2,
+            false => IntegratorKind::KickDriftKick,
+        }
+    }
+
+    /// Reports what says how equations are solved where there are none.
+    pub(super) fn solves_equations(&mut self, record: &Record, needs: Capability) {
+        for key in ["tolerance", "linear_solver"].into_iter().filter(|_| is_explicit(needs)) {
+            self.meaningless(record, key, "with this integrator, which solves no equations");
+        }
     }
 
     /// The CFL number of explicit steps, unless the file has one.

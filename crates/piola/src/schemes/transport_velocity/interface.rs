@@ -4,6 +4,7 @@ use super::TransportVelocity;
 use super::fluid::LEDGER;
 use crate::geometry::Faces;
 use crate::neighbors::{Domain, search};
+use crate::schemes::SplitScheme;
 use crate::{Tensor, Vector};
 
 /// How a wall particle that somebody else moves does so.
@@ -130,8 +131,10 @@ impl<const D: usize> TransportVelocity<D> {
         self.common.columns(state).kick[number as usize] * self.common.mass[number as usize]
     }
 
-    /// Begins the ledger of a state anew.
-    pub(crate) fn clear_ledger(&self, state: &mut [f64]) {
+    /// Finds the accelerations of the start anew, with walls as they have been placed and guided since.
+    pub(crate) fn restart(&mut self, state: &mut [f64]) {
+        self.common.parts(state).0.deviation.fill(Vector::zeros());
+        self.accelerate(0.0, state);
         LEDGER.clear(D, self.common.parts(state).1);
     }
 }

@@ -39,8 +39,8 @@ pub const MOST_RATIO: f64 = 3.0;
 pub enum InterfaceError {
     /// The solid has no particles across which it deforms.
     #[error(
-        "the solid has too few particles around {position:?} m to say how its surface deforms there: it \
-         needs three particles or more across"
+        "the solid has too few particles around {position:?} m to say how its surface deforms there: two layers \
+         are the least, and three what bends"
     )]
     Thin {
         /// Where, in m.

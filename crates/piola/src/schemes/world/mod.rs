@@ -38,7 +38,7 @@ use crate::Vector;
 use crate::fields::{FieldDescription, FieldKind};
 use crate::neighbors::Domain;
 use crate::schemes::transport_velocity::TransportVelocity;
-use crate::schemes::{Particle, Scheme, SchemeDescription, SplitScheme, StepLimit};
+use crate::schemes::{Particle, Scheme, SchemeDescription, StepLimit};
 
 /// Most steps of a solid in one of the fluid.
 pub const MOST_STEPS: u64 = 1000;
@@ -73,7 +73,7 @@ pub enum WorldError {
     /// Two bodies are in the same place.
     #[error(
         "the body of the system `{system}` overlaps another one: particle {id} is at {position:?} m, inside of \
-         it or closer to it than half a spacing of the fluid"
+         it or closer to its particles than two bodies side by side are"
     )]
     Overlap {
         /// Name of the system.
@@ -226,8 +226,7 @@ impl<const D: usize> World<D> {
         self.carry_walls(state);
         self.guide(state);
         let own = &mut state[self.parts[0].state.clone()];
-        self.fluid.accelerate(0.0, own);
-        self.fluid.clear_ledger(own);
+        self.fluid.restart(own);
     }
 
     /// The index in the run of a particle of a system: 0 is the fluid, the solids follow. Particles that

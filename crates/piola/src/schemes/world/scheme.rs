@@ -71,10 +71,10 @@ impl<const D: usize> Scheme for World<D> {
                 step: limit.step
                     * MOST_STEPS as f64
                     * solid.cfl.filter(|_| limit.scaled).unwrap_or(1.0),
+                name: "most steps of a solid",
                 particle: named(k, limit.particle),
                 scaled: false,
                 growth: f64::INFINITY,
-                ..*limit
             }));
             solid.limits = own;
         }
