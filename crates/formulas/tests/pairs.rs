@@ -6,8 +6,8 @@ use nalgebra::{SVector, Vector2};
 use num_dual::Dual64;
 use piola_formulas::kernels::{Kernel, Needs};
 use piola_formulas::pairs::{
-    Components, Frozen, FrozenPair, Moving, MovingPair, Of, PairLaw, Record, Square, fluid, solid,
-    sums, upwind, wall,
+    AreaPair, Areas, Components, Frozen, Moving, MovingPair, Of, One, PairLaw, Periods, Record,
+    Square, dual_support, fluid, solid, sums, upwind, wall,
 };
 use piola_formulas::{Lanes, Lanes4, WIDTH};
 
@@ -88,9 +88,9 @@ fn check_padding<const D: usize, L: PairLaw<Pair = MovingPair<D>>>(name: &str, l
 }
 
 /// What fills up the last lanes of a frozen list.
-fn check_frozen_padding<const D: usize, L: PairLaw<Pair = FrozenPair<D>>>(name: &str, law: L) {
+fn check_frozen_padding<R: Record, L: PairLaw<Pair = Frozen<R>>>(name: &str, law: L) {
     let (me, other) = (some::<L::Side>(0.3), some::<L::Side>(0.4));
-    for x in numbers::<L::Sums>(&sums_of(&law, [&me, &other], &FrozenPair::zero())) {
+    for x in numbers::<L::Sums>(&sums_of(&law, [&me, &other], &<(R, One)>::zero())) {
         assert_eq!(x, 0.0, "{name}");
     }
 }
@@ -157,8 +157,8 @@ macro_rules! each_law {
 macro_rules! each_frozen_law {
     ($check:ident) => {{
         use upwind::{Divergence, Exchange, Gradient, Reconstructed, Slopes};
-        let open = upwind::Periods::new([f64::INFINITY; 2]);
-        let periodic = upwind::Periods::new([0.9, f64::INFINITY, 0.4]);
+        let open = Periods::new([f64::INFINITY; 2]);
+        let periodic = Periods::new([0.9, f64::INFINITY, 0.4]);
         $check("exchange", Exchange::<2, false, false>(open));
         $check("exchange", Exchange::<2, true, false>(open));
         $check("exchange", Exchange::<3, false, true>(periodic));
@@ -167,6 +167,11 @@ macro_rules! each_frozen_law {
         $check("slopes", Slopes::<3>(periodic));
         $check("gradient", Gradient::<2>);
         $check("divergence", Divergence::<3>);
+        use dual_support::{Reactions, Supports};
+        $check("supports", Supports::<2, false>(open));
+        $check("supports", Supports::<3, true>(periodic));
+        $check("reactions", Reactions::<2, false>(open));
+        $check("reactions", Reactions::<3, true>(periodic));
     }};
 }
 
@@ -189,6 +194,7 @@ fn what_fills_up_lanes_adds_nothing() {
 #[test]
 fn no_law_is_left_out() {
     let sources = [
+        include_str!("../src/pairs/dual_support.rs"),
         include_str!("../src/pairs/fluid.rs"),
         include_str!("../src/pairs/solid.rs"),
         include_str!("../src/pairs/sums.rs"),
@@ -197,18 +203,19 @@ fn no_law_is_left_out() {
     ];
     let mut laws = 0;
     let here = include_str!("pairs.rs");
-    let modules = ["fluid", "solid", "sums", "upwind", "wall"];
+    let modules = ["dual_support", "fluid", "solid", "sums", "upwind", "wall"];
     for (source, module) in sources.iter().zip(modules) {
         let code = source.replace("PairLaw\n    for", "PairLaw for");
         for after in code.split("PairLaw for ").skip(1) {
             let name = after.split(['<', ' ']).next().unwrap_or_default();
             let path = format!("{module}::{name}");
-            let imported = module == "upwind" && here.contains(&format!("\", {name}"));
+            let imported = ["dual_support", "upwind"].contains(&module)
+                && here.contains(&format!("\", {name}"));
             assert!(here.contains(&path) || imported, "{path} is not tested");
             laws += 1;
         }
     }
-    assert_eq!(laws, 23);
+    assert_eq!(laws, 25);
 }
 
 /// The pair as the other particle sees it.
@@ -438,21 +445,21 @@ fn derivatives_of_laws_are_exact() {
 fn exchanged<L>(
     law: &L,
     sides: [&Of<L::Side, f64>; 2],
-    pair: &Frozen<f64, 2>,
+    pair: &Areas<f64, 2>,
 ) -> [upwind::ExchangeSums<f64, 2>; 2]
 where
-    L: PairLaw<Pair = FrozenPair<2>, Sums = upwind::ExchangeSum<2>>,
+    L: PairLaw<Pair = Frozen<AreaPair<2>>, Sums = upwind::ExchangeSum<2>>,
 {
-    let back = Frozen { area: pair.transposed, transposed: pair.area, ..*pair };
-    [sums_of(law, sides, pair), sums_of(law, [sides[1], sides[0]], &back)]
+    let back = Areas { area: pair.transposed, transposed: pair.area };
+    [sums_of(law, sides, &(*pair, 1.0)), sums_of(law, [sides[1], sides[0]], &(back, 1.0))]
 }
 
 #[test]
 fn what_dissipation_gives_to_one_it_takes_from_the_other() {
-    let open = upwind::Periods::new([f64::INFINITY; 2]);
+    let open = Periods::new([f64::INFINITY; 2]);
     let (one, two) = (some::<upwind::UpwindSide<2>>(0.2), some::<upwind::UpwindSide<2>>(0.7));
     let (slope, other) = (some::<upwind::UpwindSlope<2>>(0.3), some::<upwind::UpwindSlope<2>>(0.6));
-    let pair = some::<FrozenPair<2>>(0.4);
+    let pair = some::<AreaPair<2>>(0.4);
     let law = upwind::Exchange::<2, true, true>(open);
     let reconstructed = upwind::Reconstructed(law);
     let plain = exchanged(&law, [&one, &two], &pair);
@@ -467,7 +474,7 @@ fn what_dissipation_gives_to_one_it_takes_from_the_other() {
 
 #[test]
 fn a_linear_field_has_no_reconstructed_jump() {
-    let open = upwind::Periods::new([f64::INFINITY; 2]);
+    let open = Periods::new([f64::INFINITY; 2]);
     let mut slope = <upwind::UpwindSlope<2> as Record>::zero::<f64>();
     (slope.velocity[(0, 1)], slope.pressure[0]) = (0.3, 0.7);
     let mut one = some::<upwind::UpwindSide<2>>(0.2);
@@ -475,7 +482,7 @@ fn a_linear_field_has_no_reconstructed_jump() {
     let way = two.reference - one.reference;
     two.velocity = one.velocity + slope.velocity * way;
     two.pressure = one.pressure + slope.pressure.dot(&way);
-    let pair = some::<FrozenPair<2>>(0.4);
+    let pair = (some::<AreaPair<2>>(0.4), 1.0);
     let law = upwind::Reconstructed(upwind::Exchange::<2, true, true>(open));
     let sums = sums_of(&law, [&(one, slope), &(two, slope)], &pair);
     assert!(sums.upwind_force.norm() + sums.upwind_volume_rate.abs() <= 1e-14);
@@ -487,14 +494,39 @@ fn a_linear_field_has_no_reconstructed_jump() {
     let stress = two.cofactor * two.pressure;
     let force = sums_of(&upwind::Divergence::<2>, [&stress, &stress], &pair);
     assert!((given.internal_force - force).norm() <= 1e-14 * force.norm());
-    assert!((force - stress * pair.transposed).norm() <= 1e-14 * force.norm());
+    assert!((force - stress * pair.0.transposed).norm() <= 1e-14 * force.norm());
     // Least squares find the slope along the way, round a periodic box, too.
-    let around = upwind::Periods::new([0.1 + way[0].abs(), f64::INFINITY]);
+    let around = Periods::new([0.1 + way[0].abs(), f64::INFINITY]);
     let shorter = Vector2::new(-0.1 * way[0].signum(), way[1]);
     for (periods, way) in [(open, way), (around, shorter)] {
-        let pair = Frozen { counts: 1.0, ..pair };
         let moments = sums_of(&upwind::Slopes(periods), [&one, &two], &pair);
         let expected = two.velocity * way.transpose() / way.norm_squared();
         assert!((moments.velocity - expected).norm() <= 1e-14, "{moments:?}");
     }
+}
+
+#[test]
+fn what_a_support_takes_the_other_side_gets_back() {
+    use dual_support::{Reactions, SupportSide, SupportedPair, Supports};
+    let open = Periods::new([f64::INFINITY; 2]);
+    let pair = (some::<SupportedPair<2>>(0.4), 1.0);
+    let (mut one, other) = (some::<SupportSide<2>>(0.2), some::<SupportSide<2>>(0.7));
+    let separation = other.reference - one.reference;
+    // A linear field has its own gradient in each pair, and no deviation.
+    one.gradient = (other.displacement - one.displacement) * separation.transpose()
+        / separation.norm_squared();
+    let places = [&one, &other].map(|side| (side.displacement, side.reference));
+    let sums = sums_of(&Supports::<2, true>(open), [&places[0], &places[1]], &pair);
+    let linear = one.gradient * separation;
+    assert!((sums.gradient - linear * pair.0.gradient.transpose()).norm() <= 1e-14);
+    assert!((sums.moment - linear * separation.transpose() * pair.0.weight).norm() <= 1e-14);
+    assert!((sums.difference - linear * pair.0.weight).norm() <= 1e-14);
+    let force = sums_of(&Reactions::<2, true>(open), [&other, &one], &pair);
+    assert!((force + one.tension * pair.0.gradient).norm() <= 1e-14 * force.norm());
+    // A deviation is pulled back by its weight.
+    let mut moved = other;
+    moved.displacement[0] += 0.1;
+    let more = sums_of(&Reactions::<2, true>(open), [&moved, &one], &pair) - force;
+    let expected = Vector2::new(-0.1 * one.hourglass * pair.0.weight, 0.0);
+    assert!((more - expected).norm() <= 1e-14, "{more}");
 }

@@ -5,6 +5,7 @@
 //! one neighbour. It is generic over [`Number`], so that the same body sums plain numbers, four at once
 //! ([`Lanes4`](crate::Lanes4)), derivatives, or text for a device. The loops over neighbours are not here.
 
+pub mod dual_support;
 pub mod fluid;
 mod record;
 pub mod solid;
@@ -34,14 +35,44 @@ record! {
 }
 
 record! {
-    /// A pair of a frozen list.
-    pub struct Frozen<D> in FrozenPair {
-        /// Area `V_a G_ab` in m^(D-1).
+    /// The areas through which two particles act on each other.
+    pub struct Areas<D> in AreaPair {
+        /// `V_a G_ab` in m^(D-1).
         pub area: Components<D>,
-        /// Area `V_b G_ba` in m^(D-1).
+        /// `V_b G_ba` in m^(D-1).
         pub transposed: Components<D>,
-        /// 1, or 0 for what fills up the last lanes, where areas are zero, too.
-        pub counts: One,
+    }
+}
+
+/// What is known of a pair of a frozen list, and 1, or 0 for what fills up the last lanes, where all is zero.
+pub type Frozen<R> = (R, One);
+
+/// How far it is round a periodic box, along each axis in m; nothing where no axis is periodic.
+#[derive(Clone, Copy, Debug)]
+pub struct Periods<const D: usize>(Option<[f64; D]>);
+
+impl<const D: usize> Periods<D> {
+    /// Those of a box, infinite along open axes.
+    pub fn new(periods: [f64; D]) -> Self {
+        Self(periods.iter().any(|period| period.is_finite()).then_some(periods))
+    }
+
+    /// From one point to another, the shortest way round.
+    #[inline(always)]
+    pub(crate) fn way<T: Number>(
+        &self,
+        from: &nalgebra::SVector<T, D>,
+        to: &nalgebra::SVector<T, D>,
+    ) -> nalgebra::SVector<T, D> {
+        let mut way = difference(to, from);
+        if let Some(periods) = self.0 {
+            for i in 0..D {
+                let (distance, period) = (way[i], periods[i]);
+                let down = T::select(distance.above(0.5 * period), distance - period, distance);
+                way[i] = T::select(distance.below(-0.5 * period), distance + period, down);
+            }
+        }
+        way
     }
 }
 
@@ -95,4 +126,21 @@ pub(crate) fn difference<T: Number, const D: usize>(
         difference[i] -= b[i];
     }
     difference
+}
+
+/// `matrix vector`.
+#[inline(always)]
+pub(crate) fn applied<T: Number, const D: usize>(
+    matrix: &nalgebra::SMatrix<T, D, D>,
+    vector: &nalgebra::SVector<T, D>,
+) -> nalgebra::SVector<T, D> {
+    let mut product = Components::<D>::zero();
+    for i in 0..D {
+        let mut sum = matrix[(i, 0)] * vector[0];
+        for j in 1..D {
+            sum += matrix[(i, j)] * vector[j];
+        }
+        product[i] = sum;
+    }
+    product
 }

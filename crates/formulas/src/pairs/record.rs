@@ -14,6 +14,9 @@ pub trait Record: Send + Sync + 'static {
     /// The struct of numbers `T`.
     type Of<T: Number>: Copy + Debug;
 
+    /// How many numbers it has.
+    const NUMBERS: usize;
+
     /// All numbers zero.
     fn zero<T: Number>() -> Self::Of<T>;
 
@@ -60,6 +63,8 @@ pub struct One;
 impl Record for One {
     type Of<T: Number> = T;
 
+    const NUMBERS: usize = 1;
+
     #[inline(always)]
     fn zero<T: Number>() -> T {
         T::zero()
@@ -81,6 +86,8 @@ pub struct Many<const N: usize>;
 
 impl<const M: usize> Record for Many<M> {
     type Of<T: Number> = [T; M];
+
+    const NUMBERS: usize = M;
 
     #[inline(always)]
     fn zero<T: Number>() -> [T; M] {
@@ -111,6 +118,8 @@ pub struct Components<const D: usize>;
 impl<const D: usize> Record for Components<D> {
     type Of<T: Number> = SVector<T, D>;
 
+    const NUMBERS: usize = D;
+
     #[inline(always)]
     fn zero<T: Number>() -> SVector<T, D> {
         SVector::from_array_storage(nalgebra::ArrayStorage([[T::zero(); D]; 1]))
@@ -140,6 +149,8 @@ pub struct Square<const D: usize>;
 impl<const D: usize> Record for Square<D> {
     type Of<T: Number> = SMatrix<T, D, D>;
 
+    const NUMBERS: usize = D * D;
+
     #[inline(always)]
     fn zero<T: Number>() -> SMatrix<T, D, D> {
         SMatrix::from_array_storage(nalgebra::ArrayStorage([[T::zero(); D]; D]))
@@ -168,6 +179,8 @@ impl<const D: usize> Record for Square<D> {
 
 impl<A: Record, B: Record> Record for (A, B) {
     type Of<T: Number> = (A::Of<T>, B::Of<T>);
+
+    const NUMBERS: usize = A::NUMBERS + B::NUMBERS;
 
     #[inline(always)]
     fn zero<T: Number>() -> Self::Of<T> {
@@ -208,6 +221,8 @@ macro_rules! record {
 
         impl<const $D: usize> $crate::pairs::Record for $family<$D> {
             type Of<T: $crate::Number> = $name<T, $D>;
+
+            const NUMBERS: usize = 0 $(+ <$kind as $crate::pairs::Record>::NUMBERS)*;
 
             #[inline(always)]
             fn zero<T: $crate::Number>() -> Self::Of<T> {

@@ -2,7 +2,10 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Components, FrozenPair, Of, One, PairLaw, Record, Square, difference, dot, record};
+use super::{
+    AreaPair, Areas, Components, Frozen, Of, One, PairLaw, Periods, Square, applied, difference,
+    dot, record,
+};
 use crate::Number;
 use crate::kernels::Needs;
 use crate::riemann::Interface;
@@ -43,31 +46,6 @@ record! {
     }
 }
 
-/// How far it is round a periodic box, along each axis in m; nothing where no axis is periodic.
-#[derive(Clone, Copy, Debug)]
-pub struct Periods<const D: usize>(Option<[f64; D]>);
-
-impl<const D: usize> Periods<D> {
-    /// Those of a box, infinite along open axes.
-    pub fn new(periods: [f64; D]) -> Self {
-        Self(periods.iter().any(|period| period.is_finite()).then_some(periods))
-    }
-
-    /// From one point to another, the shortest way round.
-    #[inline(always)]
-    fn way<T: Number>(&self, from: &SVector<T, D>, to: &SVector<T, D>) -> SVector<T, D> {
-        let mut way = difference(to, from);
-        if let Some(periods) = self.0 {
-            for i in 0..D {
-                let (distance, period) = (way[i], periods[i]);
-                let down = T::select(distance.above(0.5 * period), distance - period, distance);
-                way[i] = T::select(distance.below(-0.5 * period), distance + period, down);
-            }
-        }
-        way
-    }
-}
-
 record! {
     /// What [`Exchange`] sums.
     pub struct ExchangeSums<D> in ExchangeSum {
@@ -93,7 +71,7 @@ impl<const D: usize, const VELOCITY: bool, const PRESSURE: bool> Exchange<D, VEL
     fn add_with<T: Number>(
         &self,
         [me, other]: [&Side<T, D>; 2],
-        pair: &Of<FrozenPair<D>, T>,
+        pair: &Areas<T, D>,
         sums: &mut ExchangeSums<T, D>,
         slopes: Option<[&Slope<T, D>; 2]>,
     ) {
@@ -146,7 +124,7 @@ impl<const D: usize, const VELOCITY: bool, const PRESSURE: bool> Exchange<D, VEL
 impl<const D: usize, const VELOCITY: bool, const PRESSURE: bool> PairLaw
     for Exchange<D, VELOCITY, PRESSURE>
 {
-    type Pair = FrozenPair<D>;
+    type Pair = Frozen<AreaPair<D>>;
     type Side = UpwindSide<D>;
     type Sums = ExchangeSum<D>;
 
@@ -157,7 +135,7 @@ impl<const D: usize, const VELOCITY: bool, const PRESSURE: bool> PairLaw
         &self,
         me: &Side<T, D>,
         other: &Side<T, D>,
-        pair: &Of<FrozenPair<D>, T>,
+        (pair, _): &Of<Self::Pair, T>,
         sums: &mut ExchangeSums<T, D>,
     ) {
         self.add_with([me, other], pair, sums, None);
@@ -172,7 +150,7 @@ pub struct Reconstructed<L>(pub L);
 impl<const D: usize, const VELOCITY: bool, const PRESSURE: bool> PairLaw
     for Reconstructed<Exchange<D, VELOCITY, PRESSURE>>
 {
-    type Pair = FrozenPair<D>;
+    type Pair = Frozen<AreaPair<D>>;
     type Side = (UpwindSide<D>, UpwindSlope<D>);
     type Sums = ExchangeSum<D>;
 
@@ -183,7 +161,7 @@ impl<const D: usize, const VELOCITY: bool, const PRESSURE: bool> PairLaw
         &self,
         (me, mine): &Of<Self::Side, T>,
         (other, theirs): &Of<Self::Side, T>,
-        pair: &Of<FrozenPair<D>, T>,
+        (pair, _): &Of<Self::Pair, T>,
         sums: &mut ExchangeSums<T, D>,
     ) {
         self.0.add_with([me, other], pair, sums, Some([mine, theirs]));
@@ -196,7 +174,7 @@ impl<const D: usize, const VELOCITY: bool, const PRESSURE: bool> PairLaw
 pub struct Slopes<const D: usize>(pub Periods<D>);
 
 impl<const D: usize> PairLaw for Slopes<D> {
-    type Pair = FrozenPair<D>;
+    type Pair = Frozen<AreaPair<D>>;
     type Side = UpwindSide<D>;
     type Sums = UpwindSlope<D>;
 
@@ -207,11 +185,11 @@ impl<const D: usize> PairLaw for Slopes<D> {
         &self,
         me: &Side<T, D>,
         other: &Side<T, D>,
-        pair: &Of<FrozenPair<D>, T>,
+        (_, counts): &Of<Self::Pair, T>,
         sums: &mut Slope<T, D>,
     ) {
         let separation = self.0.way(&me.reference, &other.reference);
-        let weight = pair.counts / dot(&separation, &separation);
+        let weight = *counts / dot(&separation, &separation);
         let velocity_jump = difference(&other.velocity, &me.velocity);
         let pressure_jump = other.pressure - me.pressure;
         for j in 0..D {
@@ -229,7 +207,7 @@ impl<const D: usize> PairLaw for Slopes<D> {
 pub struct Gradient<const D: usize>;
 
 impl<const D: usize> PairLaw for Gradient<D> {
-    type Pair = FrozenPair<D>;
+    type Pair = Frozen<AreaPair<D>>;
     type Side = Components<D>;
     type Sums = Square<D>;
 
@@ -240,7 +218,7 @@ impl<const D: usize> PairLaw for Gradient<D> {
         &self,
         me: &SVector<T, D>,
         other: &SVector<T, D>,
-        pair: &Of<FrozenPair<D>, T>,
+        (pair, _): &Of<Self::Pair, T>,
         sums: &mut SMatrix<T, D, D>,
     ) {
         let jump = difference(other, me);
@@ -257,7 +235,7 @@ impl<const D: usize> PairLaw for Gradient<D> {
 pub struct Divergence<const D: usize>;
 
 impl<const D: usize> PairLaw for Divergence<D> {
-    type Pair = FrozenPair<D>;
+    type Pair = Frozen<AreaPair<D>>;
     type Side = Square<D>;
     type Sums = Components<D>;
 
@@ -268,7 +246,7 @@ impl<const D: usize> PairLaw for Divergence<D> {
         &self,
         _me: &SMatrix<T, D, D>,
         other: &SMatrix<T, D, D>,
-        pair: &Of<FrozenPair<D>, T>,
+        (pair, _): &Of<Self::Pair, T>,
         sums: &mut SVector<T, D>,
     ) {
         let force = applied(other, &pair.transposed);
@@ -276,21 +254,4 @@ impl<const D: usize> PairLaw for Divergence<D> {
             sums[i] += force[i];
         }
     }
-}
-
-/// `matrix vector`.
-#[inline(always)]
-fn applied<T: Number, const D: usize>(
-    matrix: &SMatrix<T, D, D>,
-    vector: &SVector<T, D>,
-) -> SVector<T, D> {
-    let mut product = Components::<D>::zero();
-    for i in 0..D {
-        let mut sum = matrix[(i, 0)] * vector[0];
-        for j in 1..D {
-            sum += matrix[(i, j)] * vector[j];
-        }
-        product[i] = sum;
-    }
-    product
 }

@@ -13,6 +13,7 @@ mod directed;
 mod dual_gradient;
 mod error;
 mod folded;
+mod frozen;
 mod gather;
 mod gradient;
 mod hourglass;
@@ -30,7 +31,7 @@ mod stencil;
 mod support;
 mod trace;
 
-pub use areas::{Block, LANES, Lanes, PairAreas, Row};
+pub use areas::PairAreas;
 pub use block::NeighborBlock;
 pub use boundary_values::{BoundaryValueError, ModifiedMatrix, POOR_CONDITION, raise_ghosts};
 pub use continued::{Ghost, Share};
@@ -39,6 +40,7 @@ pub use dual_gradient::DualGradient;
 pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
 pub use folded::{FoldedGradient, FoldedHourglass, PlaneData};
+pub use frozen::{FrozenRows, LANES, Lanes, Row};
 pub use gather::{
     Among, OfCenter, OfOther, Pairs, Same, Source, Sum, Term, add_at, gather, gather_parts, sum_at,
     visit,

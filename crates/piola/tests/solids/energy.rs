@@ -3,10 +3,12 @@
 use nalgebra::SVector;
 use num_dual::{Dual64, HyperDual64};
 use piola::operators::{DualGradient, ScalarHourglass};
-use piola::schemes::dual_support::{Discrete, Gradients, Material, Settings, Side};
+use piola::schemes::dual_support::{Discrete, Gradients, Material, Settings};
 use piola::{Tensor, Vector};
 use piola_formulas::Scalar;
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::dual_support::SupportSide;
 use piola_formulas::volumetric::StressState;
 
 use crate::clouds::{Cloud, disorder, some_gradient};
@@ -44,10 +46,8 @@ fn discrete<const D: usize>(
 }
 
 fn forces<const D: usize>(body: &Discrete<D>, displacement: &[Vector<D>]) -> Vec<Vector<D>> {
-    let zero = Vector::zeros();
-    let side = Side { gradient: Tensor::zeros(), tension: Tensor::zeros(), pull: zero };
-    let mut sides = vec![side; body.len()];
-    let mut force = vec![zero; body.len()];
+    let mut sides = vec![SupportSide::zero(); body.len()];
+    let mut force = vec![Vector::zeros(); body.len()];
     body.forces(displacement, &mut sides, &mut force);
     force
 }

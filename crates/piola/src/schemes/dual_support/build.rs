@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::dual_support::SupportSide;
 use thiserror::Error;
 
+use super::discrete::SupportPairs;
 use super::fields::Made;
 use super::stable_step::stable_step;
 use super::stages;
 use super::{
-    Discrete, DualSupport, FIGURES, Gradients, LEDGER, Material, Motion, Settings, Side, Statics,
+    Discrete, DualSupport, FIGURES, Gradients, LEDGER, Material, Motion, Settings, Statics,
     StaticsError, StaticsInput,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -108,7 +111,8 @@ impl<const D: usize> Discrete<D> {
             settings.hourglass * shear * particles.volume[a]
         };
         let hourglass = (0..count).map(hourglass).collect();
-        Ok(Self { particles, support, gradient, materials, hourglass })
+        let pairs = SupportPairs::new(&particles, &support, &gradient);
+        Ok(Self { particles, support, gradient, materials, hourglass, pairs })
     }
 }
 
@@ -172,7 +176,7 @@ impl<const D: usize> DualSupport<D> {
             stiffest,
             body_forces: input.body_forces,
             initial_velocity: velocity,
-            sides: vec![Side::zero(); count],
+            sides: vec![SupportSide::zero(); count],
             force: vec![Vector::zeros(); count],
             rate: vec![0.0; count * width(Made::FIELDS, D) + LEDGER.length(D) + FIGURES],
             reaction: Vec::new(),

@@ -3,11 +3,18 @@
 use nalgebra::{SMatrix, SVector};
 use num_dual::Dual64;
 use piola_formulas::Scalar;
+use piola_formulas::pairs::Periods;
+pub use piola_formulas::pairs::dual_support::Side;
+use piola_formulas::pairs::dual_support::{
+    Reactions, SupportSums, Supported, SupportedPair, Supports,
+};
 
 use super::Material;
 use crate::geometry::Particles;
-use crate::operators::{DirectedSupport, DualGradient, dual_row};
-use crate::{Vector, parallel};
+use crate::operators::{
+    Among, DirectedSupport, DualGradient, FrozenRows, Term, dual_row, gather, sum_at,
+};
+use crate::{Tensor, Vector};
 
 /// Particles, supports, coefficients and materials: all that the energy of a set of displacements
 /// depends on. Its bodies are generic over the number type, so that dual numbers give derivatives
@@ -21,24 +28,68 @@ pub struct Discrete<const D: usize> {
     pub(super) materials: Vec<Material<D>>,
     /// `c_ab = hourglass_a s_ab/tr L_a` with this one a particle, J.
     pub(super) hourglass: Vec<f64>,
+    pub(super) pairs: SupportPairs<D>,
 }
 
-/// What a particle's support says of it.
-#[derive(Clone, Copy, Debug)]
-pub struct Side<T, const D: usize> {
-    /// Displacement gradient A = F - I.
-    pub gradient: SMatrix<T, D, D>,
-    /// Derivative of the particle's energy with respect to A, J: theory (48).
-    pub tension: SMatrix<T, D, D>,
-    /// Force on the particle from its own support in N.
-    pub pull: SVector<T, D>,
+/// The pairs that passes go through.
+#[derive(Clone, Debug)]
+pub(super) struct SupportPairs<const D: usize> {
+    /// Supports.
+    rows: FrozenRows<SupportedPair<D>>,
+    /// Dual supports, with the pairs as the other particle has them.
+    dual: FrozenRows<SupportedPair<D>>,
+    centers: Vec<Center<D>>,
 }
 
-impl<T: Scalar, const D: usize> Side<T, D> {
-    pub(super) fn zero() -> Self {
-        let (gradient, pull) = (SMatrix::zeros(), SVector::zeros());
-        Self { gradient, tension: gradient, pull }
+impl<const D: usize> SupportPairs<D> {
+    pub fn new(
+        particles: &Particles<D>,
+        support: &DirectedSupport<D>,
+        gradient: &DualGradient<D>,
+    ) -> Self {
+        let pair = |entry: u32| Supported {
+            gradient: Vector::from(*gradient.coefficient(entry)),
+            weight: gradient.weight(entry),
+        };
+        let (list, count) = (&support.list, particles.len());
+        let row = |a: usize| {
+            let entries = list.row(a).iter().zip(list.range(a));
+            entries.map(move |(&b, entry)| (b, pair(entry as u32)))
+        };
+        let dual = |a: usize| dual_row(support, a).map(move |(&b, &entry)| (b, pair(entry)));
+        let center = |a: usize| {
+            let (mut sum, mut first, mut second) =
+                (Vector::zeros(), Vector::zeros(), Tensor::zeros());
+            for (b, pair) in row(a) {
+                let separation = support.separation(&particles.position, a, b);
+                sum += pair.gradient;
+                first += separation * pair.weight;
+                second += separation * separation.transpose() * pair.weight;
+            }
+            Center { gradient: sum.into(), first: first.into(), second: second.into() }
+        };
+        Self {
+            rows: FrozenRows::new((0..count).map(row)),
+            dual: FrozenRows::new((0..count).map(dual)),
+            centers: (0..count).map(center).collect(),
+        }
     }
+
+    /// Bytes of all of it.
+    pub fn memory(&self) -> usize {
+        self.rows.memory() + self.dual.memory() + size_of_val(self.centers.as_slice())
+    }
+}
+
+/// Sums over the support of a particle that do not change.
+#[derive(Clone, Copy, Debug)]
+struct Center<const D: usize> {
+    /// `sum_b G_ab` in 1/m.
+    gradient: [f64; D],
+    /// `sum_b w_ab X_ab` in 1/m, with the weights of theory (47).
+    first: [f64; D],
+    /// `sum_b w_ab X_ab (x) X_ab`.
+    second: [[f64; D]; D],
 }
 
 impl<const D: usize> Discrete<D> {
@@ -121,101 +172,101 @@ impl<const D: usize> Discrete<D> {
         deviation
     }
 
-    /// The pass over supports: gradient, tension and pull of particle a.
+    /// What the sums over the support of particle a make of it: gradient, tension and pull.
     ///
     /// Its energy changes by `sum_b t_ab . (du_b - du_a)`, `t_ab = T_a G_ab - 2 c_ab e_ab`, where
     /// `T_a = V_a P_a + 2 sum_b c_ab e_ab (x) X_ab` and e the deviation: theory (48). With plain
     /// gradients the sum in T vanishes; with corrected ones it does not.
-    pub fn side<T: Scalar>(&self, displacement: &[SVector<T, D>], a: usize) -> Side<T, D> {
-        self.side_of(displacement, a, |gradient| self.material(a).law.stress(gradient))
-    }
-
-    /// [`Self::side`] with the stress of `stress`, which the tangent replaces by a linear one.
     #[inline]
-    pub(super) fn side_of<T: Scalar>(
+    fn side<T: Scalar>(
         &self,
-        displacement: &[SVector<T, D>],
         a: usize,
-        stress: impl Fn(&SMatrix<T, D, D>) -> SMatrix<T, D, D>,
+        sums: &SupportSums<T, D>,
+        displacement: SVector<T, D>,
+        stress: impl Fn(usize, &SMatrix<T, D, D>) -> SMatrix<T, D, D>,
     ) -> Side<T, D> {
-        let gradient = self.displacement_gradient(displacement, a);
+        let (center, gradient) = (&self.pairs.centers[a], sums.gradient);
         let volume = self.particles.volume[a];
-        let mut tension = stress(&gradient).map(|entry| entry * volume);
-        let list = &self.support.list;
+        let mut tension = stress(a, &gradient).map(|entry| entry * volume);
         let mut pull = SVector::<T, D>::zeros();
-        if self.hourglass[a] != 0.0 {
-            for (&b, weight) in list.row(a).iter().zip(self.gradient.weights(list.range(a))) {
-                let coefficient = 2.0 * self.hourglass[a] * weight;
-                let deviation = self.deviation(displacement, &gradient, a, b);
-                let deviation = deviation.map(|entry| entry * coefficient);
-                let separation = self.support.separation(&self.particles.position, a, b);
-                add_product(&mut tension, &deviation, &separation.into());
-                pull -= deviation;
+        let hourglass = 2.0 * self.hourglass[a];
+        if hourglass != 0.0 {
+            // Sums of deviations and of deviations with their arms.
+            let deviation = applied(&gradient, &center.first) - sums.difference;
+            for j in 0..D {
+                // The sums are symmetric.
+                let arm = applied(&gradient, &center.second[j]);
+                for i in 0..D {
+                    tension[(i, j)] += (arm[i] - sums.moment[(i, j)]) * hourglass;
+                }
             }
+            pull -= deviation.map(|entry| entry * hourglass);
         }
-        let sum: Vector<D> =
-            self.gradient.coefficients(list.range(a)).iter().map(|g| Vector::from(*g)).sum();
-        Side { gradient, pull: pull + applied(&tension, &sum.into()), tension }
-    }
-
-    /// The pass over dual supports: force on particle a in N, theory (49), Dual-support (28) with
-    /// the sign of its (27) turned round.
-    pub fn force<T: Scalar>(
-        &self,
-        displacement: &[SVector<T, D>],
-        sides: &[Side<T, D>],
-        a: usize,
-    ) -> SVector<T, D> {
-        let mut force = sides[a].pull;
-        for (&b, &entry) in dual_row(&self.support, a) {
-            let side = &sides[b as usize];
-            force -= applied(&side.tension, self.gradient.coefficient(entry));
-            let hourglass = self.hourglass[b as usize];
-            if hourglass != 0.0 {
-                let deviation = self.deviation(displacement, &side.gradient, b as usize, a as u32);
-                let coefficient = 2.0 * hourglass * self.gradient.weight(entry);
-                force += deviation.map(|entry| entry * coefficient);
-            }
-        }
-        force
+        pull += applied(&tension, &center.gradient);
+        let reference = self.particles.position[a].map(T::from);
+        Side { gradient, tension, pull, displacement, reference, hourglass: T::from(hourglass) }
     }
 
     /// Forces on all particles in N into `force`, with the sides that they are made of.
-    pub fn forces<T: Scalar + Send + Sync>(
+    pub fn forces(
         &self,
-        displacement: &[SVector<T, D>],
-        sides: &mut [Side<T, D>],
-        force: &mut [SVector<T, D>],
+        displacement: &[Vector<D>],
+        sides: &mut [Side<f64, D>],
+        force: &mut [Vector<D>],
     ) {
-        self.fill_sides(displacement, sides);
-        self.fill_forces(displacement, sides, force);
+        self.fill_sides(displacement, sides, |a, gradient| self.material(a).law.stress(gradient));
+        self.fill_forces(sides, force);
     }
 
-    /// The sides of all particles.
-    pub fn fill_sides<T: Scalar + Send + Sync>(
+    /// The pass over supports: the sides of all particles, with the stresses of `stress`.
+    pub fn fill_sides(
         &self,
-        displacement: &[SVector<T, D>],
-        sides: &mut [Side<T, D>],
+        displacement: &[Vector<D>],
+        sides: &mut [Side<f64, D>],
+        stress: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
     ) {
-        parallel::for_each_chunk(sides, |first, sides| {
-            for (offset, side) in sides.iter_mut().enumerate() {
-                *side = self.side(displacement, first + offset);
+        let source = (displacement, &*self.particles.position);
+        let close = |a: usize, sums: &SupportSums<f64, D>, side: &mut Side<f64, D>| {
+            *side = self.side(a, sums, displacement[a], &stress);
+        };
+        let (rows, way, among) = (&self.pairs.rows, self.periods(), Among::All);
+        match self.resists_hourglass() {
+            true => {
+                let law = Supports::<D, true>(way);
+                gather(rows, &Term { law, source, among }, sides, Some, close);
             }
-        });
+            false => {
+                let law = Supports::<D, false>(way);
+                gather(rows, &Term { law, source, among }, sides, Some, close);
+            }
+        }
     }
 
-    /// Forces on all particles in N with these sides.
-    pub fn fill_forces<T: Scalar + Send + Sync>(
-        &self,
-        displacement: &[SVector<T, D>],
-        sides: &[Side<T, D>],
-        force: &mut [SVector<T, D>],
-    ) {
-        parallel::for_each_chunk(force, |first, force| {
-            for (offset, force) in force.iter_mut().enumerate() {
-                *force = self.force(displacement, sides, first + offset);
+    /// The pass over dual supports: forces in N, theory (49), Dual-support (28) with the sign of its
+    /// (27) turned round.
+    pub fn fill_forces(&self, sides: &[Side<f64, D>], force: &mut [Vector<D>]) {
+        let close = |a: usize, taken: &Vector<D>, force: &mut Vector<D>| {
+            *force = sides[a].pull + taken;
+        };
+        let (rows, way, among) = (&self.pairs.dual, self.periods(), Among::All);
+        match self.resists_hourglass() {
+            true => {
+                let law = Reactions::<D, true>(way);
+                gather(rows, &Term { law, source: sides, among }, force, Some, close);
             }
-        });
+            false => {
+                let law = Reactions::<D, false>(way);
+                gather(rows, &Term { law, source: sides, among }, force, Some, close);
+            }
+        }
+    }
+
+    fn periods(&self) -> Periods<D> {
+        Periods::new(self.support.domain.periods())
+    }
+
+    fn resists_hourglass(&self) -> bool {
+        self.hourglass.iter().any(|hourglass| *hourglass != 0.0)
     }
 
     /// The tangent stiffness times `direction`, `d2E/du2 direction`, in N for a direction in m:
@@ -231,10 +282,23 @@ impl<const D: usize> Discrete<D> {
             .zip(direction)
             .map(|(u, d)| SVector::from_fn(|i, _| Dual64::new(u[i], d[i])))
             .collect();
-        let mut sides = vec![Side::zero(); self.len()];
-        let mut force = vec![SVector::zeros(); self.len()];
-        self.forces(&seeded, &mut sides, &mut force);
-        force.iter().map(|force| force.map(|entry| -entry.eps)).collect()
+        let places = self.particles.position.iter().map(|x| x.map(Dual64::from));
+        let places: Vec<_> = seeded.iter().copied().zip(places).collect();
+        let (supports, reactions) =
+            (Supports::<D, true>(self.periods()), Reactions::<D, true>(self.periods()));
+        let stress = |a: usize, gradient: &SMatrix<Dual64, D, D>| -> SMatrix<Dual64, D, D> {
+            self.material(a).law.stress(gradient)
+        };
+        let side = |a: usize| {
+            let sums = sum_at(&self.pairs.rows, &supports, a, |b| places[b]);
+            self.side(a, &sums, seeded[a], stress)
+        };
+        let sides: Vec<Side<Dual64, D>> = (0..self.len()).map(side).collect();
+        let force = |a: usize| {
+            let taken = sum_at(&self.pairs.dual, &reactions, a, |b| sides[b]);
+            (sides[a].pull + taken).map(|entry| -entry.eps)
+        };
+        (0..self.len()).map(force).collect()
     }
 }
 

@@ -1,7 +1,10 @@
 //! The dual-support formulation as integrators, clock and output see it.
 
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::dual_support::SupportSide;
+
 use super::fields::{Columns, ColumnsMut, Made};
-use super::{DualSupport, ENERGIES, LEDGER, Side};
+use super::{DualSupport, ENERGIES, LEDGER};
 use crate::fields::FieldDescription;
 use crate::schemes::ledger::Totals;
 use crate::schemes::look::convexity_is_lost;
@@ -51,7 +54,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
         // Nothing is strained yet, so that no force comes from inside.
         let mut rate = vec![0.0; state.len()];
         let count = self.mass.len();
-        let sides = vec![Side::zero(); count];
+        let sides = vec![SupportSide::zero(); count];
         let (at, internal) = (self.columns(&state), (&*vec![Vector::zeros(); count], &*sides));
         let mut totals = Totals::default();
         self.external_pass(0.0, &at, internal, (&mut rate, &mut totals));
@@ -215,6 +218,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
         let particles = &discrete.particles;
         discrete.support.memory()
             + discrete.gradient.memory()
+            + discrete.pairs.memory()
             + size_of_val(discrete.hourglass.as_slice())
             + size_of_val(particles.position.as_slice())
             + size_of_val(particles.volume.as_slice())

@@ -2,6 +2,7 @@
 
 use super::DualSupport;
 use super::fields::Columns;
+use crate::Tensor;
 use crate::schemes::ledger::{Found, Totals};
 use crate::schemes::stages::{Stage, StageFault, Stages};
 
@@ -61,9 +62,14 @@ impl<const D: usize> DualSupport<D> {
     /// Runs one pass of the rates at a time and columns of a state.
     pub(super) fn run(&mut self, pass: Pass, time: f64, at: &Columns<'_, D>, found: Found<'_>) {
         match pass {
-            Pass::Sides => self.discrete.fill_sides(at.displacement, &mut self.sides),
+            Pass::Sides => {
+                let discrete = &self.discrete;
+                let stress =
+                    |a: usize, gradient: &Tensor<D>| discrete.material(a).law.stress(gradient);
+                discrete.fill_sides(at.displacement, &mut self.sides, stress);
+            }
             Pass::Forces => {
-                self.discrete.fill_forces(at.displacement, &self.sides, &mut self.force);
+                self.discrete.fill_forces(&self.sides, &mut self.force);
             }
             Pass::External => {
                 self.external_pass(time, at, (&self.force, &self.sides), found);

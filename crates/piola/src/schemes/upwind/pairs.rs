@@ -1,10 +1,11 @@
 //! The pass over pairs: forces, deformation rates and upwind dissipation in one gather.
 
+use piola_formulas::pairs::AreaPair;
 use piola_formulas::pairs::upwind::{Exchange, ExchangeSum, ExchangeSums, Reconstructed};
 
 use super::fields::ColumnsMut;
 use super::{BODY_FORCE, BOUNDARY_MOTION, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
-use crate::operators::{Among, PairAreas, Sum, Term, gather_parts};
+use crate::operators::{Among, FrozenRows, Sum, Term, gather_parts};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::outside::{Acted, prescribe, push};
 
@@ -48,13 +49,13 @@ impl<const D: usize> Upwind<D> {
 
     fn write_rates(
         &self,
-        sum: &impl Sum<PairAreas<D>, Sums = ExchangeSum<D>>,
+        sum: &impl Sum<FrozenRows<AreaPair<D>>, Sums = ExchangeSum<D>>,
         rate: &mut [f64],
         totals: &mut Totals,
     ) {
         let count = self.particles.len();
         let (own, _) = ColumnsMut::<D>::of(rate, count);
-        let found = gather_parts(&self.areas, sum, (count, own), |row, sums, own, found| {
+        let found = gather_parts(&self.areas.pairs, sum, (count, own), |row, sums, own, found| {
             self.write_row(row, sums, own, found);
         });
         MECHANISMS.iter().zip(&found).for_each(|(entry, sum)| totals.drive(*entry, sum));

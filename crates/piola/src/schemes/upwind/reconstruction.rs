@@ -2,7 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Number;
-use piola_formulas::pairs::upwind::{Periods, Slope, Slopes};
+use piola_formulas::pairs::Periods;
+use piola_formulas::pairs::upwind::{Slope, Slopes};
 
 use super::Upwind;
 use crate::Tensor;
@@ -19,7 +20,7 @@ impl<const D: usize> Upwind<D> {
         let Some(least_squares) = &self.least_squares else { return };
         let law = Slopes(self.periods());
         let sum = Term { law, source: &*self.sides, among: Among::All };
-        gather(&self.areas, &sum, &mut self.slopes, Some, |a, moments, slope| {
+        gather(&self.areas.pairs, &sum, &mut self.slopes, Some, |a, moments, slope| {
             *slope = solved(moments, least_squares.inverse(a));
         });
     }

@@ -23,6 +23,9 @@ pub use stiffness::Stiffness;
 
 use std::sync::Arc;
 
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::dual_support::SupportSide;
+
 use super::{Discrete, Side};
 use crate::Vector;
 use crate::boundaries::{
@@ -179,7 +182,7 @@ impl<const D: usize> Statics<D> {
             stiffness,
             newton: input.newton,
             displacement: vec![Vector::zeros(); count],
-            sides: vec![Side::zero(); count],
+            sides: vec![SupportSide::zero(); count],
             left: vec![Vector::zeros(); count],
             dead: None,
             inertia: None,

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use num_dual::Dual64;
 use piola_formulas::hyperelastic::Tangent as MaterialTangent;
+use piola_formulas::pairs::Record;
+use piola_formulas::pairs::dual_support::SupportSide;
 use piola_formulas::tensor;
 
 use super::super::{Discrete, Side};
@@ -82,7 +84,7 @@ impl<const D: usize> Stiffness<D> {
             springs: Arc::default(),
             springs_of: vec![Vec::new(); count],
             inertia: 0.0,
-            sides: vec![Side::zero(); count],
+            sides: vec![SupportSide::zero(); count],
         };
         stiffness.load(&vec![Vector::zeros(); count], &[]);
         stiffness
@@ -263,26 +265,22 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
     /// is linear as it is.
     fn apply(&mut self, direction: &[Vector<D>], product: &mut [Vector<D>]) {
         let (discrete, tangents) = (&*self.discrete, &self.tangents);
-        parallel::for_each_chunk(&mut self.sides, |first, sides| {
-            for (offset, side) in sides.iter_mut().enumerate() {
-                let a = first + offset;
-                let stress = |gradient: &Tensor<D>| {
-                    let mut stress = Tensor::zeros();
-                    for (k, row) in tangents[a].iter().enumerate() {
-                        for (l, slope) in row.iter().enumerate() {
-                            stress += slope * gradient[(k, l)];
-                        }
-                    }
-                    stress
-                };
-                *side = discrete.side_of(direction, a, stress);
+        let stress = |a: usize, gradient: &Tensor<D>| {
+            let mut stress = Tensor::zeros();
+            for (k, row) in tangents[a].iter().enumerate() {
+                for (l, slope) in row.iter().enumerate() {
+                    stress += slope * gradient[(k, l)];
+                }
             }
-        });
+            stress
+        };
+        discrete.fill_sides(direction, &mut self.sides, stress);
+        discrete.fill_forces(&self.sides, product);
         let (sides, pressed, inertia) = (&self.sides, &self.pressed, self.inertia);
         parallel::for_each_chunk(product, |first, product| {
             for (offset, product) in product.iter_mut().enumerate() {
                 let a = first + offset;
-                *product = -discrete.force(direction, sides, a);
+                *product = -*product;
                 *product += direction[a] * (inertia * discrete.mass(a));
                 if let Some(slopes) = pressed.get(a) {
                     for (k, row) in slopes.iter().enumerate() {

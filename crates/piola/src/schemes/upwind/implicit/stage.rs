@@ -5,7 +5,7 @@ use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::upwind::{
     Exchange, Gradient, Reconstructed, Side, Slope, Slopes, UpwindSide, UpwindSlope,
 };
-use piola_formulas::pairs::{Frozen, FrozenPair, Of, PairLaw, Record};
+use piola_formulas::pairs::{AreaPair, Areas, Frozen, Of, PairLaw, Record};
 use piola_formulas::{Number, Scalar};
 
 use super::super::Upwind;
@@ -89,19 +89,20 @@ impl<T: Scalar, const D: usize> Fields<T, D> {
 
 impl<const D: usize> Stage<'_, D> {
     /// Shows the neighbours of particle a.
-    pub fn pairs(&self, a: usize, look: impl FnMut(usize, &Frozen<f64, D>)) {
+    pub fn pairs(&self, a: usize, mut look: impl FnMut(usize, &Areas<f64, D>)) {
         let needs = Needs::Nothing;
-        visit(&self.scheme.areas, a, Among::All, needs, &mut Row::default(), look);
+        let pairs = &self.scheme.areas.pairs;
+        visit(pairs, a, Among::All, needs, &mut Row::default(), |b, (pair, _)| look(b, pair));
     }
 
     /// What a law sums over the neighbours of particle a.
-    pub fn sum<T: Number, L: PairLaw<Pair = FrozenPair<D>>>(
+    pub fn sum<T: Number, L: PairLaw<Pair = Frozen<AreaPair<D>>>>(
         &self,
         law: &L,
         a: usize,
         show: impl Fn(usize) -> Of<L::Side, T>,
     ) -> Of<L::Sums, T> {
-        sum_at(&self.scheme.areas, law, a, show)
+        sum_at(&self.scheme.areas.pairs, law, a, show)
     }
 
     /// `dF_a/dt`, theory (10).

@@ -9,7 +9,7 @@ use num_dual::Dual64;
 use piola_formulas::pairs::upwind::{
     Exchange, ExchangeSum, Reconstructed, Side, UpwindSide, UpwindSlope,
 };
-use piola_formulas::pairs::{Frozen, FrozenPair, Of, PairLaw, Record};
+use piola_formulas::pairs::{AreaPair, Areas, Of, PairLaw, Record};
 
 use super::super::WaveSpeed;
 use super::stage::{Fields, Stage};
@@ -155,12 +155,12 @@ impl<const D: usize> Stage<'_, D> {
         fields: &Fields<f64, D>,
         a: usize,
         b: usize,
-        pair: &Frozen<f64, D>,
+        pair: &Areas<f64, D>,
     ) -> Dissipation<D> {
         let settings = &self.scheme.settings;
         let [me, other] = [a, b].map(|p| lifted::<UpwindSide<D>>(&fields.locals[p].side));
         let slopes = [a, b].map(|p| lifted::<UpwindSlope<D>>(&fields.slopes[p]));
-        let pair = lifted::<FrozenPair<D>>(pair);
+        let pair = (lifted::<AreaPair<D>>(pair), Dual64::from(1.0));
         let law = Exchange::<D, true, false>(self.scheme.periods());
         let force = |me: Side<Dual64, D>, other: Side<Dual64, D>| -> Vector<D> {
             let mut sums = ExchangeSum::zero();
