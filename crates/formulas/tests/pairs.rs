@@ -6,8 +6,8 @@ use nalgebra::{SVector, Vector2};
 use num_dual::Dual64;
 use piola_formulas::kernels::{Kernel, Needs};
 use piola_formulas::pairs::{
-    AreaPair, Areas, Components, Frozen, Moving, MovingPair, Of, One, PairLaw, Periods, Record,
-    Square, dual_support, fluid, solid, sums, upwind, wall,
+    AreaPair, Areas, Components, Each, Frozen, Moving, MovingPair, Of, One, PairLaw, Periods,
+    Record, Square, fluid, solid, sums, total_lagrangian, upwind, wall,
 };
 use piola_formulas::{Lanes, Lanes4, WIDTH};
 
@@ -167,11 +167,11 @@ macro_rules! each_frozen_law {
         $check("slopes", Slopes::<3>(periodic));
         $check("gradient", Gradient::<2>);
         $check("divergence", Divergence::<3>);
-        use dual_support::{Reactions, Supports};
-        $check("supports", Supports::<2, false>(open));
-        $check("supports", Supports::<3, true>(periodic));
-        $check("reactions", Reactions::<2, false>(open));
-        $check("reactions", Reactions::<3, true>(periodic));
+        use total_lagrangian::{Forces, Gradients};
+        $check("gradients", Gradients::<2, 1>);
+        $check("gradients", Gradients::<3, 2>);
+        $check("forces", Forces::<2, 2>);
+        $check("forces", Forces::<3, 1>);
     }};
 }
 
@@ -194,22 +194,22 @@ fn what_fills_up_lanes_adds_nothing() {
 #[test]
 fn no_law_is_left_out() {
     let sources = [
-        include_str!("../src/pairs/dual_support.rs"),
         include_str!("../src/pairs/fluid.rs"),
         include_str!("../src/pairs/solid.rs"),
         include_str!("../src/pairs/sums.rs"),
+        include_str!("../src/pairs/total_lagrangian.rs"),
         include_str!("../src/pairs/upwind.rs"),
         include_str!("../src/pairs/wall.rs"),
     ];
     let mut laws = 0;
     let here = include_str!("pairs.rs");
-    let modules = ["dual_support", "fluid", "solid", "sums", "upwind", "wall"];
+    let modules = ["fluid", "solid", "sums", "total_lagrangian", "upwind", "wall"];
     for (source, module) in sources.iter().zip(modules) {
         let code = source.replace("PairLaw\n    for", "PairLaw for");
         for after in code.split("PairLaw for ").skip(1) {
             let name = after.split(['<', ' ']).next().unwrap_or_default();
             let path = format!("{module}::{name}");
-            let imported = ["dual_support", "upwind"].contains(&module)
+            let imported = ["total_lagrangian", "upwind"].contains(&module)
                 && here.contains(&format!("\", {name}"));
             assert!(here.contains(&path) || imported, "{path} is not tested");
             laws += 1;
@@ -507,26 +507,27 @@ fn a_linear_field_has_no_reconstructed_jump() {
 
 #[test]
 fn what_a_support_takes_the_other_side_gets_back() {
-    use dual_support::{Reactions, SupportSide, SupportedPair, Supports};
-    let open = Periods::new([f64::INFINITY; 2]);
-    let pair = (some::<SupportedPair<2>>(0.4), 1.0);
-    let (mut one, other) = (some::<SupportSide<2>>(0.2), some::<SupportSide<2>>(0.7));
-    let separation = other.reference - one.reference;
-    // A linear field has its own gradient in each pair, and no deviation.
-    one.gradient = (other.displacement - one.displacement) * separation.transpose()
-        / separation.norm_squared();
-    let places = [&one, &other].map(|side| (side.displacement, side.reference));
-    let sums = sums_of(&Supports::<2, true>(open), [&places[0], &places[1]], &pair);
-    let linear = one.gradient * separation;
-    assert!((sums.gradient - linear * pair.0.gradient.transpose()).norm() <= 1e-14);
-    assert!((sums.moment - linear * separation.transpose() * pair.0.weight).norm() <= 1e-14);
-    assert!((sums.difference - linear * pair.0.weight).norm() <= 1e-14);
-    let force = sums_of(&Reactions::<2, true>(open), [&other, &one], &pair);
-    assert!((force + one.tension * pair.0.gradient).norm() <= 1e-14 * force.norm());
-    // A deviation is pulled back by its weight.
-    let mut moved = other;
-    moved.displacement[0] += 0.1;
-    let more = sums_of(&Reactions::<2, true>(open), [&moved, &one], &pair) - force;
-    let expected = Vector2::new(-0.1 * one.hourglass * pair.0.weight, 0.0);
-    assert!((more - expected).norm() <= 1e-14, "{more}");
+    use total_lagrangian::{Forces, Gradients};
+    let [g, h] = [0.4, 0.8].map(some::<Components<2>>);
+    let [one, two] = [0.2, 0.7].map(some::<Components<2>>);
+    // An energy of the sums W is E = R . W, and k |u_ab|^2/2 of a difference.
+    let (tension, stiffness) = (some::<Each<Square<2>, 2>>(0.3), 0.6);
+    let energy = |[one, two]: [SVector<f64, 2>; 2]| {
+        let sums = sums_of(&Gradients::<2, 2>, [&one, &two], &([g, h], 1.0));
+        let of_sums: f64 = tension.iter().zip(&sums).map(|(r, sum)| r.dot(sum)).sum();
+        of_sums + 0.5 * stiffness * (two - one).norm_squared()
+    };
+    let sides = [(tension, one), (tension, two)];
+    let pair = (([g, h], stiffness), 1.0);
+    let force = sums_of(&Forces::<2, 2>, [&sides[1], &sides[0]], &pair);
+    for i in 0..2 {
+        let moved = |step: f64| {
+            let mut two = two;
+            two[i] += step;
+            energy([one, two])
+        };
+        // The energy is quadratic, so that this difference is its slope.
+        let slope = 0.5 * (moved(1.0) - moved(-1.0));
+        assert!((force[i] + slope).abs() <= 1e-14, "{} {slope}", force[i]);
+    }
 }

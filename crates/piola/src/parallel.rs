@@ -84,6 +84,18 @@ pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sy
     items.par_iter_mut().enumerate().for_each(|(number, item)| body(number, item));
 }
 
+/// `make(i)` for each i below `count`, or the first error.
+///
+/// # Errors
+/// That of the smallest i that has one.
+pub fn try_map<T: Send, E: Send>(
+    count: usize,
+    make: impl Fn(usize) -> Result<T, E> + Send + Sync,
+) -> Result<Vec<T>, E> {
+    let all: Vec<Result<T, E>> = (0..count).into_par_iter().with_min_len(CHUNK).map(make).collect();
+    all.into_iter().collect()
+}
+
 /// What is added up over particles, or of which the largest is kept.
 pub trait Sums: Copy + Send + Sync {
     /// Nothing yet.

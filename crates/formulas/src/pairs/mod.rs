@@ -5,15 +5,15 @@
 //! one neighbour. It is generic over [`Number`], so that the same body sums plain numbers, four at once
 //! ([`Lanes4`](crate::Lanes4)), derivatives, or text for a device. The loops over neighbours are not here.
 
-pub mod dual_support;
 pub mod fluid;
 mod record;
 pub mod solid;
 pub mod sums;
+pub mod total_lagrangian;
 pub mod upwind;
 pub mod wall;
 
-pub use record::{Components, Many, Of, One, Record, Square};
+pub use record::{Components, Each, Many, Of, One, Record, Square};
 
 use crate::Number;
 use crate::kernels::Needs;

@@ -1,6 +1,7 @@
 //! Structs of numbers of any type.
 
 use std::fmt::Debug;
+use std::marker::PhantomData;
 
 use nalgebra::{SMatrix, SVector};
 
@@ -80,34 +81,37 @@ impl Record for One {
     }
 }
 
-/// `N` numbers.
+/// `N` of the same kind.
 #[derive(Clone, Copy, Debug)]
-pub struct Many<const N: usize>;
+pub struct Each<R, const N: usize>(PhantomData<R>);
 
-impl<const M: usize> Record for Many<M> {
-    type Of<T: Number> = [T; M];
+/// `N` numbers.
+pub type Many<const N: usize> = Each<One, N>;
 
-    const NUMBERS: usize = M;
+impl<R: Record, const M: usize> Record for Each<R, M> {
+    type Of<T: Number> = [R::Of<T>; M];
+
+    const NUMBERS: usize = M * R::NUMBERS;
 
     #[inline(always)]
-    fn zero<T: Number>() -> [T; M] {
-        [T::zero(); M]
+    fn zero<T: Number>() -> Self::Of<T> {
+        [R::zero(); M]
     }
 
     #[inline(always)]
     fn map<S: Number, T: Number, const N: usize>(
-        from: [&[S; M]; N],
+        from: [&Self::Of<S>; N],
         f: &impl Fn([S; N]) -> T,
-    ) -> [T; M] {
+    ) -> Self::Of<T> {
         let mut all = Self::zero();
-        for (i, number) in all.iter_mut().enumerate() {
-            *number = f(each(from, |part| part[i]));
+        for (i, own) in all.iter_mut().enumerate() {
+            *own = R::map(each(from, |part| &part[i]), f);
         }
         all
     }
 
     fn names(prefix: &str, names: &mut Vec<String>) {
-        names.extend((0..M).map(|i| within(prefix, &i.to_string())));
+        (0..M).for_each(|i| R::names(&within(prefix, &i.to_string()), names));
     }
 }
 

@@ -1,7 +1,11 @@
 //! SPH matrices of particles whose fields are carried on by ghosts that are made of them.
 
+use piola_formulas::kernels::Needs;
+use piola_formulas::pairs::{Frozen, Of, Square};
+
 use super::error::OperatorError;
-use super::folded::{Block, FoldedGradient};
+use super::frozen::{FrozenRows, Row};
+use super::gather::{Among, visit};
 use super::images::Image;
 use super::stencil::{Cover, GradientForm, stencils};
 use crate::{Tensor, Vector};
@@ -23,14 +27,21 @@ pub struct Ghost<const D: usize> {
     pub data: Vec<(u32, Share<D>)>,
 }
 
-impl<const D: usize> FoldedGradient<D> {
-    /// The matrices of a cover, whose own images are not used, with ghosts: theory (64). Columns behind
-    /// those of particles belong to data.
+/// The gradient of a field with ghosts that carry each of its components on in its own way, theory (64), by rows of
+/// particles and, behind them, of data: the derivatives of component i have row i of a coefficient.
+#[derive(Clone, Debug)]
+pub struct ContinuedGradient<const D: usize> {
+    rows: FrozenRows<Square<D>>,
+    count: usize,
+}
+
+impl<const D: usize> ContinuedGradient<D> {
+    /// The matrices of a cover, whose own images are not used, with ghosts.
     ///
     /// # Errors
-    /// As [`FoldedGradient::new`], and [`OperatorError::Gap`] in the corrected form for a particle
-    /// whose neighbours do not surround it evenly, so that its matrix of moments is no mere factor.
-    pub fn continued(
+    /// As [`SphMatrices::new`](super::SphMatrices::new), and [`OperatorError::Gap`] in the corrected form
+    /// for a particle whose neighbours do not surround it evenly, so that its matrix of moments is no mere factor.
+    pub fn new(
         cover: &Cover<'_, D>,
         form: GradientForm,
         ghosts: &[Ghost<D>],
@@ -46,8 +57,7 @@ impl<const D: usize> FoldedGradient<D> {
         let cover = Cover { particles, group, images: &images, kernel, radius, domain };
         let stencils = stencils(&cover, form)?;
         let count = particles.len();
-        let mut forward = Block::new(D);
-        let mut row: Vec<(u32, Tensor<D>)> = Vec::new();
+        let mut rows: Vec<Vec<(u32, Tensor<D>)>> = Vec::with_capacity(count);
         for (a, stencil) in stencils.iter().enumerate() {
             if form == GradientForm::Corrected {
                 let size: f64 = stencil.entries.iter().map(|entry| entry.gradient.norm()).sum();
@@ -58,7 +68,7 @@ impl<const D: usize> FoldedGradient<D> {
                     });
                 }
             }
-            row.clear();
+            let mut row = Vec::with_capacity(stencil.entries.len());
             for entry in &stencil.entries {
                 let Some(number) = entry.neighbor.checked_sub(count) else {
                     let whole = Tensor::from_fn(|_, j| entry.gradient[j]);
@@ -75,9 +85,87 @@ impl<const D: usize> FoldedGradient<D> {
                 let data = ghost.data.iter();
                 row.extend(data.map(|(datum, share)| (count as u32 + datum, of(share))));
             }
-            forward.push(&mut row);
+            // Stable, so that sums are taken in one order.
+            row.sort_by_key(|(column, _)| *column);
+            row.dedup_by(|next, kept| {
+                let is_known = next.0 == kept.0;
+                if is_known {
+                    kept.1 += next.1;
+                }
+                is_known
+            });
+            rows.push(row);
         }
-        Ok(Self::of_rows(forward, stencils.iter().map(|stencil| stencil.shape).collect()))
+        Ok(Self { rows: FrozenRows::new(rows.into_iter()), count })
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    #[inline]
+    fn visit(&self, a: usize, look: impl FnMut(usize, &Of<Frozen<Square<D>>, f64>)) {
+        visit(&self.rows, a, Among::All, Needs::Nothing, &mut Row::default(), look);
+    }
+
+    /// The particles that have a part in the gradient of particle `a`.
+    pub fn row(&self, a: usize) -> Vec<u32> {
+        let mut row = Vec::new();
+        self.visit(a, |b, _| row.extend((b < self.count).then_some(b as u32)));
+        row
+    }
+
+    /// The gradient `du_i/dx_j` at particle `a` of a field with its data.
+    #[inline]
+    pub fn gradient_at(&self, field: &[Vector<D>], a: usize) -> Tensor<D> {
+        self.gradient_of(|b| field[b], a)
+    }
+
+    /// The part of data in the gradient at particle `a`, whose numbers are counted from 0.
+    #[inline]
+    pub fn gradient_of_data(&self, datum: impl Fn(usize) -> Vector<D>, a: usize) -> Tensor<D> {
+        self.gradient_of(|b| b.checked_sub(self.count).map_or_else(Vector::zeros, &datum), a)
+    }
+
+    #[inline]
+    fn gradient_of(&self, field: impl Fn(usize) -> Vector<D>, a: usize) -> Tensor<D> {
+        let mut gradient = Tensor::zeros();
+        self.visit(a, |b, (coefficients, _)| {
+            let own = field(b);
+            for i in 0..D {
+                for j in 0..D {
+                    gradient[(i, j)] += coefficients[(i, j)] * own[i];
+                }
+            }
+        });
+        gradient
+    }
+
+    /// The divergence `sum_j dT_ij/dx_j` at particle `a` of a tensor field that is known as a function
+    /// of the particle.
+    #[inline]
+    pub fn divergence_of(&self, field: impl Fn(usize) -> Tensor<D>, a: usize) -> Vector<D> {
+        let mut divergence = Vector::zeros();
+        self.visit(a, |b, (coefficients, _)| {
+            let own = field(b);
+            for i in 0..D {
+                for j in 0..D {
+                    divergence[i] += coefficients[(i, j)] * own[(i, j)];
+                }
+            }
+        });
+        divergence
+    }
+
+    /// Bytes of all coefficients.
+    pub fn memory(&self) -> usize {
+        self.rows.memory()
     }
 }
 

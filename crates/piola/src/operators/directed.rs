@@ -2,6 +2,7 @@
 
 use piola_formulas::kernels::Kernel;
 
+use super::stencil::Cover;
 use crate::Vector;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, NeighborList, search};
@@ -38,10 +39,30 @@ impl<const D: usize> DirectedSupport<D> {
         radius: Vec<f64>,
         domain: Domain<D>,
     ) -> Result<Self, NeighborError> {
-        let mut list = search(&particles.position, &radius, &domain)?;
-        let body = &particles.body;
-        if body.windows(2).any(|pair| pair[0] != pair[1]) {
-            list = list.retain(|a, b| body[a as usize] == body[b as usize]);
+        let (group, images) = (&*particles.body, &[]);
+        Self::of(&Cover { particles, group, images, kernel, radius: &radius, domain })
+    }
+
+    /// The supports of a cover, of which images have none of their own. They lie in those of particles, with
+    /// numbers behind them.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of(cover: &Cover<'_, D>) -> Result<Self, NeighborError> {
+        let Cover { particles, group, images, kernel, radius, domain } = *cover;
+        let count = particles.len();
+        let source = |slot: u32| match (slot as usize).checked_sub(count) {
+            None => slot as usize,
+            Some(image) => images[image].source as usize,
+        };
+        let of_images = images.iter().map(|image| image.position);
+        let positions: Vec<_> = particles.position.iter().copied().chain(of_images).collect();
+        let reach: Vec<f64> =
+            (0..positions.len() as u32).map(|slot| radius[source(slot)]).collect();
+        let mut list = search(&positions, &reach, &domain)?;
+        if !images.is_empty() || group.windows(2).any(|pair| pair[0] != pair[1]) {
+            let sees = |a: u32, b: u32| group.is_empty() || group[a as usize] == group[source(b)];
+            list = list.retain(|a, b| (a as usize) < count && sees(a, b));
         }
         let dual = list.dual();
         let mut next = dual.offsets().to_vec();
@@ -51,7 +72,7 @@ impl<const D: usize> DirectedSupport<D> {
             dual_entries[next[b as usize]] = entry as u32;
             next[b as usize] += 1;
         }
-        Ok(Self { kernel, radius, list, dual, dual_entries, domain })
+        Ok(Self { kernel, radius: radius.to_vec(), list, dual, dual_entries, domain })
     }
 
     /// Reference separation `X_b - X_a`, the nearest image in a periodic box.

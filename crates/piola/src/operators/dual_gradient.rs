@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use super::directed::DirectedSupport;
 use super::error::OperatorError;
-use super::gradient::invert;
+use super::gradient::Correction;
+use super::stencil::{Cover, stencils_on};
 use crate::geometry::Particles;
-use crate::{Tensor, Vector, parallel};
+use crate::{Vector, parallel};
 
 /// Gradient coefficients `G_ab` of every b in the support of a, theory (44), Dual-support (10) to
 /// (12), and the weights with which deviations from a linear field are summed, theory (47).
@@ -19,6 +20,7 @@ pub struct DualGradient<const D: usize> {
     pub(super) coefficients: Vec<[f64; D]>,
     /// `s_ab / tr L_a` for each entry of the list, in 1/m^2: they weigh squares of lengths.
     pub(super) weights: Vec<f64>,
+    pub(super) is_plain: bool,
 }
 
 impl<const D: usize> DualGradient<D> {
@@ -31,22 +33,30 @@ impl<const D: usize> DualGradient<D> {
         particles: &Particles<D>,
         support: &DirectedSupport<D>,
     ) -> Result<Self, OperatorError> {
-        type Row<const D: usize> = Result<(Vec<[f64; D]>, Vec<f64>), OperatorError>;
-        let mut rows: Vec<Row<D>> = Vec::new();
-        rows.resize_with(particles.len(), || Ok((Vec::new(), Vec::new())));
-        parallel::for_each_chunk(&mut rows, |first, rows| {
-            for (offset, row) in rows.iter_mut().enumerate() {
-                *row = plain_row(particles, support, first + offset);
-            }
-        });
-        let mut coefficients = Vec::with_capacity(support.list.pairs());
-        let mut weights = Vec::with_capacity(support.list.pairs());
-        for row in rows {
-            let (row, row_weights) = row?;
-            coefficients.extend_from_slice(&row);
-            weights.extend_from_slice(&row_weights);
+        let DirectedSupport { kernel, radius, domain, .. } = support;
+        let (kernel, domain) = (*kernel, *domain);
+        Self::of(&Cover { particles, group: &[], images: &[], kernel, radius, domain }, support)
+    }
+
+    /// The plain gradients of a cover on its support.
+    ///
+    /// # Errors
+    /// As [`Self::plain`].
+    pub fn of(cover: &Cover<'_, D>, support: &DirectedSupport<D>) -> Result<Self, OperatorError> {
+        let entries = support.list.pairs();
+        let (mut coefficients, mut weights) =
+            (Vec::with_capacity(entries), Vec::with_capacity(entries));
+        for stencil in stencils_on(cover, &support.list, Correction::Gradient)? {
+            coefficients
+                .extend(stencil.entries.iter().map(|entry| <[f64; D]>::from(entry.gradient)));
+            weights.extend(stencil.entries.iter().map(|entry| entry.weight));
         }
-        Ok(Self { coefficients, weights })
+        Ok(Self { coefficients, weights, is_plain: true })
+    }
+
+    /// Whether it is the gradient of the paper, `G_ab = L_a^-1 s_ab X_ab`.
+    pub fn is_plain(&self) -> bool {
+        self.is_plain
     }
 
     /// `G_ab` of some entries of the list, in 1/m.
@@ -104,34 +114,4 @@ pub(crate) fn dual_row<const D: usize>(
     a: usize,
 ) -> impl Iterator<Item = (&u32, &u32)> {
     support.dual.row(a).iter().zip(&support.dual_entries[support.dual.range(a)])
-}
-
-fn plain_row<const D: usize>(
-    particles: &Particles<D>,
-    support: &DirectedSupport<D>,
-    a: usize,
-) -> Result<(Vec<[f64; D]>, Vec<f64>), OperatorError> {
-    let (row, h) = (support.list.row(a), support.smoothing_length(a));
-    let mut moment = Tensor::<D>::zeros();
-    let mut terms = Vec::with_capacity(row.len());
-    for &b in row {
-        let separation = support.separation(&particles.position, a, b);
-        let distance = separation.norm();
-        if !(distance > 0.0) {
-            return Err(OperatorError::Coincident {
-                first: particles.id[a],
-                second: particles.id[b as usize],
-                position: particles.position[a].iter().copied().collect(),
-            });
-        }
-        let slope = -support.kernel.derivative_over_r(D, distance, h);
-        let weight = particles.weight[b as usize] * slope;
-        moment += separation * separation.transpose() * weight;
-        terms.push((separation, weight));
-    }
-    let inverse = invert(particles, a, row.len(), &moment, "gradient")?;
-    let trace = moment.trace();
-    let coefficient = |(x, weight): &(Vector<D>, f64)| (inverse * x * *weight).into();
-    let coefficients = terms.iter().map(coefficient).collect();
-    Ok((coefficients, terms.iter().map(|(_, weight)| weight / trace).collect()))
 }

@@ -72,6 +72,16 @@ impl<R: Record> FrozenRows<R> {
         Self { neighbors, numbers, rows: ranges, record: PhantomData }
     }
 
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
     /// Bytes of all rows, which a pass over pairs reads.
     pub fn memory(&self) -> usize {
         size_of_val(self.neighbors.as_slice())

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::error::OperatorError;
+use super::stencil::stencil;
 use super::support::Support;
 use crate::geometry::Particles;
 use crate::{Tensor, Vector, parallel};
@@ -63,28 +64,25 @@ impl<const D: usize> GradientOperator<D> {
     /// Builds the coefficients with kernel weights `particles.weight`.
     ///
     /// # Errors
-    /// [`OperatorError::PoorSupport`] names the first particle whose correction does not exist.
+    /// [`OperatorError::PoorSupport`] names the first particle whose correction does not exist,
+    /// [`OperatorError::Coincident`] two at one place.
     pub fn new(
         particles: &Particles<D>,
         support: &Support<D>,
         correction: Correction,
     ) -> Result<Self, OperatorError> {
         let list = &support.list;
-        let mut rows: Vec<Result<Vec<[f64; D]>, OperatorError>> = Vec::new();
-        rows.resize_with(list.len(), || Ok(Vec::new()));
-        parallel::for_each_chunk(&mut rows, |first, rows| {
-            for (offset, row) in rows.iter_mut().enumerate() {
-                *row = coefficients(particles, support, correction, first + offset);
-            }
-        });
-        let mut forward = Vec::with_capacity(list.pairs());
-        let mut diagonal = Vec::with_capacity(list.len());
-        for row in rows {
-            let row = row?;
-            let sum: Vector<D> = row.iter().map(|g| Vector::from(*g)).sum();
-            diagonal.push((-sum).into());
-            forward.extend_from_slice(&row);
-        }
+        let stencils = parallel::try_map(list.len(), |a| {
+            let neighbors = list
+                .row(a)
+                .iter()
+                .map(|&b| ([b as usize; 2], support.separation(&particles.position, a, b)));
+            let kernel = (support.kernel, support.smoothing_length[a]);
+            stencil(particles, kernel, correction, a, neighbors)
+        })?;
+        let diagonal = stencils.iter().map(|stencil| stencil.diagonal.into()).collect();
+        let entries = stencils.iter().flat_map(|stencil| &stencil.entries);
+        let forward: Vec<[f64; D]> = entries.map(|entry| entry.gradient.into()).collect();
         let adjoint = support.reverse.iter().map(|&entry| forward[entry as usize]).collect();
         Ok(Self { forward, adjoint, diagonal })
     }
@@ -107,21 +105,6 @@ impl<const D: usize> GradientOperator<D> {
         Vector::from(self.diagonal[a])
     }
 
-    /// Gradient of a scalar field at every particle.
-    pub fn gradient(&self, support: &Support<D>, field: &[f64]) -> Vec<Vector<D>> {
-        self.apply(support, |a, b, g| g * (field[b] - field[a]))
-    }
-
-    /// Gradient of a vector field at every particle: `T_ij = d f_i / d X_j`.
-    pub fn vector_gradient(&self, support: &Support<D>, field: &[Vector<D>]) -> Vec<Tensor<D>> {
-        self.apply(support, |a, b, g| (field[b] - field[a]) * g.transpose())
-    }
-
-    /// Divergence of a vector field at every particle.
-    pub fn divergence(&self, support: &Support<D>, field: &[Vector<D>]) -> Vec<f64> {
-        self.apply(support, |a, b, g| (field[b] - field[a]).dot(&g))
-    }
-
     /// Discrete boundary area vectors `A_a = sum_b V_b G_ba` in m^(D-1), theory (14): the nodal
     /// forces of a unit pressure, zero inside a body where the operator is consistent, and the
     /// outward area of a particle on its boundary. They sum to zero.
@@ -139,60 +122,6 @@ impl<const D: usize> GradientOperator<D> {
         });
         areas
     }
-
-    fn apply<T: Send + Clone + std::iter::Sum<T>>(
-        &self,
-        support: &Support<D>,
-        term: impl Fn(usize, usize, Vector<D>) -> T + Sync,
-    ) -> Vec<T> {
-        let mut values: Vec<T> = vec![std::iter::empty().sum(); support.list.len()];
-        parallel::for_each_chunk(&mut values, |first, rows| {
-            for (offset, value) in rows.iter_mut().enumerate() {
-                let a = first + offset;
-                let neighbors = support.list.row(a).iter();
-                *value = neighbors
-                    .zip(self.forward(support.list.range(a)))
-                    .map(|(&b, g)| term(a, b as usize, Vector::from(*g)))
-                    .sum();
-            }
-        });
-        values
-    }
-}
-
-/// `G_ab` of all neighbours b of particle a.
-fn coefficients<const D: usize>(
-    particles: &Particles<D>,
-    support: &Support<D>,
-    correction: Correction,
-    a: usize,
-) -> Result<Vec<[f64; D]>, OperatorError> {
-    let (kernel, h) = (support.kernel, support.smoothing_length[a]);
-    let row = support.list.row(a);
-    let separations: Vec<Vector<D>> =
-        row.iter().map(|&b| support.separation(&particles.position, a, b)).collect();
-    let weight = |k: usize| particles.weight[row[k] as usize];
-    // grad_a W_ab = W'(r)/r (X_a - X_b); the separation is X_b - X_a.
-    let mut gradients: Vec<Vector<D>> =
-        separations.iter().map(|d| d * -kernel.derivative_over_r(D, d.norm(), h)).collect();
-    if correction == Correction::KernelAndGradient {
-        let values: Vec<f64> = separations.iter().map(|d| kernel.value(D, d.norm(), h)).collect();
-        let own = particles.weight[a] * kernel.value(D, 0.0, h);
-        let sum = own + (0..row.len()).map(|k| weight(k) * values[k]).sum::<f64>();
-        let slope: Vector<D> = (0..row.len()).map(|k| gradients[k] * weight(k)).sum();
-        for (gradient, value) in gradients.iter_mut().zip(&values) {
-            *gradient = (*gradient * sum - slope * *value) / (sum * sum); // Upwind (2.42)
-        }
-    }
-    if correction != Correction::None {
-        let moment: Tensor<D> =
-            (0..row.len()).map(|k| gradients[k] * separations[k].transpose() * weight(k)).sum();
-        let inverse = invert(particles, a, row.len(), &moment, correction.name())?;
-        for gradient in &mut gradients {
-            *gradient = inverse * *gradient; // Upwind (2.41) with (2.43)
-        }
-    }
-    Ok((0..row.len()).map(|k| (gradients[k] * weight(k)).into()).collect())
 }
 
 /// Inverse of a moment matrix, or the error that names the particle without one.

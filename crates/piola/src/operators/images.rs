@@ -1,5 +1,6 @@
 //! Mirror images of particles beyond the planes that end a body.
 
+use super::reference::PlaneData;
 use crate::Vector;
 
 /// Particles nearer to a plane than this share of their spacing lie on it and have no image there.
@@ -40,6 +41,16 @@ pub struct Image<const D: usize> {
     pub sign: [f64; D],
     /// What the data of the lower and the upper plane of each axis add to the component along it.
     pub data: [[f64; 2]; D],
+}
+
+impl<const D: usize> Image<D> {
+    /// What data of planes add to each component.
+    pub fn carried(&self, data: &PlaneData<D>) -> Vector<D> {
+        let of = |axis: usize| -> f64 {
+            self.data[axis].iter().zip(&data[axis]).map(|(share, datum)| share * datum).sum()
+        };
+        Vector::from_fn(|axis, _| of(axis))
+    }
 }
 
 /// One axis of an image.

@@ -24,14 +24,9 @@ impl<const D: usize> LeastSquares<D> {
     /// [`OperatorError`] for a particle whose neighbours do not span the space, or that shares
     /// its place with another.
     pub fn new(particles: &Particles<D>, support: &Support<D>) -> Result<Self, OperatorError> {
-        let mut moments: Vec<Result<Tensor<D>, OperatorError>> = Vec::new();
-        moments.resize_with(particles.len(), || Ok(Tensor::zeros()));
-        parallel::for_each_chunk(&mut moments, |first, rows| {
-            for (offset, moment) in rows.iter_mut().enumerate() {
-                *moment = inverse_moment(particles, support, first + offset);
-            }
-        });
-        Ok(Self { inverse: moments.into_iter().collect::<Result<_, _>>()? })
+        let inverse =
+            parallel::try_map(particles.len(), |a| inverse_moment(particles, support, a))?;
+        Ok(Self { inverse })
     }
 
     /// `[sum_b N_ab (x) N_ab]^-1` of particle a.

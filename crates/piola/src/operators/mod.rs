@@ -1,10 +1,11 @@
-//! SPH operators on frozen neighbour lists: interpolation, gradient, divergence, their
-//! corrections, and the least-squares gradient.
+//! SPH operators on frozen neighbour lists: gradients with their corrections and adjoints, and the
+//! least-squares gradient.
 //!
 //! An operator is built once from the reference positions and then applied every step. Its rows
 //! are gathered: particle a sums over its own neighbours in a fixed order. [`MovingSupport`] is for
 //! particles that move: it shows the neighbours of the moment to the sums of a scheme.
 
+mod adjoint;
 mod areas;
 mod block;
 mod boundary_values;
@@ -12,18 +13,16 @@ mod continued;
 mod directed;
 mod dual_gradient;
 mod error;
-mod folded;
 mod frozen;
 mod gather;
 mod gradient;
-mod hourglass;
 mod images;
 mod inside;
-mod interpolation;
 mod lattice_areas;
 mod least_squares;
 mod moving;
 mod patch;
+mod reference;
 mod relax;
 mod sparse;
 mod sph_matrices;
@@ -34,24 +33,22 @@ mod trace;
 pub use areas::PairAreas;
 pub use block::NeighborBlock;
 pub use boundary_values::{BoundaryValueError, ModifiedMatrix, POOR_CONDITION, raise_ghosts};
-pub use continued::{Ghost, Share};
+pub use continued::{ContinuedGradient, Ghost, Share};
 pub use directed::{DirectedSupport, nearest_radii};
 pub use dual_gradient::DualGradient;
 pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
-pub use folded::{FoldedGradient, FoldedHourglass, PlaneData};
 pub use frozen::{FrozenRows, LANES, Lanes, Row};
 pub use gather::{
     Among, OfCenter, OfOther, Pairs, Same, Source, Sum, Term, add_at, gather, gather_parts, sum_at,
     visit,
 };
 pub use gradient::{Correction, GradientOperator};
-pub use hourglass::ScalarHourglass;
 pub use images::{Continuation, Image, Mirror, images};
-pub use interpolation::Interpolation;
 pub use lattice_areas::{exposed_areas, lattice_areas};
 pub use least_squares::LeastSquares;
 pub use moving::{MovingSupport, Remaining};
+pub use reference::{PlaneData, ReferenceGradient, Strained};
 pub use relax::relax;
 pub use sparse::SparseOperator;
 pub use sph_matrices::SphMatrices;

@@ -59,6 +59,7 @@ impl<const D: usize> DualGradient<D> {
                 coefficient[direction] += change;
             }
         }
+        self.is_plain = false;
         Ok(self)
     }
 }

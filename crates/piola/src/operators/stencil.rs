@@ -2,11 +2,12 @@
 
 use piola_formulas::kernels::Kernel;
 
+use super::directed::DirectedSupport;
 use super::error::OperatorError;
-use super::gradient::invert;
+use super::gradient::{Correction, invert};
 use super::images::Image;
 use crate::geometry::Particles;
-use crate::neighbors::{Domain, NeighborList, search};
+use crate::neighbors::{Domain, NeighborList};
 use crate::{Tensor, Vector, parallel};
 
 /// What a kernel gradient is made into.
@@ -66,7 +67,7 @@ pub(super) struct Entry<const D: usize> {
     pub value: f64,
     /// The coefficient of the gradient in 1/m.
     pub gradient: Vector<D>,
-    /// `s_pq/tr L_p` of theory (47), in 1/m^2.
+    /// `s_pq/tr L_p` of theory (47), in 1/m^2, of a gradient that is corrected.
     pub weight: f64,
 }
 
@@ -76,10 +77,8 @@ pub(super) struct Stencil<const D: usize> {
     pub entries: Vec<Entry<D>>,
     /// `w_p W_pp`.
     pub own: f64,
-    /// Coefficient of the particle itself in the gradient, 1/m.
+    /// Coefficient of the particle itself in the gradient of differences, 1/m.
     pub diagonal: Vector<D>,
-    /// `L_p/tr L_p`.
-    pub shape: Tensor<D>,
 }
 
 /// The sums around all particles.
@@ -91,48 +90,55 @@ pub(super) fn stencils<const D: usize>(
     cover: &Cover<'_, D>,
     form: GradientForm,
 ) -> Result<Vec<Stencil<D>>, OperatorError> {
-    let count = cover.particles.len();
-    let sources = cover.images.iter().map(|image| image.source as usize);
-    let mut positions = cover.particles.position.clone();
-    positions.extend(cover.images.iter().map(|image| image.position));
-    let mut radius = cover.radius.to_vec();
-    radius.extend(sources.map(|source| cover.radius[source]));
-    let list = search(&positions, &radius, &cover.domain)?;
-    let mut found: Vec<Result<Option<Stencil<D>>, OperatorError>> = Vec::new();
-    found.resize_with(count, || Ok(None));
-    parallel::for_each_chunk(&mut found, |first, rows| {
-        for (offset, row) in rows.iter_mut().enumerate() {
-            *row = stencil(cover, form, &positions, &list, first + offset).map(Some);
-        }
-    });
-    let mut all = Vec::with_capacity(count);
-    for row in found {
-        all.extend(row?);
+    let correction = match form {
+        GradientForm::Corrected => Correction::Gradient,
+        _ => Correction::None,
+    };
+    let mut stencils = stencils_on(cover, &DirectedSupport::of(cover)?.list, correction)?;
+    if form == GradientForm::Plain {
+        stencils.iter_mut().for_each(|stencil| stencil.diagonal = Vector::zeros());
     }
-    Ok(all)
+    Ok(stencils)
 }
 
-fn stencil<const D: usize>(
+/// The sums around all particles over the neighbours of a list of particles, and behind them of images.
+///
+/// # Errors
+/// [`OperatorError`] for particles without a corrected gradient.
+pub(super) fn stencils_on<const D: usize>(
     cover: &Cover<'_, D>,
-    form: GradientForm,
-    positions: &[Vector<D>],
     list: &NeighborList,
+    correction: Correction,
+) -> Result<Vec<Stencil<D>>, OperatorError> {
+    let Cover { particles, images, kernel, radius, domain, .. } = *cover;
+    parallel::try_map(particles.len(), |a| {
+        let h = radius[a] / kernel.support_over_h();
+        let neighbors = list.row(a).iter().map(|&b| {
+            let slot = b as usize;
+            let (source, position) = match slot.checked_sub(particles.len()) {
+                None => (slot, particles.position[slot]),
+                Some(image) => (images[image].source as usize, images[image].position),
+            };
+            ([slot, source], domain.separation(&particles.position[a], &position))
+        });
+        stencil(particles, (kernel, h), correction, a, neighbors)
+    })
+}
+
+/// The sums around particle `a` over neighbours, each with its slot, the particle that it is or mirrors, and where it is
+/// from `a`.
+///
+/// # Errors
+/// [`OperatorError`] where a neighbour is at the same place, and where the correction does not exist.
+pub(super) fn stencil<const D: usize>(
+    particles: &Particles<D>,
+    (kernel, h): (Kernel, f64),
+    correction: Correction,
     a: usize,
+    neighbors: impl ExactSizeIterator<Item = ([usize; 2], Vector<D>)>,
 ) -> Result<Stencil<D>, OperatorError> {
-    let Cover { particles, group, images, kernel, radius, domain } = cover;
-    let count = particles.len();
-    let h = radius[a] / kernel.support_over_h();
-    let of_group = |b: usize| group.is_empty() || group[b] == group[a];
-    let mut entries = Vec::with_capacity(list.row(a).len());
-    let mut moment = Tensor::<D>::zeros();
-    for &b in list.row(a) {
-        let neighbor = b as usize;
-        let source =
-            if neighbor < count { neighbor } else { images[neighbor - count].source as usize };
-        if !of_group(source) {
-            continue;
-        }
-        let separation = domain.separation(&positions[a], &positions[neighbor]);
+    let mut seen = Vec::with_capacity(neighbors.len());
+    for ([neighbor, source], separation) in neighbors {
         let distance = separation.norm();
         if !(distance > 0.0) {
             return Err(OperatorError::Coincident {
@@ -141,28 +147,54 @@ fn stencil<const D: usize>(
                 position: particles.position[a].iter().copied().collect(),
             });
         }
-        let weight = -particles.weight[source] * kernel.derivative_over_r(D, distance, h);
-        moment += separation * separation.transpose() * weight;
-        entries.push(Entry {
+        // grad_a W_ab = W'(r)/r (X_a - X_b); the separation is X_b - X_a.
+        let slope = -kernel.derivative_over_r(D, distance, h);
+        let (weight, value) = (particles.weight[source], kernel.value(D, distance, h));
+        seen.push(Seen {
             neighbor,
-            value: particles.weight[source] * kernel.value(D, distance, h),
-            gradient: separation * weight,
+            separation,
             weight,
+            slope,
+            value,
+            gradient: separation * slope,
         });
     }
-    let trace = moment.trace();
-    if form == GradientForm::Corrected {
-        let inverse = invert(particles, a, entries.len(), &moment, "gradient")?;
-        entries.iter_mut().for_each(|entry| entry.gradient = inverse * entry.gradient);
-    }
-    if trace > 0.0 {
-        entries.iter_mut().for_each(|entry| entry.weight /= trace);
-        moment /= trace;
-    }
-    let diagonal = match form {
-        GradientForm::Plain => Vector::zeros(),
-        _ => -entries.iter().map(|entry| entry.gradient).sum::<Vector<D>>(),
-    };
     let own = particles.weight[a] * kernel.value(D, 0.0, h);
-    Ok(Stencil { entries, own, diagonal, shape: moment })
+    if correction == Correction::KernelAndGradient {
+        let sum = own + seen.iter().map(|it| it.weight * it.value).sum::<f64>();
+        let slope: Vector<D> = seen.iter().map(|it| it.gradient * it.weight).sum();
+        for it in &mut seen {
+            it.gradient = (it.gradient * sum - slope * it.value) / (sum * sum); // Upwind (2.42)
+        }
+    }
+    let mut trace = 1.0;
+    if correction != Correction::None {
+        let moments = seen.iter().map(|it| it.gradient * it.separation.transpose() * it.weight);
+        let moment: Tensor<D> = moments.sum();
+        let inverse = invert(particles, a, seen.len(), &moment, correction.name())?;
+        trace = moment.trace();
+        // Upwind (2.41) with (2.43)
+        seen.iter_mut().for_each(|it| it.gradient = inverse * it.gradient);
+    }
+    let entry = |it: &Seen<D>| Entry {
+        neighbor: it.neighbor,
+        value: it.weight * it.value,
+        gradient: it.gradient * it.weight,
+        weight: it.weight * it.slope / trace,
+    };
+    let entries: Vec<Entry<D>> = seen.iter().map(entry).collect();
+    let diagonal = -entries.iter().map(|entry| entry.gradient).sum::<Vector<D>>();
+    Ok(Stencil { entries, own, diagonal })
+}
+
+/// What the kernel sees of a neighbour, without its weight.
+struct Seen<const D: usize> {
+    neighbor: usize,
+    separation: Vector<D>,
+    /// `w_q`.
+    weight: f64,
+    /// `-W'(r)/r`.
+    slope: f64,
+    value: f64,
+    gradient: Vector<D>,
 }

@@ -6,6 +6,7 @@ use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse, Reduce
 use piola_formulas::tensor;
 
 use crate::boundaries::prescribed::PrescribedComponents;
+use crate::solve::largest_mode;
 use crate::{Tensor, Vector, parallel};
 
 /// The material of one body.
@@ -56,6 +57,34 @@ pub(crate) fn drift<const D: usize>(
         let middle = entry.value.value(entry.place, time + 0.5 * step);
         displacement[a][component] += step * (middle - velocity[a][component]);
     }
+}
+
+/// The largest eigenvalue of `M^-1/2 K M^-1/2` on the components that are free, in 1/s^2, and the particle that moves most in
+/// its mode: `apply` writes `-K u` of a field u.
+pub(crate) fn fastest_mode<const D: usize>(
+    mass: &[f64],
+    is_free: impl Fn(usize, usize) -> bool,
+    mut apply: impl FnMut(&[Vector<D>], &mut [Vector<D>]),
+) -> (f64, usize) {
+    let mut field = vec![Vector::zeros(); mass.len()];
+    let mut force = field.clone();
+    let mode = largest_mode(mass.len() * D, |direction, product| {
+        for (a, (field, mass)) in field.iter_mut().zip(mass).enumerate() {
+            let of = |i: usize| direction[a * D + i] / mass.sqrt();
+            *field = Vector::from_fn(|i, _| if is_free(a, i) { of(i) } else { 0.0 });
+        }
+        apply(&field, &mut force);
+        for (a, (product, mass)) in product.chunks_exact_mut(D).zip(mass).enumerate() {
+            for (i, product) in product.iter_mut().enumerate() {
+                *product = if is_free(a, i) { -force[a][i] / mass.sqrt() } else { 0.0 };
+            }
+        }
+    });
+    let speed = |a: usize| {
+        mode.vector[a * D..][..D].iter().map(|entry| entry * entry).sum::<f64>() / mass[a]
+    };
+    let fastest = |best: usize, a: usize| if speed(a) > speed(best) { a } else { best };
+    (mode.value.max(0.0), (0..mass.len()).fold(0, fastest))
 }
 
 /// Smallest and largest eigenvalue of the acoustic tensors `N . dP/dF . N` in the principal directions

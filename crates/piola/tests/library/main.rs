@@ -5,6 +5,7 @@
 
 mod convergence;
 mod deformed_steps;
+mod derivatives;
 #[path = "../support/device.rs"]
 mod device;
 mod devices;

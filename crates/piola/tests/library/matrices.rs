@@ -4,8 +4,8 @@ use nalgebra::SMatrix;
 use piola::geometry::{LatticeSpec, Particles, Shape, fill};
 use piola::neighbors::Domain;
 use piola::operators::{
-    BoundaryValueError, Continuation, Cover, FoldedGradient, GradientForm, Mirror, ModifiedMatrix,
-    SparseOperator, SphMatrices, images, raise_ghosts,
+    BoundaryValueError, Continuation, Cover, GradientForm, Mirror, ModifiedMatrix,
+    ReferenceGradient, SparseOperator, SphMatrices, images, raise_ghosts,
 };
 use piola::{Tensor, Vector};
 use piola_formulas::kernels::Kernel;
@@ -85,9 +85,9 @@ fn a_matrix_can_be_turned_printed_and_exported() {
     assert_eq!(large.to_string(), "20 x 20 matrix with 20 entries");
 }
 
-/// Between a symmetry plane and a moving roller the folded gradient is that of the whole.
+/// Between a symmetry plane and a moving roller the gradient is that of the whole.
 #[test]
-fn folded_gradients_are_exact_up_to_the_planes() {
+fn gradients_are_exact_up_to_the_planes() {
     let particles = lattice([4, 6], 0.1);
     let radius = vec![0.27; particles.len()];
     let mirrors = [
@@ -96,58 +96,71 @@ fn folded_gradients_are_exact_up_to_the_planes() {
     ];
     let made = images(&particles.position, &particles.spacing, &mirrors, 0.27);
     let cover = cover(&particles, &radius, &made);
-    let folded = FoldedGradient::new(&cover, GradientForm::Corrected).expect("matrices");
+    let operator =
+        ReferenceGradient::plain(&cover, vec![0.0; particles.len()]).expect("a gradient");
     // Even across the planes along them, odd along their axes about 0 and 0.03.
     let truth = |x: &Vector<2>| Vector::from([0.2 * x[0], 0.03 - 0.5 * (0.6 - x[1])]);
-    let field: Vec<Vector<2>> = particles.position.iter().map(truth).collect();
+    let mut field: Vec<Vector<2>> = particles.position.iter().map(truth).collect();
+    field.resize(particles.len() + made.len(), Vector::zeros());
+    operator.continue_field(&[[0.0, 0.0], [0.0, 0.03]], &mut field);
     let mut gradient = vec![Tensor::<2>::zeros(); particles.len()];
-    folded.gradient(&field, &[[0.0, 0.0], [0.0, 0.03]], &mut gradient);
-    for gradient in &gradient {
+    operator.gradients(&field, &mut gradient);
+    for (a, gradient) in gradient.iter().enumerate() {
         let expected = SMatrix::<f64, 2, 2>::new(0.2, 0.0, 0.0, 0.5);
         assert!((gradient - expected).amax() < 1e-12, "{gradient}");
+        assert!((operator.gradient_at(&field, a) - expected).amax() < 1e-12);
+        assert!(operator.hourglass_energy(&field, gradient, a).abs() < 1e-24);
     }
 }
 
 #[test]
-fn forces_and_hourglass_forces_are_the_derivatives_of_their_energies() {
+fn forces_with_images_are_the_derivatives_of_the_energy() {
     let particles = lattice([4, 3], 0.1);
-    let radius = vec![0.27; particles.len()];
+    let count = particles.len();
+    let radius = vec![0.27; count];
     let mirrors =
         [Mirror { axis: 0, place: 0.0, is_upper: false, continuation: Continuation::Odd }];
     let made = images(&particles.position, &particles.spacing, &mirrors, 0.27);
     let cover = cover(&particles, &radius, &made);
-    let coefficients: Vec<f64> = (0..particles.len()).map(|a| 1.0 + 0.1 * a as f64).collect();
-    let (folded, hourglass) =
-        FoldedGradient::with_hourglass(&cover, GradientForm::Corrected, &coefficients)
-            .expect("matrices");
-    let data = [[0.04, 0.0], [0.0; 2]];
+    let coefficients: Vec<f64> = (0..count).map(|a| 1.0 + 0.1 * a as f64).collect();
+    let operator = ReferenceGradient::plain(&cover, coefficients).expect("a gradient");
+    let continued = |field: &[Vector<2>], data: &[[f64; 2]; 2]| {
+        let mut field = field.to_vec();
+        field.resize(count + made.len(), Vector::zeros());
+        operator.continue_field(data, &mut field);
+        field
+    };
+    // 3/2 |A|^2 and the hourglass energy.
+    let energy = |u: &[Vector<2>], data: &[[f64; 2]; 2]| -> f64 {
+        let u = continued(u, data);
+        let of = |a: usize| {
+            let gradient = operator.gradient_at(&u, a);
+            1.5 * gradient.norm_squared() + operator.hourglass_energy(&u, &gradient, a)
+        };
+        (0..count).map(of).sum()
+    };
     let field = |seed: f64| -> Vec<Vector<2>> {
-        (0..particles.len())
+        (0..count)
             .map(|a| Vector::from([(seed + a as f64).sin(), (2.0 * seed - 1.7 * a as f64).cos()]))
             .collect()
     };
-    let tension = |gradient: &Tensor<2>, a: usize| {
-        gradient * 3.0 - (gradient * folded.shape(a)) * (2.0 * hourglass.coefficient(a))
-    };
-    let all = |u: &[Vector<2>], data: &[[f64; 2]; 2]| {
-        let mut gradient = vec![Tensor::<2>::zeros(); particles.len()];
-        folded.gradient(u, data, &mut gradient);
-        gradient
-    };
-    // 3/2 |A|^2 and the hourglass energy.
-    let energy = |u: &[Vector<2>], data: &[[f64; 2]; 2]| {
-        let of = |(a, gradient): (usize, &Tensor<2>)| {
-            1.5 * gradient.norm_squared()
-                - hourglass.coefficient(a) * gradient.dot(&(gradient * folded.shape(a)))
-        };
-        all(u, data).iter().enumerate().map(of).sum::<f64>() + hourglass.energy(u, data)
-    };
-    let (u, direction) = (field(0.3), field(5.1));
-    let tensions: Vec<Tensor<2>> =
-        all(&u, &data).iter().enumerate().map(|(a, gradient)| tension(gradient, a)).collect();
-    let mut forces = vec![Vector::zeros(); particles.len()];
-    folded.forces(&tensions, &mut forces);
-    hourglass.add_forces(&u, &data, &mut forces);
+    let (u, direction, data) = (field(0.3), field(5.1), [[0.04, 0.0], [0.0; 2]]);
+    let at = continued(&u, &data);
+    let mut strained = operator.strained();
+    operator.strain(&at, &mut strained, |_, gradient| gradient * 3.0);
+    let mut forces = vec![Vector::zeros(); at.len()];
+    operator.forces(&at, &strained, &mut forces);
+    // The same without what keeps the two passes together.
+    let mut tensions: Vec<Tensor<2>> = (strained.gradient.iter().enumerate())
+        .map(|(a, gradient)| operator.tension(a, gradient, gradient * 3.0))
+        .collect();
+    tensions.resize(at.len(), Tensor::zeros());
+    let mut others = forces.clone();
+    operator.forces_of(&at, &tensions, &mut others);
+    assert_eq!(forces, others);
+    let rates = [[0.7, 0.0], [0.0; 2]];
+    let plane_power = operator.plane_power(&forces, &rates);
+    operator.fold(&mut forces);
     let power: f64 = forces.iter().zip(&direction).map(|(f, d)| -f.dot(d)).sum();
     // The energy is quadratic, so that a central difference is exact.
     let moved = |step: f64| -> Vec<Vector<2>> {
@@ -156,11 +169,9 @@ fn forces_and_hourglass_forces_are_the_derivatives_of_their_energies() {
     let slope = 0.5 * (energy(&moved(1.0), &data) - energy(&moved(-1.0), &data));
     assert!((power - slope).abs() < 1e-10 * power.abs(), "{power} {slope}");
     // And with the plane.
-    let rates = [[0.7, 0.0], [0.0; 2]];
-    let power = folded.source_power(&tensions, &rates) + hourglass.source_power(&u, &data, &rates);
     let shifted = |step: f64| [[0.04 + 0.7 * step, 0.0], [0.0; 2]];
     let slope = 0.5 * (energy(&u, &shifted(1.0)) - energy(&u, &shifted(-1.0)));
-    assert!((power - slope).abs() < 1e-10 * power.abs(), "{power} {slope}");
+    assert!((plane_power - slope).abs() < 1e-10 * slope.abs(), "{plane_power} {slope}");
 }
 
 /// The deviations of a linear field are nothing, and there is no force on it.
@@ -169,23 +180,19 @@ fn linear_fields_have_no_hourglass_energy() {
     let particles = lattice([5, 4], 0.1);
     let radius = vec![0.27; particles.len()];
     let cover = cover(&particles, &radius, &[]);
-    let ones = vec![1.0; particles.len()];
-    let (folded, hourglass) =
-        FoldedGradient::with_hourglass(&cover, GradientForm::Corrected, &ones).expect("matrices");
+    let operator =
+        ReferenceGradient::plain(&cover, vec![1.0; particles.len()]).expect("a gradient");
     let slope = SMatrix::<f64, 2, 2>::new(0.3, -0.2, 0.5, 0.1);
     let u: Vec<Vector<2>> =
         particles.position.iter().map(|x| Vector::from([0.7, -0.3]) + slope * x).collect();
-    let data = [[0.0; 2]; 2];
-    let mut gradient = vec![Tensor::<2>::zeros(); particles.len()];
-    folded.gradient(&u, &data, &mut gradient);
-    let tensions: Vec<Tensor<2>> =
-        gradient.iter().enumerate().map(|(a, it)| it * folded.shape(a) * -2.0).collect();
+    let mut strained = operator.strained();
+    operator.strain(&u, &mut strained, |_, _| Tensor::zeros());
     let mut forces = vec![Vector::zeros(); particles.len()];
-    folded.forces(&tensions, &mut forces);
-    hourglass.add_forces(&u, &data, &mut forces);
+    operator.forces(&u, &strained, &mut forces);
     assert!(forces.iter().all(|force| force.amax() < 1e-12));
-    let second: f64 = gradient.iter().zip(&tensions).map(|(a, t)| 0.5 * a.dot(t)).sum();
-    assert!((hourglass.energy(&u, &data) + second).abs() < 1e-12);
+    for (a, gradient) in strained.gradient.iter().enumerate() {
+        assert!(operator.hourglass_energy(&u, gradient, a) < 1e-24);
+    }
 }
 
 /// A row of particles with real ghosts, of which particle 10 is the left end.

@@ -2,12 +2,11 @@
 
 use std::f64::consts::PI;
 
+use crate::derivatives::{Derivatives as _, Interpolation};
 use crate::support::{jittered, lattice, noise};
 use piola::geometry::Particles;
 use piola::neighbors::Domain;
-use piola::operators::{
-    Correction, GradientOperator, Interpolation, LeastSquares, OperatorError, Support,
-};
+use piola::operators::{Correction, GradientOperator, LeastSquares, OperatorError, Support};
 use piola::{Tensor, Vector};
 use piola_formulas::kernels::Kernel;
 

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use crate::derivatives::Derivatives as _;
 use crate::fields::{Counted, fields_are_complete};
 use crate::support::{
     Choice, PLAIN, disturbed, energy, jittered, lattice, march, march_from, noise, place, places,

@@ -11,4 +11,5 @@ mod energy;
 mod gradients;
 mod implicit;
 mod runs;
+mod scalar;
 mod statics;

@@ -2,11 +2,8 @@
 
 use std::sync::Arc;
 
-use piola_formulas::pairs::Record;
-use piola_formulas::pairs::dual_support::SupportSide;
 use thiserror::Error;
 
-use super::discrete::SupportPairs;
 use super::fields::Made;
 use super::stable_step::stable_step;
 use super::stages;
@@ -20,7 +17,7 @@ use crate::boundaries::{
 };
 use crate::fields::width;
 use crate::geometry::Particles;
-use crate::operators::{DirectedSupport, DualGradient, OperatorError};
+use crate::operators::{Cover, DirectedSupport, DualGradient, OperatorError, ReferenceGradient};
 use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
     check_pressure,
@@ -111,8 +108,16 @@ impl<const D: usize> Discrete<D> {
             settings.hourglass * shear * particles.volume[a]
         };
         let hourglass = (0..count).map(hourglass).collect();
-        let pairs = SupportPairs::new(&particles, &support, &gradient);
-        Ok(Self { particles, support, gradient, materials, hourglass, pairs })
+        let cover = Cover {
+            particles: &particles,
+            group: &particles.body,
+            images: &[],
+            kernel: support.kernel,
+            radius: &support.radius.clone(),
+            domain: support.domain,
+        };
+        let operator = ReferenceGradient::new(&cover, support, gradient, hourglass);
+        Ok(Self { particles, operator, materials })
     }
 }
 
@@ -176,7 +181,7 @@ impl<const D: usize> DualSupport<D> {
             stiffest,
             body_forces: input.body_forces,
             initial_velocity: velocity,
-            sides: vec![SupportSide::zero(); count],
+            strained: discrete.operator.strained(),
             force: vec![Vector::zeros(); count],
             rate: vec![0.0; count * width(Made::FIELDS, D) + LEDGER.length(D) + FIGURES],
             reaction: Vec::new(),

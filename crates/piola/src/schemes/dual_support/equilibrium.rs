@@ -158,7 +158,7 @@ impl<const D: usize> DualSupport<D> {
             loads[load.particle] += load.force(time);
         }
         for part in &self.pressed {
-            loads[part.particle] += part.force(time, &self.sides[part.particle].gradient);
+            loads[part.particle] += part.force(time, &self.strained.gradient[part.particle]);
         }
         let mut reactions = vec![Vector::zeros(); self.mass.len()];
         for entry in self.prescribed.iter() {

@@ -1,11 +1,11 @@
 //! What acts on the body from outside, with the work and the momentum that enter with it.
 
 use super::fields::{Columns, ColumnsMut};
-use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, PRESSURE, Side, TRACTION};
+use super::{BODY_FORCE, BOUNDARY_MOTION, DualSupport, PRESSURE, TRACTION};
 use crate::boundaries::BodyForce;
 use crate::schemes::ledger::{Found, Total};
 use crate::schemes::outside::{Acted, over_all, prescribe, push};
-use crate::{Vector, parallel};
+use crate::{Tensor, Vector, parallel};
 
 impl<const D: usize> DualSupport<D> {
     /// Current position of particle a in m.
@@ -21,12 +21,12 @@ impl<const D: usize> DualSupport<D> {
         BodyForce::sum(&self.body_forces, particles.body[a], &particles.position[a], time)
     }
 
-    /// Writes the rates of `state`, of which the internal forces in N and the sides are known.
+    /// Writes the rates of `state`, of which the internal forces in N and the displacement gradients are known.
     pub(super) fn external_pass(
         &self,
         time: f64,
         at: &Columns<'_, D>,
-        (internal, sides): (&[Vector<D>], &[Side<f64, D>]),
+        (internal, gradient): (&[Vector<D>], &[Tensor<D>]),
         (rate, totals): Found<'_>,
     ) {
         let count = self.mass.len();
@@ -50,7 +50,7 @@ impl<const D: usize> DualSupport<D> {
         let pressed = self
             .pressed
             .iter()
-            .map(|part| (part.particle, part.force(time, &sides[part.particle].gradient)));
+            .map(|part| (part.particle, part.force(time, &gradient[part.particle])));
         push(pressed, particle, own.velocity, &mut pressure);
         prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
         totals.drive(BODY_FORCE, &over_all(count, particle, weight));

@@ -31,7 +31,7 @@ mod stages;
 mod statics;
 
 pub use build::{DualSupportError, DualSupportInput};
-pub use discrete::{Discrete, Side};
+pub use discrete::Discrete;
 pub use scheme::DESCRIPTION;
 pub use settings::{Gradients, Motion, Settings};
 pub(crate) use statics::free_to_move;
@@ -44,6 +44,7 @@ use std::sync::Arc;
 pub use super::solid::Material;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, pressure::Pressed, traction::Loaded};
+use crate::operators::Strained;
 use crate::schemes::Accounts;
 use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
@@ -74,7 +75,7 @@ pub struct DualSupport<const D: usize> {
     loaded: Vec<Loaded<D>>,
     pressed: Vec<Pressed<D>>,
     prescribed: PrescribedComponents,
-    sides: Vec<Side<f64, D>>,
+    strained: Strained<D>,
     force: Vec<Vector<D>>,
     /// Scratch of the length of a state.
     rate: Vec<f64>,

@@ -1,8 +1,5 @@
 //! The dual-support formulation as integrators, clock and output see it.
 
-use piola_formulas::pairs::Record;
-use piola_formulas::pairs::dual_support::SupportSide;
-
 use super::fields::{Columns, ColumnsMut, Made};
 use super::{DualSupport, ENERGIES, LEDGER};
 use crate::fields::FieldDescription;
@@ -14,7 +11,7 @@ use crate::schemes::{
     SchemeDescription, SplitScheme, StaticScheme, StepLimit,
 };
 use crate::solve::Costs;
-use crate::{Vector, parallel};
+use crate::{Tensor, Vector, parallel};
 
 const FIGURE_COLUMNS: [(&str, &str); 2] = [(NEWTON_ITERATIONS, "1"), ("load_factor", "1")];
 
@@ -54,11 +51,11 @@ impl<const D: usize> Scheme for DualSupport<D> {
         // Nothing is strained yet, so that no force comes from inside.
         let mut rate = vec![0.0; state.len()];
         let count = self.mass.len();
-        let sides = vec![SupportSide::zero(); count];
-        let (at, internal) = (self.columns(&state), (&*vec![Vector::zeros(); count], &*sides));
+        let gradient = vec![Tensor::zeros(); count];
+        let (at, internal) = (self.columns(&state), (&*vec![Vector::zeros(); count], &*gradient));
         let mut totals = Totals::default();
         self.external_pass(0.0, &at, internal, (&mut rate, &mut totals));
-        self.store((0.0, &rate), &sides, totals, &mut state);
+        self.store((0.0, &rate), &gradient, totals, &mut state);
         state
     }
 
@@ -167,11 +164,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     /// Those in its support and those in whose support it is.
     fn neighborhood(&self, index: usize) -> Vec<u32> {
-        let support = &self.discrete.support;
-        let mut all = [support.list.row(index), support.dual.row(index)].concat();
-        all.sort_unstable();
-        all.dedup();
-        all
+        self.discrete.operator.neighborhood(index)
     }
 
     /// What is in equilibrium has no other state to be set to.
@@ -216,10 +209,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
     fn memory(&self) -> usize {
         let discrete = &self.discrete;
         let particles = &discrete.particles;
-        discrete.support.memory()
-            + discrete.gradient.memory()
-            + discrete.pairs.memory()
-            + size_of_val(discrete.hourglass.as_slice())
+        discrete.operator.memory()
             + size_of_val(particles.position.as_slice())
             + size_of_val(particles.volume.as_slice())
             + size_of_val(particles.weight.as_slice())
@@ -228,7 +218,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
             + size_of_val(particles.id.as_slice())
             + size_of_val(self.mass.as_slice())
             + size_of_val(self.initial_velocity.as_slice())
-            + size_of_val(self.sides.as_slice())
+            + self.strained.memory()
             + size_of_val(self.force.as_slice())
             + size_of_val(self.rate.as_slice())
     }

@@ -1,10 +1,10 @@
 //! The formulation as kick-drift-kick integrators see it: central differences.
 
 use super::fields::ColumnsMut;
-use super::{BODY_FORCE, DualSupport, LEDGER, PRESSURE, Side, TRACTION};
-use crate::parallel;
+use super::{BODY_FORCE, DualSupport, LEDGER, PRESSURE, TRACTION};
 use crate::schemes::ledger::Totals;
 use crate::schemes::{SplitScheme, solid};
+use crate::{Tensor, parallel};
 
 impl<const D: usize> SplitScheme for DualSupport<D> {
     fn kick(&mut self, duration: f64, state: &mut [f64]) {
@@ -21,7 +21,7 @@ impl<const D: usize> SplitScheme for DualSupport<D> {
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
         let mut rate = std::mem::take(&mut self.rate);
         let totals = self.evaluate(time, state, &mut rate);
-        self.store((time, &rate), &self.sides, totals, state);
+        self.store((time, &rate), &self.strained.gradient, totals, state);
         self.rate = rate;
     }
 }
@@ -32,7 +32,7 @@ impl<const D: usize> DualSupport<D> {
     pub(super) fn store(
         &self,
         (time, rate): (f64, &[f64]),
-        sides: &[Side<f64, D>],
+        gradient: &[Tensor<D>],
         mut totals: Totals,
         state: &mut [f64],
     ) {
@@ -44,7 +44,7 @@ impl<const D: usize> DualSupport<D> {
         let loads = self.loaded.iter();
         totals.grow(TRACTION, loads.map(|it| it.force(time).dot(&kick[it.particle])).sum());
         let pressures = self.pressed.iter().map(|part| {
-            let force = part.force(time, &sides[part.particle].gradient);
+            let force = part.force(time, &gradient[part.particle]);
             force.dot(&kick[part.particle])
         });
         totals.grow(PRESSURE, pressures.sum());

@@ -2,7 +2,6 @@
 
 use super::DualSupport;
 use super::fields::Columns;
-use crate::Tensor;
 use crate::schemes::ledger::{Found, Totals};
 use crate::schemes::stages::{Stage, StageFault, Stages};
 
@@ -10,7 +9,7 @@ use crate::schemes::stages::{Stage, StageFault, Stages};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
     /// Gradients and stresses by the supports.
-    Sides,
+    Strains,
     /// Forces by supports and dual supports.
     Forces,
     /// What acts from outside, and the ledger.
@@ -24,17 +23,16 @@ impl Pass {
         let stage =
             |name, reads, gathers, writes, shows| Stage { name, reads, gathers, writes, shows };
         match self {
-            Self::Sides => {
-                let shown = &["side.gradient", "side.tension", "side.pull"];
-                stage("sides", &["displacement"], &["displacement"], &[], shown)
+            Self::Strains => {
+                let own = &["displacement"];
+                stage("strains", own, own, &["gradient"], &["tension"])
             }
             Self::Forces => {
-                let own = &["displacement", "side.gradient", "side.tension", "side.pull"];
-                let gathers = &["displacement", "side.gradient", "side.tension"];
-                stage("forces", own, gathers, &["force"], &[])
+                let both = &["displacement", "tension"];
+                stage("forces", both, both, &["force"], &[])
             }
             Self::External => {
-                let reads = &["displacement", "velocity", "force", "side.gradient"];
+                let reads = &["displacement", "velocity", "force", "gradient"];
                 stage("external", reads, &[], &["rate", "ledger"], &[])
             }
         }
@@ -46,7 +44,7 @@ impl Pass {
 /// # Errors
 /// They do not fit together.
 pub(super) fn plan() -> Result<Stages<Pass>, StageFault> {
-    Stages::new("rates", &STATE, vec![Pass::Sides, Pass::Forces, Pass::External], Pass::stage)
+    Stages::new("rates", &STATE, vec![Pass::Strains, Pass::Forces, Pass::External], Pass::stage)
 }
 
 impl<const D: usize> DualSupport<D> {
@@ -62,17 +60,14 @@ impl<const D: usize> DualSupport<D> {
     /// Runs one pass of the rates at a time and columns of a state.
     pub(super) fn run(&mut self, pass: Pass, time: f64, at: &Columns<'_, D>, found: Found<'_>) {
         match pass {
-            Pass::Sides => {
-                let discrete = &self.discrete;
-                let stress =
-                    |a: usize, gradient: &Tensor<D>| discrete.material(a).law.stress(gradient);
-                discrete.fill_sides(at.displacement, &mut self.sides, stress);
+            Pass::Strains => {
+                self.discrete.fill_strains(at.displacement, &mut self.strained);
             }
             Pass::Forces => {
-                self.discrete.fill_forces(&self.sides, &mut self.force);
+                self.discrete.operator.forces(at.displacement, &self.strained, &mut self.force);
             }
             Pass::External => {
-                self.external_pass(time, at, (&self.force, &self.sides), found);
+                self.external_pass(time, at, (&self.force, &self.strained.gradient), found);
             }
         }
     }

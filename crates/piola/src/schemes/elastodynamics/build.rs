@@ -8,13 +8,15 @@ use super::fields::{ColumnsMut, Made};
 use super::holes::Hole;
 use super::stages;
 use super::tractions::Body;
-use super::{Configuration, Elastodynamics, Form, LEDGER, Mixture, Settings, stable_step::Bound};
+use super::{
+    Configuration, Elastodynamics, Form, LEDGER, Matrices, Mixture, Settings, stable_step::Bound,
+};
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
+use crate::boundaries::{BodyForce, PrescribedVelocity, Traction, traction::Loaded};
 use crate::fields::width;
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
-use crate::operators::{Cover, FoldedGradient, GradientForm, Mirror, OperatorError, images};
+use crate::operators::{Cover, Mirror, OperatorError, ReferenceGradient, images};
 use crate::schemes::input::{
     check_conditions, check_index, check_lengths, check_particle, check_particles,
 };
@@ -196,8 +198,8 @@ impl<const D: usize> Elastodynamics<D> {
             radius: &radius,
             domain,
         };
-        let (mut loaded, mut found) = (Vec::new(), None);
-        let (matrix, hourglass) = match settings.form {
+        let loaded: Vec<Loaded<D>>;
+        let matrices = match settings.form {
             _ if settings.configuration == Configuration::Updated
                 && (D > 1 || settings.form == Form::Adjoint) =>
             {
@@ -205,43 +207,42 @@ impl<const D: usize> Elastodynamics<D> {
             }
             Form::Strong => {
                 let known = edges::find(&particles, &group, &prescribed, &input.holes, reach)?;
-                let [matrix, divergence] = edges::matrices(&cover, &known.edges, &known.inside)?;
+                let made = edges::matrices(&cover, &known.edges, &known.inside)?;
                 let of = |a: usize| input.mixtures[input.mixture[a] as usize].clone();
-                let (own, elsewhere) =
-                    Edges::new(known, divergence, &input.tractions, positions, of)?;
-                (loaded, found) = (elsewhere, Some(own));
-                (matrix, None)
+                let (own, elsewhere) = Edges::new(known, made, &input.tractions, positions, of)?;
+                loaded = elsewhere;
+                Matrices::Strong(own)
             }
-            Form::Adjoint if settings.hourglass > 0.0 => {
+            Form::Adjoint => {
                 let coefficient = |a: usize| {
                     let shear = input.mixtures[input.mixture[a] as usize].shear_modulus();
                     settings.hourglass * shear * particles.volume[a]
                 };
-                let coefficients: Vec<f64> = (0..count).map(coefficient).collect();
-                let form = GradientForm::Corrected;
-                let (matrix, hourglass) =
-                    FoldedGradient::with_hourglass(&cover, form, &coefficients)?;
-                (matrix, Some(hourglass))
+                let operator =
+                    ReferenceGradient::plain(&cover, (0..count).map(coefficient).collect())?;
+                let body = Body {
+                    particles: &particles,
+                    operator: &operator,
+                    group: &group,
+                    radius: &radius,
+                };
+                loaded = input.tractions.iter().flat_map(|load| body.loads(load)).collect();
+                Matrices::Adjoint(operator)
             }
-            Form::Adjoint => (FoldedGradient::new(&cover, GradientForm::Corrected)?, None),
         };
-        let data = found.as_ref().map_or(0, Edges::data);
+        let (behind, edges) = (matrices.behind(), matrices.edges().map_or(0, Edges::data));
         let at_rest = |mixture: &Mixture<D>| mixture.wave_moduli(&Tensor::zeros());
         let moduli: Vec<[f64; 2]> = input.mixtures.iter().map(at_rest).collect();
-        let body = Body { particles: &particles, matrix: &matrix, group: &group, radius: &radius };
-        if settings.form == Form::Adjoint {
-            loaded = input.tractions.iter().flat_map(|load| body.loads(load)).collect();
-        }
-        let with_edges = if found.is_some() { count + data } else { 0 };
-        let length = count * width(Made::FIELDS, D) + LEDGER.length(D) + D * data;
+        let length = count * width(Made::FIELDS, D) + LEDGER.length(D) + D * edges;
         let rate_length = if settings.is_viscous() { count } else { 0 };
+        let with_edges = if edges > 0 { count + edges } else { 0 };
+        let is_continued = edges > 0 || behind > 0 && settings.is_viscous();
+        let (with_all, with_images) = (count + behind, count + behind - edges);
         let mut scheme = Self {
             mirrors: input.mirrors.iter().map(|&(mirror, on)| (mirror, on as usize)).collect(),
             loaded,
             prescribed,
-            matrix,
-            hourglass,
-            edges: found,
+            matrices,
             stable: Bound::default(),
             moduli_at_rest: moduli,
             not_convex: None,
@@ -249,14 +250,14 @@ impl<const D: usize> Elastodynamics<D> {
             is_evaluated: false,
             has_matrices: true,
             stages: stages::plan()?,
-            displacement: vec![Vector::zeros(); count + data],
-            velocity: vec![Vector::zeros(); with_edges],
+            displacement: vec![Vector::zeros(); with_all],
+            velocity: vec![Vector::zeros(); if is_continued { with_all } else { 0 }],
             acceleration: vec![Vector::zeros(); with_edges],
             gradient: vec![Tensor::zeros(); count],
             gradient_rate: vec![Tensor::zeros(); rate_length],
             stress: vec![Tensor::zeros(); count],
-            tension: vec![Tensor::zeros(); count],
-            force: vec![Vector::zeros(); count],
+            tension: vec![Tensor::zeros(); with_images],
+            force: vec![Vector::zeros(); with_images],
             rate: vec![0.0; length],
             initial: Vec::new(),
             mixtures: input.mixtures,

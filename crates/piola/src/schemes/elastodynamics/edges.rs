@@ -11,7 +11,7 @@ use super::slopes::Sought;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{Traction, traction::Loaded};
 use crate::geometry::Particles;
-use crate::operators::{Cover, FoldedGradient, GradientForm, OperatorError};
+use crate::operators::{ContinuedGradient, Cover, GradientForm, OperatorError};
 use crate::{Tensor, Vector, parallel};
 
 /// Particles nearer to an edge than this share of their spacing lie on it.
@@ -67,11 +67,13 @@ impl<const D: usize> Slot<D> {
     }
 }
 
-/// The edges of a body, with the matrix that takes the divergence of the stress, theory (64).
+/// The edges of a body, with the matrices that take the gradient of displacements and the divergence of the
+/// stress, theory (64).
 pub(super) struct Edges<const D: usize> {
     pub edges: Vec<Edge<D>>,
     pub slots: Vec<Slot<D>>,
-    pub divergence: FoldedGradient<D>,
+    pub gradient: ContinuedGradient<D>,
+    pub divergence: ContinuedGradient<D>,
     /// Stress of loaded components in each slot at the last evaluation, Pa.
     pub stress: Vec<Vector<D>>,
     /// Slopes to start the search for slopes from.
@@ -203,7 +205,7 @@ pub(super) fn matrices<const D: usize>(
     cover: &Cover<'_, D>,
     edges: &[Edge<D>],
     inside: &[Inside<D>],
-) -> Result<[FoldedGradient<D>; 2], OperatorError> {
+) -> Result<[ContinuedGradient<D>; 2], OperatorError> {
     let reach = cover.radius.iter().copied().fold(0.0, f64::max);
     let slots = edges.iter().map(|edge| edge.slots.len()).sum();
     let made = ghosts(&Places { particles: cover.particles, inside, slots }, edges, reach);
@@ -212,8 +214,8 @@ pub(super) fn matrices<const D: usize>(
     let form = if D == 1 { GradientForm::Plain } else { GradientForm::Corrected };
     let [of_displacement, of_stress] = made;
     Ok([
-        FoldedGradient::continued(cover, form, &of_displacement)?,
-        FoldedGradient::continued(cover, form, &of_stress)?,
+        ContinuedGradient::new(cover, form, &of_displacement)?,
+        ContinuedGradient::new(cover, form, &of_stress)?,
     ])
 }
 
@@ -221,7 +223,7 @@ impl<const D: usize> Edges<D> {
     /// The edges with their loads, and the loads that act elsewhere.
     pub fn new(
         outline: Outline<D>,
-        divergence: FoldedGradient<D>,
+        [gradient, divergence]: [ContinuedGradient<D>; 2],
         tractions: &[Traction<D>],
         positions: &[Vector<D>],
         mixture_of: impl Fn(usize) -> Mixture<D>,
@@ -278,13 +280,18 @@ impl<const D: usize> Edges<D> {
         let stress = vec![Vector::zeros(); slots.len()];
         let found = vec![Vector::zeros(); slots.len() + feet.len()];
         let known = found.clone();
-        let all = Self { edges, slots, divergence, stress, known, found, feet, rims };
+        let all = Self { edges, slots, gradient, divergence, stress, known, found, feet, rims };
         Ok((all, elsewhere))
     }
 
     /// Number of data: values and slopes at edges, and slopes at the feet of ghosts in holes.
     pub fn data(&self) -> usize {
         self.slots.len() + self.feet.len()
+    }
+
+    /// The particles that have a part in the gradient of particle `a`, without itself.
+    pub fn neighborhood(&self, a: usize) -> Vec<u32> {
+        self.gradient.row(a).into_iter().filter(|&b| b as usize != a).collect()
     }
 
     /// What of `stress` edges say, in place: shear along edges that are held is zero, the load is all of

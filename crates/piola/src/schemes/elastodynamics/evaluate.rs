@@ -3,7 +3,7 @@
 use super::edges;
 use super::fields::Columns;
 use super::settings::is_linear;
-use super::{Configuration, Elastodynamics};
+use super::{Configuration, Elastodynamics, Matrices};
 use crate::operators::{Cover, PlaneData};
 use crate::{Tensor, Vector, parallel};
 
@@ -21,22 +21,29 @@ impl<const D: usize> Elastodynamics<D> {
         let mut displacement = std::mem::take(&mut self.displacement);
         self.append_kept(&mut displacement, at.tail);
         self.displacement = displacement;
-        if let Some(edges) = &self.edges {
+        if !self.velocity.is_empty() {
             parallel::copy(&mut self.velocity[..count], at.velocity);
-            edges.append_held(count, &mut self.velocity);
+        }
+        let data = [&self.displacement[..], at.velocity].map(|field| self.plane_data(field));
+        match &self.matrices {
+            Matrices::Strong(edges) => edges.append_held(count, &mut self.velocity),
+            Matrices::Adjoint(operator) => {
+                operator.continue_field(&data[0], &mut self.displacement);
+                if !self.velocity.is_empty() {
+                    operator.continue_field(&data[1], &mut self.velocity);
+                }
+            }
         }
     }
 
     /// Displacement gradients of the loaded state, and their rates where something dissipates.
     pub(super) fn fill_gradients(&mut self, time: f64, at: &Columns<'_, D>) {
         self.continue_displacement(time);
-        let data = self.plane_data(&self.displacement);
-        self.matrix.gradient(&self.displacement, &data, &mut self.gradient);
+        self.matrices.gradients(&self.displacement, &mut self.gradient);
         self.continue_velocity(time);
         if self.settings.is_viscous() {
-            let velocity = if self.edges.is_some() { &self.velocity } else { at.velocity };
-            let rates = self.plane_data(velocity);
-            self.matrix.gradient(velocity, &rates, &mut self.gradient_rate);
+            let velocity = if self.velocity.is_empty() { at.velocity } else { &self.velocity };
+            self.matrices.gradients(velocity, &mut self.gradient_rate);
         }
         if self.settings.configuration == Configuration::Updated {
             self.turn_to_reference();
@@ -52,7 +59,7 @@ impl<const D: usize> Elastodynamics<D> {
                 *stress = self.mixtures[self.mixture[a] as usize].stress(&self.gradient[a]);
             }
         });
-        if let Some(edges) = &self.edges {
+        if let Matrices::Strong(edges) = &self.matrices {
             edges.overwrite(&mut stress, |_| 1.0);
         }
         self.stress = stress;
@@ -62,7 +69,7 @@ impl<const D: usize> Elastodynamics<D> {
     pub(super) fn fill_tensions(&mut self) {
         let mut tension = std::mem::take(&mut self.tension);
         let is_viscous = self.settings.is_viscous();
-        parallel::for_each_chunk(&mut tension, |first, rows| {
+        parallel::for_each_chunk(&mut tension[..self.mass.len()], |first, rows| {
             for (offset, tension) in rows.iter_mut().enumerate() {
                 let a = first + offset;
                 let mut stress = self.stress[a];
@@ -70,13 +77,12 @@ impl<const D: usize> Elastodynamics<D> {
                     stress += self.viscous_stress(a);
                 }
                 *tension = stress * self.particles.volume[a];
-                if let Some(hourglass) = &self.hourglass {
-                    let shape = self.matrix.shape(a);
-                    *tension -= self.gradient[a] * shape * (2.0 * hourglass.coefficient(a));
+                if let Matrices::Adjoint(operator) = &self.matrices {
+                    *tension = operator.tension(a, &self.gradient[a], *tension);
                 }
             }
         });
-        if let Some(edges) = &self.edges {
+        if let Matrices::Strong(edges) = &self.matrices {
             // The load is all of the stress there, also of a viscous material.
             edges.overwrite(&mut tension, |a| self.particles.volume[a]);
         }
@@ -85,37 +91,32 @@ impl<const D: usize> Elastodynamics<D> {
 
     /// Internal forces.
     pub(super) fn fill_forces(&mut self) {
-        let data = self.plane_data(&self.displacement);
-        let mut force = std::mem::take(&mut self.force);
-        match &self.edges {
-            Some(edges) => {
-                edges.forces(&self.tension, &edges.stress, &self.particles.volume, &mut force)
+        let (tension, force) = (&self.tension, &mut self.force);
+        match &self.matrices {
+            Matrices::Strong(edges) => {
+                edges.forces(tension, &edges.stress, &self.particles.volume, force);
             }
-            None => self.matrix.forces(&self.tension, &mut force),
+            Matrices::Adjoint(operator) => {
+                operator.forces_of(&self.displacement, tension, force);
+                operator.fold(force);
+            }
         }
-        if let Some(hourglass) = &self.hourglass {
-            hourglass.add_forces(&self.displacement, &data, &mut force);
-        }
-        self.force = force;
         self.is_evaluated = true;
     }
 
     /// Writes the data of edges behind the velocities, at the gradients of the moment.
     fn continue_velocity(&mut self, time: f64) {
-        let Some(mut edges) = self.edges.take() else { return };
+        let Matrices::Strong(edges) = &mut self.matrices else { return };
         let tangents = |a: usize| {
             let mixture = &self.mixtures[self.mixture[a] as usize];
             mixture.tangent(&self.gradient[a])
         };
-        let mut velocity = std::mem::take(&mut self.velocity);
-        edges.continue_rates(&self.matrix, &mut velocity, tangents, |slot| slot.stress_rate(time));
-        self.velocity = velocity;
-        self.edges = Some(edges);
+        edges.continue_rates(&mut self.velocity, tangents, |slot| slot.stress_rate(time));
     }
 
-    /// Velocities of a loaded state, with the data of edges behind.
+    /// Velocities of a loaded state, with what stands behind them where gradients are taken of them.
     pub(super) fn velocity<'a>(&'a self, at: &Columns<'a, D>) -> &'a [Vector<D>] {
-        if self.edges.is_some() { &self.velocity } else { at.velocity }
+        if self.velocity.is_empty() { at.velocity } else { &self.velocity }
     }
 
     pub(super) fn plane_data(&self, field: &[Vector<D>]) -> PlaneData<D> {
@@ -128,7 +129,7 @@ impl<const D: usize> Elastodynamics<D> {
 
     /// Makes the matrices of the places of the moment; whether they exist.
     pub(super) fn rebuild(&mut self) -> bool {
-        let Some(mut known) = self.edges.take() else { return true };
+        let Matrices::Strong(known) = &mut self.matrices else { return true };
         let mut particles = self.particles.clone();
         for (place, displacement) in particles.position.iter_mut().zip(&self.displacement) {
             *place += displacement;
@@ -144,9 +145,8 @@ impl<const D: usize> Elastodynamics<D> {
         let made = edges::matrices(&cover, &known.edges, &[]);
         let exist = made.is_ok();
         if let Ok([gradient, divergence]) = made {
-            (self.matrix, known.divergence) = (gradient, divergence);
+            (known.gradient, known.divergence) = (gradient, divergence);
         }
-        self.edges = Some(known);
         exist
     }
 
@@ -167,13 +167,9 @@ impl<const D: usize> Elastodynamics<D> {
     /// ghosts at the evaluated state: `speed` are velocities, or what
     /// stands for them, with the rates of the data that go with them.
     pub(super) fn ghost_powers(&self, speed: &[Vector<D>], rates: &PlaneData<D>) -> [f64; 2] {
-        let Some(edges) = &self.edges else {
-            let hourglass = self.hourglass.as_ref().map_or(0.0, |hourglass| {
-                let data = self.plane_data(&self.displacement);
-                hourglass.source_power(&self.displacement, &data, rates)
-            });
-            let motion = self.matrix.source_power(&self.tension, rates) + hourglass;
-            return [0.0, motion];
+        let edges = match &self.matrices {
+            Matrices::Adjoint(operator) => return [0.0, operator.plane_power(&self.force, rates)],
+            Matrices::Strong(edges) => edges,
         };
         let count = self.mass.len();
         let held = |datum: usize| {
@@ -181,11 +177,12 @@ impl<const D: usize> Elastodynamics<D> {
             let rate = &speed[count + datum];
             Vector::from_fn(|i, _| if slot.is_held[i] { rate[i] } else { 0.0 })
         };
-        let motion =
-            parallel::sum(count, |a| self.tension[a].dot(&self.matrix.gradient_of_data(held, a)));
+        let motion = parallel::sum(count, |a| {
+            self.tension[a].dot(&edges.gradient.gradient_of_data(held, a))
+        });
         // What the forces do, and the energy that is stored: the rest has come in at the edges.
         let sum = parallel::sum(count, |a| {
-            let rate = self.matrix.gradient_at(speed, rates, a);
+            let rate = edges.gradient.gradient_at(speed, a);
             self.force[a].dot(&speed[a]) + self.tension[a].dot(&rate)
         });
         [sum - motion, motion]

@@ -45,7 +45,7 @@ impl<const D: usize> Elastodynamics<D> {
         totals.drive(VISCOSITY, &Total::of(-parallel::sum(viscous, power)));
         let ghosts = self.ghost_powers(velocity, &self.plane_data(velocity));
         let [mut traction, mut boundary] = ghosts.map(Total::of);
-        if self.edges.is_some() || !self.mirrors.is_empty() {
+        if self.matrices.behind() > 0 {
             // What bodies beyond planes and ends do on this one.
             boundary.force = over_all(count, particle, |a, _| self.force[a]).force;
         }
@@ -79,7 +79,7 @@ impl<const D: usize> Elastodynamics<D> {
         totals.grow(DAMPING, -2.0 * self.settings.damping * parallel::sum(count, drag));
         let loads = self.loaded.iter();
         let mut traction = loads.map(|it| it.force(time).dot(&kick[it.particle])).sum();
-        if self.edges.is_some() {
+        if self.matrices.edges().is_some() {
             self.acceleration[..count].copy_from_slice(kick);
             traction += self.ghost_powers(&self.acceleration, &[[0.0; 2]; D])[0];
         }

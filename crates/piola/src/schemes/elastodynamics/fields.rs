@@ -33,7 +33,7 @@ impl<const D: usize> Elastodynamics<D> {
         let at = self.columns(state);
         if stage == 1 {
             // Without edges and dissipation all follows from displacements.
-            let is_elastic = self.edges.is_none() && !self.settings.is_viscous();
+            let is_elastic = self.matrices.edges().is_none() && !self.settings.is_viscous();
             if !(is_elastic && self.is_evaluated_at(&at)) {
                 for pass in Pass::INTERNAL {
                     self.run(pass, time, &at, (&mut [], &mut Totals::default()));
@@ -84,7 +84,7 @@ impl<const D: usize> Elastodynamics<D> {
                 let [least, _] = mixture.wave_moduli(gradient);
                 values.push(least / self.moduli_at_rest[kind][0]);
             }
-            Made::neighbors => values.push(self.matrix.row(a).len().saturating_sub(1) as f64),
+            Made::neighbors => values.push(self.matrices.neighbors(a) as f64),
             Made::volume => values.push(self.particles.volume[a]),
         }
     }

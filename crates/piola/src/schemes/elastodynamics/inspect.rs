@@ -3,7 +3,6 @@
 use super::fields::Columns;
 use super::settings::is_linear;
 use super::{Configuration, Elastodynamics};
-use crate::operators::PlaneData;
 use crate::schemes::look::{Deformed, look_at_solid};
 use crate::schemes::{Health, StepLimit};
 use crate::{Tensor, Vector};
@@ -16,21 +15,19 @@ impl<const D: usize> Elastodynamics<D> {
         let at = self.columns(state);
         let known = self.is_evaluated_at(&at);
         self.load(&at);
-        let data = self.plane_data(&self.displacement);
         let gradient_of = |a: usize| match known {
             true => self.gradient[a],
-            false => self.matrix.gradient_at(&self.displacement, &data, a),
+            false => self.matrices.gradient_at(&self.displacement, a),
         };
         let columns = [at.velocity, at.displacement, at.kick];
         let velocity = self.velocity(&at);
-        let rates = self.plane_data(velocity);
         let (health, [stiffening, thickening], soft) = look_at_solid(columns, |a| {
             let gradient = gradient_of(a);
             let kind = self.mixture[a] as usize;
             let mixture = &self.mixtures[kind];
             let moduli = mixture.wave_moduli(&gradient);
             let (at_rest, density) = (self.moduli_at_rest[kind], mixture.density());
-            let thickening = self.thickening_at(a, &gradient, (velocity, &rates));
+            let thickening = self.thickening_at(a, &gradient, velocity);
             Deformed { gradient, moduli, at_rest, density, thickening }
         });
         if let Some(a) = soft {
@@ -45,17 +42,12 @@ impl<const D: usize> Elastodynamics<D> {
     }
 
     /// By how much viscosity has grown at a particle since rest.
-    fn thickening_at(
-        &self,
-        a: usize,
-        gradient: &Tensor<D>,
-        (velocity, data): (&[Vector<D>], &PlaneData<D>),
-    ) -> f64 {
+    fn thickening_at(&self, a: usize, gradient: &Tensor<D>, velocity: &[Vector<D>]) -> f64 {
         if !self.settings.is_viscous() {
             return 0.0;
         }
         let is_quadratic = self.settings.artificial_viscosity[1] > 0.0;
-        let rate = is_quadratic.then(|| self.matrix.gradient_at(velocity, data, a));
+        let rate = is_quadratic.then(|| self.matrices.gradient_at(velocity, a));
         self.thickening(gradient, rate.as_ref(), a)
     }
 

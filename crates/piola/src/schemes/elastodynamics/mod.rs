@@ -2,7 +2,7 @@
 //! Paper: Elastodynamics.
 //!
 //! Unknowns of a particle are v and the displacement u. A step takes two products with the matrices
-//! of [`FoldedGradient`]: one for the displacement gradient, one for the forces, theory (63):
+//! of [`ReferenceGradient`](crate::operators::ReferenceGradient): one for the displacement gradient, one for the forces, theory (63):
 //!
 //! ```text
 //! A = X u,   P = P(I + A),   m dv/dt = -X^T (V P) + H u + loads,   du/dt = v
@@ -21,6 +21,7 @@ mod fields;
 mod ghosts;
 mod holes;
 mod inspect;
+mod matrices;
 mod scheme;
 mod settings;
 mod slopes;
@@ -40,13 +41,13 @@ use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, traction::Loaded};
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
-use crate::operators::{FoldedGradient, FoldedHourglass, Mirror};
+use crate::operators::Mirror;
 use crate::schemes::Accounts;
 use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
 use crate::{Tensor, Vector};
 
-use edges::Edges;
+use matrices::Matrices;
 
 /// The elastodynamics formulation bound to its particles.
 pub struct Elastodynamics<const D: usize> {
@@ -60,12 +61,9 @@ pub struct Elastodynamics<const D: usize> {
     /// Which mixture each particle is made of.
     mixture: Vec<u32>,
     mass: Vec<f64>,
-    matrix: FoldedGradient<D>,
-    hourglass: Option<FoldedHourglass<D>>,
+    matrices: Matrices<D>,
     /// Symmetry planes and rollers, each with a particle that lies on it.
     mirrors: Vec<(Mirror, usize)>,
-    /// The edges, in the strong form, whose data stand behind those of particles.
-    edges: Option<Edges<D>>,
     stable: stable_step::Bound,
     /// Moduli of the slowest and the fastest wave at rest of each mixture, Pa.
     moduli_at_rest: Vec<[f64; 2]>,
@@ -80,8 +78,9 @@ pub struct Elastodynamics<const D: usize> {
     has_matrices: bool,
     /// The stages of an evaluation.
     stages: Stages<stages::Pass>,
+    /// Displacements, with values of images or data of edges behind.
     displacement: Vec<Vector<D>>,
-    /// Velocities and accelerations with the data of edges behind; empty without edges.
+    /// The same of velocities, empty where they are not needed, and in the strong form of accelerations.
     velocity: Vec<Vector<D>>,
     acceleration: Vec<Vector<D>>,
     gradient: Vec<Tensor<D>>,
@@ -89,7 +88,9 @@ pub struct Elastodynamics<const D: usize> {
     gradient_rate: Vec<Tensor<D>>,
     /// Elastic first Piola-Kirchhoff stress.
     stress: Vec<Tensor<D>>,
+    /// What forces gather, zero for images.
     tension: Vec<Tensor<D>>,
+    /// Internal forces, those on images behind.
     force: Vec<Vector<D>>,
     /// Scratch of the length of a state.
     rate: Vec<f64>,

@@ -1,7 +1,7 @@
 //! The elastodynamics formulation as integrators, clock and output see it.
 
 use super::fields::{ColumnsMut, Made};
-use super::{ENERGIES, Elastodynamics, LEDGER};
+use super::{ENERGIES, Elastodynamics, LEDGER, Matrices};
 use crate::fields::FieldDescription;
 use crate::parallel;
 use crate::schemes::look::convexity_is_lost;
@@ -64,22 +64,22 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
         let at = self.columns(state);
         let mut displacement = at.displacement.to_vec();
         displacement.resize(self.displacement.len(), crate::Vector::zeros());
-        self.append_kept(&mut displacement, at.tail);
-        let data = self.plane_data(&displacement);
+        match &self.matrices {
+            Matrices::Strong(_) => self.append_kept(&mut displacement, at.tail),
+            Matrices::Adjoint(operator) => {
+                operator.continue_field(&self.plane_data(at.displacement), &mut displacement);
+            }
+        }
         let sums = parallel::sums::<[f64; 3]>(self.mass.len(), |a, sums| {
             sums[0] += 0.5 * self.mass[a] * at.velocity[a].norm_squared();
-            let gradient = self.matrix.gradient_at(&displacement, &data, a);
+            let gradient = self.matrices.gradient_at(&displacement, a);
             let mixture = &self.mixtures[self.mixture[a] as usize];
             sums[1] += mixture.energy(&gradient) * self.particles.volume[a];
-            if let Some(hourglass) = &self.hourglass {
-                let moment = gradient * self.matrix.shape(a);
-                sums[2] -= hourglass.coefficient(a) * gradient.dot(&moment);
+            if let Matrices::Adjoint(operator) = &self.matrices {
+                sums[2] += operator.hourglass_energy(&displacement, &gradient, a);
             }
         });
         energies.copy_from_slice(&sums);
-        if let Some(hourglass) = &self.hourglass {
-            energies[2] += hourglass.energy(&displacement, &data);
-        }
     }
 
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
@@ -127,7 +127,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn neighborhood(&self, index: usize) -> Vec<u32> {
-        self.matrix.row(index).iter().copied().filter(|&b| b as usize != index).collect()
+        self.matrices.neighborhood(index)
     }
 
     /// Accelerations are kept in the state, for kicks.
@@ -167,9 +167,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn memory(&self) -> usize {
-        self.matrix.memory()
-            + self.edges.as_ref().map_or(0, |edges| edges.divergence.memory())
-            + self.hourglass.as_ref().map_or(0, |hourglass| hourglass.memory())
+        self.matrices.memory()
             + size_of_val(self.particles.position.as_slice())
             + size_of_val(self.displacement.as_slice())
             + 2 * size_of_val(self.velocity.as_slice())

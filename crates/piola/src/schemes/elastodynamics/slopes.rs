@@ -4,8 +4,7 @@ use piola_formulas::tensor;
 
 use super::edges::{Edges, Slot};
 use super::settings::{Mixture, is_linear};
-use super::{Elastodynamics, LEDGER};
-use crate::operators::FoldedGradient;
+use super::{Elastodynamics, LEDGER, Matrices};
 use crate::{Tensor, Vector};
 
 /// Steps of Newton's method.
@@ -125,14 +124,12 @@ impl<const D: usize> Edges<D> {
     /// particle, and the rates of the stress in a slot.
     pub fn continue_rates(
         &mut self,
-        matrix: &FoldedGradient<D>,
         field: &mut [Vector<D>],
         tangents: impl Fn(usize) -> Tangents<D>,
         stress_rate: impl Fn(&Slot<D>) -> Vector<D>,
     ) {
-        let count = matrix.len();
+        let count = self.gradient.len();
         self.append_held(count, field);
-        let still = [[0.0; 2]; D];
         let mut found = std::mem::take(&mut self.found);
         for (slot, found) in self.slots.iter().zip(&mut found) {
             let (a, sought) = (slot.particle, &slot.sought);
@@ -140,7 +137,7 @@ impl<const D: usize> Edges<D> {
                 *found = Vector::zeros();
                 continue;
             }
-            let gradient = matrix.gradient_at(field, &still, a);
+            let gradient = self.gradient.gradient_at(field, a);
             let rates = without(&gradient.component_mul(&slot.not_zero), sought);
             let tangents = tangents(a);
             let own = |i: usize, j: usize| -> f64 {
@@ -165,22 +162,20 @@ impl<const D: usize> Elastodynamics<D> {
     /// Writes displacements of held components, and the slopes that the `tail` of a state keeps, behind `field`, the
     /// displacements in a state.
     pub(super) fn append_kept(&self, field: &mut [Vector<D>], tail: &[f64]) {
-        let Some(edges) = &self.edges else { return };
+        let Some(edges) = self.matrices.edges() else { return };
         let kept = LEDGER.behind(D, tail);
         edges.append(self.mass.len(), field, |number, i| kept[number * D + i]);
     }
 
     /// Writes all data of the edges behind the displacements, with the stresses that belong to them.
     pub(super) fn continue_displacement(&mut self, time: f64) {
-        let Some(mut edges) = self.edges.take() else { return };
-        let count = self.mass.len();
-        let mut displacement = std::mem::take(&mut self.displacement);
+        let Matrices::Strong(edges) = &mut self.matrices else { return };
+        let (count, displacement) = (self.mass.len(), &mut self.displacement);
         edges.known.copy_from_slice(&displacement[count..]);
-        edges.append_held(count, &mut displacement);
+        edges.append_held(count, displacement);
         for (stress, slot) in edges.stress.iter_mut().zip(&edges.slots) {
             *stress = slot.stress(time);
         }
-        let still = [[0.0; 2]; D];
         let (slots, stress) = (&edges.slots, &edges.stress);
         let mut found = std::mem::take(&mut edges.found);
         for (slot, found) in slots.iter().zip(&mut found) {
@@ -189,7 +184,7 @@ impl<const D: usize> Elastodynamics<D> {
                 *found = Vector::zeros();
                 continue;
             }
-            let mut gradient = self.matrix.gradient_at(&displacement, &still, a);
+            let mut gradient = edges.gradient.gradient_at(displacement, a);
             gradient.component_mul_assign(&slot.not_zero);
             for (i, entry) in sought.iter().enumerate() {
                 if let Some((j, slot)) = *entry {
@@ -203,11 +198,9 @@ impl<const D: usize> Elastodynamics<D> {
         let first = edges.slots.len();
         for (number, foot) in (first..).zip(&mut edges.feet) {
             let mixture = &self.mixtures[self.mixture[foot.inside.like] as usize];
-            found[number] = foot.slope(mixture, &displacement, edges.known[number]);
+            found[number] = foot.slope(mixture, displacement, edges.known[number]);
         }
-        edges.append(count, &mut displacement, |number, i| found[number][i]);
+        edges.append(count, displacement, |number, i| found[number][i]);
         edges.found = found;
-        self.displacement = displacement;
-        self.edges = Some(edges);
     }
 }

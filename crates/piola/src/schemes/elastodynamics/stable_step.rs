@@ -2,11 +2,10 @@
 
 use piola_formulas::tensor;
 
-use super::Elastodynamics;
-use super::edges::Edges;
+use super::{Elastodynamics, Matrices, Mixture};
 use crate::schemes::StepLimit;
 use crate::schemes::look::{MOST_GROWTH, Most, RESONANCE};
-use crate::solve::largest_mode;
+use crate::schemes::solid::fastest_mode;
 use crate::{Tensor, Vector};
 
 /// By how much the eigenvalues that are found may be too small, as all of Lanczos' values are.
@@ -62,18 +61,18 @@ impl Bound {
 impl<const D: usize> Elastodynamics<D> {
     /// The bounds of the body at rest, without what is prescribed.
     pub(super) fn bound(&mut self) -> Bound {
-        let tangents: Vec<_> = self.mixtures.iter().map(super::Mixture::tangents_at_rest).collect();
-        let elastic = |scheme: &Self, gradient: &Tensor<D>, a: usize| {
-            let kind = scheme.mixture[a] as usize;
-            scheme.mixtures[kind].stress_at_rest(&tangents[kind], gradient)
+        let tangents: Vec<_> = self.mixtures.iter().map(Mixture::tangents_at_rest).collect();
+        let elastic = |mixture: &Mixture<D>, [kind, _]: [usize; 2], gradient: &Tensor<D>| {
+            mixture.stress_at_rest(&tangents[kind], gradient)
         };
         let (stiffness, particle) = self.largest(true, elastic);
         let mut viscosity = 0.0;
         if self.settings.is_viscous() {
-            let viscous = |scheme: &Self, rate: &Tensor<D>, a: usize| {
-                let eta = scheme.settings.viscosity;
-                let bulk = scheme.reference_viscosity(a) - 2.0 * eta;
-                (rate + rate.transpose()) * eta + Tensor::identity() * (rate.trace() * bulk)
+            let eta = self.settings.viscosity;
+            let bulk = |a: usize| self.reference_viscosity(a) - 2.0 * eta;
+            let bulk: Vec<f64> = (0..self.mass.len()).map(bulk).collect();
+            let viscous = |_: &Mixture<D>, [_, a]: [usize; 2], rate: &Tensor<D>| {
+                (rate + rate.transpose()) * eta + Tensor::identity() * (rate.trace() * bulk[a])
             };
             viscosity = self.largest(false, viscous).0;
         }
@@ -110,67 +109,60 @@ impl<const D: usize> Elastodynamics<D> {
         2.0 * self.settings.viscosity + self.artificial_modulus(a) + quadratic * impedance
     }
 
-    /// Largest eigenvalue of `M^-1/2 K M^-1/2` for a stress that is linear in the gradient, and the
-    /// particle that moves most in its mode.
+    /// Largest eigenvalue of `M^-1/2 K M^-1/2` for a stress that is linear in the gradient, which is told the numbers of
+    /// mixture and particle, and the particle that moves most in its mode.
     fn largest(
         &mut self,
         is_elastic: bool,
-        stress: impl Fn(&Self, &Tensor<D>, usize) -> Tensor<D>,
+        stress: impl Fn(&Mixture<D>, [usize; 2], &Tensor<D>) -> Tensor<D>,
     ) -> (f64, usize) {
         let count = self.mass.len();
-        let root: Vec<f64> = self.mass.iter().map(|mass| mass.sqrt()).collect();
         let mut is_free = vec![true; count * D];
         self.prescribed.iter().for_each(|it| is_free[it.particle * D + it.component] = false);
-        let still = [[0.0; 2]; D];
         // Where no load grows: stresses at edges stay zero, and slopes follow the deformation.
-        let mut edges = self.edges.take();
-        let data = edges.as_ref().map_or(0, Edges::data);
-        let no_load = vec![Vector::<D>::zeros(); data];
+        let behind = self.matrices.behind();
+        let no_load = vec![Vector::<D>::zeros(); behind];
         let tangents: Vec<_> =
             self.mixtures.iter().map(|mixture| mixture.tangent(&Tensor::zeros())).collect();
-        let mut field = vec![Vector::<D>::zeros(); count + data];
-        let mut force = vec![Vector::<D>::zeros(); count];
-        let mut tension = vec![Tensor::<D>::zeros(); count];
-        let mode = largest_mode(count * D, |direction, product| {
-            for (a, field) in field[..count].iter_mut().enumerate() {
-                *field = Vector::from_fn(|i, _| {
-                    if is_free[a * D + i] { direction[a * D + i] / root[a] } else { 0.0 }
-                });
-            }
-            if let Some(edges) = &mut edges {
-                let of = |a: usize| tangents[self.mixture[a] as usize];
-                edges.continue_rates(&self.matrix, &mut field, of, |_| Vector::zeros());
-            }
-            self.matrix.gradient(&field, &still, &mut tension);
-            for (a, tension) in tension.iter_mut().enumerate() {
-                let gradient = *tension;
-                *tension = stress(self, &gradient, a) * self.particles.volume[a];
-                if let (Some(hourglass), true) = (&self.hourglass, is_elastic) {
-                    let shape = self.matrix.shape(a);
-                    *tension -= gradient * shape * (2.0 * hourglass.coefficient(a));
+        let mut field = vec![Vector::<D>::zeros(); count + behind];
+        let mut all = field.clone();
+        let mut tension = vec![Tensor::<D>::zeros(); count + behind];
+        let still = [[0.0; 2]; D];
+        let no_motion = field.clone();
+        let is_free = |a: usize, i: usize| is_free[a * D + i];
+        let (square, fastest) = fastest_mode(&self.mass, is_free, |direction, force| {
+            field[..count].copy_from_slice(direction);
+            match &mut self.matrices {
+                Matrices::Adjoint(operator) => operator.continue_field(&still, &mut field),
+                Matrices::Strong(edges) => {
+                    let of = |a: usize| tangents[self.mixture[a] as usize];
+                    edges.continue_rates(&mut field, of, |_| Vector::zeros());
                 }
             }
-            match &mut edges {
-                Some(edges) => {
+            self.matrices.gradients(&field, &mut tension[..count]);
+            for (a, tension) in tension[..count].iter_mut().enumerate() {
+                let (gradient, kind) = (*tension, self.mixture[a] as usize);
+                *tension =
+                    stress(&self.mixtures[kind], [kind, a], &gradient) * self.particles.volume[a];
+                if let (Matrices::Adjoint(operator), true) = (&self.matrices, is_elastic) {
+                    *tension = operator.tension(a, &gradient, *tension);
+                }
+            }
+            match &mut self.matrices {
+                Matrices::Adjoint(operator) => {
+                    // The hourglass force is elastic.
+                    let field = if is_elastic { &field } else { &no_motion };
+                    operator.forces_of(field, &tension, &mut all);
+                    operator.fold(&mut all);
+                }
+                Matrices::Strong(edges) => {
                     edges.stress.fill(Vector::zeros());
                     edges.overwrite(&mut tension, |_| 1.0);
-                    edges.forces(&tension, &no_load, &self.particles.volume, &mut force);
+                    edges.forces(&tension, &no_load, &self.particles.volume, &mut all[..count]);
                 }
-                None => self.matrix.forces(&tension, &mut force),
             }
-            if let (Some(hourglass), true) = (&self.hourglass, is_elastic) {
-                hourglass.add_forces(&field, &still, &mut force);
-            }
-            for (entry, product) in product.iter_mut().enumerate() {
-                let a = entry / D;
-                *product = if is_free[entry] { -force[a][entry % D] / root[a] } else { 0.0 };
-            }
+            force.copy_from_slice(&all[..count]);
         });
-        self.edges = edges;
-        let speed = |a: usize| {
-            mode.vector[a * D..][..D].iter().map(|entry| entry * entry).sum::<f64>() / self.mass[a]
-        };
-        let fastest = |best: usize, a: usize| if speed(a) > speed(best) { a } else { best };
-        (SAFETY * mode.value.max(0.0), (0..count).fold(0, fastest))
+        (SAFETY * square, fastest)
     }
 }

@@ -4,7 +4,7 @@ use crate::Vector;
 use crate::boundaries::Traction;
 use crate::boundaries::traction::Loaded;
 use crate::geometry::Particles;
-use crate::operators::FoldedGradient;
+use crate::operators::ReferenceGradient;
 use crate::{Tensor, parallel};
 
 /// How far loaded particles may be off their plane, in spacings.
@@ -19,7 +19,7 @@ const COMPLETE: f64 = 0.2;
 /// The body as loads need it.
 pub(super) struct Body<'a, const D: usize> {
     pub particles: &'a Particles<D>,
-    pub matrix: &'a FoldedGradient<D>,
+    pub operator: &'a ReferenceGradient<D>,
     pub group: &'a [u32],
     pub radius: &'a [f64],
 }
@@ -80,14 +80,16 @@ impl<const D: usize> Body<'_, D> {
     /// `N . A_q` of all particles, for each component of the displacement.
     fn areas(&self, normal: &Vector<D>) -> Vec<Vector<D>> {
         let volume = &self.particles.volume;
-        let mut tension = vec![Tensor::<D>::zeros(); volume.len()];
-        parallel::for_each_chunk(&mut tension, |start, rows| {
+        let still = vec![Vector::zeros(); volume.len() + self.operator.images()];
+        let mut tension = vec![Tensor::<D>::zeros(); still.len()];
+        parallel::for_each_chunk(&mut tension[..volume.len()], |start, rows| {
             for (offset, tension) in rows.iter_mut().enumerate() {
                 *tension = Tensor::from_fn(|_, j| -volume[start + offset] * normal[j]);
             }
         });
-        let mut areas = vec![Vector::zeros(); volume.len()];
-        self.matrix.forces(&tension, &mut areas);
+        let mut areas = still.clone();
+        self.operator.forces_of(&still, &tension, &mut areas);
+        self.operator.fold(&mut areas);
         areas
     }
 

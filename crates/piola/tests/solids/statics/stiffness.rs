@@ -1,6 +1,7 @@
 //! The tangent stiffness in products, in blocks and in a matrix.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SVector};
+use num_dual::HyperDual64;
 use piola::schemes::dual_support::Stiffness;
 use piola::solve::{Factor, Local, Reduction, SparseMatrix, Tangent, dissect, gmres, largest_mode};
 use piola::{Tensor, Vector};
@@ -23,20 +24,34 @@ fn check_blocks<const D: usize>(cloud: &Cloud<D>, law: HyperelasticLaw, state: S
         let mut unit = vec![Vector::zeros(); body.len()];
         unit[a][component] = 1.0;
         stiffness.apply(&unit, &mut product);
-        let exact = body.stiffness_product(&displacement, &unit);
-        let scale = exact[a].amax();
+        // Second derivatives of the energy along this component and some direction.
+        for seed in [0, 5000, 9000] {
+            let way = |b: usize, i: usize| noise(seed + D * b + i);
+            let seeded: Vec<SVector<HyperDual64, D>> = (displacement.iter().zip(&unit).enumerate())
+                .map(|(b, (u, unit))| {
+                    SVector::from_fn(|i, _| HyperDual64::new(u[i], unit[i], way(b, i), 0.0))
+                })
+                .collect();
+            let [strain, hourglass] = body.total_energy(&seeded);
+            let exact = (strain + hourglass).eps1eps2;
+            let along = (product.iter().enumerate())
+                .map(|(b, row)| (0..D).map(|i| row[i] * way(b, i)).sum::<f64>());
+            let scale = product.iter().map(|row| row.abs().sum()).sum::<f64>();
+            assert!((along.sum::<f64>() - exact).abs() < 1e-12 * scale, "{a} {exact}");
+        }
+        let scale = product[a].amax();
         let mut row = vec![Vector::<D>::zeros(); body.len()];
         stiffness.add_row(a, &mut |b, block: &Tensor<D>| {
             row[b as usize] += block.row(component).transpose();
         });
-        for (b, exact) in exact.iter().enumerate() {
-            assert!((product[b] - exact).amax() < 1e-12 * scale, "{} {exact}", product[b]);
+        for (b, product) in product.iter().enumerate() {
             // A row of a symmetric matrix is a column.
-            assert!((row[b] - exact).amax() < 1e-12 * scale, "{b}: {} {exact}", row[b]);
+            assert!((row[b] - product).amax() < 1e-12 * scale, "{b}: {} {product}", row[b]);
         }
-        assert!((diagonal[a].column(component) - exact[a]).amax() < 1e-12 * scale);
+        assert!((diagonal[a].column(component) - product[a]).amax() < 1e-12 * scale);
         let coupled = stiffness.coupled(a);
-        assert!((0..body.len()).all(|b| exact[b].amax() == 0.0 || coupled.contains(&(b as u32))));
+        let is_coupled = |b: usize| coupled.contains(&(b as u32));
+        assert!((0..body.len()).all(|b| product[b].amax() == 0.0 || is_coupled(b)));
     }
 }
 

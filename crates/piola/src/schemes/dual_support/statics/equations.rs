@@ -27,7 +27,7 @@ impl<const D: usize> Statics<D> {
     /// squared.
     pub(super) fn balance(&mut self, factor: f64, x: &[f64]) -> f64 {
         self.displace(factor, x);
-        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.left);
+        self.discrete.internal_forces(&self.displacement, &mut self.strained, &mut self.left);
         let outside = self.outside(factor);
         let mut size = parallel::sum(outside.len(), |a| outside[a].norm_squared());
         self.left.iter_mut().zip(&outside).for_each(|(left, outside)| *left += outside);
@@ -60,7 +60,7 @@ impl<const D: usize> Statics<D> {
     pub(super) fn holding(&mut self, factor: f64, x: &[f64]) -> Vec<Vector<D>> {
         self.displace(factor, x);
         let loads = self.all_loads(factor);
-        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.left);
+        self.discrete.internal_forces(&self.displacement, &mut self.strained, &mut self.left);
         self.left.iter_mut().zip(&loads).for_each(|(left, load)| *left += load);
         let reduction = self.solver.reduction();
         let at_faces = self.faces.particles(self.left.len());
@@ -185,7 +185,7 @@ impl<const D: usize> LoadedEquations for Statics<D> {
     }
 
     fn step_residual(&mut self, from: f64, to: f64, residual: &mut [f64]) {
-        self.discrete.forces(&self.displacement, &mut self.sides, &mut self.left);
+        self.discrete.internal_forces(&self.displacement, &mut self.strained, &mut self.left);
         let mut forces = self.outside(to);
         forces.iter_mut().zip(&self.left).for_each(|(force, left)| *force += left);
         let (before, after) = (self.supports.values(from, false), self.supports.values(to, false));

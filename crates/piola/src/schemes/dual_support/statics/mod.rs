@@ -23,15 +23,12 @@ pub use stiffness::Stiffness;
 
 use std::sync::Arc;
 
-use piola_formulas::pairs::Record;
-use piola_formulas::pairs::dual_support::SupportSide;
-
-use super::{Discrete, Side};
+use super::Discrete;
 use crate::Vector;
 use crate::boundaries::{
     BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
 };
-use crate::operators::Trace;
+use crate::operators::{Strained, Trace};
 use crate::schemes::input::{check_pressure, check_traction};
 use crate::solve::{
     ArcLength, Costs, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow,
@@ -77,7 +74,7 @@ pub struct Statics<const D: usize> {
     stiffness: Stiffness<D>,
     newton: Newton,
     displacement: Vec<Vector<D>>,
-    sides: Vec<Side<f64, D>>,
+    strained: Strained<D>,
     /// What loads and internal forces leave, held components included, N.
     left: Vec<Vector<D>>,
     /// Dead loads at one load factor, N.
@@ -128,7 +125,7 @@ impl<const D: usize> Statics<D> {
     pub fn new(discrete: Arc<Discrete<D>>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
         let statics = Self::moving(discrete, input)?;
         let Self { discrete, supports, faces, .. } = &statics;
-        let (particles, parts) = (&discrete.particles, discrete.support.list.parts());
+        let (particles, parts) = (&discrete.particles, discrete.operator.support.list.parts());
         let Some((first, motion)) = free_motion(particles, &parts, supports, faces.springs())
         else {
             return Ok(statics);
@@ -172,6 +169,7 @@ impl<const D: usize> Statics<D> {
         let places = &discrete.particles.position;
         let solver =
             LinearSolver::new(input.method, places, &stiffness, |order| supports.reduction(order))?;
+        let strained = discrete.operator.strained();
         let is_linear = discrete.materials.iter().all(|it| !it.law.law().is_objective());
         Ok(Self {
             discrete,
@@ -182,7 +180,7 @@ impl<const D: usize> Statics<D> {
             stiffness,
             newton: input.newton,
             displacement: vec![Vector::zeros(); count],
-            sides: vec![SupportSide::zero(); count],
+            strained,
             left: vec![Vector::zeros(); count],
             dead: None,
             inertia: None,

@@ -4,13 +4,11 @@ use std::sync::Arc;
 
 use num_dual::Dual64;
 use piola_formulas::hyperelastic::Tangent as MaterialTangent;
-use piola_formulas::pairs::Record;
-use piola_formulas::pairs::dual_support::SupportSide;
 use piola_formulas::tensor;
 
-use super::super::{Discrete, Side};
+use super::super::Discrete;
 use super::faces::Spring;
-use crate::operators::dual_row;
+use crate::operators::{Strained, dual_row};
 use crate::solve::Tangent;
 use crate::{Tensor, Vector, parallel};
 
@@ -28,10 +26,6 @@ use crate::{Tensor, Vector, parallel};
 /// what makes sums over p vanish.
 pub struct Stiffness<const D: usize> {
     discrete: Arc<Discrete<D>>,
-    /// `sum_b c_ab X_ab (x) X_ab` of each support, J.
-    moments: Vec<Tensor<D>>,
-    /// Coefficient of the owner of each support in its displacement gradient, 1/m.
-    owners: Vec<Vector<D>>,
     /// `dP/dF` of each particle in Pa.
     tangents: Vec<MaterialTangent<D>>,
     /// Derivative of the pressing force on a particle by its deformation gradient, by entry, N;
@@ -42,7 +36,7 @@ pub struct Stiffness<const D: usize> {
     springs_of: Vec<Vec<u32>>,
     /// Multiple of the mass on the diagonal in 1/s^2: 0 in statics.
     inertia: f64,
-    sides: Vec<Side<f64, D>>,
+    strained: Strained<D>,
 }
 
 /// A particle as a member of a support.
@@ -60,31 +54,15 @@ impl<const D: usize> Stiffness<D> {
     /// The stiffness of a body, for now at rest.
     pub fn new(discrete: Arc<Discrete<D>>) -> Self {
         let count = discrete.len();
-        let list = &discrete.support.list;
-        let owner = |a: usize| {
-            let row = discrete.gradient.coefficients(list.range(a));
-            -row.iter().map(|g| Vector::from(*g)).sum::<Vector<D>>()
-        };
-        let moment = |a: usize| {
-            let row = list.row(a).iter().zip(discrete.gradient.weights(list.range(a)));
-            let squares = row.map(|(&b, weight)| {
-                let x = discrete.support.separation(&discrete.particles.position, a, b);
-                x * x.transpose() * (weight * discrete.hourglass[a])
-            });
-            squares.sum()
-        };
-        let moments = (0..count).map(moment).collect();
-        let owners = (0..count).map(owner).collect();
+        let strained = discrete.operator.strained();
         let mut stiffness = Self {
             discrete,
-            moments,
-            owners,
             tangents: vec![[[Tensor::zeros(); D]; D]; count],
             pressed: Vec::new(),
             springs: Arc::default(),
             springs_of: vec![Vec::new(); count],
             inertia: 0.0,
-            sides: vec![SupportSide::zero(); count],
+            strained,
         };
         stiffness.load(&vec![Vector::zeros(); count], &[]);
         stiffness
@@ -139,29 +117,38 @@ impl<const D: usize> Stiffness<D> {
     #[inline]
     fn member(&self, c: usize, number: u32, entry: usize) -> Member<D> {
         let discrete = &*self.discrete;
-        let z = 2.0 * discrete.hourglass[c] * discrete.gradient.weight(entry as u32);
-        let separation = discrete.support.separation(&discrete.particles.position, c, number);
-        let g = Vector::from(*discrete.gradient.coefficient(entry as u32));
+        let z =
+            2.0 * discrete.operator.hourglass[c] * discrete.operator.gradient.weight(entry as u32);
+        let separation =
+            discrete.operator.support.separation(&discrete.particles.position, c, number);
+        let g = Vector::from(*discrete.operator.gradient.coefficient(entry as u32));
         Member { number, g, y: separation * z, z }
+    }
+
+    /// Coefficient of the owner of a support in its displacement gradient, 1/m.
+    #[inline]
+    fn own_coefficient(&self, c: usize) -> Vector<D> {
+        -self.discrete.operator.sum(c)
     }
 
     /// The owner of a support.
     fn owner(&self, c: usize) -> Member<D> {
-        let list = &self.discrete.support.list;
+        let list = &self.discrete.operator.support.list;
         let (mut y, mut z) = (Vector::zeros(), 0.0);
         for (&b, entry) in list.row(c).iter().zip(list.range(c)) {
             let other = self.member(c, b, entry);
             y -= other.y;
             z += other.z;
         }
-        Member { number: c as u32, g: self.owners[c], y, z }
+        Member { number: c as u32, g: self.own_coefficient(c), y, z }
     }
 
     /// `g . (V dP/dF + 2 I (x) M)` of the support of c: entry `[k][L]` multiplies `g_L` of a second
     /// particle in the column k of the block.
     fn contracted(&self, c: usize, g: &Vector<D>) -> [[Vector<D>; D]; D] {
         let volume = self.discrete.particles.volume[c];
-        let hourglass = self.moments[c] * g * 2.0;
+        let operator = &self.discrete.operator;
+        let hourglass = operator.shape(c) * g * (2.0 * operator.hourglass[c]);
         let mut all = [[Vector::zeros(); D]; D];
         for (k, row) in all.iter_mut().enumerate() {
             for (l, entry) in row.iter_mut().enumerate() {
@@ -174,7 +161,7 @@ impl<const D: usize> Stiffness<D> {
 
     /// Adds what the support of c couples its member p with.
     fn add_support(&self, c: usize, p: &Member<D>, add: &mut dyn FnMut(u32, &Tensor<D>)) {
-        let list = &self.discrete.support.list;
+        let list = &self.discrete.operator.support.list;
         let contracted = self.contracted(c, &p.g);
         let is_owner = |member: &Member<D>| member.number as usize == c;
         let mut block_with = |q: &Member<D>| {
@@ -207,20 +194,21 @@ impl<const D: usize> Stiffness<D> {
 
     /// Position of the particle at an entry of the support of c in the rows of its faces.
     fn position(&self, c: usize, entry: u32) -> usize {
-        entry as usize - self.discrete.support.list.range(c).start + 1
+        entry as usize - self.discrete.operator.support.list.range(c).start + 1
     }
 
     /// Adds half of what pressure couples particle a with, and half of the transpose.
     fn add_pressure(&self, a: usize, add: &mut dyn FnMut(u32, &Tensor<D>)) {
-        let list = &self.discrete.support.list;
-        let own = block_of(&self.pressed[a], &self.owners[a]);
+        let list = &self.discrete.operator.support.list;
+        let own = block_of(&self.pressed[a], &self.own_coefficient(a));
         add(a as u32, &(0.5 * (own + own.transpose())));
-        let row = list.row(a).iter().zip(self.discrete.gradient.coefficients(list.range(a)));
+        let row =
+            list.row(a).iter().zip(self.discrete.operator.gradient.coefficients(list.range(a)));
         for (&b, g) in row {
             add(b, &(0.5 * block_of(&self.pressed[a], &Vector::from(*g))));
         }
-        for (&b, &entry) in dual_row(&self.discrete.support, a) {
-            let g = Vector::from(*self.discrete.gradient.coefficient(entry));
+        for (&b, &entry) in dual_row(&self.discrete.operator.support, a) {
+            let g = Vector::from(*self.discrete.operator.gradient.coefficient(entry));
             add(b, &(0.5 * block_of(&self.pressed[b as usize], &g).transpose()));
         }
     }
@@ -228,7 +216,7 @@ impl<const D: usize> Stiffness<D> {
 
 impl<const D: usize> Tangent<D> for Stiffness<D> {
     fn coupled(&self, a: usize) -> Vec<u32> {
-        let support = &self.discrete.support;
+        let support = &self.discrete.operator.support;
         let mut all = vec![a as u32];
         all.extend_from_slice(support.list.row(a));
         for &c in support.dual.row(a) {
@@ -248,7 +236,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
         };
         self.add_support(a, &self.owner(a), add);
         add_springs(add, a, 0);
-        for (&c, &entry) in dual_row(&self.discrete.support, a) {
+        for (&c, &entry) in dual_row(&self.discrete.operator.support, a) {
             let c = c as usize;
             self.add_support(c, &self.member(c, a as u32, entry as usize), add);
             add_springs(add, c, self.position(c, entry));
@@ -265,18 +253,18 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
     /// is linear as it is.
     fn apply(&mut self, direction: &[Vector<D>], product: &mut [Vector<D>]) {
         let (discrete, tangents) = (&*self.discrete, &self.tangents);
-        let stress = |a: usize, gradient: &Tensor<D>| {
+        let tension = |a: usize, gradient: &Tensor<D>| {
             let mut stress = Tensor::zeros();
             for (k, row) in tangents[a].iter().enumerate() {
                 for (l, slope) in row.iter().enumerate() {
                     stress += slope * gradient[(k, l)];
                 }
             }
-            stress
+            stress * discrete.particles.volume[a]
         };
-        discrete.fill_sides(direction, &mut self.sides, stress);
-        discrete.fill_forces(&self.sides, product);
-        let (sides, pressed, inertia) = (&self.sides, &self.pressed, self.inertia);
+        discrete.operator.strain(direction, &mut self.strained, tension);
+        discrete.operator.forces(direction, &self.strained, product);
+        let (gradient, pressed, inertia) = (&self.strained.gradient, &self.pressed, self.inertia);
         parallel::for_each_chunk(product, |first, product| {
             for (offset, product) in product.iter_mut().enumerate() {
                 let a = first + offset;
@@ -285,7 +273,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
                 if let Some(slopes) = pressed.get(a) {
                     for (k, row) in slopes.iter().enumerate() {
                         for (l, slope) in row.iter().enumerate() {
-                            *product += slope * sides[a].gradient[(k, l)];
+                            *product += slope * gradient[a][(k, l)];
                         }
                     }
                 }
@@ -301,7 +289,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
                 let a = first + offset;
                 *block = self.own_block(a, &self.owner(a)) + self.inertial(a);
                 self.see_springs(a, 0, &mut |spring, row| *block += row * spring.row[0].1);
-                for (&c, &entry) in dual_row(&self.discrete.support, a) {
+                for (&c, &entry) in dual_row(&self.discrete.operator.support, a) {
                     let c = c as usize;
                     let position = self.position(c, entry);
                     *block += self.own_block(c, &self.member(c, a as u32, entry as usize));
@@ -310,7 +298,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
                     });
                 }
                 if let Some(slopes) = self.pressed.get(a) {
-                    *block += block_of(slopes, &self.owners[a]);
+                    *block += block_of(slopes, &self.own_coefficient(a));
                 }
             }
         });

@@ -1,9 +1,8 @@
-//! What holds a scalar field to its own gradient.
+//! The hourglass energy of a scalar field, written out: each component of a displacement has it.
 
-use super::directed::DirectedSupport;
-use super::dual_gradient::{DualGradient, dual_row};
-use crate::geometry::Particles;
-use crate::{Vector, parallel};
+use piola::Vector;
+use piola::geometry::Particles;
+use piola::operators::{DirectedSupport, DualGradient};
 
 /// The hourglass energy of a scalar field s, a temperature or a concentration, on the supports and
 /// gradients of the formulation with dual supports: theory (47) for one component,
@@ -49,14 +48,15 @@ impl<const D: usize> ScalarHourglass<'_, D> {
     /// The energy of a field.
     pub fn energy(&self, field: &[f64]) -> f64 {
         let list = &self.support.list;
-        parallel::sum(field.len(), |a| {
+        let energy = |a: usize| {
             let gradient = self.gradient_at(field, a);
             let row = list.row(a).iter().zip(self.gradient.weights(list.range(a)));
             let squares = row.map(|(&b, weight)| {
                 weight * self.deviation(field, &gradient, a, b as usize).powi(2)
             });
             self.coefficients[a] * squares.sum::<f64>()
-        })
+        };
+        (0..field.len()).map(energy).sum()
     }
 
     fn side(&self, field: &[f64], a: usize) -> Side<D> {
@@ -85,27 +85,16 @@ impl<const D: usize> ScalarHourglass<'_, D> {
     /// `-dE/ds` of all particles: what a rate equation of the field adds. It sums to zero, and is
     /// zero for linear fields.
     pub fn force(&self, field: &[f64]) -> Vec<f64> {
-        let zero = Side { gradient: Vector::zeros(), moment: Vector::zeros() };
-        let mut sides = vec![zero; field.len()];
-        parallel::for_each_chunk(&mut sides, |first, sides| {
-            for (offset, side) in sides.iter_mut().enumerate() {
-                *side = self.side(field, first + offset);
-            }
-        });
-        let (sides, list) = (&sides, &self.support.list);
+        let sides: Vec<Side<D>> = (0..field.len()).map(|a| self.side(field, a)).collect();
+        let list = &self.support.list;
         let mut force = vec![0.0; field.len()];
-        parallel::for_each_chunk(&mut force, |first, force| {
-            for (offset, force) in force.iter_mut().enumerate() {
-                let a = first + offset;
-                for (&b, entry) in list.row(a).iter().zip(list.range(a)) {
-                    *force += self.exchange(field, &sides[a], entry as u32, a, b as usize);
-                }
-                for (&b, &entry) in dual_row(self.support, a) {
-                    let b = b as usize;
-                    *force -= self.exchange(field, &sides[b], entry, b, a);
-                }
+        for a in 0..field.len() {
+            for (&b, entry) in list.row(a).iter().zip(list.range(a)) {
+                let exchange = self.exchange(field, &sides[a], entry as u32, a, b as usize);
+                force[a] += exchange;
+                force[b as usize] -= exchange;
             }
-        });
+        }
         force
     }
 }

@@ -1,0 +1,332 @@
+//! The gradient of a body in its reference configuration, with its hourglass energy and the adjoint of both.
+
+use nalgebra::{SMatrix, SVector};
+use piola_formulas::Scalar;
+
+use super::adjoint::AdjointPairs;
+use super::directed::DirectedSupport;
+use super::dual_gradient::DualGradient;
+use super::error::OperatorError;
+use super::images::Image;
+use super::stencil::Cover;
+use crate::{Tensor, Vector};
+
+/// What the lower and the upper plane of each axis prescribe for the component along it.
+pub type PlaneData<const D: usize> = [[f64; 2]; D];
+
+/// The displacement gradient `A_a = sum_b u_ab (x) G_ab` and the hourglass energy
+/// `sum_a c_a sum_b w_ab |A_a X_ab - u_ab|^2` of a total Lagrangian body, theory (44) and (47), with the exact
+/// derivatives of energies that are functions of both: what all such formulations are made of.
+///
+/// Images continue the body beyond planes, theory (59). Fields have their values behind those of particles, and
+/// what acts on them acts on the particles that they mirror.
+///
+/// The hourglass energy is `sum_a c_a (sum_b w_ab |u_ab|^2 - 2 A_a : M_a + A_a : A_a S_a)` with
+/// `M_a = sum_b w_ab u_ab (x) X_ab` and `S_a = sum_b w_ab X_ab (x) X_ab`. Its first sum is one of differences of pairs, and
+/// M is `A S` where gradients have not been made consistent with patches, theory (60), and elsewhere a second sum
+/// beside A.
+#[derive(Clone, Debug)]
+pub struct ReferenceGradient<const D: usize> {
+    /// Who sees whom.
+    pub support: DirectedSupport<D>,
+    /// The coefficients.
+    pub gradient: DualGradient<D>,
+    /// Coefficient c of each particle in J.
+    pub hourglass: Vec<f64>,
+    /// Reference positions of particles, and behind them of images.
+    positions: Vec<Vector<D>>,
+    images: Vec<Image<D>>,
+    pairs: Pairs<D>,
+    centers: Vec<Center<D>>,
+}
+
+/// The pairs that passes go through: with one sum, and with two.
+#[derive(Clone, Debug)]
+enum Pairs<const D: usize> {
+    Plain(AdjointPairs<D, 1>),
+    Consistent(AdjointPairs<D, 2>),
+}
+
+/// Runs an expression on the pairs, whatever the number of their sums.
+macro_rules! on_pairs {
+    ($all:expr, $pairs:ident => $body:expr) => {
+        match $all {
+            Pairs::Plain($pairs) => $body,
+            Pairs::Consistent($pairs) => $body,
+        }
+    };
+}
+
+/// Sums over the support of a particle that do not change.
+#[derive(Clone, Copy, Debug)]
+struct Center<const D: usize> {
+    /// `sum_b G_ab` and `sum_b w_ab X_ab`, in 1/m.
+    coefficients: [Vector<D>; 2],
+    /// `S_a`.
+    shape: Tensor<D>,
+}
+
+/// Scratch of [`ReferenceGradient::strain`].
+#[derive(Clone, Debug)]
+pub struct Strained<const D: usize> {
+    /// Displacement gradients A.
+    pub gradient: Vec<Tensor<D>>,
+    /// Derivatives of the energy by the sums of a particle, in J, and behind them zeros for images.
+    tension: Vec<Tensor<D>>,
+}
+
+impl<const D: usize> Strained<D> {
+    /// Bytes of it.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.gradient.as_slice()) + size_of_val(self.tension.as_slice())
+    }
+}
+
+impl<const D: usize> ReferenceGradient<D> {
+    /// The gradient of `gradient` on its support, with hourglass coefficients in J.
+    pub fn new(
+        cover: &Cover<'_, D>,
+        support: DirectedSupport<D>,
+        gradient: DualGradient<D>,
+        hourglass: Vec<f64>,
+    ) -> Self {
+        let (particles, images) = (cover.particles, cover.images.to_vec());
+        let mut positions = particles.position.clone();
+        positions.extend(images.iter().map(|image| image.position));
+        let arm = |a: usize, b: u32, entry: u32| {
+            support.separation(&positions, a, b) * gradient.weight(entry)
+        };
+        let center = |a: usize| {
+            let mut center = Center { coefficients: [Vector::zeros(); 2], shape: Tensor::zeros() };
+            for (&b, entry) in support.list.row(a).iter().zip(support.list.range(a)) {
+                let arm = arm(a, b, entry as u32);
+                center.coefficients[0] += Vector::from(*gradient.coefficient(entry as u32));
+                center.coefficients[1] += arm;
+                center.shape += arm * support.separation(&positions, a, b).transpose();
+            }
+            center
+        };
+        let centers = (0..particles.len()).map(center).collect();
+        let has_hourglass = hourglass.iter().any(|hourglass| *hourglass != 0.0);
+        let pairs = match gradient.is_plain() || !has_hourglass {
+            true => Pairs::Plain(AdjointPairs::new(&support, &gradient, &hourglass, arm)),
+            false => Pairs::Consistent(AdjointPairs::new(&support, &gradient, &hourglass, arm)),
+        };
+        Self { support, gradient, hourglass, positions, images, pairs, centers }
+    }
+
+    /// The plain gradient of a cover with hourglass coefficients in J.
+    ///
+    /// # Errors
+    /// [`OperatorError`] for positions and supports without neighbour lists, and for particles without a gradient.
+    pub fn plain(cover: &Cover<'_, D>, hourglass: Vec<f64>) -> Result<Self, OperatorError> {
+        let support = DirectedSupport::of(cover)?;
+        let gradient = DualGradient::of(cover, &support)?;
+        Ok(Self::new(cover, support, gradient, hourglass))
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.centers.len()
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.centers.is_empty()
+    }
+
+    /// Number of images, whose values stand behind those of particles.
+    pub fn images(&self) -> usize {
+        self.images.len()
+    }
+
+    /// Writes the values of images behind those of particles.
+    pub fn continue_field(&self, data: &PlaneData<D>, field: &mut [Vector<D>]) {
+        let (own, behind) = field.split_at_mut(self.len());
+        for (value, image) in behind.iter_mut().zip(&self.images) {
+            let source = own[image.source as usize];
+            *value = Vector::from_fn(|i, _| image.sign[i] * source[i] + image.carried(data)[i]);
+        }
+    }
+
+    /// Lets what acts on images act on the particles that they mirror.
+    pub fn fold(&self, force: &mut [Vector<D>]) {
+        let (own, behind) = force.split_at_mut(self.len());
+        for (force, image) in behind.iter().zip(&self.images) {
+            let signed = Vector::<D>::from_fn(|i, _| image.sign[i] * force[i]);
+            own[image.source as usize] += signed;
+        }
+    }
+
+    /// The power in W of planes whose data change at these rates, with the forces on images.
+    pub fn plane_power(&self, force: &[Vector<D>], rates: &PlaneData<D>) -> f64 {
+        let pairs = force[self.len()..].iter().zip(&self.images);
+        -pairs.map(|(force, image)| force.dot(&image.carried(rates))).sum::<f64>()
+    }
+
+    /// The displacement gradient of particle a, in numbers of any type.
+    #[inline]
+    pub fn gradient_at<T: Scalar>(
+        &self,
+        displacement: &[SVector<T, D>],
+        a: usize,
+    ) -> SMatrix<T, D, D> {
+        let mut gradient = SMatrix::zeros();
+        let list = &self.support.list;
+        for (&b, g) in list.row(a).iter().zip(self.gradient.coefficients(list.range(a))) {
+            let jump = displacement[b as usize] - displacement[a];
+            for j in 0..D {
+                for i in 0..D {
+                    gradient[(i, j)] += jump[i] * g[j];
+                }
+            }
+        }
+        gradient
+    }
+
+    /// The hourglass energy of particle a in J, of which the gradient is known, square by square.
+    pub fn hourglass_energy<T: Scalar>(
+        &self,
+        displacement: &[SVector<T, D>],
+        gradient: &SMatrix<T, D, D>,
+        a: usize,
+    ) -> T {
+        let mut sum = T::zero();
+        let list = &self.support.list;
+        for (&b, weight) in list.row(a).iter().zip(self.gradient.weights(list.range(a))) {
+            let separation = self.support.separation(&self.positions, a, b);
+            let mut deviation = displacement[a] - displacement[b as usize];
+            for i in 0..D {
+                for j in 0..D {
+                    deviation[i] += gradient[(i, j)] * separation[j];
+                }
+            }
+            sum += deviation.iter().fold(T::zero(), |sum, &entry| sum + entry * entry) * *weight;
+        }
+        sum * self.hourglass[a]
+    }
+
+    /// `sum_b G_ab` in 1/m.
+    #[inline]
+    pub fn sum(&self, a: usize) -> Vector<D> {
+        self.centers[a].coefficients[0]
+    }
+
+    /// `S_a = sum_b w_ab X_ab (x) X_ab`.
+    #[inline]
+    pub fn shape(&self, a: usize) -> &Tensor<D> {
+        &self.centers[a].shape
+    }
+
+    /// Scratch for the strains of all particles.
+    pub fn strained(&self) -> Strained<D> {
+        let sums = on_pairs!(&self.pairs, pairs => pairs.sums());
+        let zeros = |count: usize| vec![Tensor::zeros(); count];
+        Strained { gradient: zeros(self.len()), tension: zeros(sums * self.positions.len()) }
+    }
+
+    /// The gradients of a field.
+    pub fn gradients(&self, field: &[Vector<D>], gradient: &mut [Tensor<D>]) {
+        on_pairs!(&self.pairs, pairs => {
+            pairs.sum(field, gradient, |[_, k], sums, gradient| gradient[k] = sums[0]);
+        });
+    }
+
+    /// Gradients of displacements, and with the `tension` in J, stress times volume, that a particle has at its gradient, the
+    /// derivatives of its energy.
+    pub fn strain(
+        &self,
+        displacement: &[Vector<D>],
+        strained: &mut Strained<D>,
+        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
+    ) {
+        on_pairs!(&self.pairs, pairs => {
+            let out = (&mut *strained.gradient, strained.tension.as_chunks_mut().0);
+            pairs.sum(displacement, out, |[a, k], sums, (gradient, derivatives)| {
+                gradient[k] = sums[0];
+                derivatives[k] = self.derivatives(a, sums, tension(a, &sums[0]));
+            });
+        });
+    }
+
+    /// What is left of a tension in J with that of the hourglass energy, of a plain gradient.
+    #[inline]
+    pub fn tension(&self, a: usize, gradient: &Tensor<D>, tension: Tensor<D>) -> Tensor<D> {
+        self.derivatives(a, &[*gradient], tension)[0]
+    }
+
+    /// The derivatives of the energy of a particle by its sums.
+    #[inline]
+    fn derivatives<const N: usize>(
+        &self,
+        a: usize,
+        sums: &[Tensor<D>; N],
+        tension: Tensor<D>,
+    ) -> [Tensor<D>; N] {
+        let stiffness = 2.0 * self.hourglass[a];
+        let mut derivatives = [tension; N];
+        if stiffness != 0.0 {
+            let moment = sums[0] * self.centers[a].shape;
+            match derivatives.as_mut_slice() {
+                [of_gradient, of_moment] => {
+                    *of_gradient += (moment - sums[1]) * stiffness;
+                    *of_moment = sums[0] * -stiffness;
+                }
+                // The moment is the product itself.
+                all => all[0] -= moment * stiffness,
+            }
+        }
+        derivatives
+    }
+
+    /// Forces in N on particles, and behind them on images, of strained particles.
+    pub fn forces(
+        &self,
+        displacement: &[Vector<D>],
+        strained: &Strained<D>,
+        force: &mut [Vector<D>],
+    ) {
+        self.forces_of(displacement, &strained.tension, force);
+    }
+
+    /// As [`Self::forces`], of tensions of a plain gradient; those of images are zero.
+    pub fn forces_of(&self, field: &[Vector<D>], tension: &[Tensor<D>], force: &mut [Vector<D>]) {
+        let none = [Vector::zeros(); 2];
+        let own = |a: usize| self.centers.get(a).map_or(none, |center| center.coefficients);
+        on_pairs!(&self.pairs, pairs => pairs.forces(field, own, tension, force));
+    }
+
+    /// The particles in the support of a particle, and in whose support it lies.
+    pub fn neighborhood(&self, a: usize) -> Vec<u32> {
+        self.particles([self.support.list.row(a), self.support.dual.row(a)].concat(), a)
+    }
+
+    /// Number of particles in the support of a particle; images count as what they mirror.
+    pub fn neighbors(&self, a: usize) -> usize {
+        self.particles(self.support.list.row(a).to_vec(), a).len()
+    }
+
+    /// The particles but a that are meant, once each.
+    fn particles(&self, slots: Vec<u32>, a: usize) -> Vec<u32> {
+        let source = |slot: u32| match (slot as usize).checked_sub(self.len()) {
+            None => slot,
+            Some(image) => self.images[image].source,
+        };
+        let mut all: Vec<u32> =
+            slots.into_iter().map(source).filter(|&b| b as usize != a).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Bytes of lists and coefficients.
+    pub fn memory(&self) -> usize {
+        self.support.memory()
+            + self.gradient.memory()
+            + on_pairs!(&self.pairs, pairs => pairs.memory())
+            + size_of_val(self.hourglass.as_slice())
+            + size_of_val(self.positions.as_slice())
+            + size_of_val(self.images.as_slice())
+            + size_of_val(self.centers.as_slice())
+    }
+}
