@@ -80,7 +80,7 @@ impl NeighborList {
     }
 
     /// A list from its arrays, which the caller has made by the rules above.
-    pub(super) fn from_arrays(offsets: Vec<usize>, indices: Vec<u32>) -> Self {
+    pub(crate) fn from_arrays(offsets: Vec<usize>, indices: Vec<u32>) -> Self {
         debug_assert_eq!(offsets.last(), Some(&indices.len()));
         Self { offsets, indices }
     }

@@ -1,12 +1,15 @@
 //! Pairs of a gradient and of its adjoint, with as many coefficients as there are sums.
 
+use nalgebra::{SMatrix, SVector};
+use piola_formulas::Number;
+use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::total_lagrangian::{Forces, Gradients};
 use piola_formulas::pairs::{Components, Each, One};
 
 use super::directed::DirectedSupport;
 use super::dual_gradient::{DualGradient, dual_row};
-use super::frozen::FrozenRows;
-use super::gather::{Among, OfOther, Term, gather, gather_parts};
+use super::frozen::{FrozenRows, Row};
+use super::gather::{Among, OfOther, Term, gather, gather_parts, sum_at, visit};
 use crate::parallel::Parts;
 use crate::{Tensor, Vector};
 
@@ -82,6 +85,27 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
             gather_parts(&self.gradients, &sum, (count, out), |rows, sums, out, _| {
                 close(rows, sums, out);
             });
+    }
+
+    /// The sums of one particle, in numbers of any type.
+    #[inline]
+    pub fn sums_at<T: Number>(&self, field: &[SVector<T, D>], a: usize) -> [SMatrix<T, D, D>; N] {
+        sum_at(&self.gradients, &Gradients::<D, N>, a, |b| field[b])
+    }
+
+    /// Shows what particle a has in its support, with the coefficients.
+    pub fn visit(&self, a: usize, mut look: impl FnMut(usize, &[Vector<D>; N])) {
+        let (among, needs) = (Among::All, Needs::Nothing);
+        visit(&self.gradients, a, among, needs, &mut Row::default(), |b, (pair, _)| look(b, pair));
+    }
+
+    /// All that particle a shares a support with, some twice.
+    pub fn all(&self, a: usize) -> Vec<u32> {
+        let mut all = Vec::new();
+        self.visit(a, |b, _| all.push(b as u32));
+        let (among, needs) = (Among::All, Needs::Nothing);
+        visit(&self.forces, a, among, needs, &mut Row::default(), |b, _| all.push(b as u32));
+        all
     }
 
     /// Writes the forces of derivatives of an energy by all sums; `own` are the sums of the coefficients of each particle.

@@ -64,6 +64,15 @@ impl<const D: usize> DirectedSupport<D> {
             let sees = |a: u32, b: u32| group.is_empty() || group[a as usize] == group[source(b)];
             list = list.retain(|a, b| (a as usize) < count && sees(a, b));
         }
+        Ok(Self::on(list, (kernel, radius.to_vec()), domain))
+    }
+
+    /// The supports of a list, for a kernel and support radii.
+    pub(super) fn on(
+        list: NeighborList,
+        (kernel, radius): (Kernel, Vec<f64>),
+        domain: Domain<D>,
+    ) -> Self {
         let dual = list.dual();
         let mut next = dual.offsets().to_vec();
         let mut dual_entries = vec![0; dual.pairs()];
@@ -72,7 +81,7 @@ impl<const D: usize> DirectedSupport<D> {
             dual_entries[next[b as usize]] = entry as u32;
             next[b as usize] += 1;
         }
-        Ok(Self { kernel, radius: radius.to_vec(), list, dual, dual_entries, domain })
+        Self { kernel, radius, list, dual, dual_entries, domain }
     }
 
     /// Reference separation `X_b - X_a`, the nearest image in a periodic box.

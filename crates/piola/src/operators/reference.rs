@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Scalar;
+use piola_formulas::kernels::Kernel;
 
 use super::adjoint::AdjointPairs;
 use super::directed::DirectedSupport;
@@ -9,6 +10,7 @@ use super::dual_gradient::DualGradient;
 use super::error::OperatorError;
 use super::images::Image;
 use super::stencil::Cover;
+use crate::neighbors::{Domain, NeighborList};
 use crate::{Tensor, Vector};
 
 /// What the lower and the upper plane of each axis prescribe for the component along it.
@@ -27,12 +29,11 @@ pub type PlaneData<const D: usize> = [[f64; 2]; D];
 /// beside A.
 #[derive(Clone, Debug)]
 pub struct ReferenceGradient<const D: usize> {
-    /// Who sees whom.
-    pub support: DirectedSupport<D>,
-    /// The coefficients.
-    pub gradient: DualGradient<D>,
-    /// Coefficient c of each particle in J.
+    /// Hourglass coefficient c of each particle in J.
     pub hourglass: Vec<f64>,
+    kernel: Kernel,
+    radius: Vec<f64>,
+    domain: Domain<D>,
     /// Reference positions of particles, and behind them of images.
     positions: Vec<Vector<D>>,
     images: Vec<Image<D>>,
@@ -86,8 +87,8 @@ impl<const D: usize> ReferenceGradient<D> {
     /// The gradient of `gradient` on its support, with hourglass coefficients in J.
     pub fn new(
         cover: &Cover<'_, D>,
-        support: DirectedSupport<D>,
-        gradient: DualGradient<D>,
+        support: &DirectedSupport<D>,
+        gradient: &DualGradient<D>,
         hourglass: Vec<f64>,
     ) -> Self {
         let (particles, images) = (cover.particles, cover.images.to_vec());
@@ -109,10 +110,12 @@ impl<const D: usize> ReferenceGradient<D> {
         let centers = (0..particles.len()).map(center).collect();
         let has_hourglass = hourglass.iter().any(|hourglass| *hourglass != 0.0);
         let pairs = match gradient.is_plain() || !has_hourglass {
-            true => Pairs::Plain(AdjointPairs::new(&support, &gradient, &hourglass, arm)),
-            false => Pairs::Consistent(AdjointPairs::new(&support, &gradient, &hourglass, arm)),
+            true => Pairs::Plain(AdjointPairs::new(support, gradient, &hourglass, arm)),
+            false => Pairs::Consistent(AdjointPairs::new(support, gradient, &hourglass, arm)),
         };
-        Self { support, gradient, hourglass, positions, images, pairs, centers }
+        let Cover { kernel, domain, .. } = *cover;
+        let radius = cover.radius.to_vec();
+        Self { hourglass, kernel, radius, domain, positions, images, pairs, centers }
     }
 
     /// The plain gradient of a cover with hourglass coefficients in J.
@@ -122,7 +125,7 @@ impl<const D: usize> ReferenceGradient<D> {
     pub fn plain(cover: &Cover<'_, D>, hourglass: Vec<f64>) -> Result<Self, OperatorError> {
         let support = DirectedSupport::of(cover)?;
         let gradient = DualGradient::of(cover, &support)?;
-        Ok(Self::new(cover, support, gradient, hourglass))
+        Ok(Self::new(cover, &support, &gradient, hourglass))
     }
 
     /// Number of particles.
@@ -164,6 +167,42 @@ impl<const D: usize> ReferenceGradient<D> {
         -pairs.map(|(force, image)| force.dot(&image.carried(rates))).sum::<f64>()
     }
 
+    /// Who sees whom with which coefficients, entry by entry, as matrices are made of it.
+    pub fn lists(&self) -> (DirectedSupport<D>, DualGradient<D>) {
+        let (mut offsets, mut indices) = (vec![0], Vec::new());
+        let (mut coefficients, mut weights) = (Vec::new(), Vec::new());
+        for a in 0..self.positions.len() {
+            self.see(a, |b, coefficient, weight| {
+                indices.push(b as u32);
+                coefficients.push((*coefficient).into());
+                weights.push(weight);
+            });
+            offsets.push(indices.len());
+        }
+        let list = NeighborList::from_arrays(offsets, indices);
+        let kernel = (self.kernel, self.radius.clone());
+        let support = DirectedSupport::on(list, kernel, self.domain);
+        let is_plain = matches!(self.pairs, Pairs::Plain(_));
+        (support, DualGradient { coefficients, weights, is_plain })
+    }
+
+    /// Shows what particle a has in its support, with `G_ab` and `w_ab`. An image has nothing in it.
+    fn see(&self, a: usize, mut look: impl FnMut(usize, &Vector<D>, f64)) {
+        let Some(center) = self.centers.get(a) else { return };
+        on_pairs!(&self.pairs, pairs => pairs.visit(a, |b, coefficients| {
+            let separation = self.separation(a, b);
+            let arm = match coefficients.as_slice() {
+                [_, arm] => *arm,
+                _ => center.shape * coefficients[0],
+            };
+            look(b, &coefficients[0], arm.dot(&separation) / separation.norm_squared());
+        }));
+    }
+
+    fn separation(&self, a: usize, b: usize) -> Vector<D> {
+        self.domain.separation(&self.positions[a], &self.positions[b])
+    }
+
     /// The displacement gradient of particle a, in numbers of any type.
     #[inline]
     pub fn gradient_at<T: Scalar>(
@@ -171,17 +210,7 @@ impl<const D: usize> ReferenceGradient<D> {
         displacement: &[SVector<T, D>],
         a: usize,
     ) -> SMatrix<T, D, D> {
-        let mut gradient = SMatrix::zeros();
-        let list = &self.support.list;
-        for (&b, g) in list.row(a).iter().zip(self.gradient.coefficients(list.range(a))) {
-            let jump = displacement[b as usize] - displacement[a];
-            for j in 0..D {
-                for i in 0..D {
-                    gradient[(i, j)] += jump[i] * g[j];
-                }
-            }
-        }
-        gradient
+        on_pairs!(&self.pairs, pairs => pairs.sums_at(displacement, a)[0])
     }
 
     /// The hourglass energy of particle a in J, of which the gradient is known, square by square.
@@ -192,17 +221,19 @@ impl<const D: usize> ReferenceGradient<D> {
         a: usize,
     ) -> T {
         let mut sum = T::zero();
-        let list = &self.support.list;
-        for (&b, weight) in list.row(a).iter().zip(self.gradient.weights(list.range(a))) {
-            let separation = self.support.separation(&self.positions, a, b);
-            let mut deviation = displacement[a] - displacement[b as usize];
+        if self.hourglass[a] == 0.0 {
+            return sum;
+        }
+        self.see(a, |b, _, weight| {
+            let separation = self.separation(a, b);
+            let mut deviation = displacement[a] - displacement[b];
             for i in 0..D {
                 for j in 0..D {
                     deviation[i] += gradient[(i, j)] * separation[j];
                 }
             }
-            sum += deviation.iter().fold(T::zero(), |sum, &entry| sum + entry * entry) * *weight;
-        }
+            sum += deviation.iter().fold(T::zero(), |sum, &entry| sum + entry * entry) * weight;
+        });
         sum * self.hourglass[a]
     }
 
@@ -298,12 +329,14 @@ impl<const D: usize> ReferenceGradient<D> {
 
     /// The particles in the support of a particle, and in whose support it lies.
     pub fn neighborhood(&self, a: usize) -> Vec<u32> {
-        self.particles([self.support.list.row(a), self.support.dual.row(a)].concat(), a)
+        self.particles(on_pairs!(&self.pairs, pairs => pairs.all(a)), a)
     }
 
     /// Number of particles in the support of a particle; images count as what they mirror.
     pub fn neighbors(&self, a: usize) -> usize {
-        self.particles(self.support.list.row(a).to_vec(), a).len()
+        let mut support = Vec::new();
+        self.see(a, |b, _, _| support.push(b as u32));
+        self.particles(support, a).len()
     }
 
     /// The particles but a that are meant, once each.
@@ -321,9 +354,8 @@ impl<const D: usize> ReferenceGradient<D> {
 
     /// Bytes of lists and coefficients.
     pub fn memory(&self) -> usize {
-        self.support.memory()
-            + self.gradient.memory()
-            + on_pairs!(&self.pairs, pairs => pairs.memory())
+        on_pairs!(&self.pairs, pairs => pairs.memory())
+            + size_of_val(self.radius.as_slice())
             + size_of_val(self.hourglass.as_slice())
             + size_of_val(self.positions.as_slice())
             + size_of_val(self.images.as_slice())

@@ -113,10 +113,10 @@ impl<const D: usize> Discrete<D> {
             group: &particles.body,
             images: &[],
             kernel: support.kernel,
-            radius: &support.radius.clone(),
+            radius: &support.radius,
             domain: support.domain,
         };
-        let operator = ReferenceGradient::new(&cover, support, gradient, hourglass);
+        let operator = ReferenceGradient::new(&cover, &support, &gradient, hourglass);
         Ok(Self { particles, operator, materials })
     }
 }

@@ -66,7 +66,7 @@ impl<const D: usize> DualSupport<D> {
             Made::von_mises => measure(Measure::VonMises),
             Made::strain_energy => values.push(per_volume(0)),
             Made::hourglass_energy => values.push(per_volume(1)),
-            Made::neighbors => values.push(discrete.operator.support.list.row(a).len() as f64),
+            Made::neighbors => values.push(discrete.operator.neighbors(a) as f64),
             Made::volume => values.push(discrete.particles.volume[a]),
         }
     }

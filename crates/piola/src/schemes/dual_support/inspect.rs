@@ -13,8 +13,10 @@ impl<const D: usize> DualSupport<D> {
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let at = self.columns(state);
         let columns = [at.velocity, at.displacement, at.kick];
+        let mut gradients = std::mem::take(&mut self.strained.gradient);
+        self.discrete.operator.gradients(at.displacement, &mut gradients);
         let (health, [stiffening, _], soft) = look_at_solid(columns, |a| {
-            let gradient = self.discrete.displacement_gradient(at.displacement, a);
+            let gradient = gradients[a];
             let material = self.discrete.material(a);
             let at_rest = self.moduli_at_rest[self.discrete.particles.body[a] as usize];
             let moduli = match material.law.law().is_objective() {
@@ -24,9 +26,9 @@ impl<const D: usize> DualSupport<D> {
             Deformed { gradient, moduli, at_rest, density: material.density, thickening: 0.0 }
         });
         if let Some(a) = soft {
-            let gradient = self.discrete.displacement_gradient(at.displacement, a);
-            self.not_convex = Some((a, gradient));
+            self.not_convex = Some((a, gradients[a]));
         }
+        self.strained.gradient = gradients;
         limits.clear();
         if self.is_static {
             // Nothing moves: rows hold another rate.

@@ -219,6 +219,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
             + size_of_val(self.mass.as_slice())
             + size_of_val(self.initial_velocity.as_slice())
             + self.strained.memory()
+            + self.statics.as_ref().map_or(0, |statics| statics.memory())
             + size_of_val(self.force.as_slice())
             + size_of_val(self.rate.as_slice())
     }

@@ -124,8 +124,8 @@ impl<const D: usize> Statics<D> {
     /// for bodies that are free to move as a whole.
     pub fn new(discrete: Arc<Discrete<D>>, input: StaticsInput<D>) -> Result<Self, StaticsError> {
         let statics = Self::moving(discrete, input)?;
-        let Self { discrete, supports, faces, .. } = &statics;
-        let (particles, parts) = (&discrete.particles, discrete.operator.support.list.parts());
+        let Self { discrete, supports, faces, stiffness, .. } = &statics;
+        let (particles, parts) = (&discrete.particles, stiffness.parts());
         let Some((first, motion)) = free_motion(particles, &parts, supports, faces.springs())
         else {
             return Ok(statics);
@@ -192,6 +192,11 @@ impl<const D: usize> Statics<D> {
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.solver.reduction().unknowns()
+    }
+
+    /// Bytes of the lists that stiffness is made of.
+    pub fn memory(&self) -> usize {
+        self.stiffness.memory()
     }
 
     /// What the linear equations took so far.

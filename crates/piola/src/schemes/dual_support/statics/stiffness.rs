@@ -8,7 +8,7 @@ use piola_formulas::tensor;
 
 use super::super::Discrete;
 use super::faces::Spring;
-use crate::operators::{Strained, dual_row};
+use crate::operators::{DirectedSupport, DualGradient, Strained, dual_row};
 use crate::solve::Tangent;
 use crate::{Tensor, Vector, parallel};
 
@@ -26,6 +26,8 @@ use crate::{Tensor, Vector, parallel};
 /// what makes sums over p vanish.
 pub struct Stiffness<const D: usize> {
     discrete: Arc<Discrete<D>>,
+    support: DirectedSupport<D>,
+    gradient: DualGradient<D>,
     /// `dP/dF` of each particle in Pa.
     tangents: Vec<MaterialTangent<D>>,
     /// Derivative of the pressing force on a particle by its deformation gradient, by entry, N;
@@ -55,8 +57,11 @@ impl<const D: usize> Stiffness<D> {
     pub fn new(discrete: Arc<Discrete<D>>) -> Self {
         let count = discrete.len();
         let strained = discrete.operator.strained();
+        let (support, gradient) = discrete.operator.lists();
         let mut stiffness = Self {
             discrete,
+            support,
+            gradient,
             tangents: vec![[[Tensor::zeros(); D]; D]; count],
             pressed: Vec::new(),
             springs: Arc::default(),
@@ -66,6 +71,16 @@ impl<const D: usize> Stiffness<D> {
         };
         stiffness.load(&vec![Vector::zeros(); count], &[]);
         stiffness
+    }
+
+    /// The number of the connected part that each particle belongs to.
+    pub(super) fn parts(&self) -> Vec<u32> {
+        self.support.list.parts()
+    }
+
+    /// Bytes of what it is made of.
+    pub(super) fn memory(&self) -> usize {
+        self.support.memory() + self.gradient.memory()
     }
 
     /// Adds what holds faces of cells.
@@ -117,11 +132,9 @@ impl<const D: usize> Stiffness<D> {
     #[inline]
     fn member(&self, c: usize, number: u32, entry: usize) -> Member<D> {
         let discrete = &*self.discrete;
-        let z =
-            2.0 * discrete.operator.hourglass[c] * discrete.operator.gradient.weight(entry as u32);
-        let separation =
-            discrete.operator.support.separation(&discrete.particles.position, c, number);
-        let g = Vector::from(*discrete.operator.gradient.coefficient(entry as u32));
+        let z = 2.0 * discrete.operator.hourglass[c] * self.gradient.weight(entry as u32);
+        let separation = self.support.separation(&discrete.particles.position, c, number);
+        let g = Vector::from(*self.gradient.coefficient(entry as u32));
         Member { number, g, y: separation * z, z }
     }
 
@@ -133,7 +146,7 @@ impl<const D: usize> Stiffness<D> {
 
     /// The owner of a support.
     fn owner(&self, c: usize) -> Member<D> {
-        let list = &self.discrete.operator.support.list;
+        let list = &self.support.list;
         let (mut y, mut z) = (Vector::zeros(), 0.0);
         for (&b, entry) in list.row(c).iter().zip(list.range(c)) {
             let other = self.member(c, b, entry);
@@ -161,7 +174,7 @@ impl<const D: usize> Stiffness<D> {
 
     /// Adds what the support of c couples its member p with.
     fn add_support(&self, c: usize, p: &Member<D>, add: &mut dyn FnMut(u32, &Tensor<D>)) {
-        let list = &self.discrete.operator.support.list;
+        let list = &self.support.list;
         let contracted = self.contracted(c, &p.g);
         let is_owner = |member: &Member<D>| member.number as usize == c;
         let mut block_with = |q: &Member<D>| {
@@ -194,21 +207,20 @@ impl<const D: usize> Stiffness<D> {
 
     /// Position of the particle at an entry of the support of c in the rows of its faces.
     fn position(&self, c: usize, entry: u32) -> usize {
-        entry as usize - self.discrete.operator.support.list.range(c).start + 1
+        entry as usize - self.support.list.range(c).start + 1
     }
 
     /// Adds half of what pressure couples particle a with, and half of the transpose.
     fn add_pressure(&self, a: usize, add: &mut dyn FnMut(u32, &Tensor<D>)) {
-        let list = &self.discrete.operator.support.list;
+        let list = &self.support.list;
         let own = block_of(&self.pressed[a], &self.own_coefficient(a));
         add(a as u32, &(0.5 * (own + own.transpose())));
-        let row =
-            list.row(a).iter().zip(self.discrete.operator.gradient.coefficients(list.range(a)));
+        let row = list.row(a).iter().zip(self.gradient.coefficients(list.range(a)));
         for (&b, g) in row {
             add(b, &(0.5 * block_of(&self.pressed[a], &Vector::from(*g))));
         }
-        for (&b, &entry) in dual_row(&self.discrete.operator.support, a) {
-            let g = Vector::from(*self.discrete.operator.gradient.coefficient(entry));
+        for (&b, &entry) in dual_row(&self.support, a) {
+            let g = Vector::from(*self.gradient.coefficient(entry));
             add(b, &(0.5 * block_of(&self.pressed[b as usize], &g).transpose()));
         }
     }
@@ -216,7 +228,7 @@ impl<const D: usize> Stiffness<D> {
 
 impl<const D: usize> Tangent<D> for Stiffness<D> {
     fn coupled(&self, a: usize) -> Vec<u32> {
-        let support = &self.discrete.operator.support;
+        let support = &self.support;
         let mut all = vec![a as u32];
         all.extend_from_slice(support.list.row(a));
         for &c in support.dual.row(a) {
@@ -236,7 +248,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
         };
         self.add_support(a, &self.owner(a), add);
         add_springs(add, a, 0);
-        for (&c, &entry) in dual_row(&self.discrete.operator.support, a) {
+        for (&c, &entry) in dual_row(&self.support, a) {
             let c = c as usize;
             self.add_support(c, &self.member(c, a as u32, entry as usize), add);
             add_springs(add, c, self.position(c, entry));
@@ -289,7 +301,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
                 let a = first + offset;
                 *block = self.own_block(a, &self.owner(a)) + self.inertial(a);
                 self.see_springs(a, 0, &mut |spring, row| *block += row * spring.row[0].1);
-                for (&c, &entry) in dual_row(&self.discrete.operator.support, a) {
+                for (&c, &entry) in dual_row(&self.support, a) {
                     let c = c as usize;
                     let position = self.position(c, entry);
                     *block += self.own_block(c, &self.member(c, a as u32, entry as usize));
