@@ -57,6 +57,13 @@ impl PrescribedComponents {
         Self { entries }
     }
 
+    /// Gives velocities the prescribed values of a time.
+    pub fn impose<const D: usize>(&self, time: f64, velocity: &mut [Vector<D>]) {
+        for entry in &self.entries {
+            velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
+        }
+    }
+
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter()
     }

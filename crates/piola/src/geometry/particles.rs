@@ -35,6 +35,16 @@ impl<const D: usize> Particles<D> {
         self.position.is_empty()
     }
 
+    /// Bytes of all arrays.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.position.as_slice())
+            + size_of_val(self.volume.as_slice())
+            + size_of_val(self.weight.as_slice())
+            + size_of_val(self.spacing.as_slice())
+            + size_of_val(self.body.as_slice())
+            + size_of_val(self.id.as_slice())
+    }
+
     /// Reorders all arrays: particle `order[i]` becomes particle `i`.
     ///
     /// `order` is a permutation of `0..len`.

@@ -23,7 +23,8 @@ pub(super) struct AdjointPairs<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> AdjointPairs<D, N> {
-    /// Those of a gradient on its support, with hourglass coefficients c in J and arms `w_ab X_ab` by particle, neighbour and entry.
+    /// Those of a gradient on its support, with hourglass coefficients c in J and arms `w_ab X_ab` by particle,
+    /// neighbour and entry.
     pub fn new(
         support: &DirectedSupport<D>,
         gradient: &DualGradient<D>,
@@ -80,7 +81,7 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
         close: impl Fn([usize; 2], &[Tensor<D>; N], &mut O) + Sync,
     ) {
         let sum = Term { law: Gradients::<D, N>, source: field, among: Among::All };
-        let count = self.gradients.len();
+        let count = self.gradients.count();
         let _: [f64; 0] =
             gather_parts(&self.gradients, &sum, (count, out), |rows, sums, out, _| {
                 close(rows, sums, out);
@@ -108,7 +109,8 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
         all
     }
 
-    /// Writes the forces of derivatives of an energy by all sums; `own` are the sums of the coefficients of each particle.
+    /// Writes the forces of derivatives of an energy by all sums; `own` are the sums of the coefficients of
+    /// each particle.
     pub fn forces(
         &self,
         field: &[Vector<D>],

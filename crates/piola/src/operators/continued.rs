@@ -32,7 +32,6 @@ pub struct Ghost<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct ContinuedGradient<const D: usize> {
     rows: FrozenRows<Square<D>>,
-    count: usize,
 }
 
 impl<const D: usize> ContinuedGradient<D> {
@@ -96,17 +95,12 @@ impl<const D: usize> ContinuedGradient<D> {
             });
             rows.push(row);
         }
-        Ok(Self { rows: FrozenRows::new(rows.into_iter()), count })
+        Ok(Self { rows: FrozenRows::new(rows.into_iter()) })
     }
 
     /// Number of particles.
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
-    /// Whether there is no particle.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
+    pub fn count(&self) -> usize {
+        self.rows.count()
     }
 
     #[inline]
@@ -117,7 +111,7 @@ impl<const D: usize> ContinuedGradient<D> {
     /// The particles that have a part in the gradient of particle `a`.
     pub fn row(&self, a: usize) -> Vec<u32> {
         let mut row = Vec::new();
-        self.visit(a, |b, _| row.extend((b < self.count).then_some(b as u32)));
+        self.visit(a, |b, _| row.extend((b < self.count()).then_some(b as u32)));
         row
     }
 
@@ -130,7 +124,7 @@ impl<const D: usize> ContinuedGradient<D> {
     /// The part of data in the gradient at particle `a`, whose numbers are counted from 0.
     #[inline]
     pub fn gradient_of_data(&self, datum: impl Fn(usize) -> Vector<D>, a: usize) -> Tensor<D> {
-        self.gradient_of(|b| b.checked_sub(self.count).map_or_else(Vector::zeros, &datum), a)
+        self.gradient_of(|b| b.checked_sub(self.count()).map_or_else(Vector::zeros, &datum), a)
     }
 
     #[inline]

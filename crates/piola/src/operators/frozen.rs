@@ -73,13 +73,8 @@ impl<R: Record> FrozenRows<R> {
     }
 
     /// Number of rows.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.rows.len()
-    }
-
-    /// Whether there is no row.
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
     }
 
     /// Bytes of all rows, which a pass over pairs reads.

@@ -10,6 +10,7 @@ use super::dual_gradient::DualGradient;
 use super::error::OperatorError;
 use super::images::Image;
 use super::stencil::Cover;
+use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborList};
 use crate::{Tensor, Vector};
 
@@ -24,9 +25,9 @@ pub type PlaneData<const D: usize> = [[f64; 2]; D];
 /// what acts on them acts on the particles that they mirror.
 ///
 /// The hourglass energy is `sum_a c_a (sum_b w_ab |u_ab|^2 - 2 A_a : M_a + A_a : A_a S_a)` with
-/// `M_a = sum_b w_ab u_ab (x) X_ab` and `S_a = sum_b w_ab X_ab (x) X_ab`. Its first sum is one of differences of pairs, and
-/// M is `A S` where gradients have not been made consistent with patches, theory (60), and elsewhere a second sum
-/// beside A.
+/// `M_a = sum_b w_ab u_ab (x) X_ab` and `S_a = sum_b w_ab X_ab (x) X_ab`. Its first sum is one of differences
+/// of pairs. M is `A S` where gradients have not been made consistent with patches, theory (60), and
+/// elsewhere a second sum beside A.
 #[derive(Clone, Debug)]
 pub struct ReferenceGradient<const D: usize> {
     /// Hourglass coefficient c of each particle in J.
@@ -73,7 +74,7 @@ pub struct Strained<const D: usize> {
     /// Displacement gradients A.
     pub gradient: Vec<Tensor<D>>,
     /// Derivatives of the energy by the sums of a particle, in J, and behind them zeros for images.
-    tension: Vec<Tensor<D>>,
+    pub tension: Vec<Tensor<D>>,
 }
 
 impl<const D: usize> Strained<D> {
@@ -86,12 +87,12 @@ impl<const D: usize> Strained<D> {
 impl<const D: usize> ReferenceGradient<D> {
     /// The gradient of `gradient` on its support, with hourglass coefficients in J.
     pub fn new(
-        cover: &Cover<'_, D>,
+        (particles, images): (&Particles<D>, &[Image<D>]),
         support: &DirectedSupport<D>,
         gradient: &DualGradient<D>,
         hourglass: Vec<f64>,
     ) -> Self {
-        let (particles, images) = (cover.particles, cover.images.to_vec());
+        let images = images.to_vec();
         let mut positions = particles.position.clone();
         positions.extend(images.iter().map(|image| image.position));
         let arm = |a: usize, b: u32, entry: u32| {
@@ -113,8 +114,8 @@ impl<const D: usize> ReferenceGradient<D> {
             true => Pairs::Plain(AdjointPairs::new(support, gradient, &hourglass, arm)),
             false => Pairs::Consistent(AdjointPairs::new(support, gradient, &hourglass, arm)),
         };
-        let Cover { kernel, domain, .. } = *cover;
-        let radius = cover.radius.to_vec();
+        let DirectedSupport { kernel, domain, .. } = *support;
+        let radius = support.radius.clone();
         Self { hourglass, kernel, radius, domain, positions, images, pairs, centers }
     }
 
@@ -125,17 +126,12 @@ impl<const D: usize> ReferenceGradient<D> {
     pub fn plain(cover: &Cover<'_, D>, hourglass: Vec<f64>) -> Result<Self, OperatorError> {
         let support = DirectedSupport::of(cover)?;
         let gradient = DualGradient::of(cover, &support)?;
-        Ok(Self::new(cover, &support, &gradient, hourglass))
+        Ok(Self::new((cover.particles, cover.images), &support, &gradient, hourglass))
     }
 
     /// Number of particles.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.centers.len()
-    }
-
-    /// Whether there is no particle.
-    pub fn is_empty(&self) -> bool {
-        self.centers.is_empty()
     }
 
     /// Number of images, whose values stand behind those of particles.
@@ -145,7 +141,7 @@ impl<const D: usize> ReferenceGradient<D> {
 
     /// Writes the values of images behind those of particles.
     pub fn continue_field(&self, data: &PlaneData<D>, field: &mut [Vector<D>]) {
-        let (own, behind) = field.split_at_mut(self.len());
+        let (own, behind) = field.split_at_mut(self.count());
         for (value, image) in behind.iter_mut().zip(&self.images) {
             let source = own[image.source as usize];
             *value = Vector::from_fn(|i, _| image.sign[i] * source[i] + image.carried(data)[i]);
@@ -154,7 +150,7 @@ impl<const D: usize> ReferenceGradient<D> {
 
     /// Lets what acts on images act on the particles that they mirror.
     pub fn fold(&self, force: &mut [Vector<D>]) {
-        let (own, behind) = force.split_at_mut(self.len());
+        let (own, behind) = force.split_at_mut(self.count());
         for (force, image) in behind.iter().zip(&self.images) {
             let signed = Vector::<D>::from_fn(|i, _| image.sign[i] * force[i]);
             own[image.source as usize] += signed;
@@ -163,7 +159,7 @@ impl<const D: usize> ReferenceGradient<D> {
 
     /// The power in W of planes whose data change at these rates, with the forces on images.
     pub fn plane_power(&self, force: &[Vector<D>], rates: &PlaneData<D>) -> f64 {
-        let pairs = force[self.len()..].iter().zip(&self.images);
+        let pairs = force[self.count()..].iter().zip(&self.images);
         -pairs.map(|(force, image)| force.dot(&image.carried(rates))).sum::<f64>()
     }
 
@@ -253,7 +249,7 @@ impl<const D: usize> ReferenceGradient<D> {
     pub fn strained(&self) -> Strained<D> {
         let sums = on_pairs!(&self.pairs, pairs => pairs.sums());
         let zeros = |count: usize| vec![Tensor::zeros(); count];
-        Strained { gradient: zeros(self.len()), tension: zeros(sums * self.positions.len()) }
+        Strained { gradient: zeros(self.count()), tension: zeros(sums * self.positions.len()) }
     }
 
     /// The gradients of a field.
@@ -263,8 +259,8 @@ impl<const D: usize> ReferenceGradient<D> {
         });
     }
 
-    /// Gradients of displacements, and with the `tension` in J, stress times volume, that a particle has at its gradient, the
-    /// derivatives of its energy.
+    /// Gradients of displacements, and with the `tension` in J, stress times volume, that a particle has at
+    /// its gradient, the derivatives of its energy.
     pub fn strain(
         &self,
         displacement: &[Vector<D>],
@@ -310,18 +306,9 @@ impl<const D: usize> ReferenceGradient<D> {
         derivatives
     }
 
-    /// Forces in N on particles, and behind them on images, of strained particles.
-    pub fn forces(
-        &self,
-        displacement: &[Vector<D>],
-        strained: &Strained<D>,
-        force: &mut [Vector<D>],
-    ) {
-        self.forces_of(displacement, &strained.tension, force);
-    }
-
-    /// As [`Self::forces`], of tensions of a plain gradient; those of images are zero.
-    pub fn forces_of(&self, field: &[Vector<D>], tension: &[Tensor<D>], force: &mut [Vector<D>]) {
+    /// Forces in N on particles, and behind them on images, of displacements and of what [`Self::strain`] or,
+    /// of a plain gradient, [`Self::tension`] makes of them; that of images is zero.
+    pub fn forces(&self, field: &[Vector<D>], tension: &[Tensor<D>], force: &mut [Vector<D>]) {
         let none = [Vector::zeros(); 2];
         let own = |a: usize| self.centers.get(a).map_or(none, |center| center.coefficients);
         on_pairs!(&self.pairs, pairs => pairs.forces(field, own, tension, force));
@@ -341,7 +328,7 @@ impl<const D: usize> ReferenceGradient<D> {
 
     /// The particles but a that are meant, once each.
     fn particles(&self, slots: Vec<u32>, a: usize) -> Vec<u32> {
-        let source = |slot: u32| match (slot as usize).checked_sub(self.len()) {
+        let source = |slot: u32| match (slot as usize).checked_sub(self.count()) {
             None => slot,
             Some(image) => self.images[image].source,
         };

@@ -125,8 +125,8 @@ pub(super) fn stencils_on<const D: usize>(
     })
 }
 
-/// The sums around particle `a` over neighbours, each with its slot, the particle that it is or mirrors, and where it is
-/// from `a`.
+/// The sums around particle `a` over neighbours, each with its slot, the particle that it is or mirrors, and
+/// where it is from `a`.
 ///
 /// # Errors
 /// [`OperatorError`] where a neighbour is at the same place, and where the correction does not exist.

@@ -10,6 +10,7 @@ use super::{
     SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
+use crate::geometry::Particles;
 use crate::solve::Costs;
 
 /// A formulation bound to its particles, materials and kernel.
@@ -194,6 +195,14 @@ pub struct Particle {
     pub id: u32,
     /// Reference position in m, `dimension` numbers.
     pub reference: Vec<f64>,
+}
+
+impl Particle {
+    /// One of these, by its index in memory.
+    pub(crate) fn of<const D: usize>(particles: &Particles<D>, index: usize) -> Self {
+        let reference = particles.position[index].iter().copied().collect();
+        Self { id: particles.id[index], reference }
+    }
 }
 
 /// A particle that is where no particle may be.

@@ -59,8 +59,8 @@ pub(crate) fn drift<const D: usize>(
     }
 }
 
-/// The largest eigenvalue of `M^-1/2 K M^-1/2` on the components that are free, in 1/s^2, and the particle that moves most in
-/// its mode: `apply` writes `-K u` of a field u.
+/// The largest eigenvalue of `M^-1/2 K M^-1/2` on the components that are free, in 1/s^2, and the particle
+/// that moves most in its mode: `apply` writes `-K u` of a field u.
 pub(crate) fn fastest_mode<const D: usize>(
     mass: &[f64],
     is_free: impl Fn(usize, usize) -> bool,

@@ -17,7 +17,7 @@ use crate::boundaries::{
 };
 use crate::fields::width;
 use crate::geometry::Particles;
-use crate::operators::{Cover, DirectedSupport, DualGradient, OperatorError, ReferenceGradient};
+use crate::operators::{DirectedSupport, DualGradient, OperatorError, ReferenceGradient};
 use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
     check_pressure,
@@ -108,15 +108,7 @@ impl<const D: usize> Discrete<D> {
             settings.hourglass * shear * particles.volume[a]
         };
         let hourglass = (0..count).map(hourglass).collect();
-        let cover = Cover {
-            particles: &particles,
-            group: &particles.body,
-            images: &[],
-            kernel: support.kernel,
-            radius: &support.radius,
-            domain: support.domain,
-        };
-        let operator = ReferenceGradient::new(&cover, &support, &gradient, hourglass);
+        let operator = ReferenceGradient::new((&particles, &[]), &support, &gradient, hourglass);
         Ok(Self { particles, operator, materials })
     }
 }

@@ -82,6 +82,6 @@ impl<const D: usize> Discrete<D> {
         force: &mut [Vector<D>],
     ) {
         self.fill_strains(displacement, strained);
-        self.operator.forces(displacement, strained, force);
+        self.operator.forces(displacement, &strained.tension, force);
     }
 }

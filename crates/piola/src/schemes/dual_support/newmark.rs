@@ -71,11 +71,8 @@ impl<const D: usize> NewmarkScheme for DualSupport<D> {
             }
         });
         let (own, _) = ColumnsMut::<D>::of(new, count);
-        for entry in self.prescribed.iter() {
-            let (a, component) = (entry.particle, entry.component);
-            own.velocity[a][component] = entry.value.value(entry.place, end);
-            own.kick[a][component] = 0.0;
-        }
+        self.prescribed.impose(end, own.velocity);
+        self.prescribed.iter().for_each(|entry| own.kick[entry.particle][entry.component] = 0.0);
         let held = held_before.into_iter().zip(self.held(end, new));
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
         let ends: Vec<Vector<D>> = last.iter().zip(&moved).map(|(u, moved)| u + moved).collect();

@@ -66,9 +66,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let (own, _) = ColumnsMut::<D>::of(state, self.mass.len());
-        for entry in self.prescribed.iter() {
-            own.velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
-        }
+        self.prescribed.impose(time, own.velocity);
     }
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
@@ -155,11 +153,7 @@ impl<const D: usize> Scheme for DualSupport<D> {
     }
 
     fn particle(&self, index: usize) -> Particle {
-        let particles = &self.discrete.particles;
-        Particle {
-            id: particles.id[index],
-            reference: particles.position[index].iter().copied().collect(),
-        }
+        Particle::of(&self.discrete.particles, index)
     }
 
     /// Those in its support and those in whose support it is.
@@ -208,14 +202,8 @@ impl<const D: usize> Scheme for DualSupport<D> {
 
     fn memory(&self) -> usize {
         let discrete = &self.discrete;
-        let particles = &discrete.particles;
         discrete.operator.memory()
-            + size_of_val(particles.position.as_slice())
-            + size_of_val(particles.volume.as_slice())
-            + size_of_val(particles.weight.as_slice())
-            + size_of_val(particles.spacing.as_slice())
-            + size_of_val(particles.body.as_slice())
-            + size_of_val(particles.id.as_slice())
+            + discrete.particles.memory()
             + size_of_val(self.mass.as_slice())
             + size_of_val(self.initial_velocity.as_slice())
             + self.strained.memory()

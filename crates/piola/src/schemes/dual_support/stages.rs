@@ -64,7 +64,11 @@ impl<const D: usize> DualSupport<D> {
                 self.discrete.fill_strains(at.displacement, &mut self.strained);
             }
             Pass::Forces => {
-                self.discrete.operator.forces(at.displacement, &self.strained, &mut self.force);
+                self.discrete.operator.forces(
+                    at.displacement,
+                    &self.strained.tension,
+                    &mut self.force,
+                );
             }
             Pass::External => {
                 self.external_pass(time, at, (&self.force, &self.strained.gradient), found);

@@ -97,7 +97,7 @@ impl<const D: usize> Elastodynamics<D> {
                 edges.forces(tension, &edges.stress, &self.particles.volume, force);
             }
             Matrices::Adjoint(operator) => {
-                operator.forces_of(&self.displacement, tension, force);
+                operator.forces(&self.displacement, tension, force);
                 operator.fold(force);
             }
         }

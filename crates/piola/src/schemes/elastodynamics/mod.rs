@@ -2,7 +2,8 @@
 //! Paper: Elastodynamics.
 //!
 //! Unknowns of a particle are v and the displacement u. A step takes two products with the matrices
-//! of [`ReferenceGradient`](crate::operators::ReferenceGradient): one for the displacement gradient, one for the forces, theory (63):
+//! of [`ReferenceGradient`](crate::operators::ReferenceGradient): one for the displacement gradient, one
+//! for the forces, theory (63):
 //!
 //! ```text
 //! A = X u,   P = P(I + A),   m dv/dt = -X^T (V P) + H u + loads,   du/dt = v

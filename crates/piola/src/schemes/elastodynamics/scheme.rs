@@ -45,9 +45,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let (own, _) = ColumnsMut::<D>::of(state, self.mass.len());
-        for entry in self.prescribed.iter() {
-            own.velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
-        }
+        self.prescribed.impose(time, own.velocity);
     }
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
@@ -120,10 +118,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
     }
 
     fn particle(&self, index: usize) -> Particle {
-        Particle {
-            id: self.particles.id[index],
-            reference: self.particles.position[index].iter().copied().collect(),
-        }
+        Particle::of(&self.particles, index)
     }
 
     fn neighborhood(&self, index: usize) -> Vec<u32> {
@@ -168,7 +163,7 @@ impl<const D: usize> Scheme for Elastodynamics<D> {
 
     fn memory(&self) -> usize {
         self.matrices.memory()
-            + size_of_val(self.particles.position.as_slice())
+            + self.particles.memory()
             + size_of_val(self.displacement.as_slice())
             + 2 * size_of_val(self.velocity.as_slice())
             + size_of_val(self.force.as_slice())

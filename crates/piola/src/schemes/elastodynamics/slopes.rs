@@ -128,7 +128,7 @@ impl<const D: usize> Edges<D> {
         tangents: impl Fn(usize) -> Tangents<D>,
         stress_rate: impl Fn(&Slot<D>) -> Vector<D>,
     ) {
-        let count = self.gradient.len();
+        let count = self.gradient.count();
         self.append_held(count, field);
         let mut found = std::mem::take(&mut self.found);
         for (slot, found) in self.slots.iter().zip(&mut found) {

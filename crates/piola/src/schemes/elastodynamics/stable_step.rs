@@ -109,8 +109,8 @@ impl<const D: usize> Elastodynamics<D> {
         2.0 * self.settings.viscosity + self.artificial_modulus(a) + quadratic * impedance
     }
 
-    /// Largest eigenvalue of `M^-1/2 K M^-1/2` for a stress that is linear in the gradient, which is told the numbers of
-    /// mixture and particle, and the particle that moves most in its mode.
+    /// Largest eigenvalue of `M^-1/2 K M^-1/2` for a stress that is linear in the gradient, which is told the
+    /// numbers of mixture and particle, and the particle that moves most in its mode.
     fn largest(
         &mut self,
         is_elastic: bool,
@@ -152,7 +152,7 @@ impl<const D: usize> Elastodynamics<D> {
                 Matrices::Adjoint(operator) => {
                     // The hourglass force is elastic.
                     let field = if is_elastic { &field } else { &no_motion };
-                    operator.forces_of(field, &tension, &mut all);
+                    operator.forces(field, &tension, &mut all);
                     operator.fold(&mut all);
                 }
                 Matrices::Strong(edges) => {

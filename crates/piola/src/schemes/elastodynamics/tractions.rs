@@ -88,7 +88,7 @@ impl<const D: usize> Body<'_, D> {
             }
         });
         let mut areas = still.clone();
-        self.operator.forces_of(&still, &tension, &mut areas);
+        self.operator.forces(&still, &tension, &mut areas);
         self.operator.fold(&mut areas);
         areas
     }

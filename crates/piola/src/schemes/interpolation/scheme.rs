@@ -120,10 +120,7 @@ impl<const D: usize> Scheme for Interpolation<D> {
     }
 
     fn particle(&self, index: usize) -> Particle {
-        Particle {
-            id: self.particles.id[index],
-            reference: self.particles.position[index].iter().copied().collect(),
-        }
+        Particle::of(&self.particles, index)
     }
 
     fn neighborhood(&self, index: usize) -> Vec<u32> {

@@ -57,9 +57,7 @@ impl<const D: usize> Scheme for Upwind<D> {
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
-        for entry in self.prescribed.iter() {
-            own.velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
-        }
+        self.prescribed.impose(time, own.velocity);
     }
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
@@ -123,10 +121,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn particle(&self, index: usize) -> Particle {
-        Particle {
-            id: self.particles.id[index],
-            reference: self.particles.position[index].iter().copied().collect(),
-        }
+        Particle::of(&self.particles, index)
     }
 
     fn neighborhood(&self, index: usize) -> Vec<u32> {
@@ -151,12 +146,7 @@ impl<const D: usize> Scheme for Upwind<D> {
     fn memory(&self) -> usize {
         let (particles, support) = (&self.particles, &self.support);
         let inverse = self.least_squares.as_ref().map_or(0, |_| size_of::<crate::Tensor<D>>());
-        size_of_val(particles.position.as_slice())
-            + size_of_val(particles.volume.as_slice())
-            + size_of_val(particles.weight.as_slice())
-            + size_of_val(particles.spacing.as_slice())
-            + size_of_val(particles.body.as_slice())
-            + size_of_val(particles.id.as_slice())
+        particles.memory()
             + size_of_val(support.smoothing_length.as_slice())
             + size_of_val(support.list.offsets())
             + size_of_val(support.list.indices())

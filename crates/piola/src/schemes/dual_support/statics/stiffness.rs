@@ -275,7 +275,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
             stress * discrete.particles.volume[a]
         };
         discrete.operator.strain(direction, &mut self.strained, tension);
-        discrete.operator.forces(direction, &self.strained, product);
+        discrete.operator.forces(direction, &self.strained.tension, product);
         let (gradient, pressed, inertia) = (&self.strained.gradient, &self.pressed, self.inertia);
         parallel::for_each_chunk(product, |first, product| {
             for (offset, product) in product.iter_mut().enumerate() {
