@@ -32,7 +32,15 @@ impl Law {
         inputs: impl IntoIterator<Item = impl Into<String>>,
         function: impl FnOnce(&[Traced]) -> Outputs<Traced>,
     ) -> Self {
-        let inputs: Vec<String> = inputs.into_iter().map(Into::into).collect();
+        let inputs = inputs.into_iter().map(Into::into).collect();
+        Self::record_boxed(name.into(), inputs, Box::new(function))
+    }
+
+    fn record_boxed(
+        name: String,
+        inputs: Vec<String>,
+        function: Box<dyn FnOnce(&[Traced]) -> Outputs<Traced> + '_>,
+    ) -> Self {
         let (results, tape) = recorded(|| {
             let numbers: Vec<Traced> = (0..inputs.len()).map(Traced::input).collect();
             function(&numbers)
@@ -41,7 +49,7 @@ impl Law {
             results.into_iter().map(|(name, number)| (name, number.0)).unzip();
         let needed = needed(&tape, &results);
         let inside = inside(&tape);
-        Self { name: name.into(), inputs, outputs, tape, results, needed, inside }
+        Self { name, inputs, outputs, tape, results, needed, inside }
     }
 
     /// Places of the operations that are needed, in order.

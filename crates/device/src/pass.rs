@@ -122,6 +122,17 @@ pub fn local(
     writes: &[Use],
     law: impl FnOnce(&[Traced]) -> Vec<Traced>,
 ) -> Pass {
+    local_boxed(language, name, scalars, [reads, writes], Box::new(law))
+}
+
+/// As [`local`], compiled once.
+fn local_boxed(
+    language: Language,
+    name: &'static str,
+    scalars: &[&'static str],
+    [reads, writes]: [&[Use]; 2],
+    law: Box<dyn FnOnce(&[Traced]) -> Vec<Traced> + '_>,
+) -> Pass {
     let inputs = scalars.iter().map(|name| name.to_string());
     let inputs: Vec<String> = inputs.chain(reads.iter().flat_map(|read| read.names(""))).collect();
     let outputs: Vec<String> = writes.iter().flat_map(|write| write.names("new_")).collect();

@@ -4,6 +4,8 @@
 //! chunk by chunk and then over the chunks in order. Neither depends on the number of threads,
 //! so results are the same to the bit.
 
+use std::sync::{Mutex, PoisonError};
+
 use rayon::prelude::*;
 
 /// Particles a chunk. Long enough that handing it to a thread costs nothing, short enough that
@@ -12,10 +14,7 @@ pub const CHUNK: usize = 1024;
 
 /// Calls `body(first, rows)` for chunks of `rows`, where `first` is the number of the first row.
 pub fn for_each_chunk<T: Send>(rows: &mut [T], body: impl Fn(usize, &mut [T]) + Sync) {
-    if rows.len() <= CHUNK {
-        return body(0, rows);
-    }
-    rows.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, rows)| body(chunk * CHUNK, rows));
+    for_each_part(rows.len(), rows, body);
 }
 
 /// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them.
@@ -51,6 +50,15 @@ impl<A: Parts, B: Parts> Parts for (A, B) {
     }
 }
 
+/// No array: only the number of particles counts.
+struct Counted;
+
+impl Parts for Counted {
+    fn split(self, _middle: usize) -> (Self, Self) {
+        (Self, Self)
+    }
+}
+
 /// An array with one entry for each chunk of particles.
 pub struct PerChunk<'a, T>(pub &'a mut [T]);
 
@@ -63,25 +71,55 @@ impl<T: Send> Parts for PerChunk<'_, T> {
 
 /// Calls `body(first, parts)` for chunks of the arrays of `count` particles.
 pub fn for_each_part<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) + Sync) {
-    split_parts(0, count, parts, &body);
+    hand_out(count, CHUNK, parts, body);
 }
 
-/// Halves the chunks until each is alone, as a list of them would have to be allocated.
-fn split_parts<P: Parts>(first: usize, count: usize, parts: P, body: &(impl Fn(usize, P) + Sync)) {
-    if count <= CHUNK {
-        return body(first, parts);
+/// Hands out arrays of `count` entries in pieces of `grain`, the last of which may be shorter, to all threads.
+///
+/// A thread that has nothing to do takes a part of what is left, long at first and short in the end, so that
+/// all of them end together and rarely wait for one another.
+fn hand_out<P: Parts>(count: usize, grain: usize, parts: P, body: impl Fn(usize, P) + Sync) {
+    let shares = 4 * rayon::current_num_threads();
+    let rest = Mutex::new((0, Some(parts)));
+    let take = || {
+        let mut rest = rest.lock().unwrap_or_else(PoisonError::into_inner);
+        let (first, parts) = (rest.0, rest.1.take()?);
+        let length = ((count - first) / (shares * grain)).max(1) * grain;
+        if first + length >= count {
+            return Some((first, count - first, parts));
+        }
+        let (own, later) = parts.split(length);
+        *rest = (first + length, Some(later));
+        Some((first, length, own))
+    };
+    on_threads(count.div_ceil(grain), &|| {
+        while let Some((mut first, mut length, mut parts)) = take() {
+            while length > grain {
+                let (own, later) = parts.split(grain);
+                body(first, own);
+                (first, length, parts) = (first + grain, length - grain, later);
+            }
+            body(first, parts);
+        }
+    });
+}
+
+/// Calls `work` on all threads, or on as many as there are pieces of work.
+///
+/// The library of threads is asked here alone, through a pointer to a function: its code is compiled once and
+/// not for every loop, which was a fifth of what there was to compile.
+fn on_threads(pieces: usize, work: &(dyn Fn() + Sync)) {
+    match pieces.min(rayon::current_num_threads()) {
+        0 | 1 => work(),
+        threads => (0..threads).into_par_iter().for_each(|_| work()),
     }
-    let middle = count.div_ceil(CHUNK) / 2 * CHUNK;
-    let (own, later) = parts.split(middle);
-    rayon::join(
-        || split_parts(first, middle, own, body),
-        || split_parts(first + middle, count - middle, later, body),
-    );
 }
 
 /// Calls `body(number, item)` for each item, of which each is worth a thread's while.
 pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sync) {
-    items.par_iter_mut().enumerate().for_each(|(number, item)| body(number, item));
+    hand_out(items.len(), 1, items, |first, items: &mut [T]| {
+        items.iter_mut().enumerate().for_each(|(k, item)| body(first + k, item));
+    });
 }
 
 /// `make(i)` for each i below `count`, or the first error.
@@ -128,9 +166,6 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let partial = |chunk: usize| -> f64 {
         (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(&term).sum()
     };
-    if count <= CHUNK {
-        return partial(0);
-    }
     sums_of_chunks(count.div_ceil(CHUNK), partial)
 }
 
@@ -142,9 +177,6 @@ pub fn sums<T: Sums>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
         (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(i, &mut sums));
         sums
     };
-    if count <= CHUNK {
-        return partial(0);
-    }
     sums_of_chunks(count.div_ceil(CHUNK), partial)
 }
 
@@ -157,7 +189,7 @@ fn sums_of_chunks<T: Sums>(chunks: usize, partial: impl Fn(usize) -> T + Sync) -
     let mut sums = T::ZERO;
     for first in (0..chunks).step_by(SIDE_BY_SIDE) {
         let kept = &mut kept[..SIDE_BY_SIDE.min(chunks - first)];
-        kept.par_iter_mut().enumerate().for_each(|(k, part)| *part = partial(first + k));
+        for_each_item(kept, |k, part| *part = partial(first + k));
         kept.iter().for_each(|part| sums.add(part));
     }
     sums
@@ -171,14 +203,19 @@ pub fn larger(a: f64, b: f64) -> f64 {
 /// The largest `term(i)` over `0..count`, at least `least`. A term that is not a number makes the
 /// result infinite.
 pub fn maximum(count: usize, least: f64, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let largest = |range: std::ops::Range<usize>| range.map(&term).fold(least, larger);
-    if count <= CHUNK {
-        return largest(0..count);
-    }
-    let chunks = (0..count.div_ceil(CHUNK)).into_par_iter();
-    chunks
-        .map(|chunk| largest(chunk * CHUNK..((chunk + 1) * CHUNK).min(count)))
-        .reduce(|| least, f64::max)
+    let chunk = |first: usize| (first..(first + CHUNK).min(count)).map(&term).fold(least, larger);
+    largest(count, Counted, |first, Counted| chunk(first))
+}
+
+/// The largest of what `body(first, parts)` returns for chunks of the arrays of `count` particles.
+fn largest<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) -> f64 + Sync) -> f64 {
+    let all = Mutex::new(f64::NEG_INFINITY);
+    for_each_part(count, parts, |first, parts| {
+        let own = body(first, parts);
+        let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+        *all = all.max(own);
+    });
+    all.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Calls `body(first, parts, sums)` for chunks of the arrays of `count` particles, which changes them and
@@ -189,10 +226,6 @@ pub fn sums_over_parts<T: Sums, P: Parts>(
     body: impl Fn(usize, P, &mut T) + Sync,
 ) -> T {
     let mut sums = T::ZERO;
-    if count <= CHUNK {
-        body(0, parts, &mut sums);
-        return sums;
-    }
     let mut kept = [T::ZERO; SIDE_BY_SIDE];
     let (mut first, mut rest) = (0, Some(parts));
     while let Some(parts) = rest.take() {
@@ -219,12 +252,8 @@ pub fn maximum_of_chunks<T: Send, U: Send>(
     least: f64,
     body: impl Fn(usize, &mut [T], &mut [U]) -> f64 + Sync,
 ) -> f64 {
-    if rows.len() <= CHUNK {
-        return body(0, rows, others).max(least);
-    }
-    let chunks = rows.par_chunks_mut(CHUNK).zip(others.par_chunks_mut(CHUNK)).enumerate();
-    let largest = chunks.map(|(chunk, (rows, others))| body(chunk * CHUNK, rows, others));
-    largest.reduce(|| least, f64::max)
+    largest(rows.len(), (rows, others), |first, (rows, others)| body(first, rows, others))
+        .max(least)
 }
 
 /// Calls `body(first, values, rows)` for chunks of `rows`, with those `values` that belong to them:
@@ -235,25 +264,26 @@ pub fn for_each_span<V: Send, T: Send>(
     start: &(impl Fn(usize) -> usize + Sync),
     body: impl Fn(usize, &mut [V], &mut [T]) + Sync,
 ) {
-    split_spans(0, values, rows, start, &body);
+    let (count, first) = (rows.len(), 0);
+    for_each_part(count, Spans { first, values, rows, start }, |first, spans| {
+        body(first, spans.values, spans.rows);
+    });
 }
 
-/// Halves the chunks until each is alone, as a list of them would have to be allocated.
-fn split_spans<V: Send, T: Send>(
+/// Rows from `first` on, and the values that belong to them.
+struct Spans<'a, V, T, S> {
     first: usize,
-    values: &mut [V],
-    rows: &mut [T],
-    start: &(impl Fn(usize) -> usize + Sync),
-    body: &(impl Fn(usize, &mut [V], &mut [T]) + Sync),
-) {
-    if rows.len() <= CHUNK {
-        return body(first, values, rows);
+    values: &'a mut [V],
+    rows: &'a mut [T],
+    start: &'a S,
+}
+
+impl<V: Send, T: Send, S: Fn(usize) -> usize + Sync> Parts for Spans<'_, V, T, S> {
+    fn split(self, middle: usize) -> (Self, Self) {
+        let Self { first, values, rows, start } = self;
+        let (own_rows, rows) = rows.split_at_mut(middle);
+        let (own_values, values) = values.split_at_mut(start(first + middle) - start(first));
+        let own = Self { first, values: own_values, rows: own_rows, start };
+        (own, Self { first: first + middle, values, rows, start })
     }
-    let middle = rows.len().div_ceil(CHUNK) / 2 * CHUNK;
-    let (rows, later_rows) = rows.split_at_mut(middle);
-    let (values, later_values) = values.split_at_mut(start(first + middle) - start(first));
-    rayon::join(
-        || split_spans(first, values, rows, start, body),
-        || split_spans(first + middle, later_values, later_rows, start, body),
-    );
 }
