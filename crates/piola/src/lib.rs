@@ -1,23 +1,15 @@
 //! piola: solid and fluid mechanics with smoothed particle hydrodynamics.
 //!
-//! The rooms of the library, each of which uses only those further down in this list:
-//! [`case`], [`observe`], [`time`], [`output`], [`schemes`], [`boundaries`] and
-//! [`operators`], [`geometry`] and [`neighbors`], [`solve`] and [`fields`], [`parallel`].
+//! The way into the library: [`case`] reads a case file and runs it, [`observe`] records what a run shows. What
+//! they stand on are two crates of their own, all of which is found here, too: `piola-report`, the files of
+//! results, as [`output`], and `piola-physics`, all that computes, as [`time`], [`schemes`], [`boundaries`],
+//! [`operators`], [`geometry`], [`neighbors`], [`solve`], [`fields`] and [`parallel`].
 
-pub mod boundaries;
 pub mod case;
-pub mod fields;
-pub mod geometry;
-pub mod neighbors;
 pub mod observe;
-pub mod operators;
-pub mod output;
-pub mod parallel;
-pub mod schemes;
-pub mod solve;
-pub mod time;
 
-/// A point or vector in `D` dimensions.
-pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
-/// A second-order tensor in `D` dimensions.
-pub type Tensor<const D: usize> = nalgebra::SMatrix<f64, D, D>;
+pub use piola_physics::{
+    Tensor, Vector, boundaries, fields, geometry, neighbors, operators, parallel, schemes, solve,
+    time,
+};
+pub use piola_report as output;

@@ -5,7 +5,7 @@
 //! with each other (`interpret`), and the typed [`Case`]. Every step keeps the places of its
 //! values, so that each problem points at the text that causes it, and all are reported at once.
 
-pub mod build;
+pub mod assembly;
 pub mod catalogue;
 mod columns;
 mod decode;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use super::build::{Built, bodies::BodyReport};
+use super::assembly::{Built, bodies::BodyReport};
 use super::finished::{Finished, RUN_QUANTITIES};
 use super::model::{self, Case};
 use super::report::charts;

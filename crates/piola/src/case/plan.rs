@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::build::{self, bodies::BodyReport};
+use super::assembly::{self, bodies::BodyReport};
 use super::model;
 use super::session::Session;
 use crate::neighbors::NeighborStatistics;
@@ -86,7 +86,7 @@ const STATES: usize = 6;
 impl Session {
     /// Looks at the initial state and times two evaluations of the rates.
     pub fn plan(&mut self) -> Plan {
-        let control = build::step_control(&self.case);
+        let control = assembly::step_control(&self.case);
         let scheme = self.executor.scheme.as_mut();
         let mut state = scheme.initial_state();
         scheme.constrain(0.0, &mut state);

@@ -7,7 +7,7 @@ use std::time::Instant;
 use piola_device::Device;
 use thiserror::Error;
 
-use super::build::{self, Built};
+use super::assembly::{self, Built};
 use super::diagnostics::Problem;
 use super::finished::{Finished, removed, unbalanced};
 use super::model::Case;
@@ -96,8 +96,8 @@ impl Session {
     /// selects nothing, a particle without a gradient, a prestress that the material cannot carry.
     pub fn new(case: &Case) -> Result<Self, Problems> {
         let start = Instant::now();
-        let (scheme, integrator, built) = build::build(case)?;
-        let control = build::step_control(case);
+        let (scheme, integrator, built) = assembly::build(case)?;
+        let control = assembly::step_control(case);
         let mut executor = Executor::new(scheme, integrator, control, *case.time.end);
         executor.max_steps = case.time.max_steps.unwrap_or(u64::MAX);
         executor.min_step = case.time.min_step;
@@ -169,7 +169,7 @@ impl Session {
         self.own = all.len();
         all.extend(outside);
         all.into_iter().for_each(|observer| self.executor.observe(observer));
-        let policy = build::checkpoint_policy(&self.case);
+        let policy = assembly::checkpoint_policy(&self.case);
         self.executor.keep(Checkpoints::new(policy, Box::new(store)));
         (self.tables, self.outputs) = (tables, Some(outputs));
         Ok(())

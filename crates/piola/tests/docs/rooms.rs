@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::pages::{Page, below, page, root};
+use super::pages::{Page, below, page};
 
 /// The library's rooms with what they use.
 type Arrows = BTreeMap<String, BTreeSet<String>>;
 
-const SOURCES: &str = "crates/piola/src";
+/// The crates of the library. The second is one room.
+const LIBRARY: [&str; 3] = ["piola", "report", "physics"];
 
 /// The crates below the library, `piola_` before each.
 const CRATES: [&str; 2] = ["device", "formulas"];
@@ -15,19 +16,18 @@ const CRATES: [&str; 2] = ["device", "formulas"];
 /// The table: the last part of the path in the first column, and the names in the last one.
 fn described(architecture: &str) -> Arrows {
     let rows = architecture.lines().filter_map(|line| {
-        let row = line.strip_prefix(&format!("| `{SOURCES}/"))?.strip_suffix('|')?;
-        let (room, rest) = row.split_once('`')?;
+        let row = line.strip_prefix("| `crates/")?.strip_suffix('|')?;
+        let (path, rest) = row.split_once('`')?;
         let uses = rest.rsplit('|').next()?.split(',').map(|name| name.trim().to_owned());
-        let name = room.trim_end_matches('/').trim_end_matches(".rs").to_owned();
-        Some((name, uses.filter(|name| !name.is_empty()).collect()))
+        Some((room(path)?, uses.filter(|name| !name.is_empty()).collect()))
     });
     rows.collect()
 }
 
-/// What follows each `crate::`, with every name of a list in braces.
-fn named_after_crate(source: &str) -> Vec<String> {
+/// What follows each `crate::` or another root, with every name of a list in braces.
+fn named_after(root: &str, source: &str) -> Vec<String> {
     let mut names = Vec::new();
-    for rest in source.split("crate::").skip(1) {
+    for rest in source.split(root).skip(1) {
         let mut depth = 0;
         let mut starts = true;
         for part in rest.split_inclusive(|c: char| !c.is_alphanumeric() && c != '_') {
@@ -51,27 +51,38 @@ fn named_after_crate(source: &str) -> Vec<String> {
     names
 }
 
-/// The room of a file of the library.
-fn room(file: &str) -> Option<String> {
-    let inside = file.strip_prefix(SOURCES)?.strip_prefix('/')?;
+/// The room of a path below `crates/`, if it is one of the library.
+fn room(path: &str) -> Option<String> {
+    let (package, inside) = path.split_once("/src/")?;
     let first = inside.split('/').next()?.trim_end_matches(".rs");
-    (first != "lib").then(|| first.to_owned())
+    let is_root = first == "lib" || !LIBRARY.contains(&package);
+    match package {
+        "report" => Some(package.to_owned()),
+        _ => (!is_root).then(|| first.to_owned()),
+    }
 }
 
 fn found() -> Arrows {
     let is_test = |name: &str| name.contains("/tests/") || name.ends_with("/tests.rs");
-    let files: Vec<Page> =
-        below(SOURCES, &[".rs"]).into_iter().filter(|file| !is_test(&file.name)).collect();
-    let rooms: BTreeSet<String> = files.iter().filter_map(|file| room(&file.name)).collect();
-    let mut arrows: Arrows = rooms.iter().map(|room| (room.clone(), BTreeSet::new())).collect();
-    for file in &files {
-        let Some(user) = room(&file.name) else { continue };
-        let mut used = named_after_crate(&file.text);
+    let sources =
+        LIBRARY.iter().flat_map(|package| below(&format!("crates/{package}/src"), &[".rs"]));
+    let rooms: Vec<(String, Page)> = sources
+        .filter(|file| !is_test(&file.name))
+        .filter_map(|file| Some((room(file.name.strip_prefix("crates/")?)?, file)))
+        .collect();
+    let mut arrows: Arrows =
+        rooms.iter().map(|(room, _)| (room.clone(), BTreeSet::new())).collect();
+    let names: BTreeSet<String> = arrows.keys().cloned().collect();
+    for (user, file) in &rooms {
+        let mut used = named_after("crate::", &file.text);
+        used.extend(named_after("piola_physics::", &file.text));
+        // The name by which the library shows the crate.
+        used.iter_mut().filter(|name| *name == "output").for_each(|name| *name = "report".into());
         let crates = CRATES.iter().filter(|name| file.text.contains(&format!("piola_{name}")));
         used.extend(crates.map(|name| (*name).to_owned()));
-        let others = used.into_iter().filter(|name| *name != user);
+        let others = used.into_iter().filter(|name| name != user);
         let is_crate = |name: &String| CRATES.contains(&name.as_str());
-        let known = others.filter(|name| rooms.contains(name) || is_crate(name));
+        let known = others.filter(|name| names.contains(name) || is_crate(name));
         arrows.entry(user.clone()).or_default().extend(known);
     }
     arrows
@@ -79,7 +90,6 @@ fn found() -> Arrows {
 
 #[test]
 fn the_table_of_rooms_is_that_of_the_sources() {
-    assert!(root().join(SOURCES).is_dir());
     assert_eq!(described(&page("docs/architecture.md").text), found());
 }
 
@@ -104,5 +114,5 @@ fn lists_in_braces_are_read() {
     let source = "use crate::{Vector, fields::{Snapshot, time}, parallel}; use crate::time::Clock;\n\
                   fn f() -> crate::Tensor { crate::neighbors::Domain }";
     let names = ["Vector", "fields", "parallel", "time", "Tensor", "neighbors"];
-    assert_eq!(named_after_crate(source), names);
+    assert_eq!(named_after("crate::", source), names);
 }

@@ -1,0 +1,100 @@
+//! Runs whose steps somebody else takes, on a device.
+//!
+//! Their state is there, and brought here where it is looked at. The formulation here knows a state once
+//! it has looked at that.
+
+use piola_device::{Device, DeviceError};
+
+use super::Executor;
+use crate::schemes::{DeviceRefusal, DeviceSteps, Health};
+use crate::time::failure::Failure;
+use crate::time::kick_drift_kick::KickDriftKick;
+use crate::time::run::Run;
+use crate::time::summary::Outcome;
+
+impl Executor {
+    /// Lets a device take the steps from now on.
+    ///
+    /// # Errors
+    /// The formulation or the integrator has no steps there, or the device refuses.
+    pub fn use_device(&mut self, device: Device) -> Result<(), DeviceRefusal> {
+        let steps = self.scheme.on_device(device)?;
+        if self.integrator.name() != KickDriftKick::NAME {
+            return Err(DeviceRefusal::Integrator(self.integrator.name()));
+        }
+        Ok(self.use_steps(steps)?)
+    }
+
+    /// Lets somebody else take the steps from now on.
+    ///
+    /// # Errors
+    /// They cannot take the state over.
+    pub fn use_steps(&mut self, mut steps: Box<dyn DeviceSteps>) -> Result<(), DeviceError> {
+        self.bring();
+        steps.put(&self.run.state)?;
+        self.device = Some(steps);
+        Ok(())
+    }
+
+    /// Brings the state of the moment here, if a device is ahead.
+    pub(super) fn bring(&mut self) {
+        if let (false, Some(device)) = (self.is_here, &self.device) {
+            let fetched = device.fetch(&mut self.run.state);
+            self.is_here = true;
+            if let Err(error) = fetched {
+                self.lose(error.into());
+            }
+        }
+    }
+
+    /// Gives the state to the device, if there is one.
+    pub(super) fn hand_over(&mut self) {
+        if let Some(Err(error)) = self.device.as_mut().map(|it| it.put(&self.run.state)) {
+            self.lose(error.into());
+        }
+    }
+
+    /// Looks once over the state, wherever that is.
+    pub(super) fn inspect(&mut self) -> Result<Health, Failure> {
+        let (scheme, limits) = (self.scheme.as_mut(), &mut self.limits);
+        let Run { tally, state, .. } = &mut self.run;
+        let Some(device) = &mut self.device else {
+            return Ok(tally.watches.inspect.time(|| scheme.inspect(state, limits)));
+        };
+        let health = tally.watches.inspect.time(|| device.inspect(limits))?;
+        if health.first_escaped.is_none() {
+            return Ok(health);
+        }
+        // Where it has gone is asked of the formulation.
+        self.bring();
+        Ok(self.scheme.inspect(&self.run.state, &mut self.limits))
+    }
+
+    /// Goes back to the state before the last step, which led to a failure. What the device says if it
+    /// cannot: then the run is at the last mark.
+    pub(super) fn step_back(&mut self) -> Option<Failure> {
+        let fetched = match &self.device {
+            Some(device) => device.fetch_before(&mut self.run.state),
+            None => {
+                self.run.state.copy_from_slice(&self.previous.1);
+                Ok(())
+            }
+        };
+        self.run.clock = self.previous.0;
+        let failure = Failure::from(fetched.err()?);
+        self.lose(failure.clone());
+        Some(failure)
+    }
+
+    /// Ends the run without its device, at the last mark.
+    pub(super) fn lose(&mut self, failure: Failure) {
+        let Run { clock, tally, state, due, history, .. } = &mut self.run;
+        history.last().restore(clock, tally, due, state);
+        for observer in &mut self.observers {
+            // What cannot be taken back is too much, and the rest is sound.
+            tally.warnings.extend(observer.rewind(clock.time).err().map(|error| error.to_string()));
+        }
+        (self.device, self.is_here) = (None, true);
+        self.outcome = Some(Outcome::Failed(failure));
+    }
+}
