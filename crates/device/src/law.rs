@@ -4,6 +4,9 @@ use piola_formulas::Number;
 
 use crate::record::{Binary, Operation, Tape, Traced, Unary, recorded};
 
+/// What makes results of numbers, once.
+pub(crate) type Function<'a, Y = Vec<Traced>> = Box<dyn FnOnce(&[Traced]) -> Y + 'a>;
+
 /// Results of a law with their names.
 pub type Outputs<T> = Vec<(String, T)>;
 
@@ -39,7 +42,7 @@ impl Law {
     fn record_boxed(
         name: String,
         inputs: Vec<String>,
-        function: Box<dyn FnOnce(&[Traced]) -> Outputs<Traced> + '_>,
+        function: Function<'_, Outputs<Traced>>,
     ) -> Self {
         let (results, tape) = recorded(|| {
             let numbers: Vec<Traced> = (0..inputs.len()).map(Traced::input).collect();

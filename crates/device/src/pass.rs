@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use piola_formulas::pairs::{Of, Record};
 
-use crate::law::Law;
+use crate::law::{Function, Law};
 use crate::record::Traced;
 use crate::text::{Language, Precision};
 
@@ -131,7 +131,7 @@ fn local_boxed(
     name: &'static str,
     scalars: &[&'static str],
     [reads, writes]: [&[Use]; 2],
-    law: Box<dyn FnOnce(&[Traced]) -> Vec<Traced> + '_>,
+    law: Function<'_>,
 ) -> Pass {
     let inputs = scalars.iter().map(|name| name.to_string());
     let inputs: Vec<String> = inputs.chain(reads.iter().flat_map(|read| read.names(""))).collect();

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Among, Order};
-use crate::law::Law;
+use crate::law::{Function, Law};
 use crate::pass::{Arguments, At, Pass, Use};
 use crate::record::Traced;
 use crate::text::{Language, Precision};
@@ -66,6 +66,11 @@ pub(super) struct Met<'a> {
     pub sums: &'a [Traced],
 }
 
+/// What is added to the sums.
+type OfTerm<'a> = Box<dyn FnOnce(&Met<'_>) -> Vec<Traced> + 'a>;
+/// What is made of the sums and of some columns.
+type OfSums<'a> = Box<dyn FnOnce(&[Traced], &[Traced]) -> Vec<Traced> + 'a>;
+
 fn names(prefix: &str, columns: &[Use]) -> Vec<String> {
     columns.iter().flat_map(|column| column.names(prefix)).collect()
 }
@@ -94,12 +99,7 @@ impl Loop {
     }
 
     /// Adds a term of columns of a particle and of its neighbours.
-    pub fn term(
-        &mut self,
-        [mine, others]: [&[Use]; 2],
-        among: Among,
-        f: Box<dyn FnOnce(&Met<'_>) -> Vec<Traced> + '_>,
-    ) {
+    pub fn term(&mut self, [mine, others]: [&[Use]; 2], among: Among, f: OfTerm<'_>) {
         let [sums, results] = &self.sums;
         let (my, its) = (names("my_", mine), names("its_", others));
         let (wide, count) = (my.len(), sums.len());
@@ -120,7 +120,7 @@ impl Loop {
     }
 
     /// What sums begin with.
-    pub fn start(&mut self, columns: &[Use], f: Box<dyn FnOnce(&[Traced]) -> Vec<Traced> + '_>) {
+    pub fn start(&mut self, columns: &[Use], f: Function<'_>) {
         assert!(self.order != Order::Lanes, "lanes of `{}` begin with nothing", self.name);
         let law = Law::record(format!("{}_start", self.name), names("my_", columns), |x| {
             self.sums[1].iter().cloned().zip(f(x)).collect()
@@ -133,7 +133,7 @@ impl Loop {
         self,
         scalars: &[&'static str],
         [columns, writes]: [&[Use]; 2],
-        f: Box<dyn FnOnce(&[Traced], &[Traced]) -> Vec<Traced> + '_>,
+        f: OfSums<'_>,
     ) -> Pass {
         let (name, sums) = (self.name, &self.sums[0]);
         let outputs = names("new_", writes);
