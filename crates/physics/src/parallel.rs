@@ -287,3 +287,87 @@ impl<V: Send, T: Send, S: Fn(usize) -> usize + Sync> Parts for Spans<'_, V, T, S
         (own, Self { first: first + middle, values, rows, start })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Below, at and above whole chunks, and more of them than sums are kept side by side.
+    const COUNTS: [usize; 7] =
+        [0, 1, CHUNK - 1, CHUNK, CHUNK + 1, 9 * CHUNK + 7, SIDE_BY_SIDE * CHUNK + 5];
+
+    /// What `run` returns on one thread, which is what it returns on any other number of them.
+    fn on_any_number<T: PartialEq + std::fmt::Debug + Send>(run: impl Fn() -> T + Sync) -> T {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads can be had").install(&run)
+        };
+        let alone = on(1);
+        [2, 3, 8].iter().for_each(|&threads| assert_eq!(on(threads), alone, "{threads} threads"));
+        alone
+    }
+
+    #[test]
+    fn every_row_is_handed_out_once_in_whole_chunks() {
+        for count in COUNTS {
+            let rows = on_any_number(|| {
+                let (mut rows, mut calls) = (vec![0; count], vec![0; count.div_ceil(CHUNK)]);
+                for_each_part(count, (&mut rows[..], PerChunk(&mut calls)), |first, parts| {
+                    let (rows, PerChunk(calls)) = parts;
+                    assert_eq!(first % CHUNK, 0);
+                    assert_eq!(rows.len(), CHUNK.min(count - first));
+                    rows.iter_mut().enumerate().for_each(|(k, row)| *row += first + k + 1);
+                    calls.iter_mut().for_each(|call| *call += 1);
+                });
+                assert!(calls.iter().all(|&call| call == 1));
+                rows
+            });
+            assert!(rows.iter().enumerate().all(|(k, &row)| row == k + 1), "{count}");
+        }
+    }
+
+    #[test]
+    fn values_go_with_their_rows() {
+        let start = |row: usize| 3 * row + row % 3;
+        for count in &COUNTS[1..6] {
+            let values = on_any_number(|| {
+                let (mut rows, mut values) = (vec![0; *count], vec![0; start(*count)]);
+                for_each_span(&mut values, &mut rows, &start, |first, values, rows| {
+                    let end = first + rows.len();
+                    assert_eq!(values.len(), start(end) - start(first));
+                    values.iter_mut().enumerate().for_each(|(k, value)| *value = start(first) + k);
+                });
+                values
+            });
+            assert!(values.iter().enumerate().all(|(k, &value)| value == k));
+        }
+    }
+
+    #[test]
+    fn sums_and_maxima_do_not_depend_on_the_number_of_threads() {
+        // Terms of which the rounded sum depends on the order.
+        let term = |i: usize| 1.0 / (i as f64 + 0.3);
+        for count in COUNTS {
+            let chunk = |first: usize| (first..(first + CHUNK).min(count)).map(term).sum::<f64>();
+            let expected = (0..count).step_by(CHUNK).fold(0.0, |sum, first| sum + chunk(first));
+            assert_eq!(on_any_number(|| sum(count, term)), expected);
+            let all = on_any_number(|| sums(count, |i, sums: &mut [f64; 2]| sums[1] += term(i)));
+            assert_eq!(all, [0.0, expected]);
+            let most = if count == 0 { 2.0 } else { term(0).max(2.0) };
+            assert_eq!(on_any_number(|| maximum(count, 2.0, term)), most);
+            let nothing = |i: usize| if i + 1 == count { f64::NAN } else { term(i) };
+            let most = if count == 0 { 2.0 } else { f64::INFINITY };
+            assert_eq!(on_any_number(|| maximum(count, 2.0, nothing)), most);
+        }
+    }
+
+    #[test]
+    fn items_are_handed_out_one_by_one() {
+        let items = on_any_number(|| {
+            let mut items = vec![0; 1000];
+            for_each_item(&mut items, |number, item| *item += number);
+            items
+        });
+        assert!(items.iter().enumerate().all(|(number, &item)| item == number));
+    }
+}
