@@ -1,5 +1,6 @@
 //! All that computes in piola: particles and who their neighbours are, operators on them, the formulations,
-//! integration in time. It reads no case file and draws nothing.
+//! integration in time. It reads no case file and draws nothing; meshes and clouds of points it reads, as they are
+//! shapes.
 //!
 //! Its rooms, each of which uses only those further down in this list: [`time`], [`schemes`], [`boundaries`]
 //! and [`operators`], [`geometry`] and [`neighbors`], [`solve`] and [`fields`], [`parallel`].

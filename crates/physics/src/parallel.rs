@@ -64,7 +64,7 @@ pub struct PerChunk<'a, T>(pub &'a mut [T]);
 
 impl<T: Send> Parts for PerChunk<'_, T> {
     fn split(self, middle: usize) -> (Self, Self) {
-        let (own, later) = self.0.split_at_mut(middle / CHUNK);
+        let (own, later) = self.0.split_at_mut(middle.div_ceil(CHUNK));
         (Self(own), Self(later))
     }
 }
@@ -106,8 +106,8 @@ fn hand_out<P: Parts>(count: usize, grain: usize, parts: P, body: impl Fn(usize,
 
 /// Calls `work` on all threads, or on as many as there are pieces of work.
 ///
-/// The library of threads is asked here alone, through a pointer to a function: its code is compiled once and
-/// not for every loop, which was a fifth of what there was to compile.
+/// All loops of a step ask the library of threads here, through a pointer to a function: its code is compiled
+/// once and not for every loop.
 fn on_threads(pieces: usize, work: &(dyn Fn() + Sync)) {
     match pieces.min(rayon::current_num_threads()) {
         0 | 1 => work(),
@@ -213,7 +213,7 @@ fn largest<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) -> f64 + Sy
     for_each_part(count, parts, |first, parts| {
         let own = body(first, parts);
         let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
-        *all = all.max(own);
+        *all = larger(*all, own);
     });
     all.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
@@ -351,6 +351,20 @@ mod tests {
             let chunk = |first: usize| (first..(first + CHUNK).min(count)).map(term).sum::<f64>();
             let expected = (0..count).step_by(CHUNK).fold(0.0, |sum, first| sum + chunk(first));
             assert_eq!(on_any_number(|| sum(count, term)), expected);
+            let beside = on_any_number(|| {
+                let (mut rows, mut calls) = (vec![0.0; count], vec![0; count.div_ceil(CHUNK)]);
+                let parts = (&mut rows[..], PerChunk(&mut calls));
+                let total = sums_over_parts(count, parts, |first, parts, total: &mut f64| {
+                    let (rows, PerChunk(calls)) = parts;
+                    rows.iter_mut().enumerate().for_each(|(k, row)| *row = term(first + k));
+                    *total += rows.iter().sum::<f64>();
+                    calls.iter_mut().for_each(|call| *call += 1);
+                });
+                assert!(calls.iter().all(|&call| call == 1));
+                assert!(rows.iter().enumerate().all(|(k, &row)| row == term(k)));
+                total
+            });
+            assert_eq!(beside, expected);
             let all = on_any_number(|| sums(count, |i, sums: &mut [f64; 2]| sums[1] += term(i)));
             assert_eq!(all, [0.0, expected]);
             let most = if count == 0 { 2.0 } else { term(0).max(2.0) };

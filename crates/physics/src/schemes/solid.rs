@@ -84,7 +84,7 @@ pub(crate) fn fastest_mode<const D: usize>(
         mode.vector[a * D..][..D].iter().map(|entry| entry * entry).sum::<f64>() / mass[a]
     };
     let fastest = |best: usize, a: usize| if speed(a) > speed(best) { a } else { best };
-    (mode.value.max(0.0), (0..mass.len()).fold(0, fastest))
+    (parallel::larger(0.0, mode.value), (0..mass.len()).fold(0, fastest))
 }
 
 /// Smallest and largest eigenvalue of the acoustic tensors `N . dP/dF . N` in the principal directions

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::krylov::dot;
+use crate::parallel::larger;
 
 /// Most steps, after which the value is what it is.
 const MOST_STEPS: usize = 300;
@@ -41,7 +42,7 @@ pub fn largest_mode(size: usize, mut product: impl FnMut(&[f64], &mut [f64])) ->
             let found;
             (found, weights) = largest_of_tridiagonal(&diagonal, &beside);
             let is_found = found <= largest * (1.0 + CONVERGED);
-            largest = found.max(largest);
+            largest = larger(largest, found);
             if is_last || is_found {
                 break;
             }

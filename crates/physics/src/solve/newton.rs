@@ -183,9 +183,10 @@ impl Newton {
     /// Finds a zero from `x`, after the iterations `before` that a predictor took: a residual within
     /// the tolerance, or a step that is lost in the rounding of the unknowns.
     ///
-    /// Along each direction a step is halved until the potential falls as its slope promises, or the
-    /// residual is within the tolerance; where the change is lost in rounding, or where there is no
-    /// potential, until the residual falls.
+    /// Along each direction a step is halved until the potential falls as its slope promises; where the
+    /// change is lost in rounding, or where there is no potential, until the residual falls. A full step to a
+    /// residual within the tolerance is taken if the residual does work along it, whatever the potential says:
+    /// energies of small strains are sums of terms that cancel, and lose more digits than their value tells.
     ///
     /// # Errors
     /// [`NewtonError`] with all iterations; `x` is then the last state.
@@ -268,11 +269,18 @@ impl Newton {
                 let falls = change
                     .filter(|(change, noise)| change.abs() > *noise)
                     .map(|(change, _)| change <= -SUFFICIENT * length * slope);
-                let is_taken = falls.unwrap_or(false) || {
-                    let after = equations.residual(factor, &x, &mut left);
-                    let enough = (1.0 - SUFFICIENT * length) * start.residual;
-                    // Energies of small strains have more rounding than their sum tells.
-                    after <= self.tolerance || falls.is_none() && after <= enough
+                let is_taken = match falls {
+                    Some(true) => true,
+                    Some(false) => {
+                        length == 1.0
+                            && equations.residual(factor, &x, &mut left) <= self.tolerance
+                            && self.work(equations, factor, start, &left) > 0.0
+                    }
+                    None => {
+                        let after = equations.residual(factor, &x, &mut left);
+                        let enough = (1.0 - SUFFICIENT * length) * start.residual;
+                        after <= self.tolerance || after <= enough
+                    }
                 };
                 if is_taken {
                     return Ok((length, x));
@@ -281,6 +289,22 @@ impl Newton {
             length *= 0.5;
         }
         Err(broken)
+    }
+
+    /// The work of the residual along a full step, by Simpson's rule: what the potential falls by, without
+    /// the rounding of the potential. It is exact for potentials of degree four.
+    fn work<E: Equations + ?Sized>(
+        &self,
+        equations: &mut E,
+        factor: f64,
+        start: &Start<'_>,
+        end: &[f64],
+    ) -> f64 {
+        let (mut x, mut middle) = (start.x.to_vec(), vec![0.0; end.len()]);
+        advance(&mut x, 0.5, start.direction);
+        equations.residual(factor, &x, &mut middle);
+        let along = |residual: &[f64]| dot(residual, start.direction);
+        (along(start.left) + 4.0 * along(&middle) + along(end)) / 6.0
     }
 }
 
@@ -309,4 +333,72 @@ fn listed(history: &[Iteration], last: f64) -> String {
     }
     let _ = write!(text, "{last:.1e}");
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A potential of one unknown, with an error of its values, and steps to a place that is given.
+    struct Scalar {
+        potential: fn(f64) -> f64,
+        slope: fn(f64) -> f64,
+        target: f64,
+        x: f64,
+    }
+
+    impl Equations for Scalar {
+        fn unknowns(&self) -> usize {
+            1
+        }
+
+        fn trial(&mut self, _factor: f64, x: &[f64]) -> Trial {
+            Trial { potential: Some((self.potential)(x[0])), broken: None }
+        }
+
+        fn residual(&mut self, _factor: f64, x: &[f64], residual: &mut [f64]) -> f64 {
+            residual[0] = -(self.slope)(x[0]);
+            residual[0].abs()
+        }
+
+        fn linearise(&mut self, _: f64, x: &[f64], _: bool) -> Result<(), LinearError> {
+            self.x = x[0];
+            Ok(())
+        }
+
+        fn solve(
+            &mut self,
+            _right: &[f64],
+            _tolerance: f64,
+            solution: &mut [f64],
+        ) -> Result<LinearReport, LinearError> {
+            solution[0] = self.target - self.x;
+            Ok(LinearReport { steps: 1, shift: 0.0, indefinite: false })
+        }
+    }
+
+    fn full_step(mut equations: Scalar, from: f64) -> Option<f64> {
+        let direction = [equations.target - from];
+        let left = [-(equations.slope)(from)];
+        let start =
+            Start { x: &[from], left: &left, direction: &direction, residual: left[0].abs() };
+        let newton = Newton { tolerance: 1e-10, most_halvings: 0, ..Newton::default() };
+        newton.search(&mut equations, 1.0, &start).ok().map(|(length, _)| length)
+    }
+
+    /// Its minimum is at 1, where its values are wrong by more than what the step gains.
+    #[test]
+    fn a_step_that_arrives_is_taken_whatever_rounding_does_to_the_potential() {
+        let potential = |x: f64| 0.5 * (x - 1.0).powi(2) + if x == 1.0 { 1e-3 } else { 0.0 };
+        let slope = |x: f64| x - 1.0;
+        assert_eq!(full_step(Scalar { potential, slope, target: 1.0, x: 0.0 }, 0.99), Some(1.0));
+    }
+
+    /// From the left of the well at -1, downhill, to the top between two wells: it is higher there.
+    #[test]
+    fn a_step_that_arrives_at_a_maximum_is_not_taken() {
+        let potential = |x: f64| 0.25 * x.powi(4) - 0.5 * x * x;
+        let slope = |x: f64| x.powi(3) - x;
+        assert_eq!(full_step(Scalar { potential, slope, target: 0.0, x: 0.0 }, -1.2), None);
+    }
 }

@@ -4,8 +4,8 @@ use nalgebra::SMatrix;
 use piola::geometry::{LatticeSpec, Particles, Shape, fill};
 use piola::neighbors::Domain;
 use piola::operators::{
-    BoundaryValueError, Continuation, Cover, GradientForm, Mirror, ModifiedMatrix,
-    ReferenceGradient, SparseOperator, SphMatrices, images, raise_ghosts,
+    BoundaryValueError, Continuation, Cover, DirectedSupport, DualGradient, GradientForm, Mirror,
+    ModifiedMatrix, ReferenceGradient, SparseOperator, SphMatrices, images, raise_ghosts,
 };
 use piola::{Tensor, Vector};
 use piola_formulas::kernels::Kernel;
@@ -150,20 +150,21 @@ fn forces_with_images_are_the_derivatives_of_the_energy() {
     operator.strain(&at, &mut strained, |_, gradient| gradient * 3.0);
     let mut forces = vec![Vector::zeros(); at.len()];
     operator.forces(&at, &strained.tension, &mut forces);
-    // The same without what keeps the two passes together.
-    let mut tensions: Vec<Tensor<2>> = (strained.gradient.iter().enumerate())
-        .map(|(a, gradient)| operator.tension(a, gradient, gradient * 3.0))
-        .collect();
-    tensions.resize(at.len(), Tensor::zeros());
-    assert_eq!(tensions, strained.tension);
-    // What matrices are made of is what the passes go through.
-    let (support, gradient) = operator.lists();
+    // What matrices are made of is what the cover gives, entry by entry.
+    let support = DirectedSupport::of(&cover).expect("a support");
+    let expected = DualGradient::of(&cover, &support).expect("a gradient");
+    let (list, gradient) = operator.lists();
     for a in 0..count {
-        let row = support.list.row(a).iter().zip(gradient.coefficients(support.list.range(a)));
-        let sum: Tensor<2> =
-            row.map(|(&b, g)| (at[b as usize] - at[a]) * Vector::from(*g).transpose()).sum();
-        assert!((sum - strained.gradient[a]).amax() < 1e-12 * sum.amax());
-        assert!(gradient.weights(support.list.range(a)).iter().all(|weight| *weight > 0.0));
+        let entries = support.list.range(a);
+        assert_eq!(list.list.row(a), support.list.row(a));
+        let pairs = gradient.coefficients(entries.clone()).iter().flatten();
+        for (g, e) in pairs.zip(expected.coefficients(entries.clone()).iter().flatten()) {
+            assert!((g - e).abs() < 1e-12 / 0.1, "{g} for {e}");
+        }
+        let pairs = gradient.weights(entries.clone()).iter();
+        for (w, e) in pairs.zip(expected.weights(entries)) {
+            assert!((w - e).abs() < 1e-12 * e, "{w} for {e}");
+        }
     }
     let rates = [[0.7, 0.0], [0.0; 2]];
     let plane_power = operator.plane_power(&forces, &rates);
