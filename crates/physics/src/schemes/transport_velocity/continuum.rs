@@ -15,7 +15,7 @@ use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::{DeviceRefusal, DeviceSteps, SchemeDescription};
 
-/// Matter bound to the particles of [`Common`].
+/// Matter bound to the particles that all kinds of it share.
 pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// What it is made of.
     type Input;
