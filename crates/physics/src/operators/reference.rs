@@ -30,8 +30,10 @@ pub type PlaneData<const D: usize> = [[f64; 2]; D];
 /// elsewhere a second sum beside A.
 #[derive(Clone, Debug)]
 pub struct ReferenceGradient<const D: usize> {
-    /// Hourglass coefficient c of each particle in J.
-    pub hourglass: Vec<f64>,
+    /// Hourglass coefficient c of each particle in J, of which the pairs have their stiffness.
+    hourglass: Vec<f64>,
+    /// Whether the gradient is that of the paper: one that is not has one sum, too, where nothing is stabilised.
+    is_plain: bool,
     kernel: Kernel,
     radius: Vec<f64>,
     domain: Domain<D>,
@@ -116,7 +118,8 @@ impl<const D: usize> ReferenceGradient<D> {
         };
         let DirectedSupport { kernel, domain, .. } = *support;
         let radius = support.radius.clone();
-        Self { hourglass, kernel, radius, domain, positions, images, pairs, centers }
+        let is_plain = gradient.is_plain();
+        Self { hourglass, is_plain, kernel, radius, domain, positions, images, pairs, centers }
     }
 
     /// The plain gradient of a cover with hourglass coefficients in J.
@@ -178,8 +181,7 @@ impl<const D: usize> ReferenceGradient<D> {
         let list = NeighborList::from_arrays(offsets, indices);
         let kernel = (self.kernel, self.radius.clone());
         let support = DirectedSupport::on(list, kernel, self.domain);
-        let is_plain = matches!(self.pairs, Pairs::Plain(_));
-        (support, DualGradient { coefficients, weights, is_plain })
+        (support, DualGradient { coefficients, weights, is_plain: self.is_plain })
     }
 
     /// Shows what particle a has in its support, with `G_ab` and `w_ab`. An image has nothing in it.
@@ -312,6 +314,11 @@ impl<const D: usize> ReferenceGradient<D> {
         let none = [Vector::zeros(); 2];
         let own = |a: usize| self.centers.get(a).map_or(none, |center| center.coefficients);
         on_pairs!(&self.pairs, pairs => pairs.forces(field, own, tension, force));
+    }
+
+    /// The hourglass coefficient of a particle in J.
+    pub fn hourglass(&self, a: usize) -> f64 {
+        self.hourglass[a]
     }
 
     /// The particles in the support of a particle, and in whose support it lies.

@@ -132,7 +132,7 @@ impl<const D: usize> Stiffness<D> {
     #[inline]
     fn member(&self, c: usize, number: u32, entry: usize) -> Member<D> {
         let discrete = &*self.discrete;
-        let z = 2.0 * discrete.operator.hourglass[c] * self.gradient.weight(entry as u32);
+        let z = 2.0 * discrete.operator.hourglass(c) * self.gradient.weight(entry as u32);
         let separation = self.support.separation(&discrete.particles.position, c, number);
         let g = Vector::from(*self.gradient.coefficient(entry as u32));
         Member { number, g, y: separation * z, z }
@@ -161,7 +161,7 @@ impl<const D: usize> Stiffness<D> {
     fn contracted(&self, c: usize, g: &Vector<D>) -> [[Vector<D>; D]; D] {
         let volume = self.discrete.particles.volume[c];
         let operator = &self.discrete.operator;
-        let hourglass = operator.shape(c) * g * (2.0 * operator.hourglass[c]);
+        let hourglass = operator.shape(c) * g * (2.0 * operator.hourglass(c));
         let mut all = [[Vector::zeros(); D]; D];
         for (k, row) in all.iter_mut().enumerate() {
             for (l, entry) in row.iter_mut().enumerate() {
