@@ -15,7 +15,7 @@ use piola::Vector;
 use piola::boundaries::{PrescribedDisplacement, Traction};
 use piola::neighbors::Domain;
 use piola::operators::DirectedSupport;
-use piola::schemes::dual_support::{
+use piola::schemes::total_lagrangian::{
     Discrete, Gradients, Material, Settings, Statics, StaticsInput,
 };
 use piola::solve::{LinearMethod, LoadSteps, Newton};
@@ -60,7 +60,11 @@ fn cube(side: usize, method: LinearMethod) -> Statics<3> {
         .expect("spacings are positive");
     let law = HyperelasticLaw::neo_hookean(LameConstants::from_young(10.0, 0.3).expect("in range"));
     let law = Reduced::new(law, StressState::ThreeDimensional).expect("the state fits");
-    let settings = Settings { gradients: Gradients::PatchConsistent { areas }, hourglass: 0.1 };
+    let settings = Settings {
+        gradients: Gradients::PatchConsistent { areas },
+        hourglass: 0.1,
+        ..Settings::default()
+    };
     let materials = vec![Material { density: 1.0, law }];
     let body = Discrete::new(particles, support, &settings, materials).expect("gradients exist");
     let input = StaticsInput {

@@ -59,6 +59,7 @@ impl<const D: usize> Traction<D> {
 }
 
 /// A traction at one particle.
+#[derive(Clone)]
 pub(crate) struct Loaded<const D: usize> {
     /// Index of the particle in memory.
     pub particle: usize,
@@ -72,6 +73,11 @@ impl<const D: usize> Loaded<D> {
     /// The force in N at a time in s.
     pub fn force(&self, time: f64) -> Vector<D> {
         self.traction(time).component_mul(&self.area)
+    }
+
+    /// Its rate in N/s.
+    pub fn force_rate(&self, time: f64) -> Vector<D> {
+        self.traction_rate(time).component_mul(&self.area)
     }
 
     /// The traction in Pa at a time in s.

@@ -142,6 +142,23 @@ impl<const D: usize> ReferenceGradient<D> {
         self.images.len()
     }
 
+    /// The particle that a slot is, or is the image of, with the signs of the components of its field there.
+    #[inline]
+    pub fn source(&self, slot: usize) -> (usize, Vector<D>) {
+        match slot.checked_sub(self.count()) {
+            None => (slot, Vector::from_element(1.0)),
+            Some(image) => {
+                let image = &self.images[image];
+                (image.source as usize, image.sign.into())
+            }
+        }
+    }
+
+    /// Where particles are, and behind them images, in m.
+    pub fn positions(&self) -> &[Vector<D>] {
+        &self.positions
+    }
+
     /// Writes the values of images behind those of particles.
     pub fn continue_field(&self, data: &PlaneData<D>, field: &mut [Vector<D>]) {
         let (own, behind) = field.split_at_mut(self.count());
@@ -269,19 +286,34 @@ impl<const D: usize> ReferenceGradient<D> {
         strained: &mut Strained<D>,
         tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
     ) {
+        self.strain_with(1.0, displacement, strained, tension);
+    }
+
+    /// As [`Self::strain`], without the hourglass energy. Forces are then those of a field that is zero.
+    pub(crate) fn strain_alone(
+        &self,
+        displacement: &[Vector<D>],
+        strained: &mut Strained<D>,
+        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
+    ) {
+        self.strain_with(0.0, displacement, strained, tension);
+    }
+
+    fn strain_with(
+        &self,
+        share: f64,
+        displacement: &[Vector<D>],
+        strained: &mut Strained<D>,
+        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
+    ) {
         on_pairs!(&self.pairs, pairs => {
             let out = (&mut *strained.gradient, strained.tension.as_chunks_mut().0);
             pairs.sum(displacement, out, |[a, k], sums, (gradient, derivatives)| {
                 gradient[k] = sums[0];
-                derivatives[k] = self.derivatives(a, sums, tension(a, &sums[0]));
+                let stiffness = 2.0 * share * self.hourglass[a];
+                derivatives[k] = self.derivatives(a, sums, tension(a, &sums[0]), stiffness);
             });
         });
-    }
-
-    /// What is left of a tension in J with that of the hourglass energy, of a plain gradient.
-    #[inline]
-    pub fn tension(&self, a: usize, gradient: &Tensor<D>, tension: Tensor<D>) -> Tensor<D> {
-        self.derivatives(a, &[*gradient], tension)[0]
     }
 
     /// The derivatives of the energy of a particle by its sums.
@@ -291,9 +323,10 @@ impl<const D: usize> ReferenceGradient<D> {
         a: usize,
         sums: &[Tensor<D>; N],
         tension: Tensor<D>,
+        stiffness: f64,
     ) -> [Tensor<D>; N] {
-        let stiffness = 2.0 * self.hourglass[a];
-        let mut derivatives = [tension; N];
+        let mut derivatives = [Tensor::zeros(); N];
+        derivatives[0] = tension;
         if stiffness != 0.0 {
             let moment = sums[0] * self.centers[a].shape;
             match derivatives.as_mut_slice() {

@@ -1,8 +1,6 @@
 //! What a formulation is called and what it shows, known before one is built.
 
-use super::{
-    Accounts, Scheme, dual_support, elastodynamics, interpolation, transport_velocity, upwind,
-};
+use super::{Accounts, Scheme, interpolation, total_lagrangian, transport_velocity, upwind};
 use crate::fields::{FieldDescription, Life};
 
 /// The figure of formulations that solve for a state: how many iterations the last step took.
@@ -62,12 +60,13 @@ pub struct SchemeDescription {
 
 impl SchemeDescription {
     /// All formulations.
-    pub const ALL: [&'static Self; 6] = [
+    pub const ALL: [&'static Self; 7] = [
         &upwind::DESCRIPTION,
         &transport_velocity::FLUIDS,
         &transport_velocity::SOLIDS,
-        &dual_support::DESCRIPTION,
-        &elastodynamics::DESCRIPTION,
+        &total_lagrangian::TOTAL_LAGRANGIAN,
+        &total_lagrangian::DUAL_SUPPORT,
+        &total_lagrangian::ELASTODYNAMICS,
         &interpolation::DESCRIPTION,
     ];
 

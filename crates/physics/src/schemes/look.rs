@@ -1,18 +1,8 @@
 //! One look over a state: is it sound, how fast is it, and what is largest of that which bounds the step.
 
-use piola_formulas::tensor;
-
-use super::{Health, Particle};
+use super::Health;
+use crate::Vector;
 use crate::parallel::{self, Sums};
-use crate::{Tensor, Vector};
-
-/// The share of the stable step at which a mode takes three steps a period, `2 sin(pi/3)/2`: there the
-/// quadratic part of a law drives the mode by itself, theory (67).
-pub(crate) const RESONANCE: f64 = 0.866_025_403_784_438_6;
-
-/// The largest ratio of a step to the one before of an undamped body, whose bound goes up and down
-/// with the vibrations of its stiffest particle: steps that go with them drive them.
-pub(crate) const MOST_GROWTH: f64 = 1.01;
 
 /// What one particle contributes.
 pub(crate) struct Seen<const D: usize, const N: usize> {
@@ -105,62 +95,6 @@ pub(crate) fn look<const D: usize, const N: usize>(
     let mut own = sight.own;
     own.iter_mut().zip(least).for_each(|(most, least)| *most = most.at_least(least));
     (health, own)
-}
-
-/// What the look needs to know of a particle of an elastic solid.
-pub(crate) struct Deformed<const D: usize> {
-    /// Displacement gradient.
-    pub gradient: Tensor<D>,
-    /// Smallest and largest modulus of a wave, Pa.
-    pub moduli: [f64; 2],
-    /// The same at rest.
-    pub at_rest: [f64; 2],
-    /// Density in kg/m^3.
-    pub density: f64,
-    /// By how much viscosity exceeds that at rest.
-    pub thickening: f64,
-}
-
-/// The health of an elastic solid, whose velocities are the first of `columns`, which are all of the
-/// state; the largest modulus of a wave over that at rest, and the largest thickening; and the particle
-/// whose material has lost its convexity most, if there is one.
-pub(crate) fn look_at_solid<const D: usize>(
-    columns: [&[Vector<D>]; 3],
-    deformed: impl Fn(usize) -> Deformed<D> + Sync,
-) -> (Health, [Most; 2], Option<usize>) {
-    let least = [0.0, 0.0, f64::NEG_INFINITY];
-    let (health, [stiffening, thickening, softening]) = look(columns[0].len(), least, |a| {
-        let is_finite = |column: &&[Vector<D>]| column[a].iter().all(|value| value.is_finite());
-        columns.iter().all(is_finite).then(|| {
-            let Deformed { gradient, moduli, at_rest, density, thickening } = deformed(a);
-            Seen {
-                velocity: columns[0][a],
-                wave_speed: (moduli[1].max(0.0) / density).sqrt(),
-                ratio: tensor::determinant(&(gradient + Tensor::identity())),
-                mismatch: 0.0,
-                figures: [moduli[1] / at_rest[1], thickening, -moduli[0] / at_rest[0]],
-            }
-        })
-    });
-    let soft = (softening.value > 0.0).then_some(softening.particle);
-    (health, [stiffening, thickening], soft)
-}
-
-/// What the user should know of a particle of which the material has lost its convexity.
-pub(crate) fn convexity_is_lost<const D: usize>(
-    particle: &Particle,
-    gradient: &Tensor<D>,
-    advice: &str,
-) -> String {
-    let strain = tensor::right_cauchy_green(&(gradient + Tensor::identity()));
-    let stretches =
-        [tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain)].map(f64::sqrt);
-    format!(
-        "the material of particle {} at {:?} m has lost its convexity, at principal stretches from \
-         {:.3} to {:.3}: no waves travel there, strains gather in single layers of particles, and what \
-         follows depends on the lattice; {advice}",
-        particle.id, particle.reference, stretches[0], stretches[1]
-    )
 }
 
 #[cfg(test)]

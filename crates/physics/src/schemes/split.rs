@@ -1,6 +1,7 @@
 //! What a formulation offers to integrators that take velocities and places in turn.
 
 use super::Scheme;
+use crate::{Vector, parallel};
 
 /// A formulation whose state holds the accelerations that belong to it, so that a step can be
 /// split into kicks, which change velocities only, and drifts, which change all the rest.
@@ -27,4 +28,13 @@ pub trait PartitionedScheme: Scheme {
     /// Moves all the rest of the rows by `duration` s, on straight paths with the velocities as they
     /// are, of which `rate` has the rates at the start. The ledger is not its own.
     fn drift(&self, duration: f64, rate: &[f64], state: &mut [f64]);
+}
+
+/// Moves a column by its rates for a duration in s.
+pub(crate) fn advance<const D: usize>(column: &mut [Vector<D>], rate: &[Vector<D>], duration: f64) {
+    parallel::for_each_chunk(column, |first, column| {
+        for (value, rate) in column.iter_mut().zip(&rate[first..]) {
+            *value += rate * duration;
+        }
+    });
 }

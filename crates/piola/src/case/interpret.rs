@@ -8,8 +8,8 @@ use super::catalogue;
 use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
 use super::model::{
-    Body, Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Scheme, StepControl, Time,
-    Variant,
+    Body, Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Preset, Scheme, StepControl,
+    Time, Variant,
 };
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
@@ -30,7 +30,6 @@ mod solids;
 mod sweeps;
 mod systems;
 mod time;
-mod waves;
 
 /// Which of the settings of a case file is read.
 #[derive(Clone, Copy, Debug)]
@@ -358,10 +357,11 @@ impl Reader<'_, '_> {
     fn scheme(&mut self, record: &Record) -> Option<Located<Scheme>> {
         let scheme = match record.kind {
             "transport_velocity" => Scheme::TransportVelocity(self.transport_velocity(record)?),
-            "dual_support" => Scheme::DualSupport(self.dual_support(record)?),
-            "elastodynamics" => Scheme::Elastodynamics(self.elastodynamics(record)?),
             interpolation::NAME => Scheme::Interpolation(interpolation::settings(record)?),
-            _ => Scheme::Upwind(physics::upwind(record)?),
+            name => match Preset::from_name(name) {
+                Some(preset) => Scheme::TotalLagrangian(self.total_lagrangian(record, preset)?),
+                None => Scheme::Upwind(physics::upwind(record)?),
+            },
         };
         Some(Located::new(scheme, record.place))
     }

@@ -27,8 +27,8 @@ pub use loads::{Boundary, Load, LoadKind, Roller};
 pub use materials::{Material, PlaneState, Stiffness, Wall};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use schemes::{
-    Correction, Dissipation, DualSupport, Elastodynamics, GradientKind, Interpolation,
-    ReferenceWaveSpeed, Scheme, SupportSize, TransportVelocity, Upwind, Weights,
+    Correction, Dissipation, GradientKind, Interpolation, Preset, ReferenceWaveSpeed, Scheme,
+    SupportSize, TotalLagrangian, TransportVelocity, Upwind, Weights,
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
 pub(super) use sweeps::{member_name, member_of};

@@ -15,7 +15,6 @@ mod observers;
 mod plastic;
 mod solids;
 mod time;
-mod waves;
 
 /// The case file as a whole.
 pub static CASE: TableSpec = TableSpec {
@@ -163,8 +162,9 @@ static SCHEME: TaggedSpec = TaggedSpec {
     kinds: &[
         UPWIND,
         fluids::TRANSPORT_VELOCITY,
+        solids::TOTAL_LAGRANGIAN,
         solids::DUAL_SUPPORT,
-        waves::ELASTODYNAMICS,
+        solids::ELASTODYNAMICS,
         interpolation::INTERPOLATION,
     ],
 };
@@ -321,7 +321,7 @@ static LOAD: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "pressure",
-            meaning: "a pressure that follows the surface, along its normal and on its area of the moment; for the scheme `dual_support`",
+            meaning: "a pressure that follows the surface, along its normal and on its area of the moment; for the scheme `total_lagrangian`",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -369,7 +369,7 @@ static BOUNDARY: TableSpec = TableSpec {
             Kind::Boolean,
             "",
             Optional,
-            "with the scheme `elastodynamics`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed, the same all over it: a symmetry plane or a roller",
+            "with the scheme `total_lagrangian`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed, the same all over it: a symmetry plane or a roller",
         ),
         key(
             "displacement",

@@ -5,11 +5,9 @@ use std::sync::Arc;
 
 use crate::support::{lattice, place};
 use piola::boundaries::{PrescribedVelocity, SpaceTime};
-use piola::neighbors::Domain;
 use piola::operators::{Continuation, Mirror};
-use piola::schemes::dual_support::Material;
-use piola::schemes::elastodynamics::{
-    Configuration, Elastodynamics, ElastodynamicsInput, Form, Mixture, Settings,
+use piola::schemes::total_lagrangian::{
+    Dissipation, Form, Material, Settings, TotalLagrangian, TotalLagrangianInput, Tractions,
 };
 use piola::schemes::{Ledger, Observation, Scheme, StepLimit};
 use piola::time::IntegratorKind;
@@ -29,9 +27,9 @@ fn constants(nu: f64) -> LameConstants {
 fn block<const D: usize>(
     intervals: [usize; D],
     nu: f64,
-    settings: Settings,
+    settings: Settings<D>,
     speed: f64,
-) -> Elastodynamics<D> {
+) -> TotalLagrangian<D> {
     let particles = lattice(intervals.map(|n| n as f64), intervals);
     let positions = particles.position.clone();
     let length = intervals[0] as f64;
@@ -60,24 +58,12 @@ fn block<const D: usize>(
     let count = positions.len();
     let even =
         |x: &Vector<D>| Vector::from_fn(|i, _| if i == 0 { speed * x[0] / length } else { 0.0 });
-    Elastodynamics::new(ElastodynamicsInput {
-        kernel: Kernel::ModifiedMollifier,
-        radius: vec![2.5; count],
-        group: vec![0; count],
-        domain: Domain::default(),
-        settings,
-        mixtures: vec![Mixture(vec![(Material { density: 1.0, law }, 1.0)])],
-        mixture: vec![0; count],
-        displacement: vec![Vector::zeros(); count],
-        velocity: positions.iter().map(even).collect(),
-        body_forces: Vec::new(),
-        tractions: Vec::new(),
-        prescribed,
-        mirrors,
-        holes: Vec::new(),
-        particles,
-    })
-    .unwrap()
+    let (material, radius) = (Material { density: 1.0, law }, vec![2.5; count]);
+    let kernel = Kernel::ModifiedMollifier;
+    let velocity = positions.iter().map(even).collect();
+    let bodies = TotalLagrangianInput::of_bodies(particles, &[material], (kernel, radius));
+    let input = TotalLagrangianInput { settings, velocity, prescribed, mirrors, ..bodies };
+    TotalLagrangian::new(input).unwrap()
 }
 
 fn limit(scheme: &mut dyn Scheme, state: &[f64]) -> StepLimit {
@@ -139,13 +125,13 @@ fn pull<const D: usize>(intervals: [usize; D], nu: f64) {
     let (speed_of_waves, length) = ((lambda + 2.0 * mu).sqrt(), intervals[0] as f64);
     let transit = length / speed_of_waves;
     let form = if D == 1 { Form::Strong } else { Form::Adjoint };
+    let viscosity = 0.05 * speed_of_waves * length;
     let settings = Settings {
         form,
-        configuration: Configuration::Total,
         hourglass: if D == 1 { 0.0 } else { 0.05 },
-        viscosity: 0.05 * speed_of_waves * length,
-        artificial_viscosity: [0.0; 2],
-        damping: 0.0,
+        tractions: Tractions::Layers,
+        dissipation: Dissipation { viscosity, ..Dissipation::default() },
+        ..Settings::default()
     };
     let stop = 30.0 * transit;
     let mut scheme = block(intervals, nu, settings, 5.0 * length / stop);
@@ -177,20 +163,13 @@ fn a_viscous_bar_is_pulled_to_six_at_the_default_cfl_number() {
 /// to the fastest vibrations until particles turned inside out.
 #[test]
 fn undamped_blocks_are_pulled_near_the_limit() {
-    let settings = Settings {
-        form: Form::Adjoint,
-        configuration: Configuration::Total,
-        hourglass: 0.05,
-        viscosity: 0.0,
-        artificial_viscosity: [0.0; 2],
-        damping: 0.0,
-    };
+    let settings = || Settings { hourglass: 0.05, ..Settings::default() };
     for (nu, stretch, share) in
         [(0.25, 4.0, CFL), (0.35, 3.0, 0.98), (0.42, 6.0, CFL), (0.45, 6.0, 0.95)]
     {
         let (intervals, LameConstants { lambda, mu }) = ([20, 8], constants(nu));
         let stop = 30.0 * 20.0 / (lambda + 2.0 * mu).sqrt();
-        let mut scheme = block(intervals, nu, settings, (stretch - 1.0) * 20.0 / stop);
+        let mut scheme = block(intervals, nu, settings(), (stretch - 1.0) * 20.0 / stop);
         let mut start = scheme.initial_state();
         let velocity = place(&scheme, "velocity", 0, 0);
         start[velocity..][..2 * scheme.particle_count()].fill(0.0);
@@ -209,41 +188,35 @@ fn undamped_blocks_are_pulled_near_the_limit() {
 /// viscous one times J/l^2.
 #[test]
 fn the_bound_is_that_of_the_deformed_body() {
-    let plain = Settings {
-        form: Form::Strong,
-        configuration: Configuration::Total,
-        hourglass: 0.0,
-        viscosity: 0.0,
-        artificial_viscosity: [0.0; 2],
-        damping: 0.0,
-    };
+    let plain = || Settings { form: Form::Strong, ..Settings::default() };
     let nu = 0.3;
     let LameConstants { lambda, mu } = constants(nu);
-    let stiff = Settings { viscosity: 3.0, ..plain };
+    let dissipation = Dissipation { viscosity: 3.0, ..Dissipation::default() };
+    let stiff = || Settings { dissipation, ..plain() };
     for pulled in [0.4_f64, 2.5] {
         // Plain sums have 1.018 of a gradient under this cover.
         let stretch = 1.0 + 1.017_973_483 * (pulled - 1.0);
         let modulus =
             mu * (1.0 + stretch.powi(-2)) + lambda * (1.0 - stretch.ln()) / stretch.powi(2);
         let stiffening = modulus / (lambda + 2.0 * mu);
-        let at = |settings: Settings, pulled: f64| {
+        let at = |settings: Settings<1>, pulled: f64| {
             let mut scheme = block([60], nu, settings, 0.0);
             let mut state = scheme.initial_state();
             let displacement = place(&scheme, "displacement", 0, 0);
             (0..61).for_each(|a| state[displacement + a] = (pulled - 1.0) * a as f64);
             limit(&mut scheme, &state)
         };
-        let (rest, deformed) = (at(plain, 1.0), at(plain, pulled));
+        let (rest, deformed) = (at(plain(), 1.0), at(plain(), pulled));
         assert!((rest.step / deformed.step / stiffening.sqrt() - 1.0).abs() < 1e-6);
         assert_eq!(deformed.name, "eigenvalue");
         // As solved in theory (67) for the viscous eigenvalue at rest, which grows with J/l^2 = 1/l.
-        let step = at(stiff, 1.0).step;
+        let step = at(stiff(), 1.0).step;
         // Without dissipation the limit is that of three steps a period.
         let squared = |plain: StepLimit| 3.0 / plain.step.powi(2);
         let viscous = 2.0 / step - 0.5 * step * squared(rest);
         let (growth, elastic) = (viscous / stretch, squared(deformed));
         let expected = 4.0 / (growth + (growth * growth + 4.0 * elastic).sqrt());
-        let got = at(stiff, pulled);
+        let got = at(stiff(), pulled);
         assert!((got.step / expected - 1.0).abs() < 1e-3, "{got:?}, not {expected}");
         assert_eq!(got.name, "dissipation");
     }

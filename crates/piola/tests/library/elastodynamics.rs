@@ -8,9 +8,9 @@ use crate::support::lattice;
 use piola::boundaries::{PrescribedVelocity, SpaceTime, Traction};
 use piola::neighbors::Domain;
 use piola::operators::{Continuation, Mirror};
-use piola::schemes::dual_support::Material;
-use piola::schemes::elastodynamics::{
-    Configuration, Elastodynamics, ElastodynamicsInput, Form, Mixture, Settings,
+use piola::schemes::total_lagrangian::{
+    Configuration, Dissipation, Form, Material, Settings, TotalLagrangian, TotalLagrangianInput,
+    Tractions,
 };
 use piola::schemes::{Ledger, Observation, Scheme};
 use piola::time::IntegratorKind;
@@ -19,59 +19,43 @@ use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::StressState;
 
-const PLAIN: Settings = Settings {
-    form: Form::Adjoint,
-    configuration: Configuration::Total,
-    hourglass: 0.05,
-    viscosity: 0.0,
-    artificial_viscosity: [0.0; 2],
-    damping: 0.0,
-};
+/// So weak that it sets no step.
+const WEAK: Dissipation =
+    Dissipation { viscosity: 1e5, artificial_viscosity: [0.0; 2], damping: 1.0 };
+
+fn plain<const D: usize>() -> Settings<D> {
+    Settings { hourglass: 0.05, tractions: Tractions::Layers, ..Settings::default() }
+}
 
 const DENSITY: f64 = 8000.0;
 
-fn mixture<const D: usize>(law: fn(LameConstants) -> HyperelasticLaw) -> Mixture<D> {
+const DISSIPATION: Dissipation =
+    Dissipation { viscosity: 2e7, artificial_viscosity: [0.1, 1.0], damping: 50.0 };
+
+fn material<const D: usize>(law: fn(LameConstants) -> HyperelasticLaw) -> Material<D> {
     let constants = LameConstants::from_young(200e9, 0.3).unwrap();
     let state = match D {
         1 => StressState::UniaxialStrain,
         2 => StressState::PlaneStrain,
         _ => StressState::ThreeDimensional,
     };
-    Mixture(vec![(
-        Material { density: DENSITY, law: Reduced::new(law(constants), state).unwrap() },
-        1.0,
-    )])
+    Material { density: DENSITY, law: Reduced::new(law(constants), state).unwrap() }
 }
 
 fn input<const D: usize>(
     intervals: [usize; D],
     law: fn(LameConstants) -> HyperelasticLaw,
     (kernel, cover): (Kernel, f64),
-    settings: Settings,
-) -> ElastodynamicsInput<D> {
+    settings: Settings<D>,
+) -> TotalLagrangianInput<D> {
     let particles = lattice(intervals.map(|n| n as f64), intervals);
-    let count = particles.len();
-    ElastodynamicsInput {
-        particles,
-        kernel,
-        radius: vec![cover; count],
-        group: vec![0; count],
-        domain: Domain::default(),
-        settings,
-        mixtures: vec![mixture(law)],
-        mixture: vec![0; count],
-        displacement: vec![Vector::zeros(); count],
-        velocity: vec![Vector::zeros(); count],
-        body_forces: Vec::new(),
-        tractions: Vec::new(),
-        prescribed: Vec::new(),
-        mirrors: Vec::new(),
-        holes: Vec::new(),
-    }
+    let radius = vec![cover; particles.len()];
+    let bodies = TotalLagrangianInput::of_bodies(particles, &[material(law)], (kernel, radius));
+    TotalLagrangianInput { settings, ..bodies }
 }
 
-fn strong() -> Settings {
-    Settings { form: Form::Strong, hourglass: 0.0, ..PLAIN }
+fn strong<const D: usize>() -> Settings<D> {
+    Settings { form: Form::Strong, ..Settings::default() }
 }
 
 fn march(scheme: &mut dyn Scheme, step: f64, steps: usize) -> Vec<f64> {
@@ -118,7 +102,7 @@ fn the_stable_step_is_that_of_the_kernels_symbol() {
     let speed = ((constants.lambda + 2.0 * constants.mu) / DENSITY).sqrt();
     for (kernel, cover, expected) in known {
         let made = input([200], HyperelasticLaw::linear_elastic, (kernel, cover), strong());
-        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let got = stable_step(&mut scheme) * speed;
         assert!((got / expected - 1.0).abs() < 4e-3, "{kernel:?} {cover}: {got}, not {expected}");
     }
@@ -130,7 +114,8 @@ fn a_free_body_keeps_energy_and_momentum_on_any_number_of_threads() {
     fn check<const D: usize>(intervals: [usize; D]) {
         let run = |threads: usize| {
             let cover = (Kernel::ModifiedMollifier, 2.5);
-            let mut made = input(intervals, HyperelasticLaw::neo_hookean_logarithmic, cover, PLAIN);
+            let mut made =
+                input(intervals, HyperelasticLaw::neo_hookean_logarithmic, cover, plain());
             made.velocity = (made.particles.position.iter())
                 .map(|x| {
                     Vector::from_fn(|i, _| match i {
@@ -142,7 +127,7 @@ fn a_free_body_keeps_energy_and_momentum_on_any_number_of_threads() {
                 .collect();
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let mut scheme = Elastodynamics::new(made).unwrap();
+                let mut scheme = TotalLagrangian::new(made).unwrap();
                 let start = scheme.initial_state();
                 let step = 0.5 * stable_step(&mut scheme);
                 let end = march(&mut scheme, step, 300);
@@ -206,7 +191,7 @@ fn ends_of_a_row_are_met_exactly() {
             component: 0,
             value: Arc::new(0.0),
         }];
-        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let step = 0.5 * stable_step(&mut scheme);
         let steps = 400;
         let end = march(&mut scheme, step, steps);
@@ -225,7 +210,7 @@ fn ends_of_a_row_are_met_exactly() {
 #[test]
 fn rollers_hold_a_homogeneous_stretch() {
     let cover = (Kernel::ModifiedMollifier, 2.5);
-    let mut made = input([6, 4], HyperelasticLaw::neo_hookean_logarithmic, cover, PLAIN);
+    let mut made = input([6, 4], HyperelasticLaw::neo_hookean_logarithmic, cover, plain());
     let planes = [(0, 0.0, false), (0, 6.0, true), (1, 0.0, false), (1, 4.0, true)];
     let positions = made.particles.position.clone();
     for (axis, place, is_upper) in planes {
@@ -242,7 +227,7 @@ fn rollers_hold_a_homogeneous_stretch() {
         });
     }
     made.displacement = positions.iter().map(|x| Vector::from([0.5 * x[0], -0.2 * x[1]])).collect();
-    let mut scheme = Elastodynamics::new(made).unwrap();
+    let mut scheme = TotalLagrangian::new(made).unwrap();
     let state = scheme.initial_state();
     let all: Vec<u32> = (0..positions.len() as u32).collect();
     let gradient = Observation::new(&mut scheme, 0.0, &state).values("deformation_gradient", &all);
@@ -261,7 +246,7 @@ fn rollers_hold_a_homogeneous_stretch() {
 fn a_face_takes_its_traction_as_a_stress() {
     fn check<const D: usize>(intervals: [usize; D]) {
         let cover = (Kernel::ModifiedMollifier, 2.5);
-        let mut made = input(intervals, HyperelasticLaw::linear_elastic, cover, PLAIN);
+        let mut made = input(intervals, HyperelasticLaw::linear_elastic, cover, plain());
         let (traction, positions) = (2e8, made.particles.position.clone());
         let length = intervals[0] as f64;
         let all = || 0..positions.len() as u32;
@@ -305,7 +290,7 @@ fn a_face_takes_its_traction_as_a_stress() {
         let strain = |i: usize| traction * if i == 0 { along } else { across };
         let displaced = |x: &Vector<D>| Vector::from_fn(|i, _| strain(i) * x[i]);
         made.displacement = positions.iter().map(displaced).collect();
-        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let state = scheme.initial_state();
         let all: Vec<u32> = all().collect();
         let stress = Observation::new(&mut scheme, 0.0, &state).values("stress", &all);
@@ -324,17 +309,16 @@ fn a_face_takes_its_traction_as_a_stress() {
 /// What viscosity and damping take is missing from the energy, and the bound on the step holds.
 #[test]
 fn dissipation_is_in_the_ledger() {
-    let settings =
-        Settings { viscosity: 2e7, artificial_viscosity: [0.1, 1.0], damping: 50.0, ..PLAIN };
+    let settings = Settings { dissipation: DISSIPATION, ..plain() };
     let cover = (Kernel::ModifiedMollifier, 2.5);
     let mut made = input([12, 6], HyperelasticLaw::neo_hookean_logarithmic, cover, settings);
     made.velocity =
         made.particles.position.iter().map(|x| Vector::from([30.0 * x[0].sin(), 0.0])).collect();
-    let mut scheme = Elastodynamics::new(made).unwrap();
+    let mut scheme = TotalLagrangian::new(made).unwrap();
     let start = scheme.initial_state();
     let before = total(&scheme, &start);
     let step = stable_step(&mut scheme);
-    let loss = |scheme: &mut Elastodynamics<2>, step: f64, steps: usize| {
+    let loss = |scheme: &mut TotalLagrangian<2>, step: f64, steps: usize| {
         let end = march(scheme, step, steps);
         let work: f64 = Ledger::of(scheme, &end).work.iter().sum();
         (total(scheme, &end) - before, work)
@@ -353,14 +337,14 @@ fn dissipation_is_in_the_ledger() {
 
 #[test]
 fn every_described_field_has_values() {
-    let viscous = Settings { viscosity: 1e5, damping: 1.0, ..PLAIN };
-    for settings in [PLAIN, viscous, strong()] {
+    let viscous = Settings { dissipation: WEAK, ..plain() };
+    for settings in [plain(), viscous, strong()] {
         let cover = (Kernel::ModifiedMollifier, 2.5);
         let mut made = input([5, 8], HyperelasticLaw::neo_hookean_logarithmic, cover, settings);
         let counted = Counted::default();
         made.body_forces.push(counted.force());
         made.velocity.iter_mut().enumerate().for_each(|(a, v)| v[0] = a as f64);
-        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let step = 0.5 * stable_step(&mut scheme);
         let state = march(&mut scheme, step, 3);
         fields_are_complete(&mut scheme, &state, &counted);
@@ -370,8 +354,8 @@ fn every_described_field_has_values() {
 /// On one thread, which is the one that counts.
 #[test]
 fn steps_after_the_first_allocate_nothing() {
-    fn check<const D: usize>(made: ElastodynamicsInput<D>) {
-        let mut scheme = Elastodynamics::new(made).unwrap();
+    fn check<const D: usize>(made: TotalLagrangianInput<D>) {
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let mut integrator =
             IntegratorKind::KickDriftKick.build(&mut scheme).expect("it moves the scheme");
         let state = scheme.initial_state();
@@ -386,7 +370,7 @@ fn steps_after_the_first_allocate_nothing() {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| {
-        let viscous = Settings { viscosity: 1e5, damping: 1.0, ..PLAIN };
+        let viscous = Settings { dissipation: WEAK, ..plain() };
         let law = HyperelasticLaw::neo_hookean_logarithmic;
         // Sums over more particles than a chunk holds keep a number for each chunk.
         check(input([28, 28], law, (Kernel::ModifiedMollifier, 2.5), viscous));
@@ -398,8 +382,8 @@ fn steps_after_the_first_allocate_nothing() {
 fn what_cannot_be_built_says_why() {
     let cover = (Kernel::ModifiedMollifier, 2.5);
     let law = HyperelasticLaw::linear_elastic;
-    let refused = |made: ElastodynamicsInput<2>| {
-        Elastodynamics::new(made).err().map(|error| error.to_string()).unwrap_or_default()
+    let refused = |made: TotalLagrangianInput<2>| {
+        TotalLagrangian::new(made).err().map(|error| error.to_string()).unwrap_or_default()
     };
     let mut two = input([4, 4], law, cover, strong());
     two.group[24] = 1;
@@ -415,16 +399,17 @@ fn what_cannot_be_built_says_why() {
         value: Arc::new(0.0),
     }];
     assert!(refused(part).contains("on a part of an edge"));
-    let updated = Settings { configuration: Configuration::Updated, ..PLAIN };
+    let updated = Settings { configuration: Configuration::Updated, ..plain() };
     assert!(refused(input([4, 4], law, cover, updated)).contains("updated"));
-    let negative = Settings { viscosity: -1.0, ..PLAIN };
+    let viscosity = Dissipation { viscosity: -1.0, ..Dissipation::default() };
+    let negative = Settings { dissipation: viscosity, ..plain() };
     assert!(refused(input([4, 4], law, cover, negative)).contains("viscosity must be at least 0"));
-    let mut periodic = input([4, 4], law, cover, PLAIN);
+    let mut periodic = input([4, 4], law, cover, plain());
     periodic.domain = Domain::new([Some([0.0, 5.0]), None]).unwrap();
     let mirror = Mirror { axis: 0, place: 0.0, is_upper: false, continuation: Continuation::Odd };
     periodic.mirrors = vec![(mirror, 0)];
     assert!(refused(periodic).contains("repeats itself along axis 0"));
-    let mut short = input([4, 4], law, cover, PLAIN);
+    let mut short = input([4, 4], law, cover, plain());
     short.displacement.pop();
     assert!(refused(short).contains("the initial displacement has 24 entries"));
 }

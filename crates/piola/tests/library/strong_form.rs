@@ -7,10 +7,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::support::{lattice, place};
 use piola::boundaries::{PrescribedVelocity, SpaceTime, Traction};
-use piola::neighbors::Domain;
-use piola::schemes::dual_support::Material;
-use piola::schemes::elastodynamics::{
-    Configuration, Elastodynamics, ElastodynamicsInput, Form, Hole, Mixture, Settings,
+use piola::schemes::total_lagrangian::{
+    Form, Hole, Material, Settings, TotalLagrangian, TotalLagrangianInput,
 };
 use piola::schemes::{Ledger, Observation, Scheme};
 use piola::time::IntegratorKind;
@@ -38,34 +36,15 @@ impl Sheet {
         LameConstants::from_young((1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu), nu).unwrap()
     }
 
-    fn input(&self) -> ElastodynamicsInput<2> {
+    fn input(&self) -> TotalLagrangianInput<2> {
         let particles = lattice(self.intervals.map(|n| n as f64), self.intervals);
         let count = particles.len();
         let law = Reduced::new((self.law)(self.constants()), StressState::PlaneStrain).unwrap();
-        ElastodynamicsInput {
-            kernel: Kernel::ModifiedMollifier,
-            radius: vec![self.cover; count],
-            group: vec![0; count],
-            domain: Domain::default(),
-            settings: Settings {
-                form: Form::Strong,
-                configuration: Configuration::Total,
-                hourglass: 0.0,
-                viscosity: 0.0,
-                artificial_viscosity: [0.0; 2],
-                damping: 0.0,
-            },
-            mixtures: vec![Mixture(vec![(Material { density: 1.0, law }, 1.0)])],
-            mixture: vec![0; count],
-            displacement: vec![Vector::zeros(); count],
-            velocity: vec![Vector::zeros(); count],
-            body_forces: Vec::new(),
-            tractions: Vec::new(),
-            prescribed: Vec::new(),
-            mirrors: Vec::new(),
-            holes: Vec::new(),
-            particles,
-        }
+        let supports = (Kernel::ModifiedMollifier, vec![self.cover; count]);
+        let material = Material { density: 1.0, law };
+        let settings = Settings { form: Form::Strong, ..Settings::default() };
+        let bodies = TotalLagrangianInput::of_bodies(particles, &[material], supports);
+        TotalLagrangianInput { settings, ..bodies }
     }
 
     /// Particles on the lower or upper edge across an axis.
@@ -115,7 +94,7 @@ impl Sheet {
 }
 
 /// `d(acceleration)/d(displacement)` about displacements, in columns.
-fn linearised(scheme: &mut Elastodynamics<2>, about: &[Vector<2>], size: f64) -> DMatrix<f64> {
+fn linearised(scheme: &mut TotalLagrangian<2>, about: &[Vector<2>], size: f64) -> DMatrix<f64> {
     let count = about.len();
     let [moved, speed] = ["displacement", "velocity"].map(|field| place(scheme, field, 0, 0));
     let mut state = scheme.initial_state();
@@ -154,7 +133,7 @@ fn growth_and_frequency(matrix: DMatrix<f64>) -> [f64; 2] {
 fn modes_of_a_free_sheet_do_not_grow() {
     for cover in [2.5, 3.5] {
         let sheet = Sheet { intervals: [14, 6], ratio: 0.3, law: NEO_HOOKEAN, cover };
-        let mut scheme = Elastodynamics::new(sheet.input()).unwrap();
+        let mut scheme = TotalLagrangian::new(sheet.input()).unwrap();
         let still = vec![Vector::zeros(); 15 * 7];
         let [growth, frequency] = growth_and_frequency(linearised(&mut scheme, &still, 1e-5));
         assert!(growth < 1e-4, "cover {cover}: {growth}");
@@ -174,7 +153,7 @@ fn modes_of_a_free_sheet_do_not_grow() {
         let positions = made.particles.position.iter();
         let stretched: Vec<_> =
             positions.map(|x| Vector::from([0.5 * x[0], (across - 1.0) * x[1]])).collect();
-        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let [growth, _] = growth_and_frequency(linearised(&mut scheme, &stretched, 1e-5));
         assert!(growth < 1e-4, "cover {cover}: {growth}");
     }
@@ -215,7 +194,7 @@ fn modes_around_a_hole_do_not_outgrow_the_damping_of_the_case() {
             })
             .collect();
         made.holes = vec![hole];
-        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let matrix = linearised(&mut scheme, &vec![Vector::zeros(); count], 1e-5);
         let [growth, _] = growth_and_frequency(matrix);
         let constants = sheet.constants();
@@ -232,7 +211,7 @@ fn a_free_bar_has_the_frequencies_of_finite_elements() {
         Sheet { intervals: [30, 5], ratio: 0.3, law: HyperelasticLaw::linear_elastic, cover: 2.5 };
     let made = sheet.input();
     let positions = made.particles.position.clone();
-    let mut scheme = Elastodynamics::new(made).unwrap();
+    let mut scheme = TotalLagrangian::new(made).unwrap();
     let matrix = linearised(&mut scheme, &vec![Vector::zeros(); positions.len()], 1.0);
     let (length, number): (f64, f64) = (30.0, 4.730_040_745 / 30.0);
     let ratio = ((number * length).cosh() - (number * length).cos())
@@ -276,7 +255,7 @@ fn energy(scheme: &dyn Scheme, state: &[f64]) -> f64 {
 
 /// Steps at a share of the stable step until an end, with a look at each state.
 fn march(
-    scheme: &mut Elastodynamics<2>,
+    scheme: &mut TotalLagrangian<2>,
     end: f64,
     mut show: impl FnMut(&dyn Scheme, f64, &[f64]),
 ) -> Vec<f64> {
@@ -319,7 +298,7 @@ fn forty_transits_of_a_stress_wave_stay_bounded() {
     let sheet = Sheet { intervals: [30, 5], ratio: 0.3, law: NEO_HOOKEAN, cover: 2.5 };
     let mut made = sheet.input();
     made.tractions = vec![sheet.traction(0, false, Arc::new(Pulse))];
-    let mut scheme = Elastodynamics::new(made).unwrap();
+    let mut scheme = TotalLagrangian::new(made).unwrap();
     let (mut loaded, mut range) = (None, [f64::INFINITY, 0.0_f64]);
     let end = march(&mut scheme, 40.0 * 30.0, |scheme, time, state| {
         if time > 12.0 {
@@ -351,7 +330,7 @@ fn a_sheet_with_free_sides_is_pulled_to_six_times_its_length() {
                 Vector::from([rate * x[0], -rate * narrowing * (x[1] - 2.5)])
             })
             .collect();
-        let mut scheme = Elastodynamics::new(made).unwrap();
+        let mut scheme = TotalLagrangian::new(made).unwrap();
         let state = march(&mut scheme, end, |_, _, _| {});
         let middle = 15 + 31 * 2;
         let gradient =

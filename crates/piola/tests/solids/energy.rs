@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 use num_dual::{Dual64, HyperDual64};
 use piola::operators::DualGradient;
-use piola::schemes::dual_support::{Discrete, Gradients, Material, Settings, Stiffness};
+use piola::schemes::total_lagrangian::{Discrete, Gradients, Material, Settings, Stiffness};
 use piola::solve::Tangent;
 use piola::{Tensor, Vector};
 use piola_formulas::Scalar;
@@ -39,7 +39,7 @@ fn discrete<const D: usize>(
         false => Gradients::Plain,
     };
     let law = Reduced::new(law, state).expect("the state fits");
-    let settings = Settings { gradients, hourglass };
+    let settings = Settings { gradients, hourglass, ..Settings::default() };
     let materials = vec![Material { density: DENSITY, law }];
     Discrete::new(cloud.particles.clone(), cloud.support(), &settings, materials)
         .expect("the body exists")

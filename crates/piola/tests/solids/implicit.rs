@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use piola::Vector;
 use piola::boundaries::{BodyForce, PrescribedVelocity, Traction};
-use piola::schemes::dual_support::{DualSupport, DualSupportInput, Motion};
-use piola::schemes::{ImplicitRule, Missed, Newmark, Observation, Scheme, momentum_components};
+use piola::schemes::total_lagrangian::{Motion, TotalLagrangian, TotalLagrangianInput};
+use piola::schemes::{
+    ImplicitRule, Ledger, Missed, Newmark, Observation, Scheme, momentum_components,
+};
 use piola::solve::{LinearMethod, Newton};
 use piola::time::{Failure, IntegratorKind};
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants};
@@ -22,17 +24,17 @@ fn input<const D: usize>(
     law: fn(LameConstants) -> HyperelasticLaw,
     method: LinearMethod,
     velocity: impl Fn(&Vector<D>) -> Vector<D>,
-) -> DualSupportInput<D> {
+) -> TotalLagrangianInput<D> {
     let states =
         [StressState::UniaxialStrain, StressState::PlaneStrain, StressState::ThreeDimensional];
     let newton = Newton { tolerance: 1e-11, ..Newton::default() };
     let motion = Motion::Implicit(method, newton);
-    DualSupportInput { motion, ..runs::input(cloud, law, states[D - 1], velocity) }
+    TotalLagrangianInput { motion, ..runs::input(cloud, law, states[D - 1], velocity) }
 }
 
 /// Holds or moves the particles at x = 0.
 fn prescribe<const D: usize>(
-    input: &mut DualSupportInput<D>,
+    input: &mut TotalLagrangianInput<D>,
     component: usize,
     value: Arc<dyn piola::boundaries::SpaceTime>,
 ) {
@@ -42,7 +44,7 @@ fn prescribe<const D: usize>(
 }
 
 fn march<const D: usize>(
-    scheme: &mut DualSupport<D>,
+    scheme: &mut TotalLagrangian<D>,
     rule: Newmark,
     step: f64,
     steps: usize,
@@ -59,14 +61,14 @@ fn march<const D: usize>(
     state
 }
 
-fn energies<const D: usize>(scheme: &DualSupport<D>, state: &[f64]) -> [f64; 3] {
+fn energies<const D: usize>(scheme: &TotalLagrangian<D>, state: &[f64]) -> [f64; 3] {
     let mut energies = [0.0; 3];
     scheme.energies(state, &mut energies);
     energies
 }
 
 /// A beam that bends far, loaded by weight, pull and the motion of its clamp.
-fn loaded_beam() -> DualSupportInput<2> {
+fn loaded_beam() -> TotalLagrangianInput<2> {
     let cloud = Cloud::simplices([1.0, 0.25], [8, 2], 0.15);
     let law = HyperelasticLaw::neo_hookean_logarithmic;
     let mut input = input(&cloud, law, LinearMethod::Direct, |_| Vector::zeros());
@@ -97,7 +99,8 @@ fn loaded_beam() -> DualSupportInput<2> {
 fn rules_meet_central_differences_to_the_second_order() {
     let end = 0.2;
     let mut explicit =
-        DualSupport::new(DualSupportInput { motion: Motion::Explicit, ..loaded_beam() }).unwrap();
+        TotalLagrangian::new(TotalLagrangianInput { motion: Motion::Explicit, ..loaded_beam() })
+            .unwrap();
     let steps = (end / (0.01 * stable_step(&mut explicit))).ceil() as usize;
     let mut reference = explicit.initial_state();
     let mut new = reference.clone();
@@ -108,7 +111,7 @@ fn rules_meet_central_differences_to_the_second_order() {
         integrator.step(&mut explicit, count as f64 * step, step, &reference, &mut new).unwrap();
         std::mem::swap(&mut reference, &mut new);
     }
-    let tip = |scheme: &mut DualSupport<2>, state: &[f64]| {
+    let tip = |scheme: &mut TotalLagrangian<2>, state: &[f64]| {
         let both = ["displacement", "velocity"];
         both.map(|field| Observation::new(scheme, end, state).values(field, &[8])).concat()
     };
@@ -123,7 +126,7 @@ fn rules_meet_central_differences_to_the_second_order() {
     ];
     for rule in rules {
         let errors = [400, 800].map(|steps| {
-            let mut scheme = DualSupport::new(loaded_beam()).unwrap();
+            let mut scheme = TotalLagrangian::new(loaded_beam()).unwrap();
             let state = march(&mut scheme, rule, end / f64::from(steps), steps as usize);
             let got = tip(&mut scheme, &state);
             let off = |(got, wanted): (&f64, &f64)| (got - wanted).abs();
@@ -133,12 +136,11 @@ fn rules_meet_central_differences_to_the_second_order() {
             let works = names.map(|name| work(&scheme, &state, name));
             assert!(works.iter().all(|work| work.abs() > 1e-2), "{works:?}");
             let energy = total(&scheme, &state) - works.iter().sum::<f64>();
-            let (mut momentum, tail) = ([0.0; 3], scheme.particle_count() * scheme.width());
+            let mut momentum = [0.0; 3];
             scheme.momentum(&state, &mut momentum);
-            let impulses = &state[tail + 4..][..12];
-            let lost: Vec<f64> = (0..3)
-                .map(|i| momentum[i] - (0..4).map(|k| impulses[3 * k + i]).sum::<f64>())
-                .collect();
+            let ways = Ledger::of(&scheme, &state).impulses.chunks_exact(3);
+            let lost: Vec<f64> =
+                (0..3).map(|i| momentum[i] - ways.clone().map(|way| way[i]).sum::<f64>()).collect();
             let lost = lost.iter().zip(&momentum).map(|(l, m)| (l / m).abs()).fold(0.0, f64::max);
             [place / wanted[1].abs(), speed, (energy / works[3]).abs(), lost]
         });
@@ -159,7 +161,7 @@ fn a_linear_body_keeps_its_energy_at_any_step() {
             |x: &Vector<3>| Vector::from([0.0, 0.1 * x[0] * x[0], 0.02 * (9.0 * x[1]).sin()]);
         let mut input = input(&cloud, law, method, kick);
         (0..3).for_each(|component| prescribe(&mut input, component, Arc::new(0.0)));
-        let mut scheme = DualSupport::new(input).unwrap();
+        let mut scheme = TotalLagrangian::new(input).unwrap();
         let step = 30.0 * stable_step(&mut scheme);
         let start = total(&scheme, &scheme.initial_state());
         let kept = march(&mut scheme, Newmark::AVERAGE_ACCELERATION, step, 60);
@@ -178,7 +180,8 @@ fn the_midpoint_rule_keeps_momentum_at_large_steps() {
     let cloud = Cloud::simplices([1.0, 0.5], [8, 4], 0.2);
     let velocity = |x: &Vector<2>| Vector::from([2.0 - 8.0 * x[1] + 2.0 * x[0], 1.0 + 8.0 * x[0]]);
     let law = HyperelasticLaw::neo_hookean_logarithmic;
-    let mut scheme = DualSupport::new(input(&cloud, law, LinearMethod::Direct, velocity)).unwrap();
+    let mut scheme =
+        TotalLagrangian::new(input(&cloud, law, LinearMethod::Direct, velocity)).unwrap();
     let components = momentum_components(2).len();
     let (mut before, mut after) = (vec![0.0; components], vec![0.0; components]);
     let start = scheme.initial_state();
@@ -207,7 +210,7 @@ fn reactions_are_those_of_the_mass() {
     let pull =
         Function { value: move |_: [f64; 3], t: f64| slow * t, rate: move |_: [f64; 3], _| slow };
     prescribe(&mut input, 0, Arc::new(pull));
-    let mut scheme = DualSupport::new(input).unwrap();
+    let mut scheme = TotalLagrangian::new(input).unwrap();
     // Steps longer than any period, damped: what rings at the start is gone.
     let (step, steps) = (200.0 * stable_step(&mut scheme), 60);
     let state = march(&mut scheme, Newmark::generalised_alpha(0.0), step, steps);
@@ -224,7 +227,8 @@ fn a_step_without_an_end_is_named() {
     let cloud = Cloud::block([1.0, 1.0], [6, 6], 0.1);
     let crushed = |x: &Vector<2>| Vector::from([-400.0 * x[0], 0.0]);
     let law = HyperelasticLaw::saint_venant_kirchhoff;
-    let mut scheme = DualSupport::new(input(&cloud, law, LinearMethod::Direct, crushed)).unwrap();
+    let mut scheme =
+        TotalLagrangian::new(input(&cloud, law, LinearMethod::Direct, crushed)).unwrap();
     let state = scheme.initial_state();
     let mut new = state.clone();
     let mut integrator = IntegratorKind::Newmark.build(&mut scheme).expect("it moves the scheme");
@@ -248,7 +252,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
             let velocity = |x: &Vector<2>| Vector::from([x[1], (4.0 * x[0]).sin()]);
             let law = HyperelasticLaw::neo_hookean;
             [LinearMethod::Direct, LinearMethod::Krylov].map(|method| {
-                let mut scheme = DualSupport::new(input(&cloud, law, method, velocity)).unwrap();
+                let mut scheme =
+                    TotalLagrangian::new(input(&cloud, law, method, velocity)).unwrap();
                 let step = 10.0 * stable_step(&mut scheme);
                 march(&mut scheme, Newmark::hilber_hughes_taylor(0.05), step, 3)
             })

@@ -1,4 +1,4 @@
-//! Elastic solids by the dual-support formulation.
+//! Total Lagrangian solids.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
 #[path = "../support/fields.rs"]
@@ -7,6 +7,7 @@ mod fields;
 mod support;
 
 mod clouds;
+mod combinations;
 mod energy;
 mod gradients;
 mod implicit;

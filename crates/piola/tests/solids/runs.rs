@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use piola::Vector;
 use piola::boundaries::{FollowerPressure, PrescribedVelocity, Traction};
-use piola::schemes::dual_support::{
-    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
+use piola::schemes::total_lagrangian::{
+    Gradients, Material, Settings, TotalLagrangian, TotalLagrangianError, TotalLagrangianInput,
 };
 use piola::schemes::{InputError, Observation, Scheme, momentum_components};
 use piola::time::IntegratorKind;
@@ -23,22 +23,17 @@ pub fn input<const D: usize>(
     law: fn(LameConstants) -> HyperelasticLaw,
     state: StressState,
     velocity: impl Fn(&Vector<D>) -> Vector<D>,
-) -> DualSupportInput<D> {
+) -> TotalLagrangianInput<D> {
     let constants = LameConstants::from_young(1e6, 0.3).expect("parameters in range");
     let law = Reduced::new(law(constants), state).expect("the state fits");
     let gradients = Gradients::PatchConsistent { areas: cloud.areas.clone() };
-    DualSupportInput {
-        particles: cloud.particles.clone(),
-        support: cloud.support(),
-        settings: Settings { gradients, hourglass: 0.1 },
-        materials: vec![Material { density: DENSITY, law }],
-        velocity: cloud.particles.position.iter().map(velocity).collect(),
-        body_forces: Vec::new(),
-        tractions: Vec::new(),
-        pressures: Vec::new(),
-        prescribed: Vec::new(),
-        motion: Motion::Explicit,
-    }
+    let support = cloud.support();
+    let (material, supports) =
+        (Material { density: DENSITY, law }, (support.kernel, support.radius));
+    let settings = Settings { gradients, hourglass: 0.1, ..Settings::default() };
+    let velocity = cloud.particles.position.iter().map(velocity).collect();
+    let bodies = TotalLagrangianInput::of_bodies(cloud.particles.clone(), &[material], supports);
+    TotalLagrangianInput { settings, velocity, ..bodies }
 }
 
 /// A pressure in Pa all around a body that grows with time, and follows its surface.
@@ -52,8 +47,8 @@ pub fn submersion<const D: usize>(cloud: &Cloud<D>, rate: f64) -> FollowerPressu
     }
 }
 
-fn build<const D: usize>(input: DualSupportInput<D>) -> DualSupport<D> {
-    DualSupport::new(input).expect("the scheme exists")
+fn build<const D: usize>(input: TotalLagrangianInput<D>) -> TotalLagrangian<D> {
+    TotalLagrangian::new(input).expect("the scheme exists")
 }
 
 pub fn total(scheme: &dyn Scheme, state: &[f64]) -> f64 {
@@ -70,7 +65,7 @@ pub fn stable_step(scheme: &mut dyn Scheme) -> f64 {
 }
 
 /// Takes steps of central differences from the start.
-fn swing<const D: usize>(scheme: &mut DualSupport<D>, step: f64, steps: usize) -> Vec<f64> {
+fn swing<const D: usize>(scheme: &mut TotalLagrangian<D>, step: f64, steps: usize) -> Vec<f64> {
     let mut state = scheme.initial_state();
     let mut new = state.clone();
     let mut integrator = IntegratorKind::KickDriftKick.build(scheme).expect("it moves the scheme");
@@ -218,7 +213,7 @@ fn the_bound_on_the_step_is_that_of_central_differences() {
     let mut scheme = build(input(&cloud, law, StressState::PlaneStrain, velocity));
     let step = stable_step(&mut scheme);
     let start = total(&scheme, &scheme.initial_state());
-    let growth = |factor: f64, scheme: &mut DualSupport<2>| {
+    let growth = |factor: f64, scheme: &mut TotalLagrangian<2>| {
         let state = swing(scheme, factor * step, 1500);
         total(scheme, &state) / start
     };
@@ -300,10 +295,10 @@ fn impossible_input_is_refused() {
         let law = HyperelasticLaw::neo_hookean;
         input(&cloud, law, StressState::PlaneStrain, |_| Vector::zeros())
     };
-    let refused = |change: &dyn Fn(&mut DualSupportInput<2>)| {
+    let refused = |change: &dyn Fn(&mut TotalLagrangianInput<2>)| {
         let mut input = good();
         change(&mut input);
-        match DualSupport::new(input) {
+        match TotalLagrangian::new(input) {
             Ok(_) => panic!("the input was taken"),
             Err(error) => error,
         }
@@ -314,14 +309,17 @@ fn impossible_input_is_refused() {
         "the hourglass coefficient must be at least 0 and finite, got -0.1"
     );
     let error = refused(&|input| input.velocity[3][0] = f64::NAN);
-    assert!(matches!(error, DualSupportError::Input(InputError::Velocity { id: 3, .. })));
-    let error = refused(&|input| input.materials[0].density = 0.0);
-    assert!(matches!(error, DualSupportError::Input(InputError::Mass { id: 0, .. })));
-    let error = refused(&|input| input.particles.body[7] = 2);
-    assert!(matches!(error, DualSupportError::Input(InputError::Index { got: 2, count: 1, .. })));
+    assert!(matches!(error, TotalLagrangianError::Input(InputError::Velocity { id: 3, .. })));
+    let error = refused(&|input| input.mixtures[0].0[0].0.density = 0.0);
+    assert!(matches!(error, TotalLagrangianError::Input(InputError::Mass { id: 0, .. })));
+    let error = refused(&|input| input.mixture[7] = 2);
+    assert!(matches!(
+        error,
+        TotalLagrangianError::Input(InputError::Index { got: 2, count: 1, .. })
+    ));
     let error = refused(&|input| input.velocity.truncate(3));
-    assert!(matches!(error, DualSupportError::Input(InputError::Length { got: 3, .. })));
+    assert!(matches!(error, TotalLagrangianError::Input(InputError::Length { got: 3, .. })));
     let gradients = Gradients::PatchConsistent { areas: vec![Vector::zeros(); 25] };
     let error = refused(&|input| input.settings.gradients = gradients.clone());
-    assert!(matches!(error, DualSupportError::Operator(_)));
+    assert!(matches!(error, TotalLagrangianError::Operator(_)));
 }

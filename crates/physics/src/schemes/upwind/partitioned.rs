@@ -6,7 +6,8 @@ use piola_formulas::tensor;
 use super::Upwind;
 use super::fields::ColumnsMut;
 use crate::parallel;
-use crate::schemes::{PartitionedScheme, Scheme, solid};
+use crate::schemes::split::advance;
+use crate::schemes::{PartitionedScheme, Scheme};
 
 /// Iterations of the power method. Modes crowd at the highest frequency of a lattice, so that few
 /// do: 16 come within a few per cent of it.
@@ -78,7 +79,7 @@ impl<const D: usize> PartitionedScheme for Upwind<D> {
     fn kick(&self, duration: f64, rate: &[f64], state: &mut [f64]) {
         let rate = self.columns(rate);
         let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
-        solid::kick(own.velocity, rate.velocity, duration);
+        advance(own.velocity, rate.velocity, duration);
     }
 
     /// x and F are linear in time then, and J follows F: `dJ/dt = cof F : dF/dt` is the rate of the

@@ -1,7 +1,7 @@
 //! Particles turned into a weakly compressible fluid between walls.
 
 use super::bodies::{self, BodyReport};
-use super::{Built, initial, kernel, loads, probes, row_statistics, selections, tanks};
+use super::{Built, initial, kernel, loads, probes, row_sizes, row_statistics, selections, tanks};
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
@@ -157,7 +157,8 @@ impl<const D: usize> Prepared<D> {
             removes: settings.removes_escaped,
         });
         // Particles deep in a wall may be alone.
-        let (neighbors, poorly_supported) = row_statistics(&scheme, |a| !scheme.is_wall(a));
+        let of_fluid = row_sizes(&scheme).filter(|(a, _)| !scheme.is_wall(*a));
+        let (neighbors, poorly_supported) = row_statistics(D, of_fluid);
         Ok((scheme, Built { probes, lines, bodies, neighbors, poorly_supported, warnings }))
     }
 }

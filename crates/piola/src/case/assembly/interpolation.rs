@@ -1,7 +1,7 @@
 //! Particles and ghosts turned into a study of interpolation.
 
 use super::bodies::{self, BodyReport};
-use super::{Built, kernel, probes, row_statistics};
+use super::{Built, kernel, probes, row_sizes, row_statistics};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::geometry::Particles;
@@ -66,7 +66,7 @@ pub(super) fn build<const D: usize>(
              {least:.3} to {most:.3}: use a narrower cover, in 2D at most 2.5 spacings"
         )
     });
-    let (neighbors, poorly_supported) = row_statistics(&scheme, |_| true);
+    let (neighbors, poorly_supported) = row_statistics(D, row_sizes(&scheme));
     Ok((
         Box::new(scheme),
         Built {

@@ -4,13 +4,14 @@ pub(super) mod bodies;
 mod fluids;
 mod functions;
 mod interpolation;
+mod joined;
 mod loads;
+mod mirrors;
 mod printed;
 mod probes;
 mod selections;
 mod solids;
 mod tanks;
-mod waves;
 mod world;
 
 use std::time::Duration;
@@ -83,11 +84,8 @@ fn system<const D: usize>(case: &Case) -> Result<(Box<dyn Scheme>, Built), Vec<P
         model::Scheme::TransportVelocity(settings) => {
             fluids::build(case, settings, particles, bodies, domain)?
         }
-        model::Scheme::DualSupport(settings) => {
+        model::Scheme::TotalLagrangian(settings) => {
             solids::build(case, settings, particles, bodies, domain)?
-        }
-        model::Scheme::Elastodynamics(settings) => {
-            waves::build(case, settings, particles, bodies, domain)?
         }
         model::Scheme::Interpolation(settings) => {
             interpolation::build(case, settings, particles, bodies, domain)?
@@ -123,22 +121,25 @@ fn beyond_stable(case: &Case) -> Option<String> {
     })
 }
 
-/// How many neighbours the particles of a scheme have, and which have fewer than there are dimensions.
+/// How many neighbours particles of a number have, and which have fewer than there are dimensions.
 fn row_statistics(
-    scheme: &dyn Scheme,
-    counts: impl Fn(u32) -> bool,
+    dimension: usize,
+    sizes: impl Iterator<Item = (u32, usize)>,
 ) -> (NeighborStatistics, Vec<u32>) {
-    let all = (0..scheme.particle_count() as u32).filter(|&a| counts(a));
-    let lengths: Vec<(u32, usize)> =
-        all.map(|a| (a, scheme.neighborhood(a as usize).len())).collect();
-    let each = || lengths.iter().map(|(_, length)| *length);
+    let sizes: Vec<(u32, usize)> = sizes.collect();
+    let each = || sizes.iter().map(|(_, size)| *size);
     let statistics = NeighborStatistics {
         least: each().min().unwrap_or(0),
-        mean: each().sum::<usize>() as f64 / lengths.len().max(1) as f64,
+        mean: each().sum::<usize>() as f64 / sizes.len().max(1) as f64,
         most: each().max().unwrap_or(0),
     };
-    let poor = lengths.iter().filter(|(_, length)| *length < scheme.dimension());
+    let poor = sizes.iter().filter(|(_, size)| *size < dimension);
     (statistics, poor.map(|(a, _)| *a).collect())
+}
+
+/// The number of neighbours of each particle of a scheme.
+fn row_sizes(scheme: &dyn Scheme) -> impl Iterator<Item = (u32, usize)> {
+    (0..scheme.particle_count()).map(|a| (a as u32, scheme.neighborhood(a).len()))
 }
 
 /// The kernel of a name.

@@ -172,19 +172,15 @@ fn kernel_of(case: &Case) -> (Kernel, f64) {
         model::Scheme::TransportVelocity(settings) => {
             (kernel(&settings.kernel), *settings.smoothing_length)
         }
-        model::Scheme::DualSupport(settings) => {
+        model::Scheme::TotalLagrangian(settings) => {
             let kernel = kernel(&settings.kernel);
             let radius = match *settings.support {
-                model::SupportSize::Spacings(radius) => radius,
+                // Wide supports smooth; a value at a place is one of the particles around it.
+                model::SupportSize::Spacings(radius) => radius.min(2.5),
                 // As many as these are about so far away.
                 model::SupportSize::Neighbors(_) => 2.0,
             };
             (kernel, radius / kernel.support_over_h())
-        }
-        model::Scheme::Elastodynamics(settings) => {
-            // Wide covers smooth; a value at a place is one of the particles around it.
-            let kernel = kernel(&settings.kernel);
-            (kernel, settings.support.min(2.5) / kernel.support_over_h())
         }
         // At a particle its own value, which others are not mixed into.
         model::Scheme::Interpolation(_) => {

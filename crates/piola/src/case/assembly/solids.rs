@@ -1,28 +1,35 @@
-//! Particles turned into elastic solids of the dual-support formulation.
+//! Particles turned into total Lagrangian solids.
 
 use piola_formulas::hyperelastic::Reduced;
+use piola_formulas::kernels::Kernel;
 
 use super::bodies::{self, BodyReport};
+use super::joined::Joined;
 use super::loads::{self, LoadedSurface};
+use super::mirrors::{holes, mirrors, whole_weights};
 use super::selections::Held;
-use super::{Built, initial, integrator_kind, kernel, probes, selections};
+use super::{Built, at_start, integrator_kind, kernel, probes, row_statistics, selections};
 use crate::Vector;
+use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
-use crate::case::model::{self, Case, GradientKind, SupportSize};
+use crate::case::model::{self, Case, GradientKind, Preset, SupportSize};
+use crate::case::source::Place;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
-use crate::operators::{DirectedSupport, DualGradient, Face, Trace, lattice_areas, nearest_radii};
-use crate::schemes::dual_support::{
-    DualSupport, DualSupportError, DualSupportInput, Gradients, Material, Motion, Settings,
-    StaticsError, StaticsInput, free_to_move,
+use crate::operators::{
+    DirectedSupport, DualGradient, Face, Mirror, OperatorError, Trace, lattice_areas, nearest_radii,
+};
+use crate::schemes::total_lagrangian::{
+    Form, Gradients, Material, Motion, Settings, StaticsError, StaticsInput, TotalLagrangian,
+    TotalLagrangianError, TotalLagrangianInput, free_to_move,
 };
 use crate::schemes::{InputError, Scheme};
 use crate::solve::Newton;
 
-/// Builds the scheme `dual_support`.
+/// Builds a total Lagrangian solid.
 pub(super) fn build<const D: usize>(
     case: &Case,
-    settings: &model::DualSupport,
+    settings: &model::TotalLagrangian,
     mut particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
@@ -31,11 +38,21 @@ pub(super) fn build<const D: usize>(
     if settings.weights == model::Weights::Volume {
         particles.weight.clone_from(&particles.volume);
     }
+    let mut problems = Vec::new();
+    let materials = materials::<D>(case, &mut problems);
+    if !problems.is_empty() {
+        return Err(problems);
+    }
     let mut areas = areas(case, &mut particles, &domain)?;
     let place = settings.support.place;
     let refuse = |error: NeighborError| {
         vec![case.problem_at(place, error.to_string(), "with these supports", None)]
     };
+    let joined = match settings.joined {
+        true => Joined::find(&particles, &domain).map_err(refuse)?,
+        false => Joined::none(&particles),
+    };
+    joined.merge(&mut particles, areas.as_mut());
     let radii = |particles: &Particles<D>| match *settings.support {
         SupportSize::Spacings(ratio) => {
             Ok(particles.spacing.iter().map(|spacing| ratio * spacing).collect::<Vec<_>>())
@@ -49,105 +66,134 @@ pub(super) fn build<const D: usize>(
         *areas = order.iter().map(|&number| areas[number as usize]).collect();
     }
     let radius = radii(&particles).map_err(refuse)?;
-    let support = DirectedSupport::new(&particles, kernel, radius, domain).map_err(refuse)?;
-    let rows = 0..particles.len();
-    let poorly_supported =
-        rows.filter(|&a| support.list.row(a).len() < D).map(|a| a as u32).collect();
-    let neighbors = support.list.statistics();
-
-    let trace = trace(case, &particles, &support)?;
+    let (mixtures, mixture) = joined.mixtures(&particles, &materials);
+    let group: Vec<u32> = particles.body.iter().map(|&it| joined.group[it as usize]).collect();
+    let trace = trace(case, &particles, (kernel, &radius), &domain)?;
     if let (Some(areas), Some(trace)) = (&mut areas, &trace) {
         let traced = trace.areas(particles.len());
         areas.iter_mut().zip(traced).for_each(|(area, more)| *area += more);
     }
 
-    let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
-    let usual = Newton::default();
-    let newton = Newton { tolerance: case.time.tolerance.unwrap_or(usual.tolerance), ..usual };
-    let (prescribed, motion) = match integrator_kind(case) {
-        kind if kind.is_static() => {
-            let Held { particles: prescribed, faces: prescribed_faces, ties } =
-                selections::held(case, &particles, &mut problems);
-            let input = StaticsInput {
-                prescribed,
-                prescribed_faces,
-                ties,
-                trace: trace.clone(),
-                method: case.time.linear_solver,
-                newton,
-                ..StaticsInput::default()
-            };
-            (Vec::new(), Motion::Static(Box::new(input)))
-        }
-        _ => {
-            let motion = match case.time.rule {
-                Some(_) => Motion::Implicit(case.time.linear_solver, newton),
-                None => Motion::Explicit,
-            };
-            (selections::prescribed(case, &particles, &mut problems), motion)
-        }
-    };
+    let (prescribed, motion) = motion(case, &particles, trace.as_ref(), &mut problems);
+    let mirrors = mirrors(case, settings.form, &particles, &mut problems);
     let known = || {
         areas.clone().ok_or_else(|| {
             "a load on a surface needs the areas of the particles, which are not known of points from a file"
                 .to_owned()
         })
     };
-    let surface = LoadedSurface::new(case, &particles, &support.domain, trace.as_ref(), known);
+    let surface = LoadedSurface::new(case, &particles, &domain, trace.as_ref(), known);
     let tractions = surface.tractions(&mut problems);
     let pressures = surface.pressures(&mut problems);
-    let materials = materials(case, &mut problems);
-    let (gradients, warnings) = gradients(case, settings, areas.clone(), &mut problems);
+    let gradients = gradients(case, settings, &mirrors, areas.clone(), &mut problems);
     if !problems.is_empty() {
         return Err(problems);
     }
-    let usual = if gradients == Gradients::Plain { 1.0 } else { 0.1 };
-    let velocity = initial(case, &particles).velocity;
-    let scheme = DualSupport::new(DualSupportInput {
-        settings: Settings { gradients, hourglass: settings.hourglass.unwrap_or(usual) },
+    let (gradients, warnings) = gradients;
+    if settings.weights == model::Weights::Volume {
+        whole_weights(&mut particles, &mirrors);
+    }
+    let is_plain = gradients == Gradients::Plain;
+    let scheme = TotalLagrangian::new(TotalLagrangianInput {
+        description: settings.preset.description(),
+        settings: Settings {
+            form: settings.form,
+            configuration: settings.configuration,
+            hourglass: settings.hourglass.unwrap_or(settings.preset.hourglass(is_plain)),
+            tractions: settings.tractions.unwrap_or(settings.preset.tractions(is_plain)),
+            dissipation: settings.dissipation,
+            gradients,
+        },
+        displacement: at_start(case, &particles, |initial| &initial.displacement),
+        velocity: at_start(case, &particles, |initial| &initial.velocity),
         body_forces: loads::body_forces(case),
+        holes: holes(case),
+        kernel,
+        radius,
+        group,
+        domain,
+        mixtures,
+        mixture,
         particles,
-        support,
-        materials,
-        velocity,
         tractions,
         pressures,
         prescribed,
+        mirrors,
         motion,
     });
-    let scheme = scheme.map_err(|error| {
-        let (place, label) = match &error {
-            DualSupportError::Input(InputError::Velocity { .. }) => {
-                (case.bodies[0].name.place, "initial values of a body")
-            }
-            DualSupportError::Statics(StaticsError::Free { .. }) => {
-                (case.time.integrator.place, "statics needs a body that is held")
-            }
-            DualSupportError::Statics(_) => (case.time.integrator.place, "with this integrator"),
-            _ => (place, "with these supports"),
-        };
-        let message = match &error {
-            DualSupportError::Statics(StaticsError::Free { body, part, motion }) => {
-                let name = case.bodies[*body as usize].name.value.as_str();
-                free_to_move(&format!("the body `{name}`"), part.as_ref(), motion)
-            }
-            error => error.to_string(),
-        };
-        vec![case.problem_at(place, message, label, None)]
-    })?;
+    let scheme = scheme.map_err(|error| vec![refused(case, place, &error)])?;
+    let sizes = (0..scheme.particle_count()).map(|a| (a as u32, scheme.neighbors(a)));
+    let (neighbors, poorly_supported) = row_statistics(D, sizes);
     Ok((
         Box::new(scheme),
         Built { probes, lines, bodies: reports, neighbors, poorly_supported, warnings },
     ))
 }
 
+/// How states follow each other, with the velocities that are prescribed where something moves.
+fn motion<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    trace: Option<&Trace<D>>,
+    problems: &mut Vec<Problem>,
+) -> (Vec<PrescribedVelocity>, Motion<D>) {
+    let usual = Newton::default();
+    let newton = Newton { tolerance: case.time.tolerance.unwrap_or(usual.tolerance), ..usual };
+    let method = case.time.linear_solver;
+    if integrator_kind(case).is_static() {
+        let Held { particles: prescribed, faces: prescribed_faces, ties } =
+            selections::held(case, particles, problems);
+        let trace = trace.cloned();
+        let input = StaticsInput {
+            prescribed,
+            prescribed_faces,
+            ties,
+            trace,
+            method,
+            newton,
+            ..StaticsInput::default()
+        };
+        return (Vec::new(), Motion::Static(Box::new(input)));
+    }
+    let motion = match case.time.rule {
+        Some(_) => Motion::Implicit(method, newton),
+        None => Motion::Explicit,
+    };
+    (selections::prescribed(case, particles, problems), motion)
+}
+
+/// Where and what of the case an error is about.
+fn refused(case: &Case, place: Place, error: &TotalLagrangianError) -> Problem {
+    let integrator = case.time.integrator.place;
+    let (place, label) = match error {
+        TotalLagrangianError::Input(InputError::Velocity { .. }) => {
+            (case.bodies[0].name.place, "initial values of a body")
+        }
+        TotalLagrangianError::Statics(StaticsError::Free { .. }) => {
+            (integrator, "statics needs a body that is held")
+        }
+        TotalLagrangianError::Statics(_) => (integrator, "with this integrator"),
+        TotalLagrangianError::Operator(_) => (place, "with these supports"),
+        _ => (case.scheme.place, "with these settings"),
+    };
+    let message = match error {
+        TotalLagrangianError::Statics(StaticsError::Free { body, part, motion }) => {
+            let name = case.bodies[*body as usize].name.value.as_str();
+            free_to_move(&format!("the body `{name}`"), part.as_ref(), motion)
+        }
+        error => error.to_string(),
+    };
+    case.problem_at(place, message, label, None)
+}
+
 /// The boundary as centres of cells see it, where a body has such particles.
 fn trace<const D: usize>(
     case: &Case,
     particles: &Particles<D>,
-    support: &DirectedSupport<D>,
+    (kernel, radius): (Kernel, &[f64]),
+    domain: &Domain<D>,
 ) -> Result<Option<Trace<D>>, Vec<Problem>> {
     let of_cells = particles.surface.faces.iter().filter(|face| !face.is_of_nodes());
     let faces: Vec<Face<D>> = of_cells
@@ -156,16 +202,19 @@ fn trace<const D: usize>(
     if faces.is_empty() {
         return Ok(None);
     }
-    let plain = DualGradient::plain(particles, support).map_err(|error| {
+    let refuse = |error: OperatorError| {
         vec![case.problem_at(case.scheme.place, error.to_string(), "with these supports", None)]
-    })?;
-    Ok(Some(Trace::new(faces, particles, support, &plain)))
+    };
+    let support = DirectedSupport::new(particles, kernel, radius.to_vec(), *domain);
+    let support = support.map_err(|error| refuse(error.into()))?;
+    let plain = DualGradient::plain(particles, &support).map_err(refuse)?;
+    Ok(Some(Trace::new(faces, particles, &support, &plain)))
 }
 
 /// The boundary area vectors of all particles in m^(D-1), of the lattices before they are displaced;
 /// particles that have one go back to their site. Of meshes those of nodes, and zero of cells, which
 /// get theirs from the trace. `None` if there is a body of points.
-pub(super) fn areas<const D: usize>(
+fn areas<const D: usize>(
     case: &Case,
     particles: &mut Particles<D>,
     domain: &Domain<D>,
@@ -201,13 +250,18 @@ pub(super) fn areas<const D: usize>(
 /// The coefficients that the case asks for, or the better ones that there are.
 fn gradients<const D: usize>(
     case: &Case,
-    settings: &model::DualSupport,
+    settings: &model::TotalLagrangian,
+    mirrors: &[(Mirror, u32)],
     areas: Option<Vec<Vector<D>>>,
     problems: &mut Vec<Problem>,
 ) -> (Gradients<D>, Vec<String>) {
     let wanted = settings.gradients.as_ref();
+    let is_plain = settings.preset == Preset::Elastodynamics
+        || settings.form == Form::Strong
+        || !mirrors.is_empty();
     match (wanted.map(|kind| kind.value), areas) {
         (Some(GradientKind::Plain), _) => (Gradients::Plain, Vec::new()),
+        (None, _) if is_plain => (Gradients::Plain, Vec::new()),
         (_, Some(areas)) => (Gradients::PatchConsistent { areas }, Vec::new()),
         (None, None) => {
             let warning = "gradients are plain, as the boundary areas of points from a file are not \
@@ -224,10 +278,7 @@ fn gradients<const D: usize>(
     }
 }
 
-pub(super) fn materials<const D: usize>(
-    case: &Case,
-    problems: &mut Vec<Problem>,
-) -> Vec<Material<D>> {
+fn materials<const D: usize>(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material<D>> {
     let mut materials = Vec::new();
     for body in &case.bodies {
         // The reader of cases has refused others for this scheme.

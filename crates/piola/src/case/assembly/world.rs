@@ -57,7 +57,7 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
                 "bring the spacings of the two closer to each other"
             }
             WorldError::Interface { .. } => "take a smaller spacing for the solid",
-            WorldError::Motion { .. } => "use `dual_support` or `elastodynamics`",
+            WorldError::Motion { .. } => "use `total_lagrangian`",
         };
         vec![case.problem_at(place, error.to_string(), "of this system", Some(help.to_owned()))]
     })?;

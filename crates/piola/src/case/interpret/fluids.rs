@@ -3,7 +3,7 @@
 use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use super::*;
-use crate::case::model::{Body, Boundary, Material, TransportVelocity, Wall};
+use crate::case::model::{Body, Boundary, Material, Preset, TransportVelocity, Wall};
 use crate::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
 };
@@ -110,19 +110,20 @@ impl Reader<'_, '_> {
     ) {
         let scheme = self.names.current.scheme;
         let is_fluid = scheme == "transport_velocity";
+        let is_elastic = Preset::from_name(scheme).is_some();
         for body in bodies.iter().filter(|body| body.system == system) {
             let help = match (scheme, &body.material.value) {
+                (_, Material::Hyperelastic { .. }) if is_elastic => None,
                 (
                     "transport_velocity",
                     Material::WeaklyCompressible { .. } | Material::Hypoelastic(_),
                 )
-                | ("dual_support" | "elastodynamics", Material::Hyperelastic { .. })
                 | (interpolation::NAME, _)
                 | ("upwind", Material::Linear { .. } | Material::GammaLaw { .. }) => None,
                 ("transport_velocity", _) => {
                     Some("use `weakly_compressible` or `hypoelastic`, for walls too".to_owned())
                 }
-                ("dual_support" | "elastodynamics", _) => {
+                _ if is_elastic => {
                     Some(format!("use one of {}", HyperelasticLaw::NAMES.join(", ")))
                 }
                 _ => Some("use `linear` or `gamma_law`".to_owned()),
@@ -138,9 +139,7 @@ impl Reader<'_, '_> {
                 let problem = Problem::new(body.material.place, message, "a fluid beside solids");
                 self.report(problem.help("give all bodies, walls too, one kind of material"));
             }
-            if (matches!(scheme, "dual_support" | "elastodynamics") || is_solid)
-                && body.initial.pressure.as_constant() != Some(0.0)
-            {
+            if (is_elastic || is_solid) && body.initial.pressure.as_constant() != Some(0.0) {
                 let message =
                     format!("body `{}` starts with a pressure, which no strain makes", *body.name);
                 let problem = Problem::new(body.name.place, message, "no meaning in this scheme");

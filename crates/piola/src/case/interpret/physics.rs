@@ -6,8 +6,8 @@ use super::*;
 use crate::boundaries::History;
 use crate::case::expression::Expression;
 use crate::case::model::{
-    Boundary, Correction, Dissipation, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Upwind,
-    Weights,
+    Boundary, Correction, Dissipation, Load, LoadKind, Preset, ReferenceWaveSpeed, Region, Roller,
+    Upwind, Weights,
 };
 use crate::output::Curve;
 
@@ -101,14 +101,14 @@ impl Reader<'_, '_> {
         let kind = record.kind;
         let scheme = self.names.current.scheme;
         let knows = match kind {
-            "pressure" => scheme == "dual_support",
+            "pressure" => Preset::from_name(scheme).is_some(),
             _ => scheme != "transport_velocity",
         };
         if !knows {
             let message = format!("the scheme `{scheme}` knows no load of the kind `{kind}`");
             let help = match scheme {
                 "transport_velocity" => "fluids are moved by body forces and by walls",
-                _ => "use `traction`, or the scheme `dual_support`",
+                _ => "use `traction`, or the scheme `total_lagrangian`",
             };
             let problem = Problem::new(record.place, message, "of another scheme");
             self.report(problem.help(help));
@@ -146,7 +146,7 @@ impl Reader<'_, '_> {
         let mirror = record
             .boolean("mirror")
             .map(|on| Located::new(on, record.key_place("mirror").unwrap_or(record.place)));
-        if self.names.current.scheme != "elastodynamics" {
+        if Preset::from_name(self.names.current.scheme).is_none() {
             self.meaningless(record, "mirror", "in this scheme");
         }
         let roller = record.record("roller").map(|roller| self.roller(roller));

@@ -1,19 +1,67 @@
-//! The scheme `dual_support` and the materials of elastic solids.
+//! The scheme `total_lagrangian` and the materials of elastic solids.
 
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants};
 use piola_formulas::volumetric::MaterialError;
 
 use super::bodies::{number, plane};
 use super::*;
-use crate::case::model::{DualSupport, GradientKind, Material, PlaneState, SupportSize};
+use crate::case::model::{
+    GradientKind, Material, PlaneState, Preset, SupportSize, TotalLagrangian,
+};
+use crate::schemes::total_lagrangian::{Configuration, Dissipation, Form, Tractions};
 
 /// The keys that give the stiffness of an isotropic solid, of which two are needed.
 const CONSTANTS: [&str; 5] =
     ["young_modulus", "poisson_ratio", "bulk_modulus", "shear_modulus", "lame_lambda"];
 
 impl Reader<'_, '_> {
-    /// Settings of the scheme `dual_support`.
-    pub(super) fn dual_support(&mut self, record: &Record) -> Option<DualSupport> {
+    /// Settings of the scheme `total_lagrangian` with a preset.
+    pub(super) fn total_lagrangian(
+        &mut self,
+        record: &Record,
+        preset: Preset,
+    ) -> Option<TotalLagrangian> {
+        let form = match record.text("form").as_deref().map(String::as_str) {
+            Some("strong") => Form::Strong,
+            Some(_) => Form::Adjoint,
+            None => preset.form(self.dimension),
+        };
+        let configuration = match record.text("configuration")?.as_str() {
+            "updated" => Configuration::Updated,
+            _ => Configuration::Total,
+        };
+        self.suits_form(record, form, configuration)?;
+        let gradients = record.text("gradients").map(|name| {
+            name.map(|name| match name.as_str() {
+                "plain" => GradientKind::Plain,
+                _ => GradientKind::PatchConsistent,
+            })
+        });
+        let tractions = record.text("tractions").map(|name| match name.as_str() {
+            "layers" => Tractions::Layers,
+            _ => Tractions::Surface,
+        });
+        Some(TotalLagrangian {
+            preset,
+            kernel: record.text("kernel")?,
+            weights: super::physics::weights(record)?,
+            support: self.support(record, preset.support(form, self.dimension)),
+            joined: record.boolean("joined")?,
+            form,
+            configuration,
+            gradients,
+            hourglass: number(record, "hourglass"),
+            tractions,
+            dissipation: Dissipation {
+                viscosity: number(record, "viscosity")?,
+                artificial_viscosity: self.artificial_viscosity(record)?,
+                damping: number(record, "damping")?,
+            },
+        })
+    }
+
+    /// How large supports are, by one of two keys or by what is usual.
+    fn support(&mut self, record: &Record, usual: f64) -> Located<SupportSize> {
         let radius = record.number("support").map(|radius| radius.map(SupportSize::Spacings));
         let count =
             record.whole::<usize>("neighbors").map(|count| count.map(SupportSize::Neighbors));
@@ -24,20 +72,61 @@ impl Reader<'_, '_> {
                 Problem::new(place, message, "the second way to say it").help("remove one of them"),
             );
         }
-        let usual = Located::new(SupportSize::Spacings(2.05), record.place);
-        let gradients = record.text("gradients").map(|name| {
-            name.map(|name| match name.as_str() {
-                "plain" => GradientKind::Plain,
-                _ => GradientKind::PatchConsistent,
-            })
-        });
-        Some(DualSupport {
-            kernel: record.text("kernel")?,
-            weights: super::physics::weights(record)?,
-            support: count.or(radius).unwrap_or(usual),
-            gradients,
-            hourglass: number(record, "hourglass"),
-        })
+        let usual = Located::new(SupportSize::Spacings(usual), record.place);
+        count.or(radius).unwrap_or(usual)
+    }
+
+    /// Reports what a form of the divergence does not know.
+    fn suits_form(
+        &mut self,
+        record: &Record,
+        form: Form,
+        configuration: Configuration,
+    ) -> Option<()> {
+        let place = |key: &str| record.key_place(key).unwrap_or(record.place);
+        let fault = match (form, configuration) {
+            (Form::Strong, _) if self.dimension > 2 => Some((
+                "form",
+                "the strong form is for one and two dimensions",
+                "not in this dimension",
+                "use `form = \"adjoint\"`",
+            )),
+            (Form::Adjoint, Configuration::Updated) => Some((
+                "configuration",
+                "matrices of the moment need the strong form",
+                "not with `form = \"adjoint\"`",
+                "use `configuration = \"total\"`",
+            )),
+            (_, Configuration::Updated) if self.dimension > 1 => Some((
+                "configuration",
+                "matrices of the moment are for one dimension",
+                "not in this dimension",
+                "use `configuration = \"total\"`",
+            )),
+            _ => None,
+        };
+        if let Some((key, message, label, help)) = fault {
+            return self.refuse(Problem::new(place(key), message, label).help(help));
+        }
+        for key in ["hourglass", "gradients", "tractions"] {
+            if form == Form::Strong {
+                self.meaningless(record, key, "with `form = \"strong\"`");
+            }
+        }
+        Some(())
+    }
+
+    /// Linear and quadratic coefficient of the artificial viscosity.
+    fn artificial_viscosity(&mut self, record: &Record) -> Option<[f64; 2]> {
+        let Some(given) = record.numbers("artificial_viscosity") else { return Some([0.0; 2]) };
+        match given.value[..] {
+            [linear, quadratic] => Some([linear, quadratic]),
+            _ => {
+                let message = format!("expected two coefficients, got {}", given.value.len());
+                let problem = Problem::new(given.place, message, "not two");
+                self.refuse(problem.help("for example `[0.1, 1.0]`"))
+            }
+        }
     }
 
     /// A material with a strain energy.

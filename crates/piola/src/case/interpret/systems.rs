@@ -2,11 +2,12 @@
 
 use super::*;
 use crate::case::catalogue;
-use crate::case::model::{Body, System};
+use crate::case::model::{Body, Preset, System};
 use crate::case::suggest::one_of;
 use crate::fields::FieldDescription;
-use crate::schemes::SchemeDescription;
+use crate::schemes::total_lagrangian::Form;
 use crate::schemes::transport_velocity::Slip;
+use crate::schemes::{Capability, SchemeDescription};
 use crate::time::IntegratorKind;
 
 /// What is known of a system before the rest of the case is read.
@@ -14,26 +15,45 @@ use crate::time::IntegratorKind;
 pub(super) struct Known {
     pub name: String,
     pub scheme: &'static str,
-    /// Whether the scheme dissipates by itself.
-    pub dissipates: bool,
+    /// What the scheme does not offer with its settings.
+    pub without: Option<Without>,
     /// Whether fields are those of all systems.
     pub is_of_all: bool,
+}
+
+/// What a scheme offers with other settings than those it has.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Without {
+    pub capabilities: &'static [Capability],
+    /// Why not.
+    pub why: &'static str,
+    /// What to do about it.
+    pub remedy: &'static str,
 }
 
 impl Known {
     /// That of a scheme.
     pub fn of(name: &str, scheme: &'static str, settings: Option<&Located<Scheme>>) -> Self {
-        let dissipates = match settings.map(|settings| &settings.value) {
-            Some(Scheme::Upwind(upwind)) => upwind.tau_velocity > 0.0 || upwind.tau_pressure > 0.0,
-            _ => false,
+        let without = match settings.map(|settings| &settings.value) {
+            Some(Scheme::Upwind(upwind))
+                if upwind.tau_velocity > 0.0 || upwind.tau_pressure > 0.0 =>
+            {
+                Some(Without {
+                    capabilities: &[Capability::Kicks],
+                    why: " where it dissipates: its forces depend on velocities there",
+                    remedy: "set `scheme.tau_velocity` and `scheme.tau_pressure` to 0",
+                })
+            }
+            Some(Scheme::TotalLagrangian(solid)) if solid.form == Form::Strong => Some(Without {
+                capabilities: &[Capability::Rates, Capability::Newmark, Capability::Statics],
+                why: " in the strong form, which has no energy of which forces are derivatives",
+                remedy: "set `scheme.form` to \"adjoint\"",
+            }),
+            _ => None,
         };
-        Self { name: name.to_owned(), scheme, dissipates, is_of_all: false }
+        Self { name: name.to_owned(), scheme, without, is_of_all: false }
     }
 }
-
-/// Formulations of elastic solids whose particles keep their neighbours, which a fluid can flow around; `upwind`
-/// has no shear stress.
-const SOLIDS: [&str; 2] = ["dual_support", "elastodynamics"];
 
 impl Reader<'_, '_> {
     /// Which system each body names, of those of the file.
@@ -77,12 +97,16 @@ impl Reader<'_, '_> {
             let described = system.record("scheme");
             let kind = described.map_or("", |scheme| scheme.kind);
             if let Some(place) = described.map(|scheme| scheme.place)
-                && !SOLIDS.contains(&kind)
+                && Preset::from_name(kind).is_none()
             {
+                // `upwind` has no shear stress.
                 let message =
                     format!("the scheme `{kind}` has no surface that a fluid could follow");
                 let problem = Problem::new(place, message, "no solid that keeps its neighbours");
-                self.report(problem.help(format!("expected {}", one_of(SOLIDS))));
+                self.report(problem.help(format!(
+                    "expected {}",
+                    one_of(Preset::ALL.map(|preset| preset.description().name))
+                )));
             }
             let scheme = described.and_then(|scheme| self.scheme(scheme));
             let name = system.text("name").map(|name| name.value).unwrap_or_default();

@@ -1,5 +1,6 @@
 //! Clock and integrator.
 
+use super::systems::Without;
 use super::*;
 use crate::case::suggest::one_of;
 use crate::schemes::{Capability, ImplicitRule, Newmark, SchemeDescription, Theta};
@@ -53,25 +54,23 @@ impl Reader<'_, '_> {
 
     /// Reports an integrator that the scheme does not work with, with those that do.
     pub(super) fn suits_scheme(&mut self, integrator: &Located<String>, needs: Capability) {
-        let (name, scheme, dissipates) =
-            (&integrator.value, self.names.current.scheme, self.names.current.dissipates);
+        let (name, scheme, without) =
+            (&integrator.value, self.names.current.scheme, self.names.current.without);
         let Some(offers) = self.names.described().map(|scheme| scheme.offers) else {
             return;
         };
         let is_offered = |needs: Capability| {
-            offers.contains(&needs) && !(dissipates && needs == Capability::Kicks)
+            let lacks = |without: &Without| without.capabilities.contains(&needs);
+            offers.contains(&needs) && !without.as_ref().is_some_and(lacks)
         };
         if is_offered(needs) {
             return;
         }
         let all = IntegratorKind::ALL.into_iter();
         let able = one_of(all.filter(|kind| is_offered(kind.needs())).map(IntegratorKind::name));
-        let (why, other) = match offers.contains(&needs) {
-            true => (
-                " where it dissipates: its forces depend on velocities there",
-                "set `scheme.tau_velocity` and `scheme.tau_pressure` to 0".to_owned(),
-            ),
-            false => {
+        let (why, other) = match without.filter(|_| offers.contains(&needs)) {
+            Some(Without { why, remedy, .. }) => (why, remedy.to_owned()),
+            None => {
                 let others = SchemeDescription::ALL.into_iter();
                 let others = others.filter(|other| other.offers.contains(&needs));
                 let mut others: Vec<&str> = others.map(|scheme| scheme.name).collect();
@@ -87,7 +86,8 @@ impl Reader<'_, '_> {
 
     /// The integrator, unless the file has one.
     pub(super) fn natural_integrator(&self) -> IntegratorKind {
-        match self.names.current.dissipates {
+        let lacks = |without: &Without| without.capabilities.contains(&Capability::Kicks);
+        match self.names.current.without.as_ref().is_some_and(lacks) {
             true => IntegratorKind::TvdRk2,
             false => IntegratorKind::KickDriftKick,
         }
@@ -104,8 +104,7 @@ impl Reader<'_, '_> {
     pub(super) fn natural_cfl(&self) -> f64 {
         match self.names.current.scheme {
             "transport_velocity" => 0.25,
-            "dual_support" => 0.8,
-            "elastodynamics" => 0.9,
+            scheme if Preset::from_name(scheme).is_some() => 0.9,
             _ => 0.3,
         }
     }

@@ -3,7 +3,10 @@
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::operators::GradientForm;
-use crate::schemes::{dual_support, elastodynamics, interpolation, transport_velocity, upwind};
+use crate::schemes::total_lagrangian::{
+    self, Configuration, Dissipation as Dissipative, Form, Tractions,
+};
+use crate::schemes::{SchemeDescription, interpolation, transport_velocity, upwind};
 
 /// The formulation with its settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,10 +16,8 @@ pub enum Scheme {
     Upwind(Upwind),
     /// Weakly compressible fluids with a corrected transport velocity.
     TransportVelocity(TransportVelocity),
-    /// Elastic solids from one discrete energy.
-    DualSupport(DualSupport),
-    /// Elastic solids on SPH matrices.
-    Elastodynamics(Elastodynamics),
+    /// Total Lagrangian solids.
+    TotalLagrangian(TotalLagrangian),
     /// No motion: sums of a known function.
     Interpolation(Interpolation),
 }
@@ -27,8 +28,7 @@ impl Scheme {
         match self {
             Self::Upwind(_) => upwind::DESCRIPTION.name,
             Self::TransportVelocity(_) => transport_velocity::NAME,
-            Self::DualSupport(_) => dual_support::DESCRIPTION.name,
-            Self::Elastodynamics(_) => elastodynamics::DESCRIPTION.name,
+            Self::TotalLagrangian(settings) => settings.preset.description().name,
             Self::Interpolation(_) => interpolation::DESCRIPTION.name,
         }
     }
@@ -111,32 +111,100 @@ pub struct TransportVelocity {
     pub removes_escaped: bool,
 }
 
-/// Settings of the scheme `dual_support`.
+/// Settings of a total Lagrangian solid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DualSupport {
+pub struct TotalLagrangian {
+    /// Whose choices hold where the file makes none.
+    pub preset: Preset,
     /// Name in the kernel registry.
     pub kernel: Located<String>,
     /// What weighs a kernel.
     pub weights: Weights,
     /// How large supports are.
     pub support: Located<SupportSize>,
-    /// Coefficients of the deformation gradient; `None` for the better ones that there are.
+    /// Whether bodies whose particles share places are one there.
+    pub joined: bool,
+    /// How the divergence of the stress is taken.
+    pub form: Form,
+    /// Where matrices are made.
+    pub configuration: Configuration,
+    /// Coefficients of the deformation gradient; `None` for those of the preset.
     pub gradients: Option<Located<GradientKind>>,
     /// Coefficient of the hourglass energy in units of the shear modulus, if it is given.
     pub hourglass: Option<f64>,
+    /// Which particles tractions act on, if it is given.
+    pub tractions: Option<Tractions>,
+    /// What takes energy out of motion.
+    pub dissipation: Dissipative,
 }
 
-/// Settings of the scheme `elastodynamics`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Elastodynamics {
-    /// Name in the kernel registry.
-    pub kernel: Located<String>,
-    /// Support radius in particle spacings.
-    pub support: Located<f64>,
-    /// What is summed under the kernel.
-    pub weights: Weights,
-    /// All that the formulation itself knows.
-    pub settings: Located<elastodynamics::Settings>,
+/// A paper's choice of the parts of a total Lagrangian solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// None: what suits most cases.
+    TotalLagrangian,
+    /// Dual-support.
+    DualSupport,
+    /// Elastodynamics.
+    Elastodynamics,
+}
+
+impl Preset {
+    /// All presets.
+    pub const ALL: [Self; 3] = [Self::TotalLagrangian, Self::DualSupport, Self::Elastodynamics];
+
+    /// The preset of a name in a case file.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|preset| preset.description().name == name)
+    }
+
+    /// What the formulation is called with it.
+    pub fn description(self) -> &'static SchemeDescription {
+        match self {
+            Self::TotalLagrangian => &total_lagrangian::TOTAL_LAGRANGIAN,
+            Self::DualSupport => &total_lagrangian::DUAL_SUPPORT,
+            Self::Elastodynamics => &total_lagrangian::ELASTODYNAMICS,
+        }
+    }
+
+    /// The form of the divergence in a dimension.
+    pub fn form(self, dimension: usize) -> Form {
+        match (self, dimension) {
+            (Self::Elastodynamics, 1) => Form::Strong,
+            _ => Form::Adjoint,
+        }
+    }
+
+    /// The radius of supports in spacings.
+    pub fn support(self, form: Form, dimension: usize) -> f64 {
+        match (self, form, dimension) {
+            (_, Form::Strong, 1) => 5.5,
+            (Self::Elastodynamics, ..) | (_, Form::Strong, _) => 2.5,
+            _ => 2.05,
+        }
+    }
+
+    /// The coefficient of the hourglass energy, with plain gradients or others.
+    pub fn hourglass(self, is_plain: bool) -> f64 {
+        match (self, is_plain) {
+            (Self::Elastodynamics, _) => 0.05,
+            (_, true) => 1.0,
+            (_, false) => 0.1,
+        }
+    }
+
+    /// Which particles tractions act on, with plain gradients or others.
+    pub fn tractions(self, is_plain: bool) -> Tractions {
+        match (self, is_plain) {
+            (Self::Elastodynamics, _) | (Self::TotalLagrangian, true) => Tractions::Layers,
+            _ => Tractions::Surface,
+        }
+    }
+
+    /// Whether bodies whose particles share places are one there.
+    pub fn joined(self) -> bool {
+        self != Self::DualSupport
+    }
 }
 
 /// Settings of the scheme `interpolation`.

@@ -394,7 +394,7 @@ static INITIAL: TableSpec = TableSpec {
             Kind::Expressions(Variables::Position),
             "m",
             Derived("0"),
-            "one expression a component; for the scheme `elastodynamics`",
+            "one expression a component; for the scheme `total_lagrangian`",
         ),
         key(
             "pressure",

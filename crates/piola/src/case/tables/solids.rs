@@ -1,18 +1,71 @@
-//! The scheme `dual_support` and the materials of elastic solids.
+//! The scheme `total_lagrangian` with its presets, and the materials of elastic solids.
 
 use super::geometry::PLANES;
 use super::*;
 
+/// What a preset says of keys that a file leaves out.
+struct Usual {
+    kernel: &'static str,
+    support: &'static str,
+    joined: &'static str,
+    form: &'static str,
+    gradients: &'static str,
+    hourglass: &'static str,
+    tractions: &'static str,
+}
+
+pub(super) const TOTAL_LAGRANGIAN: KindSpec = KindSpec {
+    name: "total_lagrangian",
+    meaning: "elastic solids whose particles keep their neighbours, of parts to choose; `dual_support` and `elastodynamics` are two choices of the same parts",
+    dimensions: &[1, 2, 3],
+    keys: &keys(Usual {
+        kernel: "\"cubic_spline\"",
+        support: "2.05 unless `neighbors` is given; with `form = \"strong\"` 5.5 in 1D and 2.5 in 2D",
+        joined: "true",
+        form: "\"adjoint\"",
+        gradients: "`patch_consistent`; `plain` where there is a body of points from a file, or a `mirror`",
+        hourglass: "0.1; 1 with `plain` gradients",
+        tractions: "`surface`; `layers` with `plain` gradients",
+    }),
+};
+
 pub(super) const DUAL_SUPPORT: KindSpec = KindSpec {
     name: "dual_support",
-    meaning: "elastic solids from one discrete energy, with supports of any size",
+    meaning: "`total_lagrangian` with the choices of Dual-support: elastic solids from one discrete energy, with supports of any size",
     dimensions: &[1, 2, 3],
-    keys: &[
+    keys: &keys(Usual {
+        kernel: "\"cubic_spline\"",
+        support: "2.05 unless `neighbors` is given; with `form = \"strong\"` 5.5 in 1D and 2.5 in 2D",
+        joined: "false",
+        form: "\"adjoint\"",
+        gradients: "`patch_consistent`; `plain` where there is a body of points from a file, or a `mirror`",
+        hourglass: "0.1; 1 with `plain` gradients",
+        tractions: "`surface`",
+    }),
+};
+
+pub(super) const ELASTODYNAMICS: KindSpec = KindSpec {
+    name: "elastodynamics",
+    meaning: "`total_lagrangian` with the choices of Elastodynamics: elastic solids on sparse SPH matrices, for waves and large strain; bodies whose particles share places are joined there",
+    dimensions: &[1, 2, 3],
+    keys: &keys(Usual {
+        kernel: "\"modified_mollifier\"",
+        support: "2.5 unless `neighbors` is given; 5.5 with `form = \"strong\"` in 1D",
+        joined: "true",
+        form: "`strong` in 1D, `adjoint` otherwise",
+        gradients: "`plain`",
+        hourglass: "0.05",
+        tractions: "`layers`",
+    }),
+};
+
+const fn keys(usual: Usual) -> [KeySpec; 13] {
+    [
         key(
             "kernel",
             Kind::Name(Choices::Registry(catalogue::kernels)),
             "",
-            Default("\"cubic_spline\""),
+            Default(usual.kernel),
             "kernel that weighs the neighbours",
         ),
         key(
@@ -26,7 +79,7 @@ pub(super) const DUAL_SUPPORT: KindSpec = KindSpec {
             "support",
             Kind::Number(Interval::POSITIVE),
             "spacings",
-            Derived("2.05 unless `neighbors` is given"),
+            Derived(usual.support),
             "support radius in units of the particle spacing",
         ),
         key(
@@ -37,25 +90,98 @@ pub(super) const DUAL_SUPPORT: KindSpec = KindSpec {
             "support radius of a particle is the distance to its so many-th neighbour, instead of `support`",
         ),
         key(
+            "joined",
+            Kind::Boolean,
+            "",
+            Default(usual.joined),
+            "whether bodies whose particles share places are one there",
+        ),
+        key(
+            "form",
+            Kind::Name(FORMS),
+            "",
+            Derived(usual.form),
+            "how the divergence of the stress is taken",
+        ),
+        key(
+            "configuration",
+            Kind::Name(CONFIGURATIONS),
+            "",
+            Default("\"total\""),
+            "where the matrices are made",
+        ),
+        key(
             "gradients",
             Kind::Name(GRADIENTS),
             "",
-            Derived("`patch_consistent`; `plain` where there is a body of points from a file"),
+            Derived(usual.gradients),
             "coefficients of the deformation gradient",
         ),
         key(
             "hourglass",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
-            Derived("0.1; 1 with `plain` gradients"),
-            "coefficient of the hourglass energy in units of the shear modulus, Dual-support (21)",
+            Derived(usual.hourglass),
+            "coefficient of the hourglass energy in units of the shear modulus, theory (47) and (60), Dual-support (21); with `form = \"adjoint\"`",
         ),
-    ],
-};
+        key(
+            "tractions",
+            Kind::Name(TRACTIONS),
+            "",
+            Derived(usual.tractions),
+            "which particles tractions act on; with `form = \"adjoint\"`",
+        ),
+        key(
+            "viscosity",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "Pa s",
+            Default("0.0"),
+            "viscosity of Kelvin and Voigt's material, theory (65); in explicit steps",
+        ),
+        key(
+            "artificial_viscosity",
+            Kind::Numbers(Length::Any, Interval::NOT_NEGATIVE),
+            "1",
+            Derived("[0, 0]"),
+            "linear and quadratic coefficient of the artificial viscosity, theory (66); in explicit steps",
+        ),
+        key(
+            "damping",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1/s",
+            Default("0.0"),
+            "rate at which motion dies out, to come to rest in equilibrium: about the shear wave speed over the size of the body; in explicit steps",
+        ),
+    ]
+}
+
+const FORMS: Choices = choices(&[
+    choice(
+        "strong",
+        "by the matrices of the gradient, with ghosts beyond the edges that carry the load as a slope, theory (64): the way of Elastodynamics; for one row in 1D, and in 2D for one box of a lattice with particles on its edges, out of which discs may be cut",
+    ),
+    choice("adjoint", "by their transposes, with tractions as forces on particles"),
+]);
+
+const CONFIGURATIONS: Choices = choices(&[
+    choice("total", "at the reference places, once"),
+    choice(
+        "updated",
+        "at the places of the moment, in each step, which shows the tensile instability; in 1D, with `form = \"strong\"`",
+    ),
+]);
 
 const GRADIENTS: Choices = choices(&[
     choice("patch_consistent", "corrected so that constant stress is in equilibrium on any cloud"),
-    choice("plain", "those of the paper, Dual-support (12)"),
+    choice("plain", "those of the papers, Dual-support (12)"),
+]);
+
+const TRACTIONS: Choices = choices(&[
+    choice("surface", "those on the surface"),
+    choice(
+        "layers",
+        "behind a plane face as many layers as forces of a homogeneous stress reach, each with its share, so that such a stress is in equilibrium with plain gradients",
+    ),
 ]);
 
 pub(super) const YOUNG_MODULUS: KeySpec =

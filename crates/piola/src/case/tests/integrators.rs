@@ -13,17 +13,22 @@ fn block(material: &str, scheme: &str, integrator: IntegratorKind) -> String {
         true => ("displacement = { x = \"0\", y = \"0\" }", 1.0),
         false => ("velocity = { x = \"0\", y = \"0\" }", 1e-4),
     };
+    // The strong form takes particles on its edges.
+    let (lattice, floor) = match scheme.contains("strong") {
+        true => ("lattice = { on = \"boundary\" }\n", 0.0),
+        false => ("", 0.05),
+    };
     let held = match scheme.contains("transport_velocity") {
         true => String::new(),
         false => format!(
             "[[boundary]]\nname = \"floor\"\n\
-             where = {{ kind = \"plane\", point = [0.0, 0.05], normal = [0.0, 1.0] }}\n{support}\n"
+             where = {{ kind = \"plane\", point = [0.0, {floor}], normal = [0.0, 1.0] }}\n{support}\n"
         ),
     };
     format!(
         "version = 1\ntitle = \"A block\"\ndimension = 2\n\
          [[body]]\nname = \"block\"\nshape = {{ kind = \"box\", min = [0.0, 0.0], max = [1.0, 1.0] }}\n\
-         spacing = 0.1\nmaterial = {{ {material} }}\n{held}\n\
+         spacing = 0.1\n{lattice}material = {{ {material} }}\n{held}\n\
          [[load]]\nkind = \"body_force\"\nacceleration = [\"0\", \"-t\"]\n\
          [scheme]\n{scheme}\n[time]\nend = {end}\nintegrator = \"{}\"\n{step}\n",
         integrator.name()
@@ -34,6 +39,8 @@ fn block(material: &str, scheme: &str, integrator: IntegratorKind) -> String {
 /// case is read, at the name of the integrator, with the list of those that can.
 #[test]
 fn every_pair_is_served_or_refused_in_its_place() {
+    const ALL: &str =
+        "tvd_rk2 ssp_rk3 kick_drift_kick newmark hht_alpha generalised_alpha static arc_length";
     let linear = "kind = \"linear\", density = 1000.0, bulk_modulus = 1e5";
     let rubber =
         "kind = \"neo_hookean\", density = 1000.0, young_modulus = 1e6, poisson_ratio = 0.3";
@@ -51,12 +58,10 @@ fn every_pair_is_served_or_refused_in_its_place() {
             "tvd_rk2 ssp_rk3 kick_drift_kick backward_euler crank_nicolson theta implicit_midpoint",
         ),
         (fluid, "kind = \"transport_velocity\"".to_owned(), "kick_drift_kick"),
-        (
-            rubber,
-            "kind = \"dual_support\"".to_owned(),
-            "tvd_rk2 ssp_rk3 kick_drift_kick newmark hht_alpha generalised_alpha static arc_length",
-        ),
-        (rubber, "kind = \"elastodynamics\"".to_owned(), "kick_drift_kick"),
+        (rubber, "kind = \"total_lagrangian\"".to_owned(), ALL),
+        (rubber, "kind = \"dual_support\"".to_owned(), ALL),
+        (rubber, "kind = \"elastodynamics\"".to_owned(), ALL),
+        (rubber, "kind = \"elastodynamics\"\nform = \"strong\"".to_owned(), "kick_drift_kick"),
     ];
     for (material, scheme, expected) in &schemes {
         let mut served = Vec::new();

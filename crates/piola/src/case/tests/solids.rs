@@ -30,7 +30,7 @@ fn said(from: &str, to: &str) -> String {
 #[test]
 fn what_is_not_given_is_what_serves_most() {
     let case = read_with(GOOD, &[]).unwrap_or_else(|problems| panic!("{problems}"));
-    let Scheme::DualSupport(settings) = &case.scheme.value else { panic!("{:?}", case.scheme) };
+    let Scheme::TotalLagrangian(settings) = &case.scheme.value else { panic!("{:?}", case.scheme) };
     assert_eq!(*settings.support, SupportSize::Spacings(2.05));
     assert_eq!((&settings.gradients, settings.hourglass), (&None, None));
     assert_eq!(case.time.integrator.value, "kick_drift_kick");
@@ -148,7 +148,10 @@ fn statics_has_its_own_steps_and_prescribes_displacements() {
         (
             "dual_support\"",
             "upwind\"\nsmoothing_length = 1.0",
-            ["`static` cannot move the scheme `upwind`", "a scheme that it moves: `dual_support`"],
+            [
+                "`static` cannot move the scheme `upwind`",
+                "a scheme that it moves: `total_lagrangian`",
+            ],
         ),
     ] {
         assert!(text.contains(from), "{from}");

@@ -4,7 +4,7 @@ use piola::Vector;
 use piola::boundaries::PrescribedDisplacement;
 use piola::neighbors::Domain;
 use piola::operators::{DirectedSupport, nearest_radii};
-use piola::schemes::dual_support::{
+use piola::schemes::total_lagrangian::{
     Discrete, Gradients, Material, Settings, StaticState, Statics, StaticsInput,
 };
 use piola::solve::LoadSteps;
@@ -49,7 +49,7 @@ fn beam(intervals: [usize; 3]) -> (Cloud<3>, Discrete<3>) {
     let law = HyperelasticLaw::linear_elastic(constants);
     let law = Reduced::new(law, StressState::ThreeDimensional).unwrap();
     let gradients = Gradients::PatchConsistent { areas: cloud.areas.clone() };
-    let settings = Settings { gradients, hourglass: 0.005 };
+    let settings = Settings { gradients, hourglass: 0.005, ..Settings::default() };
     let materials = vec![Material { density: 7850.0, law }];
     let particles = cloud.particles.clone();
     let body = Discrete::new(particles, support.unwrap(), &settings, materials).unwrap();

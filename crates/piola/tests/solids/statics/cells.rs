@@ -7,7 +7,7 @@ use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{DirectedSupport, DualGradient, Face, Trace, nearest_radii};
 use piola::schemes::InputError;
-use piola::schemes::dual_support::{
+use piola::schemes::total_lagrangian::{
     Discrete, Gradients, Material, Settings, Statics, StaticsError, StaticsInput,
 };
 use piola::solve::{LinearMethod, LoadSteps, Newton};
@@ -100,7 +100,11 @@ fn the_patch_test_holds_on_cell_centres() {
     let law = HyperelasticLaw::neo_hookean(constants());
     let law = Reduced::<2>::new(law, StressState::PlaneStrain).unwrap();
     let areas = trace.areas(particles.len());
-    let settings = Settings { gradients: Gradients::PatchConsistent { areas }, hourglass: 0.1 };
+    let settings = Settings {
+        gradients: Gradients::PatchConsistent { areas },
+        hourglass: 0.1,
+        ..Settings::default()
+    };
     let materials = vec![Material { density: 1.0, law }];
     let places = particles.position.clone();
     let body = Discrete::new(particles, support, &settings, materials).unwrap();
@@ -169,7 +173,7 @@ fn faces_that_do_not_exist_or_do_not_hold_are_named() {
     let (particles, support, trace) = bound([4, 2]);
     let law = HyperelasticLaw::linear_elastic(constants());
     let law = Reduced::<2>::new(law, StressState::PlaneStrain).unwrap();
-    let settings = Settings { gradients: Gradients::Plain, hourglass: 1.0 };
+    let settings = Settings { gradients: Gradients::Plain, hourglass: 1.0, ..Settings::default() };
     let materials = vec![Material { density: 1.0, law }];
     let body = Discrete::new(particles, support, &settings, materials).unwrap();
     let refused = |faces: Vec<u32>, trace: Option<Trace<2>>| {

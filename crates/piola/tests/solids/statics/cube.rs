@@ -4,7 +4,7 @@ use piola::Vector;
 use piola::boundaries::PrescribedDisplacement;
 use piola::neighbors::Domain;
 use piola::operators::DirectedSupport;
-use piola::schemes::dual_support::{
+use piola::schemes::total_lagrangian::{
     Discrete, Gradients, Material, Settings, StaticState, Statics, StaticsInput,
 };
 use piola::solve::{LinearMethod, LoadSteps, Newton};
@@ -49,8 +49,11 @@ fn cube(intervals: usize, method: LinearMethod) -> Vec<Level> {
         DirectedSupport::new(&particles, Kernel::QuinticSpline, radius, Domain::open()).unwrap();
     let law = HyperelasticLaw::neo_hookean(LameConstants::from_young(10.0, 0.3).unwrap());
     let law = Reduced::new(law, StressState::ThreeDimensional).unwrap();
-    let settings =
-        Settings { gradients: Gradients::PatchConsistent { areas: areas.clone() }, hourglass: 0.1 };
+    let settings = Settings {
+        gradients: Gradients::PatchConsistent { areas: areas.clone() },
+        hourglass: 0.1,
+        ..Settings::default()
+    };
     let materials = vec![Material { density: 1.0, law }];
     let body = Discrete::new(particles, support, &settings, materials).unwrap();
     let load = |a: usize| {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use piola::boundaries::{BodyForce, PrescribedDisplacement, Tie};
 use piola::schemes::InputError;
-use piola::schemes::dual_support::{StaticState, Statics, StaticsError, StaticsInput};
+use piola::schemes::total_lagrangian::{StaticState, Statics, StaticsError, StaticsInput};
 use piola::solve::{LinearMethod, LoadError, LoadSteps, Newton, NewtonError};
 use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::{HyperelasticLaw, Reduced};
@@ -155,7 +155,7 @@ fn compression_by_dead_loads_turns_a_body_held_at_points() {
 }
 
 /// A column with a clamped foot.
-fn column(law: HyperelasticLaw) -> (Cloud<2>, piola::schemes::dual_support::Discrete<2>) {
+fn column(law: HyperelasticLaw) -> (Cloud<2>, piola::schemes::total_lagrangian::Discrete<2>) {
     let cloud = Cloud::block([1.0, 2.0], [8, 16], 0.2);
     let body = body(&cloud, law, StressState::PlaneStrain);
     (cloud, body)

@@ -4,6 +4,7 @@ mod cantilever;
 mod cells;
 mod cube;
 mod equilibrium;
+mod mirrors;
 mod paths;
 mod pressure;
 mod rubber;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 
 use piola::Vector;
 use piola::boundaries::{PrescribedDisplacement, SpaceTime, Traction};
-use piola::schemes::dual_support::{Discrete, Gradients, Material, Settings};
+use piola::schemes::total_lagrangian::{Discrete, Gradients, Material, Settings};
 use piola::solve::Iteration;
 use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants, Reduced};
 use piola_formulas::volumetric::StressState;
@@ -33,7 +34,7 @@ pub fn body<const D: usize>(
     state: StressState,
 ) -> Discrete<D> {
     let gradients = Gradients::PatchConsistent { areas: cloud.areas.clone() };
-    let settings = Settings { gradients, hourglass: 0.1 };
+    let settings = Settings { gradients, hourglass: 0.1, ..Settings::default() };
     let law = Reduced::new(law, state).unwrap();
     let materials = vec![Material { density: 1000.0, law }];
     Discrete::new(cloud.particles.clone(), cloud.support(), &settings, materials).unwrap()

@@ -2,7 +2,7 @@
 
 use piola::Vector;
 use piola::boundaries::PrescribedDisplacement;
-use piola::schemes::dual_support::{Discrete, Statics, StaticsError, StaticsInput};
+use piola::schemes::total_lagrangian::{Discrete, Statics, StaticsError, StaticsInput};
 use piola::solve::{ArcLength, LoadError, LoadSteps, Newton, Stability};
 use piola_formulas::hyperelastic::HyperelasticLaw;
 use piola_formulas::volumetric::StressState;

@@ -2,7 +2,7 @@
 
 use piola::Vector;
 use piola::boundaries::FollowerPressure;
-use piola::schemes::dual_support::{Statics, StaticsInput};
+use piola::schemes::total_lagrangian::{Statics, StaticsInput};
 use piola::solve::{LinearMethod, LoadSteps, Newton};
 use piola_formulas::hyperelastic::HyperelasticLaw;
 use piola_formulas::volumetric::StressState;

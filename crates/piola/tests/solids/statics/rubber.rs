@@ -3,7 +3,7 @@
 use piola::boundaries::PrescribedDisplacement;
 use piola::neighbors::Domain;
 use piola::operators::{DirectedSupport, nearest_radii};
-use piola::schemes::dual_support::{
+use piola::schemes::total_lagrangian::{
     Discrete, Gradients, Material, Settings, Statics, StaticsInput,
 };
 use piola::solve::LoadSteps;
@@ -25,7 +25,7 @@ fn pulled(disorder: f64) -> ([f64; 3], usize) {
     let law = HyperelasticLaw::neo_hookean_logarithmic(constants);
     let law = Reduced::new(law, StressState::PlaneStrain).unwrap();
     let gradients = Gradients::PatchConsistent { areas: cloud.areas.clone() };
-    let settings = Settings { gradients, hourglass: 0.1 };
+    let settings = Settings { gradients, hourglass: 0.1, ..Settings::default() };
     let materials = vec![Material { density: 1.0, law }];
     let particles = cloud.particles.clone();
     let body = Discrete::new(particles, support.unwrap(), &settings, materials).unwrap();

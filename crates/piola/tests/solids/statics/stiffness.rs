@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, SVector};
 use num_dual::HyperDual64;
-use piola::schemes::dual_support::Stiffness;
+use piola::schemes::total_lagrangian::Stiffness;
 use piola::solve::{Factor, Local, Reduction, SparseMatrix, Tangent, dissect, gmres, largest_mode};
 use piola::{Tensor, Vector};
 use piola_formulas::hyperelastic::HyperelasticLaw;

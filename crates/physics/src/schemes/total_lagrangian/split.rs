@@ -1,0 +1,33 @@
+//! The formulation as kick-drift-kick integrators see it: central differences.
+
+use super::fields::ColumnsMut;
+use super::{LEDGER, TotalLagrangian};
+use crate::schemes::SplitScheme;
+use crate::schemes::split::advance;
+
+impl<const D: usize> SplitScheme for TotalLagrangian<D> {
+    /// Two halves with the drift between are Elastodynamics (4.4), whose velocities are half way.
+    fn kick(&mut self, duration: f64, state: &mut [f64]) {
+        let (own, tail) = ColumnsMut::<D>::of(state, self.solid.len());
+        advance(own.velocity, own.kick, duration);
+        LEDGER.kick(D, duration, tail);
+    }
+
+    fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
+        let (own, _) = ColumnsMut::<D>::of(state, self.solid.len());
+        advance(own.displacement, own.velocity, step);
+        // Kicks leave a prescribed velocity alone; it moves its particle by its value half way.
+        for entry in self.prescribed.iter() {
+            let (a, component) = (entry.particle, entry.component);
+            let middle = entry.value.value(entry.place, time + 0.5 * step);
+            own.displacement[a][component] += step * (middle - own.velocity[a][component]);
+        }
+    }
+
+    fn accelerate(&mut self, time: f64, state: &mut [f64]) {
+        let mut rate = std::mem::take(&mut self.rate);
+        let totals = self.evaluate(time, state, &mut rate);
+        self.store((time, &rate), totals, state);
+        self.rate = rate;
+    }
+}

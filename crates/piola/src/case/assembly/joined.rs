@@ -1,0 +1,112 @@
+//! Bodies that are one where their particles share places.
+
+use crate::Vector;
+use crate::geometry::Particles;
+use crate::neighbors::{Domain, NeighborError, search};
+use crate::schemes::total_lagrangian::{Material, Mixture};
+
+/// Particles that are closer than this share of their spacing are at one place.
+pub(super) const SAME_PLACE: f64 = 1e-6;
+
+/// Which particles of different bodies lie at one place, where the bodies are joined.
+pub(super) struct Joined {
+    /// Index of a particle that stays, and of one that goes into it, before they are ordered.
+    pairs: Vec<(u32, u32)>,
+    /// By id of the particle that stays: bodies with their volumes.
+    parts: Vec<(u32, Vec<(u32, f64)>)>,
+    /// Number of the group of joined bodies of each body.
+    pub group: Vec<u32>,
+}
+
+impl Joined {
+    /// No bodies that are joined.
+    pub fn none<const D: usize>(particles: &Particles<D>) -> Self {
+        let bodies = particles.body.iter().max().map_or(0, |&body| body + 1);
+        Self { pairs: Vec::new(), parts: Vec::new(), group: (0..bodies).collect() }
+    }
+
+    /// Those whose particles share places.
+    pub fn find<const D: usize>(
+        particles: &Particles<D>,
+        domain: &Domain<D>,
+    ) -> Result<Self, NeighborError> {
+        let mut joined = Self::none(particles);
+        if joined.group.len() < 2 {
+            return Ok(joined);
+        }
+        let radii: Vec<f64> =
+            particles.spacing.iter().map(|spacing| SAME_PLACE * spacing).collect();
+        let list = search(&particles.position, &radii, domain)?;
+        let mut is_gone = vec![false; particles.len()];
+        for a in 0..particles.len() {
+            if is_gone[a] {
+                continue;
+            }
+            let mut parts = vec![(particles.body[a], particles.volume[a])];
+            for &b in list.row(a) {
+                let other = particles.body[b as usize];
+                if b as usize > a && !is_gone[b as usize] && other != particles.body[a] {
+                    is_gone[b as usize] = true;
+                    joined.pairs.push((a as u32, b));
+                    parts.push((other, particles.volume[b as usize]));
+                    let groups = [particles.body[a], other].map(|body| joined.group[body as usize]);
+                    let (low, high) = (groups[0].min(groups[1]), groups[0].max(groups[1]));
+                    joined.group.iter_mut().filter(|it| **it == high).for_each(|it| *it = low);
+                }
+            }
+            if parts.len() > 1 {
+                joined.parts.push((particles.id[a], parts));
+            }
+        }
+        Ok(joined)
+    }
+
+    /// Makes one particle of those at one place, with the sum of their volumes and areas.
+    pub fn merge<const D: usize>(
+        &self,
+        particles: &mut Particles<D>,
+        mut areas: Option<&mut Vec<Vector<D>>>,
+    ) {
+        if self.pairs.is_empty() {
+            return;
+        }
+        if let Some(areas) = areas.as_deref_mut() {
+            for &(a, b) in &self.pairs {
+                let more = areas[b as usize];
+                areas[a as usize] += more;
+            }
+        }
+        let order = particles.join(&self.pairs);
+        if let Some(areas) = areas {
+            *areas = order.iter().map(|&a| areas[a as usize]).collect();
+        }
+    }
+
+    /// What particles are made of: the material of their body, or shares of several.
+    pub fn mixtures<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        materials: &[Material<D>],
+    ) -> (Vec<Mixture<D>>, Vec<u32>) {
+        let mut mixtures = Mixture::of_each(materials);
+        let mut mixture = particles.body.clone();
+        for (id, parts) in &self.parts {
+            let whole: f64 = parts.iter().map(|(_, volume)| volume).sum();
+            let made = Mixture(
+                parts
+                    .iter()
+                    .map(|&(body, volume)| (materials[body as usize], volume / whole))
+                    .collect(),
+            );
+            let known = mixtures.iter().position(|known| *known == made);
+            let number = known.unwrap_or_else(|| {
+                mixtures.push(made);
+                mixtures.len() - 1
+            });
+            if let Some(a) = particles.id.iter().position(|known| known == id) {
+                mixture[a] = number as u32;
+            }
+        }
+        (mixtures, mixture)
+    }
+}
