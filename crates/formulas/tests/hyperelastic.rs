@@ -1,6 +1,6 @@
 //! Properties of every registered elastic solid, in every state of the missing dimensions.
 
-use nalgebra::{Matrix3, Rotation3, SMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix3, Rotation3, SMatrix, Vector3};
 use num_dual::{Dual64, HyperDual64};
 use piola_formulas::hyperelastic::{
     HyperelasticLaw, HyperelasticResponse, LameConstants, Reduced, Tangent,
@@ -315,7 +315,56 @@ fn the_stretch_across_is_found_at_any_stretch() {
     }
 }
 
+/// The moduli of waves against the eigenvalues of the acoustic tensors that the tangent has.
+fn check_wave_moduli<const D: usize>(
+    law: HyperelasticLaw,
+    state: StressState,
+    gradient: &Matrix3<f64>,
+) -> Result<(), TestCaseError> {
+    let law = Reduced::<D>::new(law, state).expect("the state fits");
+    let gradient = SMatrix::<f64, D, D>::from_fn(|i, j| gradient[(i, j)]);
+    let tangent = law.tangent(&gradient);
+    let deformation = gradient + SMatrix::identity();
+    // A part of a rotation may turn a body inside out.
+    prop_assume!(tensor::determinant(&deformation) > 0.1);
+    let strain = DMatrix::from_fn(D, D, |i, j| deformation.column(i).dot(&deformation.column(j)));
+    let directions = strain.symmetric_eigen().eigenvectors;
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for n in directions.column_iter() {
+        let acoustic = DMatrix::from_fn(D, D, |i, k| {
+            let entries = (0..D * D).map(|entry| (entry / D, entry % D));
+            entries.map(|(j, l)| n[j] * n[l] * tangent[k][l][(i, j)]).sum::<f64>()
+        });
+        let values = acoustic.symmetric_eigenvalues();
+        (least, most) = (least.min(values.min()), most.max(values.max()));
+    }
+    // No stretch across may be free of stress.
+    prop_assume!(law.stress(&gradient).iter().all(|stress| stress.is_finite()));
+    let [slow, fast] = law.wave_moduli(&gradient);
+    // Directions of equal stretches are any, to the root of rounding.
+    let bound = 1e-6 * modulus() * (1.0 + fast.abs() / modulus());
+    close(slow, least, bound)?;
+    close(fast, most, bound)
+}
+
 proptest! {
+    #[test]
+    fn wave_moduli_are_eigenvalues_of_the_acoustic_tensors(
+        law in laws(),
+        state in prop::sample::select(StressState::ALL.to_vec()),
+        a in gradients(),
+        r in rotations(),
+        stretch in 0.5..3.0_f64,
+    ) {
+        prop_assume!(law.is_objective());
+        in_state!(check_wave_moduli, law, state, &a)?;
+        // All stretches are the same, or two of them.
+        let even = r * stretch - Matrix3::identity();
+        in_state!(check_wave_moduli, law, state, &even)?;
+        let two = Matrix3::from_diagonal(&Vector3::new(stretch, stretch, 1.1)) - Matrix3::identity();
+        in_state!(check_wave_moduli, law, state, &two)?;
+    }
+
     #[test]
     fn stress_and_tangent_are_derivatives(
         law in laws(),

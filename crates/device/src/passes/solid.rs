@@ -2,7 +2,7 @@
 //!
 //! One explicit step on lists that stay: the displacement gradient of every particle from its
 //! neighbours, its stress by an elastic law, the adjoint force, and the kick. The sums are those of
-//! the scheme `dual_support` without hourglass control: theory (44), (48) and (49), in the order of the
+//! the scheme `total_lagrangian` without hourglass control: theory (44), (48) and (49), in the order of the
 //! rows.
 
 use std::fmt::Write;

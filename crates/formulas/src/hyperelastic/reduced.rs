@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, SMatrix};
 use num_dual::Dual64;
 
 use super::{HyperelasticLaw, HyperelasticResponse};
-use crate::Scalar;
 use crate::volumetric::StressState;
+use crate::{Scalar, tensor};
 
 /// Derivatives of the first Piola-Kirchhoff stress: entry `[k][l]` is `dP/dF_kl`, Pa.
 pub type Tangent<const D: usize> = [[SMatrix<f64, D, D>; D]; D];
@@ -103,6 +103,44 @@ impl<const D: usize> Reduced<D> {
         tangent
     }
 
+    /// Smallest and largest modulus of plane waves that travel in the principal directions, Pa: eigenvalues
+    /// of the acoustic tensors `N . dP/dF . N`. Where the smallest is negative the law has lost its
+    /// convexity there, and no wave travels.
+    ///
+    /// Of an isotropic law, with derivatives W_i of its energy by the principal stretches l_i, they are
+    /// `W_ii` along, and across `(l_i W_i - l_j W_j)/(l_i^2 - l_j^2)`, which for equal stretches is
+    /// `(W_ii - W_ij + W_i/l_i)/2`.
+    pub fn wave_moduli(&self, displacement_gradient: &SMatrix<f64, D, D>) -> [f64; 2] {
+        if let (HyperelasticLaw::NeoHookeanLogarithmic(own), false) =
+            (self.law, self.state.is_free_across())
+        {
+            return own.wave_moduli(displacement_gradient);
+        }
+        let stretches = principal_stretches(displacement_gradient);
+        let mut moduli = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut see = |modulus: f64| moduli = [moduli[0].min(modulus), moduli[1].max(modulus)];
+        let slopes: [SMatrix<Dual64, D, D>; D] = std::array::from_fn(|i| {
+            let mut gradient = SMatrix::<Dual64, D, D>::zeros();
+            for k in 0..D {
+                gradient[(k, k)] = Dual64::from_re(stretches[k] - 1.0);
+            }
+            gradient[(i, i)] = gradient[(i, i)].derivative();
+            self.stress(&gradient)
+        });
+        for i in 0..D {
+            see(slopes[i][(i, i)].eps);
+            for j in 0..i {
+                let (along, across) = (slopes[i][(i, i)], slopes[j][(j, j)]);
+                let [one, other] = [stretches[i], stretches[j]];
+                see(match (one - other).abs() > SAME_STRETCH * one {
+                    true => (one * along.re - other * across.re) / (one * one - other * other),
+                    false => 0.5 * (along.eps - slopes[i][(j, j)].eps + along.re / one),
+                });
+            }
+        }
+        moduli
+    }
+
     /// The displacement gradient in all three dimensions.
     pub fn in_three<T: Scalar>(&self, resolved: &SMatrix<T, D, D>) -> Matrix3<T> {
         let real = self.embedded(&resolved.map(T::re), 0.0);
@@ -192,4 +230,15 @@ impl<const D: usize> Reduced<D> {
         }
         None
     }
+}
+
+/// Stretches closer than this share are one: the difference of stresses is rounding.
+const SAME_STRETCH: f64 = 1e-6;
+
+/// Principal stretches of a displacement gradient.
+fn principal_stretches<const D: usize>(gradient: &SMatrix<f64, D, D>) -> [f64; D] {
+    let strain = tensor::right_cauchy_green(&(gradient + SMatrix::identity()));
+    let (least, most) = (tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain));
+    let squares = [least, most, strain.trace() - least - most];
+    std::array::from_fn(|i| squares[i].max(0.0).sqrt())
 }

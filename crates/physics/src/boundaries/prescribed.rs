@@ -64,6 +64,11 @@ impl PrescribedComponents {
         }
     }
 
+    /// Whether nothing is prescribed.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter()
     }

@@ -105,21 +105,23 @@ impl<const D: usize> DirectedSupport<D> {
     }
 }
 
-/// Distance in m from each particle to the `count`-th nearest other one of its body, which as a
+/// Distance in m from each particle to the `count`-th nearest other one of its group, which as a
 /// support radius gives each particle the same number of neighbours. The last of them lies on the
-/// edge of the support, where kernels are zero. A particle of a body of fewer takes the farthest.
+/// edge of the support, where kernels are zero. A particle of a group of fewer takes the farthest.
 ///
 /// # Errors
 /// When the search refuses the positions.
 pub fn nearest_radii<const D: usize>(
     particles: &Particles<D>,
+    group: &[u32],
     count: usize,
     domain: &Domain<D>,
 ) -> Result<Vec<f64>, NeighborError> {
-    let mut wanted = vec![count; particles.body.iter().max().map_or(0, |&b| b as usize + 1)];
+    let mut wanted = vec![count; group.iter().max().map_or(0, |&own| own as usize + 1)];
     let mut sizes = vec![0_usize; wanted.len()];
-    particles.body.iter().for_each(|&body| sizes[body as usize] += 1);
-    wanted.iter_mut().zip(sizes).for_each(|(wanted, size)| *wanted = (*wanted).min(size - 1));
+    group.iter().for_each(|&own| sizes[own as usize] += 1);
+    let others = |size: usize| size.saturating_sub(1);
+    wanted.iter_mut().zip(sizes).for_each(|(wanted, size)| *wanted = (*wanted).min(others(size)));
     let mut radius: Vec<f64> = particles.spacing.iter().map(|spacing| 2.0 * spacing).collect();
     let mut found = vec![0.0; particles.len()];
     let mut pending: Vec<bool> = vec![true; particles.len()];
@@ -128,13 +130,12 @@ pub fn nearest_radii<const D: usize>(
         for a in
             (0..particles.len()).filter(|&a| std::mem::take(&mut pending[a])).collect::<Vec<_>>()
         {
-            let own =
-                list.row(a).iter().filter(|&&b| particles.body[b as usize] == particles.body[a]);
+            let own = list.row(a).iter().filter(|&&b| group[b as usize] == group[a]);
             let separation = |&b: &u32| {
                 domain.separation(&particles.position[a], &particles.position[b as usize]).norm()
             };
             let mut distances: Vec<f64> = own.map(separation).collect();
-            let wanted = wanted[particles.body[a] as usize];
+            let wanted = wanted[group[a] as usize];
             if distances.len() >= wanted {
                 distances.sort_by(f64::total_cmp);
                 found[a] = wanted.checked_sub(1).map_or(radius[a], |last| distances[last]);

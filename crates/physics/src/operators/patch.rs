@@ -34,7 +34,7 @@ impl<const D: usize> DualGradient<D> {
         areas: &[Vector<D>],
     ) -> Result<Self, OperatorError> {
         if support.domain.is_open() {
-            check_areas(particles, areas)?;
+            check_areas(particles, &support.list.parts(), areas)?;
         }
         let system = System::new(&self, particles, support);
         let wanted: Vec<Vector<D>> = self
@@ -64,14 +64,16 @@ impl<const D: usize> DualGradient<D> {
     }
 }
 
-/// Whether areas and volumes of each body belong to one surface.
+/// Whether areas and volumes of each of the `parts` that hang together belong to one surface.
 fn check_areas<const D: usize>(
     particles: &Particles<D>,
+    parts: &[u32],
     areas: &[Vector<D>],
 ) -> Result<(), OperatorError> {
-    let bodies = particles.body.iter().max().map_or(0, |&body| body + 1);
-    for body in 0..bodies {
-        let own = || (0..particles.len()).filter(|&a| particles.body[a] == body);
+    let count = parts.iter().max().map_or(0, |&part| part + 1);
+    for part in 0..count {
+        let own = || (0..particles.len()).filter(|&a| parts[a] == part);
+        let body = own().next().map_or(0, |a| particles.body[a]);
         let volume: f64 = own().map(|a| particles.volume[a]).sum();
         let size: f64 = own().map(|a| areas[a].norm()).sum();
         let sum: Vector<D> = own().map(|a| areas[a]).sum();

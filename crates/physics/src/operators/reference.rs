@@ -341,8 +341,8 @@ impl<const D: usize> ReferenceGradient<D> {
         derivatives
     }
 
-    /// Forces in N on particles, and behind them on images, of displacements and of what [`Self::strain`] or,
-    /// of a plain gradient, [`Self::tension`] makes of them; that of images is zero.
+    /// Forces in N on particles, and behind them on images, of displacements and of what
+    /// [`Self::strain`] makes of them; that of images is zero.
     pub fn forces(&self, field: &[Vector<D>], tension: &[Tensor<D>], force: &mut [Vector<D>]) {
         let none = [Vector::zeros(); 2];
         let own = |a: usize| self.centers.get(a).map_or(none, |center| center.coefficients);

@@ -43,6 +43,14 @@ pub enum InputError {
         /// Its mass in kg.
         mass: f64,
     },
+    /// An initial displacement that is no number.
+    #[error("the initial displacement of particle {id} at {position:?} is not finite")]
+    Displacement {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
+    },
     /// An initial velocity that is no number.
     #[error("the initial velocity of particle {id} at {position:?} is not finite")]
     Velocity {
@@ -155,6 +163,19 @@ pub(crate) fn check_conditions<const D: usize>(
         check_index(what, condition.component, D)?;
     }
     Ok(())
+}
+
+/// Refuses an initial displacement that is no number.
+pub(crate) fn check_displacement<const D: usize>(
+    particles: &Particles<D>,
+    a: usize,
+    displacement: &Vector<D>,
+) -> Result<(), InputError> {
+    let position = || particles.position[a].as_slice().to_vec();
+    match displacement.iter().all(|u| u.is_finite()) {
+        true => Ok(()),
+        false => Err(InputError::Displacement { id: particles.id[a], position: position() }),
+    }
 }
 
 /// Refuses a particle whose mass in kg is not positive, or whose initial velocity is no number.

@@ -321,7 +321,7 @@ static LOAD: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "pressure",
-            meaning: "a pressure that follows the surface, along its normal and on its area of the moment; for the scheme `total_lagrangian`",
+            meaning: "a pressure that follows the surface, along its normal and on its area of the moment; for the scheme `total_lagrangian` with `form = \"adjoint\"`",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -369,7 +369,7 @@ static BOUNDARY: TableSpec = TableSpec {
             Kind::Boolean,
             "",
             Optional,
-            "with the scheme `total_lagrangian`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed, the same all over it: a symmetry plane or a roller",
+            "with the scheme `total_lagrangian`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed, in statics the displacement, the same all over it: a symmetry plane or a roller",
         ),
         key(
             "displacement",

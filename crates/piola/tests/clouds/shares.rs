@@ -49,7 +49,7 @@ fn shares_of_nodes_have_the_centroid_of_the_body() {
 fn faces_of_cells_close_the_volume_by_their_trace() {
     let check = |particles: Particles<3>, count: usize| {
         let domain = Domain::open();
-        let radii = nearest_radii(&particles, count, &domain).unwrap();
+        let radii = nearest_radii(&particles, &particles.body, count, &domain).unwrap();
         let support =
             DirectedSupport::new(&particles, Kernel::QuinticSpline, radii, domain).unwrap();
         let plain = DualGradient::plain(&particles, &support).unwrap();

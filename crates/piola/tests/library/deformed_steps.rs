@@ -1,4 +1,4 @@
-//! The step of elastodynamics follows the deformation: its elastic part and its viscous one.
+//! The step of total Lagrangian solids follows the deformation: its elastic part and its viscous one.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
 use std::sync::Arc;

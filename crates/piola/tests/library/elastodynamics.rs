@@ -1,4 +1,4 @@
-//! The elastodynamics formulation: stable steps, conservation, exact boundaries.
+//! Explicit steps of total Lagrangian solids: stable steps, conservation, exact boundaries.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
 use std::sync::Arc;

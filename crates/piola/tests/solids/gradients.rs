@@ -72,7 +72,8 @@ fn radii_of_the_nearest_give_each_particle_as_many() {
     let mut small = Cloud::simplices([1.0, 1.0], [1, 1], 0.1).particles;
     small.position.iter_mut().for_each(|x| x[0] += 9.0);
     cloud.particles.append(small, 1).unwrap();
-    let radii = nearest_radii(&cloud.particles, 12, &Domain::open()).unwrap();
+    let radii =
+        nearest_radii(&cloud.particles, &cloud.particles.body, 12, &Domain::open()).unwrap();
     // The last of them lies on the edge, inside or outside by rounding.
     for (factor, on_edge) in [(1.0 - 1e-12, 1), (1.0 + 1e-12, 0)] {
         let radii = radii.iter().map(|r| r * factor).collect();

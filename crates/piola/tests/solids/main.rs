@@ -11,6 +11,7 @@ mod combinations;
 mod energy;
 mod gradients;
 mod implicit;
+mod joined;
 mod runs;
 mod scalar;
 mod statics;

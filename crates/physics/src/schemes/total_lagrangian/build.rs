@@ -15,7 +15,7 @@ use super::{
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{
-    BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedVelocity, Traction,
+    BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedVelocity, SpaceTime, Traction,
     traction::Loaded,
 };
 use crate::fields::width;
@@ -23,7 +23,8 @@ use crate::geometry::Particles;
 use crate::neighbors::Domain;
 use crate::operators::{Cover, DirectedSupport, Mirror, OperatorError, images};
 use crate::schemes::input::{
-    check_conditions, check_index, check_lengths, check_particle, check_pressure,
+    check_conditions, check_displacement, check_index, check_lengths, check_particle,
+    check_pressure,
 };
 use crate::schemes::{Scheme as _, SchemeDescription, SplitScheme as _};
 use crate::{Tensor, Vector};
@@ -118,7 +119,7 @@ impl<const D: usize> TotalLagrangian<D> {
             input.velocity.iter().zip(&input.displacement).enumerate()
         {
             check_particle(&solid.particles, a, solid.mass[a], velocity)?;
-            check_particle(&solid.particles, a, solid.mass[a], displacement)?;
+            check_displacement(&solid.particles, a, displacement)?;
         }
         let (count, particles) = (solid.len(), &solid.particles);
         let positions = &particles.position;
@@ -241,9 +242,16 @@ fn check<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalLag
     check_coefficients(settings)?;
     check_conditions(count, &input.tractions, &input.prescribed)?;
     input.pressures.iter().try_for_each(|load| check_pressure(load, count))?;
-    for (mirror, particle) in &input.mirrors {
+    for (number, (mirror, particle)) in input.mirrors.iter().enumerate() {
         check_index(|| "a mirror: particle".into(), *particle as usize, count)?;
         check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
+        let same = |(other, _): &(Mirror, u32)| {
+            (other.axis, other.is_upper) == (mirror.axis, mirror.is_upper)
+        };
+        if input.mirrors[..number].iter().any(same) {
+            return Err(TotalLagrangianError::TwoPlanes { axis: AXES[mirror.axis] });
+        }
+        check_plane(input, mirror, *particle as usize)?;
     }
     if settings.configuration == Configuration::Updated && (D > 1 || settings.form == Form::Adjoint)
     {
@@ -253,18 +261,92 @@ fn check<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalLag
     let edges = if settings.form == Form::Strong { 0..D } else { 0..0 };
     let mut ended = planes.chain(edges);
     if let Some(axis) = ended.find(|&axis| input.domain.periodic()[axis].is_some()) {
-        return Err(TotalLagrangianError::Periodic { axis });
+        return Err(TotalLagrangianError::Periodic { axis: AXES[axis] });
     }
     combine(input)
+}
+
+/// Names of axes.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// How far from a plane particles are on it, and how far behind it none may be, in spacings.
+const ON_PLANE: f64 = 1e-6;
+
+/// Refuses a plane that does not end the bodies, and one on which the component across is not the same.
+fn check_plane<const D: usize>(
+    input: &TotalLagrangianInput<D>,
+    mirror: &Mirror,
+    on: usize,
+) -> Result<(), TotalLagrangianError> {
+    let (particles, axis) = (&input.particles, mirror.axis);
+    let outwards = if mirror.is_upper { 1.0 } else { -1.0 };
+    let beyond =
+        |a: usize| outwards * (particles.position[a][axis] - mirror.place) / particles.spacing[a];
+    let refuse = |a: usize, what: &'static str| TotalLagrangianError::Plane {
+        axis: AXES[axis],
+        what,
+        id: particles.id[a],
+        position: particles.position[a].iter().copied().collect(),
+    };
+    if let Some(a) = (0..particles.len()).find(|&a| beyond(a) > ON_PLANE) {
+        return Err(refuse(a, "lies behind it"));
+    }
+    let held: Vec<Option<&Arc<dyn SpaceTime>>> = match &input.motion {
+        Motion::Static(known) => {
+            let is_across =
+                |it: &&PrescribedDisplacement<D>| it.direction[axis] == it.direction.norm();
+            let all = known.prescribed.iter().filter(is_across);
+            last_of(particles.len(), all.map(|it| (&*it.particles, &it.value)))
+        }
+        _ => {
+            let all = input.prescribed.iter().filter(|it| it.component == axis);
+            last_of(particles.len(), all.map(|it| (&*it.particles, &it.value)))
+        }
+    };
+    let is_same = |a: usize| match (held[a], held[on]) {
+        (Some(own), Some(other)) => own.is_uniform() && Arc::ptr_eq(own, other),
+        _ => false,
+    };
+    let mut ends = vec![false; input.group.iter().max().map_or(0, |&group| group as usize + 1)];
+    let on_it = (0..particles.len()).filter(|&a| beyond(a) > -ON_PLANE);
+    on_it.for_each(|a| ends[input.group[a] as usize] = true);
+    let is_near = |a: usize| -beyond(a) * particles.spacing[a] < input.radius[a];
+    let stray = (0..particles.len()).find(|&a| is_near(a) && !ends[input.group[a] as usize]);
+    if let Some(a) = stray {
+        return Err(refuse(a, "is near it, and is of a body that does not end on it, on"));
+    }
+    match (0..particles.len()).find(|&a| beyond(a) > -ON_PLANE && !is_same(a)) {
+        Some(a) => Err(refuse(a, "is not moved across it as all of it is, the same at all places")),
+        None if beyond(on) < -ON_PLANE => Err(refuse(on, "does not lie on it")),
+        None => Ok(()),
+    }
+}
+
+/// The value of the last condition on each particle.
+fn last_of<'a>(
+    count: usize,
+    conditions: impl Iterator<Item = (&'a [u32], &'a Arc<dyn SpaceTime>)>,
+) -> Vec<Option<&'a Arc<dyn SpaceTime>>> {
+    let mut last = vec![None; count];
+    for (particles, value) in conditions {
+        particles.iter().for_each(|&a| last[a as usize] = Some(value));
+    }
+    last
 }
 
 /// Refuses parts of which one does not serve the other.
 fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalLagrangianError> {
     let settings = &input.settings;
     let is_solved_for = !matches!(input.motion, Motion::Explicit);
+    let is_static = matches!(input.motion, Motion::Static(_));
+    let is_moved = |field: &[Vector<D>]| field.iter().any(|it| it.amax() > 0.0);
+    let starts_moved = is_moved(&input.displacement) || is_moved(&input.velocity);
     let is_strong = settings.form == Form::Strong;
     let is_patched = matches!(settings.gradients, Gradients::PatchConsistent { .. });
-    let has_faces = matches!(&input.motion, Motion::Static(known) if known.trace.is_some());
+    let has_faces = matches!(
+        &input.motion,
+        Motion::Static(known) if !known.prescribed_faces.is_empty()
+    );
     let dissipates = settings.dissipation.is_viscous() || settings.dissipation.damping > 0.0;
     let (mirrors, strong) = ("mirror images", "the strong form");
     let (implicit, patched) = ("implicit steps and statics", "patch-consistent gradients");
@@ -304,9 +386,17 @@ fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalL
             ],
         ),
         (
+            is_static && starts_moved,
+            [
+                "initial values",
+                "statics",
+                "states in equilibrium start from rest; leave out `initial`",
+            ],
+        ),
+        (
             is_solved_for && dissipates,
             [
-                "viscosity and damping",
+                "`scheme.viscosity`, `scheme.artificial_viscosity` and `scheme.damping`",
                 implicit,
                 "their residual has no rates; use explicit steps, or an integrator that damps short periods",
             ],

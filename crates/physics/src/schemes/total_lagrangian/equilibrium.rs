@@ -8,7 +8,7 @@ use super::{
 };
 use crate::boundaries::{pressure::Pressed, traction::Loaded};
 use crate::schemes::ledger::{Total, Totals};
-use crate::schemes::{Missed, NoSolution, Scheme, StaticScheme};
+use crate::schemes::{Missed, NoSolution, StaticScheme};
 use crate::solve::{LoadError, NewtonError};
 use crate::{Vector, parallel};
 
@@ -122,7 +122,7 @@ impl<const D: usize> TotalLagrangian<D> {
             |load: &Loaded<D>| 0.5 * (load.force(from) + load.force(to)).dot(&moved(load.particle));
         let [first, last] = [before, after].map(|ends| match self.loads.pressed.is_empty() {
             true => Vec::new(),
-            false => self.with_images(ends),
+            false => self.continued(ends, &[]),
         });
         let pressing = |part: &Pressed<D>| {
             let a = part.particle;
@@ -140,27 +140,8 @@ impl<const D: usize> TotalLagrangian<D> {
         totals
     }
 
-    /// Displacements in m with those of images behind them, in the adjoint form.
-    fn with_images(&self, displacement: &[Vector<D>]) -> Vec<Vector<D>> {
-        let mut all = displacement.to_vec();
-        all.resize(self.displacement.len(), Vector::zeros());
-        if let Matrices::Adjoint(discrete) = &self.matrices {
-            discrete.continue_field(&mut all);
-        }
-        all
-    }
-
-    /// What supports and prescribed motions hold each particle with, N.
-    pub(super) fn reactions(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
-        if !self.is_static {
-            let mut rate = std::mem::take(&mut self.rate);
-            self.rates(time, state, &mut rate);
-            self.rate = rate;
-        }
-        self.reactions_to(time, state)
-    }
-
-    /// As [`Self::reactions`], where the rates of `state` have just been found.
+    /// What supports and prescribed motions hold each particle with, N, where the rates of `state` have just
+    /// been found.
     pub(super) fn reactions_to(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
         let at = self.columns(state);
         if let (true, Some(statics)) = (self.is_static, &mut self.statics) {

@@ -85,12 +85,36 @@ pub enum TotalLagrangianError {
     Updated,
     /// A plane or an end across an axis along which the box repeats itself.
     #[error(
-        "the body repeats itself along axis {axis}, so that it cannot end on a plane across it; remove \
+        "the body repeats itself along {axis}, so that it cannot end on a plane across it; remove \
          the plane, or the periodic axis"
     )]
     Periodic {
-        /// The axis, from 0.
-        axis: usize,
+        /// The axis.
+        axis: &'static str,
+    },
+    /// Two planes that mirror at one end of an axis.
+    #[error(
+        "two mirrors lie across {axis} at the same end of it: there is one for all bodies; remove `mirror` \
+         from one of them"
+    )]
+    TwoPlanes {
+        /// The axis.
+        axis: &'static str,
+    },
+    /// A mirror that does not end the bodies, or that is not one plane as it moves.
+    #[error(
+        "particle {id} at {position:?} {what}, the mirror across {axis}: it ends all bodies, and what lies on \
+         it moves across it together; move the plane, hold all of it by one condition, or remove `mirror`"
+    )]
+    Plane {
+        /// The axis that it lies across.
+        axis: &'static str,
+        /// What the particle does.
+        what: &'static str,
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its reference position in m.
+        position: Vec<f64>,
     },
     /// A coefficient that is negative or no number.
     #[error("{what} must be at least 0 and finite, got {value}")]

@@ -40,8 +40,9 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Rates of the displacement gradients of the loaded state.
     pub(super) fn fill_rates(&mut self, at: &Columns<'_, D>) {
-        let velocity = if self.velocity.is_empty() { at.velocity } else { &self.velocity };
-        self.matrices.gradients(velocity, &mut self.gradient_rate);
+        let mut rates = std::mem::take(&mut self.gradient_rate);
+        self.matrices.gradients(self.velocity(at), &mut rates);
+        self.gradient_rate = rates;
     }
 
     /// Displacement gradients of the loaded state, and with their stresses what forces gather, in the
@@ -79,12 +80,12 @@ impl<const D: usize> TotalLagrangian<D> {
         if self.velocity.is_empty() { at.velocity } else { &self.velocity }
     }
 
-    /// Displacements of a state with what stands behind them.
-    pub(super) fn continued(&self, at: &Columns<'_, D>) -> Vec<Vector<D>> {
-        let mut displacement = at.displacement.to_vec();
+    /// Displacements with what stands behind them, of which a state keeps data of edges in its tail.
+    pub(super) fn continued(&self, displacement: &[Vector<D>], tail: &[f64]) -> Vec<Vector<D>> {
+        let mut displacement = displacement.to_vec();
         displacement.resize(self.displacement.len(), Vector::zeros());
         match &self.matrices {
-            Matrices::Strong(_) => self.append_kept(&mut displacement, at.tail),
+            Matrices::Strong(_) => self.append_kept(&mut displacement, tail),
             Matrices::Adjoint(discrete) => discrete.continue_field(&mut displacement),
         }
         displacement

@@ -16,6 +16,11 @@ impl<const D: usize> TotalLagrangian<D> {
         self.loads.acceleration(&self.solid, a, time)
     }
 
+    /// How many particles body forces pull: all or none.
+    fn pulled(&self) -> usize {
+        if self.loads.body_forces.is_empty() { 0 } else { self.solid.len() }
+    }
+
     /// The forces in N of pressures at the gradients of the moment, with the particles they act on.
     fn pressures(&self, time: f64) -> impl Iterator<Item = (usize, Vector<D>)> {
         let gradient = &self.strained.gradient;
@@ -47,9 +52,9 @@ impl<const D: usize> TotalLagrangian<D> {
             position: self.position(a, at),
             velocity: velocity[a],
         };
-        let weight = |a: usize, mass: f64| self.body_acceleration(a, time) * mass;
-        totals.drive(BODY_FORCE, &over_all(count, particle, weight));
         // What is not there costs nothing.
+        let weight = |a: usize, mass: f64| self.body_acceleration(a, time) * mass;
+        totals.drive(BODY_FORCE, &over_all(self.pulled(), particle, weight));
         let drag = |a: usize, mass: f64| velocity[a] * (-damping * mass);
         let dragged = if damping > 0.0 { count } else { 0 };
         totals.drive(DAMPING, &over_all(dragged, particle, drag));
@@ -99,7 +104,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let kick = &*own.kick;
         let growth = |(a, force): (usize, Vector<D>)| force.dot(&kick[a]);
         let body = |a: usize| solid.mass[a] * self.body_acceleration(a, time).dot(&kick[a]);
-        totals.grow(BODY_FORCE, parallel::sum(count, body));
+        totals.grow(BODY_FORCE, parallel::sum(self.pulled(), body));
         let drag = |a: usize| solid.mass[a] * own.velocity[a].dot(&kick[a]);
         let dragged = if self.dissipation.damping > 0.0 { count } else { 0 };
         totals.grow(DAMPING, -2.0 * self.dissipation.damping * parallel::sum(dragged, drag));

@@ -1,7 +1,7 @@
 //! The columns of the formulation and its fields.
 
-use super::TotalLagrangian;
 use super::material::{Measure, append_rows};
+use super::{LEDGER, LOAD_FACTOR, Matrices, TotalLagrangian};
 use crate::Tensor;
 use crate::fields::columns;
 use crate::schemes::ledger::Totals;
@@ -34,6 +34,9 @@ impl<const D: usize> TotalLagrangian<D> {
     /// The stages of observation: gradients with stresses and forces, then rates, then reactions.
     pub(super) fn make_fields(&mut self, stage: usize, time: f64, state: &[f64]) {
         let at = self.columns(state);
+        // Loads are those of the load factor where that stands for the time.
+        let factor = LEDGER.behind(D, at.tail)[LOAD_FACTOR];
+        let time = if self.is_static { factor } else { time };
         match stage {
             1 => {
                 // Without edges and viscosity all follows from displacements.
@@ -99,8 +102,8 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Hourglass energy of particle a in J at the evaluated state.
     fn hourglass_energy(&self, a: usize) -> f64 {
         match &self.matrices {
-            super::Matrices::Strong(_) => 0.0,
-            super::Matrices::Adjoint(discrete) => {
+            Matrices::Strong(_) => 0.0,
+            Matrices::Adjoint(discrete) => {
                 let gradient = &self.strained.gradient[a];
                 discrete.operator.hourglass_energy(&self.displacement, gradient, a)
             }

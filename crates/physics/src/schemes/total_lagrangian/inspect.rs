@@ -16,7 +16,10 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let at = self.columns(state);
         let is_known = self.is_evaluated_at(&at);
-        self.load(&at);
+        // Velocities have been kicked since forces were taken.
+        if !(is_known && self.velocity.is_empty()) {
+            self.load(&at);
+        }
         if !is_known {
             self.matrices.gradients(&self.displacement, &mut self.strained.gradient);
         }

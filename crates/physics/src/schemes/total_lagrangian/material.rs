@@ -5,7 +5,7 @@ use piola_formulas::Scalar;
 use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse, Reduced};
 use piola_formulas::tensor;
 
-use crate::{Tensor, Vector};
+use crate::Tensor;
 
 /// The material of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,8 +55,8 @@ impl<const D: usize> Mixture<D> {
         for (material, share) in &self.0 {
             // The wave speed of a law of small strains is what it is at rest.
             let moduli = match material.law.law().is_objective() {
-                true => wave_moduli(&material.law, gradient),
-                false => wave_moduli(&material.law, &Tensor::zeros()),
+                true => material.law.wave_moduli(gradient),
+                false => material.law.wave_moduli(&Tensor::zeros()),
             };
             sums.iter_mut().zip(moduli).for_each(|(sum, modulus)| *sum += share * modulus);
         }
@@ -125,55 +125,6 @@ impl<const D: usize> Mixture<D> {
     fn mean(&self, of: impl Fn(&Material<D>) -> f64) -> f64 {
         self.0.iter().map(|(material, share)| share * of(material)).sum()
     }
-}
-
-/// Smallest and largest eigenvalue of the acoustic tensors `N . dP/dF . N` in the principal directions
-/// N of the deformation, Pa. Where the smallest is negative the law has lost its convexity there, and
-/// no wave travels.
-pub(super) fn wave_moduli<const D: usize>(
-    law: &Reduced<D>,
-    displacement_gradient: &Tensor<D>,
-) -> [f64; 2] {
-    if let (HyperelasticLaw::NeoHookeanLogarithmic(own), false) =
-        (law.law(), law.state().is_free_across())
-    {
-        return own.wave_moduli(displacement_gradient);
-    }
-    let tangent = law.tangent(displacement_gradient);
-    let strain = tensor::right_cauchy_green(&(displacement_gradient + Tensor::identity()));
-    let mut moduli = [f64::INFINITY, 0.0_f64];
-    for n in principal_directions(&strain) {
-        let acoustic = Tensor::<D>::from_fn(|i, k| {
-            (0..D * D)
-                .map(|m| (m / D, m % D))
-                .map(|(j, l)| n[j] * n[l] * tangent[k][l][(i, j)])
-                .sum()
-        });
-        moduli[0] = moduli[0].min(tensor::smallest_eigenvalue(&acoustic));
-        moduli[1] = moduli[1].max(tensor::largest_eigenvalue(&acoustic));
-    }
-    moduli
-}
-
-/// Principal directions of a symmetric tensor; the axes where they cannot be found.
-fn principal_directions<const D: usize>(tensor: &Tensor<D>) -> [Vector<D>; D] {
-    // The directions that are not resolved get an eigenvalue apart from all others.
-    let apart = 2.0 * (tensor.trace() + 1.0);
-    let mut padded = Matrix3::<f64>::identity() * apart;
-    padded.view_mut((0, 0), (D, D)).copy_from(tensor);
-    let Some(eigen) = nalgebra::SymmetricEigen::try_new(padded, f64::EPSILON, 1000) else {
-        return std::array::from_fn(|axis| Vector::from_fn(|i, _| f64::from(u8::from(i == axis))));
-    };
-    let mut all = [Vector::zeros(); D];
-    let mut found = 0;
-    for column in eigen.eigenvectors.column_iter() {
-        let resolved = Vector::<D>::from_fn(|i, _| column[i]);
-        if resolved.norm() > 0.5 && found < D {
-            all[found] = resolved;
-            found += 1;
-        }
-    }
-    all
 }
 
 /// Appends a tensor as fields have it, row by row.

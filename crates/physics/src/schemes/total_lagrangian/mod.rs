@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! E   = sum_a V_a psi(A_a) + sum_a sum_b c_ab |A_a X_ab - u_ab|^2,   A_a = sum_b u_ab (x) G_ab
-//! m_a dv_a/dt = - dE/du_a + f_a(viscosity) + A_a t_a + m_a g - m_a d v_a,   du_a/dt = v_a
+//! m_a dv_a/dt = - dE/du_a + f_a(viscosity) + A_a t_a - p cof(F_a) N_a + m_a g - m_a d v_a,   du_a/dt = v_a
 //! ```
 //!
 //! the *adjoint* form, for any cloud and dimension. Forces are the exact gradient of E, whatever the

@@ -4,6 +4,7 @@ use super::equilibrium::kind;
 use super::fields::ColumnsMut;
 use super::statics::InertialStep;
 use super::{ITERATIONS, LEDGER, TotalLagrangian};
+use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Newmark, NewmarkScheme, NoSolution};
 use crate::{Vector, parallel};
@@ -36,6 +37,9 @@ impl<const D: usize> NewmarkScheme for TotalLagrangian<D> {
             let (a, i) = (entry.particle, entry.component);
             let middle = entry.value.value(entry.place, time + 0.5 * step);
             start[a][i] = last[a][i] + rule.reach() * step * middle;
+        }
+        if !self.prescribed.is_empty() {
+            self.totals_of(time, old);
         }
         let held_before = self.held(time, old);
         let Some(statics) = &mut self.statics else { return Ok(()) };
@@ -73,13 +77,12 @@ impl<const D: usize> NewmarkScheme for TotalLagrangian<D> {
         let (own, _) = ColumnsMut::<D>::of(new, count);
         self.prescribed.impose(end, own.velocity);
         self.prescribed.iter().for_each(|entry| own.kick[entry.particle][entry.component] = 0.0);
+        let rates = self.totals_of(end, new);
         let held = held_before.into_iter().zip(self.held(end, new));
         let held: Vec<Vector<D>> = held.map(|(before, after)| 0.5 * (before + after)).collect();
         let ends: Vec<Vector<D>> = last.iter().zip(&moved).map(|(u, moved)| u + moved).collect();
         let mut totals = self.work([time, end], [&last, &ends], &held);
-        let mut rate = std::mem::take(&mut self.rate);
-        totals.join(&self.evaluate(end, new, &mut rate));
-        self.rate = rate;
+        totals.join(&rates);
         let (_, tail) = ColumnsMut::<D>::of(new, count);
         LEDGER.finish(D, step, &totals, tail);
         LEDGER.behind_mut(D, tail)[ITERATIONS] = iterations as f64;
@@ -93,11 +96,20 @@ impl<const D: usize> NewmarkScheme for TotalLagrangian<D> {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
-    /// What prescribed motions hold each particle with, N; nothing without any.
+    /// What prescribed motions hold each particle with at a state whose rates have just been found, N;
+    /// nothing without any.
     fn held(&mut self, time: f64, state: &[f64]) -> Vec<Vector<D>> {
-        if self.prescribed.iter().next().is_none() {
-            return vec![Vector::zeros(); self.solid.len()];
+        match self.prescribed.is_empty() {
+            true => vec![Vector::zeros(); self.solid.len()],
+            false => self.reactions_to(time, state),
         }
-        self.reactions(time, state)
+    }
+
+    /// The totals of a state, whose rates are at hand from then on.
+    fn totals_of(&mut self, time: f64, state: &[f64]) -> Totals {
+        let mut rate = std::mem::take(&mut self.rate);
+        let totals = self.evaluate(time, state, &mut rate);
+        self.rate = rate;
+        totals
     }
 }

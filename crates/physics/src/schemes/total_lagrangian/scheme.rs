@@ -75,11 +75,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
 
     fn warning(&self) -> Option<String> {
         let soft = self.not_convex.as_ref().map(|(index, gradient)| {
-            let advice = match self.statics {
-                Some(_) => "use another law",
-                None => "add `scheme.viscosity`, or use another law",
-            };
-            convexity_is_lost(&self.particle(*index), gradient, advice)
+            convexity_is_lost(&self.particle(*index), gradient, self.softness_advice())
         });
         let jump = self.jumped.map(|[from, to]| {
             format!(
@@ -97,7 +93,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         let (at, solid) = (self.columns(state), &*self.solid);
-        let displacement = self.continued(&at);
+        let displacement = self.continued(at.displacement, at.tail);
         let sums = parallel::sums::<[f64; 3]>(solid.len(), |a, sums| {
             if !self.is_static {
                 sums[0] += 0.5 * solid.mass[a] * at.velocity[a].norm_squared();
@@ -182,17 +178,18 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     }
 
     fn stability_advice(&self) -> &'static str {
-        match (self.not_convex, &self.statics) {
-            (Some(_), Some(_)) => {
+        match (self.not_convex, &self.statics, self.matrices.edges()) {
+            (Some(_), Some(_), _) => {
                 "the material had lost its convexity before, which smaller steps do not bring back: \
                  use another law, or a smaller load"
             }
-            (Some(_), None) => {
+            (Some(_), None, _) => {
                 "the material had lost its convexity before, which smaller steps do not bring back: \
                  add `scheme.viscosity`, or use another law"
             }
-            (None, Some(_)) => "raise `scheme.hourglass`",
-            (None, None) => "raise `scheme.viscosity` or `scheme.hourglass`",
+            (None, Some(_), _) => "raise `scheme.hourglass`",
+            (None, None, Some(_)) => "raise `scheme.viscosity`",
+            (None, None, None) => "raise `scheme.viscosity` or `scheme.hourglass`",
         }
     }
 
@@ -201,23 +198,35 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         let [least, _] = mixture.wave_moduli(&self.strained.gradient[index]);
         let law = mixture.main_law().map_or("", |law| law.name());
         match law {
-            _ if least < 0.0 || self.not_convex.is_some() => {
+            _ if least < 0.0 || self.not_convex.is_some() => format!(
                 "the material has lost its convexity at this deformation, which no numerical \
-                 method can follow without a length: add `scheme.viscosity`, or use another law"
-                    .to_owned()
-            }
+                 method can follow without a length: {}",
+                self.softness_advice()
+            ),
             "linear_elastic" | "saint_venant_kirchhoff" => format!(
                 "`{law}` does not resist being turned inside out: use a neo-Hookean law, or a \
                  smaller load"
             ),
-            _ => "the law resists collapse, so the step or the stabilisation is at fault: lower \
-                  `time.cfl`, or raise `scheme.hourglass`"
-                .to_owned(),
+            _ => {
+                let step = match self.statics {
+                    Some(_) => "`time.step`",
+                    None => "`time.cfl`",
+                };
+                let other = match self.matrices.edges() {
+                    Some(_) => "",
+                    None => ", or raise `scheme.hourglass`",
+                };
+                format!(
+                    "the law resists collapse, so the step or the stabilisation is at fault: lower \
+                     {step}{other}"
+                )
+            }
         }
     }
 
     fn memory(&self) -> usize {
-        let vectors = [&self.displacement, &self.velocity, &self.acceleration, &self.force];
+        let vectors =
+            [&self.displacement, &self.velocity, &self.acceleration, &self.force, &self.reaction];
         self.matrices.memory()
             + self.solid.memory()
             + self.strained.memory()
@@ -230,6 +239,14 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
+    /// What to do about a material that loses its convexity.
+    fn softness_advice(&self) -> &'static str {
+        match self.statics {
+            Some(_) => "use another law",
+            None => "add `scheme.viscosity`, or use another law",
+        }
+    }
+
     /// How many particles a particle has in its support.
     pub fn neighbors(&self, index: usize) -> usize {
         self.matrices.neighbors(index)

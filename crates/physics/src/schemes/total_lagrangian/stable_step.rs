@@ -102,8 +102,6 @@ impl<const D: usize> TotalLagrangian<D> {
         let behind = self.matrices.behind();
         let still = vec![Vector::<D>::zeros(); count + behind];
         let (mut field, mut all) = (still.clone(), still.clone());
-        let tangents: Vec<_> =
-            solid.mixtures.iter().map(|mixture| mixture.tangent(&Tensor::zeros())).collect();
         let mut strained = self.matrices.strained(count);
         let tension = |a: usize, gradient: &Tensor<D>| stress(a, gradient) * volume[a];
         let is_free = |a: usize, i: usize| is_free[a * D + i];
@@ -127,7 +125,7 @@ impl<const D: usize> TotalLagrangian<D> {
                     operator.fold(&mut all);
                 }
                 Matrices::Strong(edges) => {
-                    let of = |a: usize| tangents[solid.mixture[a] as usize];
+                    let of = |a: usize| solid.mixture(a).tangent(&Tensor::zeros());
                     edges.continue_rates(&mut field, of, |_| Vector::zeros());
                     for (a, own) in strained.tension.iter_mut().enumerate() {
                         *own = tension(a, &edges.gradient.gradient_at(&field, a));

@@ -36,11 +36,8 @@ pub(super) fn mirrors<const D: usize>(
             let help = Some(help.to_owned());
             problems.push(case.problem_at(mirror.place, message, "this mirror", help));
         };
-        if form == Form::Strong {
-            if D == 1 {
-                refuse("the strong form makes its ghosts by itself", "remove `mirror`");
-            }
-            // What is prescribed on an edge makes it a mirror there.
+        if form == Form::Strong && D == 1 {
+            refuse("the strong form makes its ghosts by itself", "remove `mirror`");
             continue;
         }
         let model::Region::Plane { point, normal } = &boundary.region.value else {
@@ -66,8 +63,15 @@ pub(super) fn mirrors<const D: usize>(
             );
             continue;
         }
+        if form == Form::Strong {
+            // What is prescribed on an edge makes it a mirror there.
+            continue;
+        }
+        let body = boundary.body.as_ref().map(|body| body.value as u32);
         let on_plane = |&a: &usize| {
-            (particles.position[a][axis] - point[axis]).abs() < SAME_PLACE * particles.spacing[a]
+            body.is_none_or(|body| body == particles.body[a])
+                && (particles.position[a][axis] - point[axis]).abs()
+                    < SAME_PLACE * particles.spacing[a]
         };
         let Some(particle) = (0..particles.len()).find(on_plane) else {
             refuse(

@@ -1,7 +1,6 @@
 //! Particles turned into total Lagrangian solids.
 
 use piola_formulas::hyperelastic::Reduced;
-use piola_formulas::kernels::Kernel;
 
 use super::bodies::{self, BodyReport};
 use super::joined::Joined;
@@ -17,7 +16,8 @@ use crate::case::source::Place;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::{
-    DirectedSupport, DualGradient, Face, Mirror, OperatorError, Trace, lattice_areas, nearest_radii,
+    Cover, DirectedSupport, DualGradient, Face, Mirror, OperatorError, Trace, lattice_areas,
+    nearest_radii,
 };
 use crate::schemes::total_lagrangian::{
     Form, Gradients, Material, Motion, Settings, StaticsError, StaticsInput, TotalLagrangian,
@@ -53,11 +53,16 @@ pub(super) fn build<const D: usize>(
         false => Joined::none(&particles),
     };
     joined.merge(&mut particles, areas.as_mut());
+    let groups = |particles: &Particles<D>| -> Vec<u32> {
+        particles.body.iter().map(|&body| joined.group[body as usize]).collect()
+    };
     let radii = |particles: &Particles<D>| match *settings.support {
         SupportSize::Spacings(ratio) => {
             Ok(particles.spacing.iter().map(|spacing| ratio * spacing).collect::<Vec<_>>())
         }
-        SupportSize::Neighbors(count) => nearest_radii(particles, count, &domain),
+        SupportSize::Neighbors(count) => {
+            nearest_radii(particles, &groups(particles), count, &domain)
+        }
     };
     let widest = radii(&particles).map_err(refuse)?.into_iter().fold(0.0, f64::max);
     let order = spatial_order(&particles.position, widest).map_err(refuse)?;
@@ -67,8 +72,11 @@ pub(super) fn build<const D: usize>(
     }
     let radius = radii(&particles).map_err(refuse)?;
     let (mixtures, mixture) = joined.mixtures(&particles, &materials);
-    let group: Vec<u32> = particles.body.iter().map(|&it| joined.group[it as usize]).collect();
-    let trace = trace(case, &particles, (kernel, &radius), &domain)?;
+    let group = groups(&particles);
+    let (images, radii) = (&[], &*radius);
+    let cover =
+        Cover { particles: &particles, group: &group, images, kernel, radius: radii, domain };
+    let trace = trace(case, &cover)?;
     if let (Some(areas), Some(trace)) = (&mut areas, &trace) {
         let traced = trace.areas(particles.len());
         areas.iter_mut().zip(traced).for_each(|(area, more)| *area += more);
@@ -84,6 +92,11 @@ pub(super) fn build<const D: usize>(
                 .to_owned()
         })
     };
+    if let (SupportSize::Neighbors(_), false) = (*settings.support, mirrors.is_empty()) {
+        let message = "`neighbors` counts none beyond a mirror";
+        let help = Some("use `support`".to_owned());
+        problems.push(case.problem_at(place, message, "not with a mirror", help));
+    }
     let surface = LoadedSurface::new(case, &particles, &domain, trace.as_ref(), known);
     let tractions = surface.tractions(&mut problems);
     let pressures = surface.pressures(&mut problems);
@@ -95,13 +108,16 @@ pub(super) fn build<const D: usize>(
     if settings.weights == model::Weights::Volume {
         whole_weights(&mut particles, &mirrors);
     }
+    // On lattices plain gradients need no more than others.
+    let is_rough = particles.surface.faces.len() > 0
+        || case.bodies.iter().any(|body| matches!(*body.shape, model::Shape::Points { .. }));
     let is_plain = gradients == Gradients::Plain;
     let scheme = TotalLagrangian::new(TotalLagrangianInput {
         description: settings.preset.description(),
         settings: Settings {
             form: settings.form,
             configuration: settings.configuration,
-            hourglass: settings.hourglass.unwrap_or(settings.preset.hourglass(is_plain)),
+            hourglass: settings.hourglass.unwrap_or(settings.preset.hourglass(is_plain, is_rough)),
             tractions: settings.tractions.unwrap_or(settings.preset.tractions(is_plain)),
             dissipation: settings.dissipation,
             gradients,
@@ -191,10 +207,9 @@ fn refused(case: &Case, place: Place, error: &TotalLagrangianError) -> Problem {
 /// The boundary as centres of cells see it, where a body has such particles.
 fn trace<const D: usize>(
     case: &Case,
-    particles: &Particles<D>,
-    (kernel, radius): (Kernel, &[f64]),
-    domain: &Domain<D>,
+    cover: &Cover<'_, D>,
 ) -> Result<Option<Trace<D>>, Vec<Problem>> {
+    let particles = cover.particles;
     let of_cells = particles.surface.faces.iter().filter(|face| !face.is_of_nodes());
     let faces: Vec<Face<D>> = of_cells
         .map(|face| Face { owner: face.particles[0], place: face.place, area: face.area })
@@ -205,9 +220,8 @@ fn trace<const D: usize>(
     let refuse = |error: OperatorError| {
         vec![case.problem_at(case.scheme.place, error.to_string(), "with these supports", None)]
     };
-    let support = DirectedSupport::new(particles, kernel, radius.to_vec(), *domain);
-    let support = support.map_err(|error| refuse(error.into()))?;
-    let plain = DualGradient::plain(particles, &support).map_err(refuse)?;
+    let support = DirectedSupport::of(cover).map_err(|error| refuse(error.into()))?;
+    let plain = DualGradient::of(cover, &support).map_err(refuse)?;
     Ok(Some(Trace::new(faces, particles, &support, &plain)))
 }
 

@@ -108,7 +108,7 @@ impl Reader<'_, '_> {
         if let Some((key, message, label, help)) = fault {
             return self.refuse(Problem::new(place(key), message, label).help(help));
         }
-        for key in ["hourglass", "gradients", "tractions"] {
+        for key in ["hourglass", "gradients", "tractions", "neighbors"] {
             if form == Form::Strong {
                 self.meaningless(record, key, "with `form = \"strong\"`");
             }

@@ -184,12 +184,14 @@ impl Preset {
         }
     }
 
-    /// The coefficient of the hourglass energy, with plain gradients or others.
-    pub fn hourglass(self, is_plain: bool) -> f64 {
+    /// The coefficient of the hourglass energy, with plain gradients or others, where particles are those of
+    /// meshes and files or of lattices.
+    pub fn hourglass(self, is_plain: bool, is_rough: bool) -> f64 {
         match (self, is_plain) {
             (Self::Elastodynamics, _) => 0.05,
-            (_, true) => 1.0,
-            (_, false) => 0.1,
+            (Self::DualSupport, true) => 1.0,
+            (Self::TotalLagrangian, true) if is_rough => 1.0,
+            _ => 0.1,
         }
     }
 
@@ -199,11 +201,6 @@ impl Preset {
             (Self::Elastodynamics, _) | (Self::TotalLagrangian, true) => Tractions::Layers,
             _ => Tractions::Surface,
         }
-    }
-
-    /// Whether bodies whose particles share places are one there.
-    pub fn joined(self) -> bool {
-        self != Self::DualSupport
     }
 }
 

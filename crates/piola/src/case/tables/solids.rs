@@ -24,7 +24,7 @@ pub(super) const TOTAL_LAGRANGIAN: KindSpec = KindSpec {
         joined: "true",
         form: "\"adjoint\"",
         gradients: "`patch_consistent`; `plain` where there is a body of points from a file, or a `mirror`",
-        hourglass: "0.1; 1 with `plain` gradients",
+        hourglass: "0.1; 1 with `plain` gradients on particles of meshes and files",
         tractions: "`surface`; `layers` with `plain` gradients",
     }),
 };
@@ -87,7 +87,7 @@ const fn keys(usual: Usual) -> [KeySpec; 13] {
             Kind::Integer(Interval::at_least(1.0)),
             "1",
             Optional,
-            "support radius of a particle is the distance to its so many-th neighbour, instead of `support`",
+            "support radius of a particle is the distance to its so many-th neighbour, instead of `support`; with `form = \"adjoint\"` and no `mirror`",
         ),
         key(
             "joined",
@@ -115,7 +115,7 @@ const fn keys(usual: Usual) -> [KeySpec; 13] {
             Kind::Name(GRADIENTS),
             "",
             Derived(usual.gradients),
-            "coefficients of the deformation gradient",
+            "coefficients of the deformation gradient; with `form = \"adjoint\"`",
         ),
         key(
             "hourglass",

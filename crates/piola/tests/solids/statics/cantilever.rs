@@ -42,7 +42,8 @@ fn beam(intervals: [usize; 3]) -> (Cloud<3>, Discrete<3>) {
     // Whole cells as kernel weights: with the shares of the nodes, which are small on the boundary,
     // so few particles are 10 % too soft.
     cloud.particles.weight = lattice(LENGTHS, intervals).weight;
-    let radii = nearest_radii(&cloud.particles, 24, &Domain::open()).unwrap();
+    let radii =
+        nearest_radii(&cloud.particles, &cloud.particles.body, 24, &Domain::open()).unwrap();
     let support =
         DirectedSupport::new(&cloud.particles, Kernel::QuinticSpline, radii, Domain::open());
     let constants = LameConstants::from_young(YOUNG, POISSON).unwrap();

@@ -59,7 +59,7 @@ fn triangles(intervals: [usize; 2]) -> (Particles<2>, Vec<Face<2>>) {
 
 fn bound(intervals: [usize; 2]) -> (Particles<2>, DirectedSupport<2>, Trace<2>) {
     let (particles, faces) = triangles(intervals);
-    let radii = nearest_radii(&particles, 16, &Domain::open()).unwrap();
+    let radii = nearest_radii(&particles, &particles.body, 16, &Domain::open()).unwrap();
     let support =
         DirectedSupport::new(&particles, Kernel::QuinticSpline, radii, Domain::open()).unwrap();
     let plain = DualGradient::plain(&particles, &support).unwrap();

@@ -4,7 +4,7 @@ mod cantilever;
 mod cells;
 mod cube;
 mod equilibrium;
-mod mirrors;
+pub mod mirrors;
 mod paths;
 mod pressure;
 mod rubber;

@@ -18,7 +18,8 @@ use crate::clouds::Cloud;
 /// with the number of iterations.
 fn pulled(disorder: f64) -> ([f64; 3], usize) {
     let cloud = Cloud::block([2.0, 2.0], [16, 16], disorder);
-    let radii = nearest_radii(&cloud.particles, 12, &Domain::open()).unwrap();
+    let radii =
+        nearest_radii(&cloud.particles, &cloud.particles.body, 12, &Domain::open()).unwrap();
     let support =
         DirectedSupport::new(&cloud.particles, Kernel::QuinticSpline, radii, Domain::open());
     let constants = LameConstants::from_young(0.2, 0.45).unwrap();

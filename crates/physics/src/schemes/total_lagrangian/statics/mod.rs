@@ -206,9 +206,13 @@ impl<const D: usize> Statics<D> {
         self.solver.reduction().unknowns()
     }
 
-    /// Bytes of the lists that stiffness is made of.
+    /// Bytes of its arrays, but for those of linear equations.
     pub fn memory(&self) -> usize {
         self.stiffness.memory()
+            + self.strained.memory()
+            + size_of_val(self.displacement.as_slice())
+            + size_of_val(self.internal.as_slice())
+            + size_of_val(self.left.as_slice())
     }
 
     /// What the linear equations took so far.

@@ -99,7 +99,16 @@ impl<const D: usize> Stiffness<D> {
 
     /// Bytes of what it is made of.
     pub(super) fn memory(&self) -> usize {
-        self.support.memory() + self.gradient.memory() + size_of_val(self.owners.as_slice())
+        let images: usize = self.images.iter().map(|own| size_of_val(own.as_slice())).sum();
+        self.support.memory()
+            + self.gradient.memory()
+            + self.strained.memory()
+            + size_of_val(self.tangents.as_slice())
+            + size_of_val(self.pressed.as_slice())
+            + size_of_val(self.owners.as_slice())
+            + size_of_val(self.field.as_slice())
+            + size_of_val(self.product.as_slice())
+            + images
     }
 
     /// Adds what holds faces of cells.
@@ -356,12 +365,11 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
 
     fn diagonal(&self) -> Vec<Tensor<D>> {
         let mut blocks = vec![Tensor::zeros(); self.discrete.len()];
-        let is_mirrored = !self.images.is_empty();
         parallel::for_each_chunk(&mut blocks, |first, blocks| {
             for (offset, block) in blocks.iter_mut().enumerate() {
                 let a = first + offset;
-                if is_mirrored {
-                    // A particle and its images are members of the same supports.
+                if self.images.get(a).is_some_and(|images| !images.is_empty()) {
+                    // A particle and its images may be members of the same supports.
                     self.add_row(a, &mut |b, part| {
                         if b as usize == a {
                             *block += part;
