@@ -24,7 +24,7 @@ use crate::neighbors::Domain;
 use crate::operators::{Cover, DirectedSupport, Mirror, OperatorError, images};
 use crate::schemes::input::{
     check_conditions, check_displacement, check_index, check_lengths, check_particle,
-    check_pressure,
+    check_particles, check_pressure,
 };
 use crate::schemes::{Scheme as _, SchemeDescription, SplitScheme as _};
 use crate::{Tensor, Vector};
@@ -230,6 +230,7 @@ fn held<const D: usize>(condition: &PrescribedVelocity) -> PrescribedDisplacemen
 
 /// Refuses arrays that do not fit together, impossible values, and parts that do not serve each other.
 fn check<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalLagrangianError> {
+    check_particles(&input.particles)?;
     let (count, settings) = (input.particles.len(), &input.settings);
     let lists = [
         ("the list of supports", input.radius.len()),
@@ -242,9 +243,17 @@ fn check<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalLag
     check_coefficients(settings)?;
     check_conditions(count, &input.tractions, &input.prescribed)?;
     input.pressures.iter().try_for_each(|load| check_pressure(load, count))?;
-    for (number, (mirror, particle)) in input.mirrors.iter().enumerate() {
+    for (mirror, particle) in &input.mirrors {
         check_index(|| "a mirror: particle".into(), *particle as usize, count)?;
         check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
+    }
+    let planes = input.mirrors.iter().map(|(mirror, _)| mirror.axis);
+    let edges = if settings.form == Form::Strong { 0..D } else { 0..0 };
+    let mut ended = planes.chain(edges);
+    if let Some(axis) = ended.find(|&axis| input.domain.periodic()[axis].is_some()) {
+        return Err(TotalLagrangianError::Periodic { axis: AXES[axis] });
+    }
+    for (number, (mirror, particle)) in input.mirrors.iter().enumerate() {
         let same = |(other, _): &(Mirror, u32)| {
             (other.axis, other.is_upper) == (mirror.axis, mirror.is_upper)
         };
@@ -256,12 +265,6 @@ fn check<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalLag
     if settings.configuration == Configuration::Updated && (D > 1 || settings.form == Form::Adjoint)
     {
         return Err(TotalLagrangianError::Updated);
-    }
-    let planes = input.mirrors.iter().map(|(mirror, _)| mirror.axis);
-    let edges = if settings.form == Form::Strong { 0..D } else { 0..0 };
-    let mut ended = planes.chain(edges);
-    if let Some(axis) = ended.find(|&axis| input.domain.periodic()[axis].is_some()) {
-        return Err(TotalLagrangianError::Periodic { axis: AXES[axis] });
     }
     combine(input)
 }
@@ -329,7 +332,11 @@ fn last_of<'a>(
 ) -> Vec<Option<&'a Arc<dyn SpaceTime>>> {
     let mut last = vec![None; count];
     for (particles, value) in conditions {
-        particles.iter().for_each(|&a| last[a as usize] = Some(value));
+        for &a in particles {
+            if let Some(own) = last.get_mut(a as usize) {
+                *own = Some(value);
+            }
+        }
     }
     last
 }

@@ -109,7 +109,7 @@ pub(super) fn build<const D: usize>(
         whole_weights(&mut particles, &mirrors);
     }
     // On lattices plain gradients need no more than others.
-    let is_rough = particles.surface.faces.len() > 0
+    let is_rough = !particles.surface.faces.is_empty()
         || case.bodies.iter().any(|body| matches!(*body.shape, model::Shape::Points { .. }));
     let is_plain = gradients == Gradients::Plain;
     let scheme = TotalLagrangian::new(TotalLagrangianInput {
