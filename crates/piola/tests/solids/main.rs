@@ -15,3 +15,4 @@ mod joined;
 mod runs;
 mod scalar;
 mod statics;
+mod stretch;

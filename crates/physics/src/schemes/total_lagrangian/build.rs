@@ -10,7 +10,7 @@ use super::strong::{self, Edges, Hole, Moving};
 use super::tractions::Body;
 use super::{
     Configuration, Discrete, FIGURES, Form, Gradients, LEDGER, Loads, Material, Matrices, Mixture,
-    Motion, Settings, Solid, Statics, StaticsInput, TOTAL_LAGRANGIAN, TotalLagrangian,
+    Motion, Part, Settings, Solid, Statics, StaticsInput, TOTAL_LAGRANGIAN, TotalLagrangian,
     TotalLagrangianError, Tractions, stages,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -355,62 +355,62 @@ fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalL
         Motion::Static(known) if !known.prescribed_faces.is_empty()
     );
     let dissipates = settings.dissipation.is_viscous() || settings.dissipation.damping > 0.0;
-    let (mirrors, strong) = ("mirror images", "the strong form");
-    let (implicit, patched) = ("implicit steps and statics", "patch-consistent gradients");
+    let (implicit, patched, mirrors) = (Part::Implicit, Part::PatchConsistent, Part::Mirrors);
+    let strong = "the strong form";
     let no_energy = "it has no energy of which forces are derivatives; use `form = \"adjoint\"`";
     let faults = [
-        (is_strong && is_solved_for, [implicit, strong, no_energy]),
+        (is_strong && is_solved_for, (implicit, strong, no_energy)),
         (
             is_strong && is_patched,
-            [patched, strong, "its ghosts make constant stress consistent; leave them out"],
+            (patched, strong, "its ghosts make constant stress consistent; leave them out"),
         ),
         (
             is_strong && !input.pressures.is_empty(),
-            [
-                "a follower pressure",
+            (
+                Part::Pressures,
                 strong,
                 "its edges are loaded by tractions; use `form = \"adjoint\"`",
-            ],
+            ),
         ),
         (
             is_strong && !input.mirrors.is_empty(),
-            [mirrors, strong, "it makes its ghosts by itself; leave them out"],
+            (mirrors, strong, "it makes its ghosts by itself; leave them out"),
         ),
         (
             is_patched && !input.mirrors.is_empty(),
-            [
+            (
                 patched,
-                mirrors,
+                "mirror images",
                 "the plane of a mirror is no boundary with an area; use `gradients = \"plain\"`",
-            ],
+            ),
         ),
         (
             has_faces && !input.mirrors.is_empty(),
-            [
+            (
                 mirrors,
                 "faces of cells that are held",
                 "a value on a face is one of particles without images; hold particles instead",
-            ],
+            ),
         ),
         (
             is_static && starts_moved,
-            [
-                "initial values",
+            (
+                Part::Initial,
                 "statics",
                 "states in equilibrium start from rest; leave out `initial`",
-            ],
+            ),
         ),
         (
             is_solved_for && dissipates,
-            [
-                "`scheme.viscosity`, `scheme.artificial_viscosity` and `scheme.damping`",
-                implicit,
+            (
+                Part::Dissipation,
+                "implicit steps and statics",
                 "their residual has no rates; use explicit steps, or an integrator that damps short periods",
-            ],
+            ),
         ),
     ];
     let found = faults.into_iter().find(|(is_met, _)| *is_met);
-    found.map_or(Ok(()), |(_, [part, with, why])| {
+    found.map_or(Ok(()), |(_, (part, with, why))| {
         Err(TotalLagrangianError::Combination { part, with, why })
     })
 }

@@ -1,5 +1,7 @@
 //! Why there is no such body.
 
+use std::fmt;
+
 use thiserror::Error;
 
 use super::StaticsError;
@@ -26,7 +28,7 @@ pub enum TotalLagrangianError {
     #[error("{part} cannot be had with {with}: {why}")]
     Combination {
         /// The part that is asked for.
-        part: &'static str,
+        part: Part,
         /// What it is asked for with.
         with: &'static str,
         /// Why not, and what to do.
@@ -124,4 +126,34 @@ pub enum TotalLagrangianError {
         /// What was given.
         value: f64,
     },
+}
+
+/// A part that does not go with every other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// States that are solved for.
+    Implicit,
+    /// Gradients that are made consistent.
+    PatchConsistent,
+    /// Images beyond planes.
+    Mirrors,
+    /// Pressures that follow a surface.
+    Pressures,
+    /// Initial displacements and velocities.
+    Initial,
+    /// Viscosity and damping.
+    Dissipation,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Implicit => "implicit steps and statics",
+            Self::PatchConsistent => "patch-consistent gradients",
+            Self::Mirrors => "mirror images",
+            Self::Pressures => "a follower pressure",
+            Self::Initial => "initial values",
+            Self::Dissipation => "viscosity and damping",
+        })
+    }
 }

@@ -46,7 +46,7 @@ mod tractions;
 
 pub use build::TotalLagrangianInput;
 pub use discrete::Discrete;
-pub use error::TotalLagrangianError;
+pub use error::{Part, TotalLagrangianError};
 pub use material::{Material, Mixture};
 pub use scheme::{DUAL_SUPPORT, ELASTODYNAMICS, TOTAL_LAGRANGIAN};
 pub use settings::{Configuration, Dissipation, Form, Gradients, Motion, Settings, Tractions};

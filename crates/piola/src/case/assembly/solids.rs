@@ -12,7 +12,6 @@ use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, GradientKind, Preset, SupportSize};
-use crate::case::source::Place;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::{
@@ -20,7 +19,7 @@ use crate::operators::{
     nearest_radii,
 };
 use crate::schemes::total_lagrangian::{
-    Form, Gradients, Material, Motion, Settings, StaticsError, StaticsInput, TotalLagrangian,
+    Form, Gradients, Material, Motion, Part, Settings, StaticsError, StaticsInput, TotalLagrangian,
     TotalLagrangianError, TotalLagrangianInput, free_to_move,
 };
 use crate::schemes::{InputError, Scheme};
@@ -85,7 +84,7 @@ pub(super) fn build<const D: usize>(
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
     let (prescribed, motion) = motion(case, &particles, trace.as_ref(), &mut problems);
-    let mirrors = mirrors(case, settings.form, &particles, &mut problems);
+    let mirrors = mirrors(case, *settings.form, &particles, &mut problems);
     let known = || {
         areas.clone().ok_or_else(|| {
             "a load on a surface needs the areas of the particles, which are not known of points from a file"
@@ -115,11 +114,11 @@ pub(super) fn build<const D: usize>(
     let scheme = TotalLagrangian::new(TotalLagrangianInput {
         description: settings.preset.description(),
         settings: Settings {
-            form: settings.form,
+            form: *settings.form,
             configuration: settings.configuration,
             hourglass: settings.hourglass.unwrap_or(settings.preset.hourglass(is_plain, is_rough)),
             tractions: settings.tractions.unwrap_or(settings.preset.tractions(is_plain)),
-            dissipation: settings.dissipation,
+            dissipation: *settings.dissipation,
             gradients,
         },
         displacement: at_start(case, &particles, |initial| &initial.displacement),
@@ -139,7 +138,7 @@ pub(super) fn build<const D: usize>(
         mirrors,
         motion,
     });
-    let scheme = scheme.map_err(|error| vec![refused(case, place, &error)])?;
+    let scheme = scheme.map_err(|error| vec![refused(case, settings, &error)])?;
     let sizes = (0..scheme.particle_count()).map(|a| (a as u32, scheme.neighbors(a)));
     let (neighbors, poorly_supported) = row_statistics(D, sizes);
     Ok((
@@ -181,9 +180,34 @@ fn motion<const D: usize>(
 }
 
 /// Where and what of the case an error is about.
-fn refused(case: &Case, place: Place, error: &TotalLagrangianError) -> Problem {
-    let integrator = case.time.integrator.place;
+fn refused(
+    case: &Case,
+    settings: &model::TotalLagrangian,
+    error: &TotalLagrangianError,
+) -> Problem {
+    let (scheme, integrator) = (case.scheme.place, case.time.integrator.place);
+    let mirror = || {
+        let found = case.boundaries.iter().find_map(|it| it.mirror.as_ref());
+        found.map_or(scheme, |mirror| mirror.place)
+    };
+    let of_part = |part: Part| match part {
+        Part::Implicit => (integrator, "this integrator"),
+        Part::PatchConsistent => {
+            (settings.gradients.as_ref().map_or(scheme, |it| it.place), "these gradients")
+        }
+        Part::Mirrors => (mirror(), "this mirror"),
+        Part::Pressures => (settings.form.place, "this form"),
+        Part::Initial => (case.bodies[0].name.place, "initial values of a body"),
+        Part::Dissipation => (settings.dissipation.place, "with this integrator"),
+    };
     let (place, label) = match error {
+        TotalLagrangianError::Combination { part, .. } => of_part(*part),
+        TotalLagrangianError::Plane { .. } | TotalLagrangianError::TwoPlanes { .. } => {
+            (mirror(), "this mirror")
+        }
+        TotalLagrangianError::Input(InputError::Displacement { .. }) => {
+            (case.bodies[0].name.place, "initial values of a body")
+        }
         TotalLagrangianError::Input(InputError::Velocity { .. }) => {
             (case.bodies[0].name.place, "initial values of a body")
         }
@@ -191,8 +215,8 @@ fn refused(case: &Case, place: Place, error: &TotalLagrangianError) -> Problem {
             (integrator, "statics needs a body that is held")
         }
         TotalLagrangianError::Statics(_) => (integrator, "with this integrator"),
-        TotalLagrangianError::Operator(_) => (place, "with these supports"),
-        _ => (case.scheme.place, "with these settings"),
+        TotalLagrangianError::Operator(_) => (settings.support.place, "with these supports"),
+        _ => (scheme, "with these settings"),
     };
     let message = match error {
         TotalLagrangianError::Statics(StaticsError::Free { body, part, motion }) => {
@@ -271,7 +295,7 @@ fn gradients<const D: usize>(
 ) -> (Gradients<D>, Vec<String>) {
     let wanted = settings.gradients.as_ref();
     let is_plain = settings.preset == Preset::Elastodynamics
-        || settings.form == Form::Strong
+        || *settings.form == Form::Strong
         || !mirrors.is_empty();
     match (wanted.map(|kind| kind.value), areas) {
         (Some(GradientKind::Plain), _) => (Gradients::Plain, Vec::new()),

@@ -47,16 +47,19 @@ impl Reader<'_, '_> {
             weights: super::physics::weights(record)?,
             support: self.support(record, preset.support(form, self.dimension)),
             joined: record.boolean("joined")?,
-            form,
+            form: Located::new(form, record.key_place("form").unwrap_or(record.place)),
             configuration,
             gradients,
             hourglass: number(record, "hourglass"),
             tractions,
-            dissipation: Dissipation {
-                viscosity: number(record, "viscosity")?,
-                artificial_viscosity: self.artificial_viscosity(record)?,
-                damping: number(record, "damping")?,
-            },
+            dissipation: Located::new(
+                Dissipation {
+                    viscosity: number(record, "viscosity")?,
+                    artificial_viscosity: self.artificial_viscosity(record)?,
+                    damping: number(record, "damping")?,
+                },
+                first_place(record, &["viscosity", "artificial_viscosity", "damping"]),
+            ),
         })
     }
 

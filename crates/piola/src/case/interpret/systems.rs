@@ -44,7 +44,7 @@ impl Known {
                     remedy: "set `scheme.tau_velocity` and `scheme.tau_pressure` to 0",
                 })
             }
-            Some(Scheme::TotalLagrangian(solid)) if solid.form == Form::Strong => Some(Without {
+            Some(Scheme::TotalLagrangian(solid)) if *solid.form == Form::Strong => Some(Without {
                 capabilities: &[Capability::Rates, Capability::Newmark, Capability::Statics],
                 why: " in the strong form, which has no energy of which forces are derivatives",
                 remedy: "set `scheme.form` to \"adjoint\"",

@@ -125,7 +125,7 @@ pub struct TotalLagrangian {
     /// Whether bodies whose particles share places are one there.
     pub joined: bool,
     /// How the divergence of the stress is taken.
-    pub form: Form,
+    pub form: Located<Form>,
     /// Where matrices are made.
     pub configuration: Configuration,
     /// Coefficients of the deformation gradient; `None` for those of the preset.
@@ -135,7 +135,7 @@ pub struct TotalLagrangian {
     /// Which particles tractions act on, if it is given.
     pub tractions: Option<Tractions>,
     /// What takes energy out of motion.
-    pub dissipation: Dissipative,
+    pub dissipation: Located<Dissipative>,
 }
 
 /// A paper's choice of the parts of a total Lagrangian solid.
