@@ -164,7 +164,7 @@ impl Reader<'_, '_> {
         let cfl = time.and_then(|time| time.number("cfl"));
         let step = match (time::is_explicit(kind.needs()), cfl) {
             (true, Some(cfl)) => cfl.map(StepControl::Cfl),
-            (true, None) => Located::new(StepControl::Cfl(self.natural_cfl()), place),
+            (true, None) => Located::new(StepControl::Cfl(self.natural_cfl(kind.needs())), place),
             (false, _) => {
                 if let Some(time) = time {
                     self.meaningless(time, "cfl", "with an implicit integrator");

@@ -101,10 +101,11 @@ impl Reader<'_, '_> {
     }
 
     /// The CFL number of explicit steps, unless the file has one.
-    pub(super) fn natural_cfl(&self) -> f64 {
+    pub(super) fn natural_cfl(&self, needs: Capability) -> f64 {
         match self.names.current.scheme {
             "transport_velocity" => 0.25,
-            scheme if Preset::from_name(scheme).is_some() => 0.9,
+            // Stages of rates feed undamped modes, the less the shorter steps are.
+            scheme if Preset::from_name(scheme).is_some() && needs == Capability::Kicks => 0.9,
             _ => 0.3,
         }
     }
@@ -128,8 +129,8 @@ impl Reader<'_, '_> {
                 Some(Located::new(StepControl::AtMost(0.1 * *end), record.place))
             }
             (_, Some(cfl), None) => Some(cfl.map(StepControl::Cfl)),
-            (Capability::Rates | Capability::Kicks, None, None) => {
-                let cfl = self.natural_cfl();
+            (needs @ (Capability::Rates | Capability::Kicks), None, None) => {
+                let cfl = self.natural_cfl(needs);
                 Some(Located::new(StepControl::Cfl(cfl), record.place))
             }
             (Capability::Newmark | Capability::Theta, None, None) => {

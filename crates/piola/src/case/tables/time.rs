@@ -85,7 +85,7 @@ const CFL: KeySpec = key(
     Kind::Number(Interval::POSITIVE),
     "1",
     Derived(
-        "0.3 (`transport_velocity`: 0.25, `total_lagrangian`: 0.9) unless `step` is given; none with an implicit integrator",
+        "0.3 (`transport_velocity`: 0.25, `total_lagrangian` by `kick_drift_kick`: 0.9) unless `step` is given; none with an implicit integrator",
     ),
     "share of the time that a wave needs from particle to particle; with `total_lagrangian`, of the largest stable step of central differences",
 );
