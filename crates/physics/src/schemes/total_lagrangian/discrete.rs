@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Scalar;
 
-use super::build::check_hourglass;
+use super::check::check_hourglass;
 use super::{Gradients, Material, Mixture, Settings, Solid, TotalLagrangianError};
 use crate::geometry::Particles;
 use crate::operators::{

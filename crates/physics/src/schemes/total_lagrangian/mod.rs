@@ -22,6 +22,7 @@
 //! are statics with inertia. The two papers are presets: what each of them chooses of the parts.
 
 mod build;
+mod check;
 mod discrete;
 mod dissipation;
 mod equilibrium;
