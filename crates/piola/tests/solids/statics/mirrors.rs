@@ -15,12 +15,12 @@ fn block(dimension: usize, is_part: bool, clock: &str) -> String {
         "version = 1\ntitle = 'A block'\ndimension = {dimension}\n\n\
          [[body]]\nname = 'block'\n\
          shape = {{ kind = 'box', min = {}, max = {} }}\n\
-         spacing = 0.125\nlattice = {{ on = 'boundary' }}\n\
+         spacing = 0.25\nlattice = {{ on = 'boundary' }}\n\
          material = {{ kind = 'neo_hookean_logarithmic', density = 1.0, young_modulus = 1.0, poisson_ratio = 0.35 }}\n\n\
          [scheme]\nkind = 'total_lagrangian'\ngradients = 'plain'\nsupport = 2.3\nhourglass = 0.2\n\n\
          [time]\n{clock}\ntolerance = 1e-11\n\n",
-        vector(low, 0.5 * low, 0.375 * low),
-        vector(1.0, 0.5, 0.375),
+        vector(low, 0.5 * low, 0.5 * low),
+        vector(1.0, 0.5, 0.5),
     );
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate().take(dimension) {
         let normal = std::array::from_fn(|k| if k == axis { -1.0 } else { 0.0 });
@@ -42,7 +42,7 @@ fn block(dimension: usize, is_part: bool, clock: &str) -> String {
             );
         }
     }
-    for (name, place) in [("corner", [1.0, 0.5, 0.375]), ("inside", [0.25, 0.125, 0.125])] {
+    for (name, place) in [("corner", [1.0, 0.5, 0.5]), ("inside", [0.25, 0.25, 0.25])] {
         let [x, y, z] = place;
         text += &format!(
             "[[probe]]\nname = '{name}'\nkind = 'particle'\nat = {}\nfields = ['displacement', 'stress']\n\n",
