@@ -7,9 +7,7 @@ use piola_formulas::kernels::Kernel;
 use super::adjoint::AdjointPairs;
 use super::directed::DirectedSupport;
 use super::dual_gradient::DualGradient;
-use super::error::OperatorError;
 use super::images::Image;
-use super::stencil::Cover;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborList};
 use crate::{Tensor, Vector};
@@ -120,16 +118,6 @@ impl<const D: usize> ReferenceGradient<D> {
         let radius = support.radius.clone();
         let is_plain = gradient.is_plain();
         Self { hourglass, is_plain, kernel, radius, domain, positions, images, pairs, centers }
-    }
-
-    /// The plain gradient of a cover with hourglass coefficients in J.
-    ///
-    /// # Errors
-    /// [`OperatorError`] for positions and supports without neighbour lists, and for particles without a gradient.
-    pub fn plain(cover: &Cover<'_, D>, hourglass: Vec<f64>) -> Result<Self, OperatorError> {
-        let support = DirectedSupport::of(cover)?;
-        let gradient = DualGradient::of(cover, &support)?;
-        Ok(Self::new((cover.particles, cover.images), &support, &gradient, hourglass))
     }
 
     /// Number of particles.
@@ -289,17 +277,8 @@ impl<const D: usize> ReferenceGradient<D> {
         self.strain_with(1.0, displacement, strained, tension);
     }
 
-    /// As [`Self::strain`], without the hourglass energy. Forces are then those of a field that is zero.
-    pub(crate) fn strain_alone(
-        &self,
-        displacement: &[Vector<D>],
-        strained: &mut Strained<D>,
-        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
-    ) {
-        self.strain_with(0.0, displacement, strained, tension);
-    }
-
-    fn strain_with(
+    /// As [`Self::strain`], with a share of the hourglass energy.
+    pub(crate) fn strain_with(
         &self,
         share: f64,
         displacement: &[Vector<D>],

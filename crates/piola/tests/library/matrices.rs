@@ -25,6 +25,16 @@ fn cover<'a, const D: usize>(
     Cover { particles, group: &[], images, kernel, radius, domain: Domain::default() }
 }
 
+/// The plain gradient of a cover with hourglass coefficients in J.
+fn plain_gradient<const D: usize>(
+    cover: &Cover<'_, D>,
+    hourglass: Vec<f64>,
+) -> ReferenceGradient<D> {
+    let support = DirectedSupport::of(cover).expect("neighbours");
+    let gradient = DualGradient::of(cover, &support).expect("a gradient");
+    ReferenceGradient::new((cover.particles, cover.images), &support, &gradient, hourglass)
+}
+
 #[test]
 fn matrices_are_the_sums_of_the_paper() {
     let particles = lattice([6, 5], 0.1);
@@ -96,8 +106,7 @@ fn gradients_are_exact_up_to_the_planes() {
     ];
     let made = images(&particles.position, &particles.spacing, &mirrors, 0.27);
     let cover = cover(&particles, &radius, &made);
-    let operator =
-        ReferenceGradient::plain(&cover, vec![0.0; particles.len()]).expect("a gradient");
+    let operator = plain_gradient(&cover, vec![0.0; particles.len()]);
     // Even across the planes along them, odd along their axes about 0 and 0.03.
     let truth = |x: &Vector<2>| Vector::from([0.2 * x[0], 0.03 - 0.5 * (0.6 - x[1])]);
     let mut field: Vec<Vector<2>> = particles.position.iter().map(truth).collect();
@@ -123,7 +132,7 @@ fn forces_with_images_are_the_derivatives_of_the_energy() {
     let made = images(&particles.position, &particles.spacing, &mirrors, 0.27);
     let cover = cover(&particles, &radius, &made);
     let coefficients: Vec<f64> = (0..count).map(|a| 1.0 + 0.1 * a as f64).collect();
-    let operator = ReferenceGradient::plain(&cover, coefficients).expect("a gradient");
+    let operator = plain_gradient(&cover, coefficients);
     let continued = |field: &[Vector<2>], data: &[[f64; 2]; 2]| {
         let mut field = field.to_vec();
         field.resize(count + made.len(), Vector::zeros());
@@ -188,8 +197,7 @@ fn linear_fields_have_no_hourglass_energy() {
     let particles = lattice([5, 4], 0.1);
     let radius = vec![0.27; particles.len()];
     let cover = cover(&particles, &radius, &[]);
-    let operator =
-        ReferenceGradient::plain(&cover, vec![1.0; particles.len()]).expect("a gradient");
+    let operator = plain_gradient(&cover, vec![1.0; particles.len()]);
     let slope = SMatrix::<f64, 2, 2>::new(0.3, -0.2, 0.5, 0.1);
     let u: Vec<Vector<2>> =
         particles.position.iter().map(|x| Vector::from([0.7, -0.3]) + slope * x).collect();

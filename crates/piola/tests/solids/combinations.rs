@@ -151,8 +151,7 @@ fn run(law: &str, gradients: &str, (name, words): (&str, &str), integrator: &str
     assert!(done > 1e-6, "{what}: nothing happens, {done:e} J");
     let rest = last(&finished, "energy.balance").abs() / done;
     // Of a load that grows from nothing in N steps a sum of the second order has an error of some tenths of
-    // 1/N^2; in explicit steps what `tvd_rk2` feeds to a mode, (w dt)^4/8 a step, is the most; in statics a share of
-    // the work that is about the strain.
+    // 1/N^2. Elsewhere it is the share beyond which a run warns.
     let most = match is_implicit(integrator) {
         true => 0.5 / f64::from(STEPS[1] * STEPS[1]),
         false => 0.01,

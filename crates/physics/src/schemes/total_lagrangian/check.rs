@@ -205,19 +205,17 @@ fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalL
 
 fn check_coefficients<const D: usize>(settings: &Settings<D>) -> Result<(), TotalLagrangianError> {
     let [linear, quadratic] = settings.dissipation.artificial_viscosity;
-    check_hourglass(settings.hourglass)?;
     check_coefficient("the viscosity", settings.dissipation.viscosity)?;
     check_coefficient("the linear artificial viscosity", linear)?;
     check_coefficient("the quadratic artificial viscosity", quadratic)?;
     check_coefficient("the damping", settings.dissipation.damping)
 }
 
-/// Refuses a hourglass coefficient that takes stiffness away.
-pub(super) fn check_hourglass(value: f64) -> Result<(), TotalLagrangianError> {
-    check_coefficient("the hourglass coefficient", value)
-}
-
-fn check_coefficient(what: &'static str, value: f64) -> Result<(), TotalLagrangianError> {
+/// Refuses a coefficient that is negative or no number.
+pub(super) fn check_coefficient(
+    what: &'static str,
+    value: f64,
+) -> Result<(), TotalLagrangianError> {
     match value >= 0.0 && value.is_finite() {
         true => Ok(()),
         false => Err(TotalLagrangianError::Coefficient { what, value }),

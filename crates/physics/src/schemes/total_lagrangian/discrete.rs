@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Scalar;
 
-use super::check::check_hourglass;
+use super::check::check_coefficient;
 use super::{Gradients, Material, Mixture, Settings, Solid, TotalLagrangianError};
 use crate::geometry::Particles;
 use crate::operators::{
@@ -54,7 +54,7 @@ impl<const D: usize> Discrete<D> {
         settings: &Settings<D>,
     ) -> Result<Self, TotalLagrangianError> {
         let (particles, count) = (&solid.particles, solid.len());
-        check_hourglass(settings.hourglass)?;
+        check_coefficient("the hourglass coefficient", settings.hourglass)?;
         let slots = count + images.len();
         check_lengths(slots, &[("the neighbour list", support.list.len())])?;
         let DirectedSupport { kernel, ref radius, domain, .. } = *support;

@@ -111,16 +111,9 @@ impl<const D: usize> TotalLagrangian<D> {
                 Matrices::Adjoint(discrete) => {
                     let operator = &discrete.operator;
                     discrete.continue_field(&mut field);
-                    let seen = match is_elastic {
-                        true => {
-                            operator.strain(&field, &mut strained, tension);
-                            &field
-                        }
-                        false => {
-                            operator.strain_alone(&field, &mut strained, tension);
-                            &still
-                        }
-                    };
+                    // The hourglass force is elastic.
+                    let (share, seen) = if is_elastic { (1.0, &field) } else { (0.0, &still) };
+                    operator.strain_with(share, &field, &mut strained, tension);
                     operator.forces(seen, &strained.tension, &mut all);
                     operator.fold(&mut all);
                 }

@@ -5,8 +5,8 @@ use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use crate::case::expression::Expression;
 use crate::case::model::{
-    Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Preset, Region,
-    Shape, Stiffness,
+    Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Region, Shape,
+    Stiffness,
 };
 use crate::geometry::{CloudPoints, CloudSpec, CloudVolumes};
 
@@ -180,7 +180,7 @@ impl Reader<'_, '_> {
     }
 
     fn initial(&mut self, record: &Record) -> Option<Initial> {
-        if Preset::from_name(self.names.current.scheme).is_none() {
+        if self.names.current.preset().is_none() {
             self.meaningless(record, "displacement", "in this scheme");
         }
         let components = |key: &str| match record.has(key) {

@@ -3,7 +3,7 @@
 use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use super::*;
-use crate::case::model::{Body, Boundary, Material, Preset, TransportVelocity, Wall};
+use crate::case::model::{Body, Boundary, Material, TransportVelocity, Wall};
 use crate::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
 };
@@ -110,7 +110,7 @@ impl Reader<'_, '_> {
     ) {
         let scheme = self.names.current.scheme;
         let is_fluid = scheme == "transport_velocity";
-        let is_elastic = Preset::from_name(scheme).is_some();
+        let is_elastic = self.names.current.preset().is_some();
         for body in bodies.iter().filter(|body| body.system == system) {
             let help = match (scheme, &body.material.value) {
                 (_, Material::Hyperelastic { .. }) if is_elastic => None,

@@ -6,8 +6,8 @@ use super::*;
 use crate::boundaries::History;
 use crate::case::expression::Expression;
 use crate::case::model::{
-    Boundary, Correction, Dissipation, Load, LoadKind, Preset, ReferenceWaveSpeed, Region, Roller,
-    Upwind, Weights,
+    Boundary, Correction, Dissipation, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Upwind,
+    Weights,
 };
 use crate::output::Curve;
 
@@ -101,7 +101,7 @@ impl Reader<'_, '_> {
         let kind = record.kind;
         let scheme = self.names.current.scheme;
         let knows = match kind {
-            "pressure" => Preset::from_name(scheme).is_some(),
+            "pressure" => self.names.current.preset().is_some(),
             _ => scheme != "transport_velocity",
         };
         if !knows {
@@ -146,7 +146,7 @@ impl Reader<'_, '_> {
         let mirror = record
             .boolean("mirror")
             .map(|on| Located::new(on, record.key_place("mirror").unwrap_or(record.place)));
-        if Preset::from_name(self.names.current.scheme).is_none() {
+        if self.names.current.preset().is_none() {
             self.meaningless(record, "mirror", "in this scheme");
         }
         let roller = record.record("roller").map(|roller| self.roller(roller));

@@ -32,6 +32,11 @@ pub(super) struct Without {
 }
 
 impl Known {
+    /// The preset of its total Lagrangian solid, if it is one.
+    pub fn preset(&self) -> Option<Preset> {
+        Preset::from_name(self.scheme)
+    }
+
     /// That of a scheme.
     pub fn of(name: &str, scheme: &'static str, settings: Option<&Located<Scheme>>) -> Self {
         let without = match settings.map(|settings| &settings.value) {

@@ -102,10 +102,11 @@ impl Reader<'_, '_> {
 
     /// The CFL number of explicit steps, unless the file has one.
     pub(super) fn natural_cfl(&self, needs: Capability) -> f64 {
-        match self.names.current.scheme {
+        let known = &self.names.current;
+        match known.scheme {
             "transport_velocity" => 0.25,
             // Stages of rates feed undamped modes, the less the shorter steps are.
-            scheme if Preset::from_name(scheme).is_some() && needs == Capability::Kicks => 0.9,
+            _ if known.preset().is_some() && needs == Capability::Kicks => 0.9,
             _ => 0.3,
         }
     }

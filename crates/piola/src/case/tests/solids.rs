@@ -1,7 +1,8 @@
 //! Elastic solids in a case file.
 
 use super::*;
-use crate::case::model::{Material, PlaneState, StepControl, SupportSize};
+use crate::case::model::{Material, PlaneState, Preset, StepControl, SupportSize};
+use crate::schemes::total_lagrangian::Form;
 use crate::schemes::{ImplicitRule, Newmark};
 
 const GOOD: &str = "\
@@ -39,6 +40,31 @@ fn what_is_not_given_is_what_serves_most() {
     };
     assert_eq!((law.name(), plane), ("neo_hookean", PlaneState::Strain));
     assert!((law.small_strain().young_modulus() / 1e6 - 1.0).abs() < 1e-12);
+}
+
+/// The reference has in words what presets choose.
+#[test]
+fn the_reference_says_what_presets_choose() {
+    let page = crate::case::reference::markdown();
+    for preset in Preset::ALL {
+        let name = preset.description().name;
+        let own = page.split(&format!("### `kind = \"{name}\"`")).nth(1).expect("a section");
+        let usual = |key: &str| {
+            let row = own.lines().find(|line| line.starts_with(&format!("| `{key}` |")));
+            row.and_then(|row| row.split(" | ").nth(3)).expect("a default").to_owned()
+        };
+        let radii = [(Form::Adjoint, 2), (Form::Strong, 1), (Form::Strong, 2)]
+            .map(|(form, dimension)| preset.support(form, dimension).to_string());
+        assert!(radii.iter().all(|radius| usual("support").contains(radius)), "{name}: {radii:?}");
+        let hourglass = [(false, true), (true, false), (true, true)]
+            .map(|(is_plain, is_rough)| preset.hourglass(is_plain, is_rough).to_string());
+        let said = usual("hourglass");
+        assert!(hourglass.iter().all(|value| said.contains(value)), "{name}: {hourglass:?}");
+        for is_plain in [false, true] {
+            let tractions = format!("{:?}", preset.tractions(is_plain)).to_lowercase();
+            assert!(usual("tractions").contains(&tractions), "{name}: {tractions}");
+        }
+    }
 }
 
 #[test]

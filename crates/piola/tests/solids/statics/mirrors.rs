@@ -9,6 +9,7 @@ use piola::observe::Series;
 fn block(dimension: usize, is_part: bool, clock: &str) -> String {
     let is_static = !clock.contains("newmark");
     let vector = |x: f64, y: f64, z: f64| format!("{:?}", &[x, y, z][..dimension]);
+    let support = if dimension == 3 { 1.6 } else { 2.3 };
     let low = if is_part { 0.0 } else { -1.0 };
     let motion = if is_static { "displacement" } else { "velocity" };
     let mut text = format!(
@@ -17,7 +18,7 @@ fn block(dimension: usize, is_part: bool, clock: &str) -> String {
          shape = {{ kind = 'box', min = {}, max = {} }}\n\
          spacing = 0.25\nlattice = {{ on = 'boundary' }}\n\
          material = {{ kind = 'neo_hookean_logarithmic', density = 1.0, young_modulus = 1.0, poisson_ratio = 0.35 }}\n\n\
-         [scheme]\nkind = 'total_lagrangian'\ngradients = 'plain'\nsupport = 2.3\nhourglass = 0.2\n\n\
+         [scheme]\nkind = 'total_lagrangian'\ngradients = 'plain'\nsupport = {support}\nhourglass = 0.2\n\n\
          [time]\n{clock}\ntolerance = 1e-11\n\n",
         vector(low, 0.5 * low, 0.5 * low),
         vector(1.0, 0.5, 0.5),
