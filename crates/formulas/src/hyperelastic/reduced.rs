@@ -67,6 +67,16 @@ impl<const D: usize> Reduced<D> {
         }
     }
 
+    /// The law without strain in the missing dimensions.
+    pub fn without_strain(law: HyperelasticLaw) -> Self {
+        let state = match D {
+            1 => StressState::UniaxialStrain,
+            2 => StressState::PlaneStrain,
+            _ => StressState::ThreeDimensional,
+        };
+        Self { law, state }
+    }
+
     /// The law in three dimensions.
     pub fn law(&self) -> &HyperelasticLaw {
         &self.law

@@ -23,7 +23,7 @@ mod time;
 
 pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reduction, Trend, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
-pub use loads::{Boundary, Load, LoadKind, Roller};
+pub use loads::{Boundary, Load, LoadKind, Roller, Turning};
 pub use materials::{Material, PlaneState, Stiffness, Wall};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use schemes::{

@@ -365,6 +365,20 @@ static BOUNDARY: TableSpec = TableSpec {
             "the components that are prescribed, as expressions of the reference position and time",
         ),
         key(
+            "angular_velocity",
+            Kind::Table(&TURN),
+            "rad/s",
+            Optional,
+            "of a rigid body: the components that are prescribed; `velocity` is then that of its centre of mass, or of `pivot`",
+        ),
+        key(
+            "pivot",
+            Kind::Numbers(Length::Dimension, Interval::ANY),
+            "m",
+            Optional,
+            "of a rigid body: a point that goes with it, in it or not, of which `velocity` prescribes all components: a hinge where they are 0",
+        ),
+        key(
             "mirror",
             Kind::Boolean,
             "",
@@ -394,6 +408,22 @@ static BOUNDARY: TableSpec = TableSpec {
         ),
     ],
 };
+
+static TURN: TableSpec = TableSpec {
+    title: "angular_velocity",
+    meaning: "Components of an angular velocity that are prescribed, as expressions of time.",
+    keys: &[turn("x"), turn("y"), turn("z")],
+};
+
+const fn turn(axis: &'static str) -> KeySpec {
+    key(
+        axis,
+        Kind::Expression(Variables::PositionAndTime),
+        "rad/s",
+        Optional,
+        "about this axis; in 2D there is `z` alone",
+    )
+}
 
 const AXES: Choices = choices(&[
     choice("x", "the first component"),

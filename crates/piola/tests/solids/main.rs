@@ -12,6 +12,7 @@ mod energy;
 mod gradients;
 mod implicit;
 mod joined;
+mod rigid;
 mod runs;
 mod scalar;
 mod statics;

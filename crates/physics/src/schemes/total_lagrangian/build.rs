@@ -6,12 +6,13 @@ use piola_formulas::kernels::Kernel;
 
 use super::check::check;
 use super::fields::{ColumnsMut, Made};
+use super::rigid::RigidBodies;
 use super::stable_step::Bound;
 use super::strong::{self, Edges, Hole, Moving};
 use super::tractions::Body;
 use super::{
     Configuration, Discrete, FIGURES, Form, LEDGER, Loads, Material, Matrices, Mixture, Motion,
-    Settings, Solid, Statics, StaticsInput, TOTAL_LAGRANGIAN, TotalLagrangian,
+    RigidBody, Settings, Solid, Statics, StaticsInput, TOTAL_LAGRANGIAN, TotalLagrangian,
     TotalLagrangianError, Tractions, stages,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
@@ -64,6 +65,8 @@ pub struct TotalLagrangianInput<const D: usize> {
     pub mirrors: Vec<(Mirror, u32)>,
     /// In the strong form round holes in the box, whose edges are free of stress.
     pub holes: Vec<Hole<D>>,
+    /// Particles that move as one.
+    pub rigid: Vec<RigidBody<D>>,
     /// How states follow each other.
     pub motion: Motion<D>,
 }
@@ -95,6 +98,7 @@ impl<const D: usize> TotalLagrangianInput<D> {
             prescribed: Vec::new(),
             mirrors: Vec::new(),
             holes: Vec::new(),
+            rigid: Vec::new(),
             motion: Motion::Explicit,
         }
     }
@@ -179,6 +183,7 @@ impl<const D: usize> TotalLagrangian<D> {
             updated: is_updated.then_some(Moving { kernel, radius, group, domain }),
             loads,
             prescribed,
+            rigid: RigidBodies::new(input.rigid, &solid),
             statics: statics.map(Box::new),
             is_static,
             stable: Bound::default(),

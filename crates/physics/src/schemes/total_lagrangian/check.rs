@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{
     Configuration, Form, Gradients, Motion, Part, Settings, TotalLagrangianError,
-    TotalLagrangianInput,
+    TotalLagrangianInput, rigid,
 };
 use crate::Vector;
 use crate::boundaries::{PrescribedDisplacement, SpaceTime};
@@ -35,6 +35,7 @@ pub(super) fn check<const D: usize>(
         check_index(|| "a mirror: particle".into(), *particle as usize, count)?;
         check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
     }
+    rigid::check(&input.rigid, &input.particles)?;
     let planes = input.mirrors.iter().map(|(mirror, _)| mirror.axis);
     let edges = if settings.form == Form::Strong { 0..D } else { 0..0 };
     let mut ended = planes.chain(edges);
@@ -144,10 +145,40 @@ fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalL
     );
     let dissipates = settings.dissipation.is_viscous() || settings.dissipation.damping > 0.0;
     let (implicit, patched, mirrors) = (Part::Implicit, Part::PatchConsistent, Part::Mirrors);
+    let has_rigid = !input.rigid.is_empty();
+    let own = |a: &u32| *a as usize;
+    let all_rigid = || input.rigid.iter().flat_map(|body| body.particles.iter().map(own));
+    let is_displaced = all_rigid().any(|a| input.displacement[a].amax() > 0.0);
+    let is_held = has_rigid && {
+        let mut is_rigid = vec![false; input.particles.len()];
+        all_rigid().for_each(|a| is_rigid[a] = true);
+        input.prescribed.iter().any(|it| it.particles.iter().any(|a| is_rigid[own(a)]))
+    };
     let strong = "the strong form";
     let no_energy = "it has no energy of which forces are derivatives; use `form = \"adjoint\"`";
     let faults = [
         (is_strong && is_solved_for, (implicit, strong, no_energy)),
+        (
+            has_rigid && is_solved_for,
+            (
+                Part::Rigid,
+                "implicit steps and statics",
+                "it is moved by kicks; use `kick_drift_kick`",
+            ),
+        ),
+        (
+            has_rigid && is_strong,
+            (Part::Rigid, strong, "it has an edge of its own there; use `form = \"adjoint\"`"),
+        ),
+        (
+            has_rigid && !input.mirrors.is_empty(),
+            (Part::Rigid, "mirror images", "half of it moves as half a body; model all of it"),
+        ),
+        (is_displaced, (Part::Rigid, "an initial displacement", "place it where it starts")),
+        (
+            is_held,
+            (Part::Rigid, "a velocity of a part of it", "what is prescribed moves all of it"),
+        ),
         (
             is_strong && is_patched,
             (patched, strong, "its ghosts make constant stress consistent; leave them out"),

@@ -118,6 +118,14 @@ pub enum TotalLagrangianError {
         /// Its reference position in m.
         position: Vec<f64>,
     },
+    /// A rigid body of which no motion is known.
+    #[error("the rigid body `{name}` {fault}")]
+    Rigid {
+        /// Its name.
+        name: String,
+        /// What is wrong with it, and what to do.
+        fault: &'static str,
+    },
     /// A coefficient that is negative or no number.
     #[error("{what} must be at least 0 and finite, got {value}")]
     Coefficient {
@@ -143,6 +151,8 @@ pub enum Part {
     Initial,
     /// Viscosity and damping.
     Dissipation,
+    /// Bodies that are rigid.
+    Rigid,
 }
 
 impl fmt::Display for Part {
@@ -154,6 +164,7 @@ impl fmt::Display for Part {
             Self::Pressures => "a follower pressure",
             Self::Initial => "initial values",
             Self::Dissipation => "viscosity and damping",
+            Self::Rigid => "a rigid body",
         })
     }
 }

@@ -75,6 +75,8 @@ impl<const D: usize> TotalLagrangian<D> {
         push(self.tractions(time), particle, own.velocity, &mut traction);
         push(self.pressures(time), particle, own.velocity, &mut pressure);
         prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
+        let moved = [at.displacement, velocity];
+        self.rigid.accelerate(time, solid, moved, own.velocity, &mut boundary);
         totals.drive(TRACTION, &traction);
         totals.drive(PRESSURE, &pressure);
         totals.drive(BOUNDARY_MOTION, &boundary);
@@ -94,6 +96,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let (own, tail) = ColumnsMut::<D>::of(state, count);
         parallel::copy(own.kick, self.columns(rate).velocity);
         self.prescribed.iter().for_each(|entry| own.kick[entry.particle][entry.component] = 0.0);
+        self.rigid.project(solid, own.displacement, own.kick);
         if self.matrices.edges().is_some() {
             let data = self.displacement[count..].iter();
             let known = &mut LEDGER.behind_mut(D, tail)[FIGURES..];

@@ -92,7 +92,9 @@ impl<const D: usize> TotalLagrangian<D> {
             Made::hourglass_energy => values.push(self.hourglass_energy(a) / volume),
             Made::convexity => {
                 let [least, _] = mixture.wave_moduli(gradient);
-                values.push(least / solid.moduli_at_rest(a)[0]);
+                let at_rest = solid.moduli_at_rest(a)[0];
+                // What is rigid has no waves.
+                values.push(if at_rest > 0.0 { least / at_rest } else { 1.0 });
             }
             Made::neighbors => values.push(self.matrices.neighbors(a) as f64),
             Made::volume => values.push(volume),

@@ -34,6 +34,7 @@ impl<const D: usize> TotalLagrangian<D> {
             return Health { largest_speed: 0.0, ..health };
         }
         limits.push(self.stable.limit(stiffening, thickening, self.solid.is_linear()));
+        limits.extend(self.rigid.limit(&self.solid, at.displacement, at.velocity));
         health
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix};
 use piola_formulas::Scalar;
-use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse, Reduced};
+use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse, LameConstants, Reduced};
 use piola_formulas::tensor;
 
 use crate::Tensor;
@@ -15,6 +15,14 @@ pub struct Material<const D: usize> {
     pub density: f64,
     /// Strain energy, with what holds the missing dimensions.
     pub law: Reduced<D>,
+}
+
+impl<const D: usize> Material<D> {
+    /// What bodies that move as one are made of: nothing resists in it, as nothing deforms it.
+    pub fn rigid(density: f64) -> Self {
+        let law = HyperelasticLaw::linear_elastic(LameConstants { lambda: 0.0, mu: 0.0 });
+        Self { density, law: Reduced::without_strain(law) }
+    }
 }
 
 /// What a particle is made of: shares of materials, which add up to one. Where bodies are joined a

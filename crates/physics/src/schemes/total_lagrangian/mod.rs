@@ -18,6 +18,8 @@
 //! On a row or a box of particles there is the *strong* form of Elastodynamics, `rho dv/dt = X P`, with
 //! ghosts that carry displacements and stresses on beyond the edges, theory (64); it has no energy E.
 //!
+//! Bodies may be rigid: what acts on their particles moves them as one.
+//!
 //! In statics the potential is stationary, and v is the rate of u by the load factor. Implicit steps
 //! are statics with inertia. The two papers are presets: what each of them chooses of the parts.
 
@@ -35,6 +37,7 @@ mod loads;
 mod material;
 mod matrices;
 mod newmark;
+mod rigid;
 mod scheme;
 mod settings;
 mod solid;
@@ -49,6 +52,7 @@ pub use build::TotalLagrangianInput;
 pub use discrete::Discrete;
 pub use error::{Part, TotalLagrangianError};
 pub use material::{Material, Mixture};
+pub use rigid::RigidBody;
 pub use scheme::{DUAL_SUPPORT, ELASTODYNAMICS, TOTAL_LAGRANGIAN};
 pub use settings::{Configuration, Dissipation, Form, Gradients, Motion, Settings, Tractions};
 pub use solid::Solid;
@@ -89,6 +93,7 @@ pub struct TotalLagrangian<const D: usize> {
     jumped: Option<[f64; 2]>,
     loads: Loads<D>,
     prescribed: PrescribedComponents,
+    rigid: rigid::RigidBodies<D>,
     /// Whether gradients and forces are those of the displacements at hand.
     is_evaluated: bool,
     /// Whether there are matrices at the places of the moment.

@@ -58,6 +58,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let (own, _) = ColumnsMut::<D>::of(state, self.solid.len());
         self.prescribed.impose(time, own.velocity);
+        self.rigid.constrain(time, &self.solid, own.displacement, own.velocity);
     }
 
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
@@ -155,9 +156,9 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         self.matrices.neighborhood(index)
     }
 
-    /// The strong form keeps data of its edges in the state, which have no rates.
+    /// The strong form keeps data of its edges in the state, which have no rates; rigid bodies turn.
     fn has_rates(&self) -> bool {
-        self.matrices.edges().is_none()
+        self.matrices.edges().is_none() && self.rigid.is_empty()
     }
 
     /// What is in equilibrium has no other state to be set to.
@@ -230,6 +231,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         self.matrices.memory()
             + self.solid.memory()
             + self.strained.memory()
+            + self.rigid.memory()
             + self.statics.as_ref().map_or(0, |statics| statics.memory())
             + vectors.into_iter().map(|it| size_of_val(it.as_slice())).sum::<usize>()
             + size_of_val(self.gradient_rate.as_slice())

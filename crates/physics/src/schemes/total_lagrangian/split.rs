@@ -1,8 +1,9 @@
 //! The formulation as kick-drift-kick integrators see it: central differences.
 
 use super::fields::ColumnsMut;
-use super::{LEDGER, TotalLagrangian};
+use super::{BOUNDARY_MOTION, LEDGER, TotalLagrangian};
 use crate::schemes::SplitScheme;
+use crate::schemes::ledger::{Total, Totals};
 use crate::schemes::split::advance;
 
 impl<const D: usize> SplitScheme for TotalLagrangian<D> {
@@ -14,8 +15,19 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
     }
 
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
-        let (own, _) = ColumnsMut::<D>::of(state, self.solid.len());
-        advance(own.displacement, own.velocity, step);
+        let (own, tail) = ColumnsMut::<D>::of(state, self.solid.len());
+        self.rigid.advance(step, own.displacement, own.velocity);
+        if !self.rigid.is_empty() {
+            let (mut totals, mut boundary) = (Totals::default(), Total::default());
+            self.rigid.drift(
+                [time, step],
+                &self.solid,
+                [own.displacement, own.velocity],
+                &mut boundary,
+            );
+            totals.book(BOUNDARY_MOTION, &boundary);
+            LEDGER.add(D, &totals, tail);
+        }
         // Kicks leave a prescribed velocity alone; it moves its particle by its value half way.
         for entry in self.prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);

@@ -107,6 +107,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let is_free = |a: usize, i: usize| is_free[a * D + i];
         let (square, fastest) = fastest_mode(&solid.mass, is_free, |direction, force| {
             field[..count].copy_from_slice(direction);
+            self.rigid.project(&solid, &still, &mut field[..count]);
             match &mut self.matrices {
                 Matrices::Adjoint(discrete) => {
                     let operator = &discrete.operator;
@@ -129,6 +130,11 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
             }
             force.copy_from_slice(&all[..count]);
+            if !self.rigid.is_empty() {
+                force.iter_mut().zip(&solid.mass).for_each(|(force, mass)| *force /= *mass);
+                self.rigid.project(&solid, &still, force);
+                force.iter_mut().zip(&solid.mass).for_each(|(force, mass)| *force *= *mass);
+            }
         });
         (SAFETY * square, fastest)
     }

@@ -15,22 +15,37 @@ pub(super) struct Joined {
     /// By id of the particle that stays: bodies with their volumes.
     parts: Vec<(u32, Vec<(u32, f64)>)>,
     /// Number of the group of joined bodies of each body.
-    pub group: Vec<u32>,
+    group: Vec<u32>,
+    /// Whether a body is rigid: it holds the particles that it shares, and is not seen by others.
+    is_rigid: Vec<bool>,
 }
 
 impl Joined {
     /// No bodies that are joined.
-    pub fn none<const D: usize>(particles: &Particles<D>) -> Self {
-        let bodies = particles.body.iter().max().map_or(0, |&body| body + 1);
-        Self { pairs: Vec::new(), parts: Vec::new(), group: (0..bodies).collect() }
+    pub fn none(is_rigid: Vec<bool>) -> Self {
+        let group = (0..is_rigid.len() as u32).collect();
+        Self { pairs: Vec::new(), parts: Vec::new(), group, is_rigid }
+    }
+
+    /// The number of the group that a particle sees.
+    pub fn groups<const D: usize>(&self, particles: &Particles<D>) -> Vec<u32> {
+        let of = |a: usize| {
+            let (body, id) = (particles.body[a], particles.id[a]);
+            let shared = self.parts.iter().find(|(known, _)| *known == id);
+            let mut bodies = shared.into_iter().flat_map(|(_, parts)| parts.iter().map(|it| it.0));
+            let deformed = bodies.find(|&body| !self.is_rigid[body as usize]);
+            self.group[deformed.unwrap_or(body) as usize]
+        };
+        (0..particles.len()).map(of).collect()
     }
 
     /// Those whose particles share places.
     pub fn find<const D: usize>(
         particles: &Particles<D>,
         domain: &Domain<D>,
+        is_rigid: Vec<bool>,
     ) -> Result<Self, NeighborError> {
-        let mut joined = Self::none(particles);
+        let mut joined = Self::none(is_rigid);
         if joined.group.len() < 2 {
             return Ok(joined);
         }
@@ -49,6 +64,11 @@ impl Joined {
                     is_gone[b as usize] = true;
                     joined.pairs.push((a as u32, b));
                     parts.push((other, particles.volume[b as usize]));
+                    if joined.is_rigid[other as usize]
+                        || joined.is_rigid[particles.body[a] as usize]
+                    {
+                        continue;
+                    }
                     let groups = [particles.body[a], other].map(|body| joined.group[body as usize]);
                     let (low, high) = (groups[0].min(groups[1]), groups[0].max(groups[1]));
                     joined.group.iter_mut().filter(|it| **it == high).for_each(|it| *it = low);
@@ -59,6 +79,12 @@ impl Joined {
             }
         }
         Ok(joined)
+    }
+
+    /// Whether a particle that stays, by its id, has a part of a body.
+    pub fn has_part_of(&self, id: u32, body: u32) -> bool {
+        let parts = self.parts.iter().find(|(known, _)| *known == id);
+        parts.is_some_and(|(_, parts)| parts.iter().any(|(own, _)| *own == body))
     }
 
     /// Makes one particle of those at one place, with the sum of their volumes and areas.

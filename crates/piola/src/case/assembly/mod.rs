@@ -288,6 +288,7 @@ fn materials(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material> {
             model::Material::Linear { .. }
             | model::Material::WeaklyCompressible { .. }
             | model::Material::Hyperelastic { .. }
+            | model::Material::Rigid { .. }
             | model::Material::Hypoelastic(_) => VolumetricLaw::linear(bulk_modulus),
             model::Material::GammaLaw { gamma, .. } => {
                 VolumetricLaw::gamma_law(bulk_modulus, gamma)

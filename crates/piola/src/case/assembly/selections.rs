@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::bodies::vector;
+use super::joined::Joined;
 use crate::Vector;
 use crate::boundaries::{
     History, PrescribedDisplacement, PrescribedFaces, PrescribedVelocity, Scaled, SpaceTime, Tie,
@@ -13,6 +14,7 @@ use crate::case::model::{self, Case};
 use crate::case::source::Located;
 use crate::case::suggest::suggestion;
 use crate::geometry::{CloudPoints, Particles, Region};
+use crate::schemes::total_lagrangian::RigidBody;
 
 /// What a region selects.
 pub(super) struct Selection {
@@ -177,7 +179,10 @@ pub(super) fn prescribed<const D: usize>(
     problems: &mut Vec<Problem>,
 ) -> Vec<PrescribedVelocity> {
     let mut conditions = Vec::new();
-    for boundary in &case.boundaries {
+    let moves_rigid = |boundary: &&model::Boundary| {
+        boundary.body.as_ref().is_some_and(|body| is_rigid(case, body.value))
+    };
+    for boundary in case.boundaries.iter().filter(|boundary| !moves_rigid(boundary)) {
         let selected = select(case, particles, &boundary.region, boundary.body.as_ref(), problems);
         for (component, value) in boundary.velocity.iter().enumerate() {
             if let Some(value) = value {
@@ -191,6 +196,46 @@ pub(super) fn prescribed<const D: usize>(
         }
     }
     conditions
+}
+
+pub(super) fn is_rigid(case: &Case, body: usize) -> bool {
+    matches!(case.bodies[body].material.value, model::Material::Rigid { .. })
+}
+
+/// The rigid bodies, with what boundaries prescribe of them.
+pub(super) fn rigid<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    joined: &Joined,
+) -> Vec<RigidBody<D>> {
+    let mut all = Vec::new();
+    for (number, body) in case.bodies.iter().enumerate().filter(|(k, _)| is_rigid(case, *k)) {
+        let is_of = |a: &u32| {
+            let (own, id) = (particles.body[*a as usize], particles.id[*a as usize]);
+            own as usize == number || joined.has_part_of(id, number as u32)
+        };
+        let mut rigid = RigidBody {
+            name: body.name.value.clone(),
+            particles: (0..particles.len() as u32).filter(is_of).collect(),
+            ..RigidBody::default()
+        };
+        let is_its =
+            |it: &&model::Boundary| it.body.as_ref().map(|body| body.value) == Some(number);
+        for boundary in case.boundaries.iter().filter(is_its) {
+            let value = |value: &Expression| over_time(value, boundary.history.as_ref());
+            let given = |values: &[Option<Expression>]| -> Vec<_> {
+                let values = values.iter().enumerate();
+                values.filter_map(|(axis, it)| Some((axis, value(it.as_ref()?)))).collect()
+            };
+            rigid.velocity.extend(given(&boundary.velocity));
+            if let Some(turning) = &boundary.turning {
+                rigid.angular_velocity.extend(given(&turning.angular_velocity));
+                rigid.pivot = turning.pivot.as_deref().map(vector).or(rigid.pivot);
+            }
+        }
+        all.push(rigid);
+    }
+    all
 }
 
 /// What holds a body in statics.

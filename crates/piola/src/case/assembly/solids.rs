@@ -12,6 +12,7 @@ use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, GradientKind, Preset, SupportSize};
+use crate::case::source::Place;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
 use crate::operators::{
@@ -47,20 +48,18 @@ pub(super) fn build<const D: usize>(
     let refuse = |error: NeighborError| {
         vec![case.problem_at(place, error.to_string(), "with these supports", None)]
     };
+    let are_rigid = (0..case.bodies.len()).map(|body| selections::is_rigid(case, body)).collect();
     let joined = match settings.joined {
-        true => Joined::find(&particles, &domain).map_err(refuse)?,
-        false => Joined::none(&particles),
+        true => Joined::find(&particles, &domain, are_rigid).map_err(refuse)?,
+        false => Joined::none(are_rigid),
     };
     joined.merge(&mut particles, areas.as_mut());
-    let groups = |particles: &Particles<D>| -> Vec<u32> {
-        particles.body.iter().map(|&body| joined.group[body as usize]).collect()
-    };
     let radii = |particles: &Particles<D>| match *settings.support {
         SupportSize::Spacings(ratio) => {
             Ok(particles.spacing.iter().map(|spacing| ratio * spacing).collect::<Vec<_>>())
         }
         SupportSize::Neighbors(count) => {
-            nearest_radii(particles, &groups(particles), count, &domain)
+            nearest_radii(particles, &joined.groups(particles), count, &domain)
         }
     };
     let widest = radii(&particles).map_err(refuse)?.into_iter().fold(0.0, f64::max);
@@ -71,7 +70,7 @@ pub(super) fn build<const D: usize>(
     }
     let radius = radii(&particles).map_err(refuse)?;
     let (mixtures, mixture) = joined.mixtures(&particles, &materials);
-    let group = groups(&particles);
+    let group = joined.groups(&particles);
     let (images, radii) = (&[], &*radius);
     let cover =
         Cover { particles: &particles, group: &group, images, kernel, radius: radii, domain };
@@ -96,6 +95,7 @@ pub(super) fn build<const D: usize>(
         let help = Some("use `support`".to_owned());
         problems.push(case.problem_at(place, message, "not with a mirror", help));
     }
+    let rigid = selections::rigid(case, &particles, &joined);
     let surface = LoadedSurface::new(case, &particles, &domain, trace.as_ref(), known);
     let tractions = surface.tractions(&mut problems);
     let pressures = surface.pressures(&mut problems);
@@ -136,6 +136,7 @@ pub(super) fn build<const D: usize>(
         pressures,
         prescribed,
         mirrors,
+        rigid,
         motion,
     });
     let scheme = scheme.map_err(|error| vec![refused(case, settings, &error)])?;
@@ -199,6 +200,7 @@ fn refused(
         Part::Pressures => (settings.form.place, "this form"),
         Part::Initial => (case.bodies[0].name.place, "initial values of a body"),
         Part::Dissipation => (settings.dissipation.place, "with this integrator"),
+        Part::Rigid => (rigid_body(case, None), "this body"),
     };
     let (place, label) = match error {
         TotalLagrangianError::Combination { part, .. } => of_part(*part),
@@ -211,6 +213,7 @@ fn refused(
         TotalLagrangianError::Input(InputError::Velocity { .. }) => {
             (case.bodies[0].name.place, "initial values of a body")
         }
+        TotalLagrangianError::Rigid { name, .. } => (rigid_body(case, Some(name)), "this body"),
         TotalLagrangianError::Statics(StaticsError::Free { .. }) => {
             (integrator, "statics needs a body that is held")
         }
@@ -226,6 +229,15 @@ fn refused(
         error => error.to_string(),
     };
     case.problem_at(place, message, label, None)
+}
+
+/// Where a rigid body is described: that of a name, or the first.
+fn rigid_body(case: &Case, name: Option<&String>) -> Place {
+    let is_it = |body: &&model::Body| match name {
+        Some(name) => *body.name == *name,
+        None => matches!(body.material.value, model::Material::Rigid { .. }),
+    };
+    case.bodies.iter().find(is_it).map_or(case.scheme.place, |body| body.material.place)
 }
 
 /// The boundary as centres of cells see it, where a body has such particles.
@@ -320,8 +332,13 @@ fn materials<const D: usize>(case: &Case, problems: &mut Vec<Problem>) -> Vec<Ma
     let mut materials = Vec::new();
     for body in &case.bodies {
         // The reader of cases has refused others for this scheme.
-        let model::Material::Hyperelastic { density, law, plane } = body.material.value else {
-            continue;
+        let (density, law, plane) = match body.material.value {
+            model::Material::Hyperelastic { density, law, plane } => (density, law, plane),
+            model::Material::Rigid { density } => {
+                materials.push(Material::rigid(density));
+                continue;
+            }
+            _ => continue,
         };
         match Reduced::new(law, plane.stress_state(case.dimension)) {
             Ok(law) => materials.push(Material { density, law }),

@@ -201,6 +201,10 @@ impl Reader<'_, '_> {
         if record.kind == "hypoelastic" {
             return self.hypoelastic(record);
         }
+        if record.kind == "rigid" {
+            let material = Material::Rigid { density: number(record, "density")? };
+            return Some(Located::new(material, record.place));
+        }
         let stiffness = self.stiffness(record);
         let density = number(record, "density");
         let material = match record.kind {

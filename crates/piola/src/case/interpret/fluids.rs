@@ -3,7 +3,7 @@
 use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use super::*;
-use crate::case::model::{Body, Boundary, Material, TransportVelocity, Wall};
+use crate::case::model::{Body, Boundary, Material, Region, TransportVelocity, Wall};
 use crate::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
 };
@@ -113,7 +113,7 @@ impl Reader<'_, '_> {
         let is_elastic = self.names.current.preset().is_some();
         for body in bodies.iter().filter(|body| body.system == system) {
             let help = match (scheme, &body.material.value) {
-                (_, Material::Hyperelastic { .. }) if is_elastic => None,
+                (_, Material::Hyperelastic { .. } | Material::Rigid { .. }) if is_elastic => None,
                 (
                     "transport_velocity",
                     Material::WeaklyCompressible { .. } | Material::Hypoelastic(_),
@@ -124,7 +124,7 @@ impl Reader<'_, '_> {
                     Some("use `weakly_compressible` or `hypoelastic`, for walls too".to_owned())
                 }
                 _ if is_elastic => {
-                    Some(format!("use one of {}", HyperelasticLaw::NAMES.join(", ")))
+                    Some(format!("use one of {}, rigid", HyperelasticLaw::NAMES.join(", ")))
                 }
                 _ => Some("use `linear` or `gamma_law`".to_owned()),
             };
@@ -153,6 +153,9 @@ impl Reader<'_, '_> {
                 );
             }
         }
+        if system.is_none() {
+            self.fits_rigid(bodies, boundaries);
+        }
         let is_of = |boundary: &&Boundary| {
             let body = boundary.body.as_ref().and_then(|body| bodies.get(body.value));
             body.and_then(|body| body.system) == system
@@ -166,6 +169,34 @@ impl Reader<'_, '_> {
                 let place = boundary.body.as_ref().map_or(boundary.name.place, |body| body.place);
                 self.report(Problem::new(place, message, "no wall"));
             }
+        }
+    }
+
+    /// Reports what a rigid body cannot do, and what others cannot.
+    fn fits_rigid(&mut self, bodies: &[Body], boundaries: &[Boundary]) {
+        let is_rigid = |body: &Body| matches!(body.material.value, Material::Rigid { .. });
+        for boundary in boundaries {
+            let of = boundary.body.as_ref().and_then(|body| bodies.get(body.value));
+            let problem = match (of, &boundary.turning) {
+                (Some(body), _) if is_rigid(body) => {
+                    if boundary.region.value == Region::All {
+                        continue;
+                    }
+                    let message = format!(
+                        "a rigid body moves as one, and this is a part of `{}`",
+                        *body.name
+                    );
+                    Problem::new(boundary.region.place, message, "a part of it")
+                        .help("select all of it with `where = { kind = \"all\" }`; `pivot` says which point the velocity is of")
+                }
+                (_, Some(turning)) => {
+                    let message = "only a rigid body has an angular velocity and a pivot";
+                    Problem::new(turning.place, message, "no rigid body")
+                        .help("name one with the key `body`, of the material `rigid`")
+                }
+                _ => continue,
+            };
+            self.report(problem);
         }
     }
 }

@@ -6,8 +6,8 @@ use super::*;
 use crate::boundaries::History;
 use crate::case::expression::Expression;
 use crate::case::model::{
-    Boundary, Correction, Dissipation, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Upwind,
-    Weights,
+    Boundary, Correction, Dissipation, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Turning,
+    Upwind, Weights,
 };
 use crate::output::Curve;
 
@@ -134,7 +134,8 @@ impl Reader<'_, '_> {
                 self.meaningless(record, key, "without the integrator `static`");
             }
         }
-        if !["velocity", "displacement", "roller", "tied"].iter().any(|key| record.has(key)) {
+        let keys = ["velocity", "angular_velocity", "displacement", "roller", "tied"];
+        if !keys.iter().any(|key| record.has(key)) {
             let (known, others) = match self.names.is_static {
                 true => ("displacement", ", or `roller`, or `tied`"),
                 false => ("velocity", ""),
@@ -163,6 +164,7 @@ impl Reader<'_, '_> {
             region: region?,
             history: self.history(record)?,
             velocity: expressions_per_axis(record, "velocity"),
+            turning: self.turning(record),
             mirror: mirror.filter(|mirror| mirror.value),
             displacement: expressions_per_axis(record, "displacement"),
             roller: match roller {
@@ -171,6 +173,27 @@ impl Reader<'_, '_> {
             },
             tied: self.tied(record)?,
         })
+    }
+
+    /// What a boundary of a rigid body says of its turning.
+    fn turning(&mut self, record: &Record) -> Option<Located<Turning>> {
+        let keys = ["angular_velocity", "pivot"];
+        if !keys.iter().any(|key| record.has(key)) {
+            return None;
+        }
+        let mut turning = Turning {
+            pivot: record.numbers("pivot").map(|point| point.value),
+            ..Turning::default()
+        };
+        if let Some(turn) = record.record("angular_velocity") {
+            turning.angular_velocity = AXES.map(|axis| turn.expression(axis));
+            for axis in AXES {
+                if self.dimension < if axis == "z" { 2 } else { 3 } {
+                    self.meaningless(turn, axis, &format!("in {}D", self.dimension));
+                }
+            }
+        }
+        Some(Located::new(turning, first_place(record, &keys)))
     }
 
     fn roller(&mut self, record: &Record) -> Option<Roller> {

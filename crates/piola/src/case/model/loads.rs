@@ -69,6 +69,8 @@ pub struct Boundary {
     /// Per component, the velocity in m/s as an expression of the reference position and time, or
     /// `None` where the particle is free.
     pub velocity: Vec<Option<Expression>>,
+    /// Of a rigid body, what is prescribed of its turning.
+    pub turning: Option<Located<Turning>>,
     /// Whether the body is continued by mirror images beyond the plane of the region.
     pub mirror: Option<Located<bool>>,
     /// In statics, per component, the displacement in m as an expression of the reference position
@@ -78,6 +80,16 @@ pub struct Boundary {
     pub roller: Option<Roller>,
     /// In statics, the components, from 0, that all particles have in common.
     pub tied: Vec<Located<usize>>,
+}
+
+/// What is prescribed of how a rigid body turns.
+#[derive(Clone, Debug, Default)]
+pub struct Turning {
+    /// The point that velocities are of, in m; the centre of mass if there is none.
+    pub pivot: Option<Vec<f64>>,
+    /// Per axis in space, the angular velocity in rad/s as an expression of time, or `None` where the
+    /// body is free.
+    pub angular_velocity: [Option<Expression>; 3],
 }
 
 /// A roller on a plane of any inclination.

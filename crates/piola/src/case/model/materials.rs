@@ -43,6 +43,11 @@ pub enum Material {
         /// What the directions that the case does not have do. Without meaning in 3D.
         plane: PlaneState,
     },
+    /// A body that moves as one.
+    Rigid {
+        /// Density in kg/m^3.
+        density: f64,
+    },
     /// A solid whose stress is integrated in time, CTVF (4).
     Hypoelastic(transport_velocity::Solid),
 }
@@ -58,13 +63,14 @@ impl Material {
             Self::Linear { density, .. }
             | Self::GammaLaw { density, .. }
             | Self::WeaklyCompressible { density, .. }
-            | Self::Hyperelastic { density, .. } => density,
+            | Self::Hyperelastic { density, .. }
+            | Self::Rigid { density } => density,
             Self::Hypoelastic(solid) => solid.state.density,
         }
     }
 
     /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions; of an elastic
-    /// solid that of small strains.
+    /// solid that of small strains, of a rigid one none.
     ///
     /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
     /// Upwind (6.31) solved for kappa, with gamma = 1 for the linear law.
@@ -75,6 +81,7 @@ impl Material {
             Self::WeaklyCompressible { density, stiffness, .. } => (density, 1.0, stiffness),
             Self::Hyperelastic { law, .. } => return law.small_strain().bulk_modulus(),
             Self::Hypoelastic(solid) => return solid.bulk_modulus(),
+            Self::Rigid { .. } => return f64::INFINITY,
         };
         match stiffness {
             Stiffness::BulkModulus(modulus) => modulus,

@@ -356,6 +356,7 @@ static MATERIAL: TaggedSpec = TaggedSpec {
         solids::NEO_HOOKEAN_LOGARITHMIC,
         solids::MOONEY_RIVLIN,
         solids::OGDEN,
+        solids::RIGID,
         plastic::HYPOELASTIC,
     ],
 };

@@ -216,6 +216,12 @@ const fn isotropic(name: &'static str, meaning: &'static str) -> KindSpec {
     KindSpec { name, meaning, dimensions: &[1, 2, 3], keys: ISOTROPIC }
 }
 
+pub(super) const RIGID: KindSpec = KindSpec {
+    name: "rigid",
+    meaning: "a body that moves as one, theory (83), with the scheme `total_lagrangian` and its presets; with `joined = true` flexible bodies are clamped to it where their particles share places",
+    dimensions: &[1, 2, 3],
+    keys: &[],
+};
 pub(super) const LINEAR_ELASTIC: KindSpec = isotropic(
     "linear_elastic",
     "Hooke's law of small strains, Dual-support (44); give `young_modulus` with `poisson_ratio`, `bulk_modulus` with `shear_modulus`, or `lame_lambda` with `shear_modulus`",
