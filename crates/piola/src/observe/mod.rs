@@ -3,6 +3,7 @@
 
 mod comparison;
 mod files;
+mod flow;
 mod frames;
 mod interpolation;
 mod memory;
@@ -15,6 +16,7 @@ mod tables;
 
 pub use comparison::{Deviation, Norm};
 pub use files::WrittenFiles;
+pub use flow::{Flux, Gauge};
 pub use frames::FrameWriter;
 pub use interpolation::Interpolated;
 pub use pictures::{PictureRequest, PictureWriter};

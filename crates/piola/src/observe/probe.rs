@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::comparison::Deviation;
+use super::flow::{Flux, Gauge};
 use super::interpolation::Interpolated;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
@@ -46,6 +47,26 @@ pub enum ProbeKind {
         /// Their indices in memory, at least one.
         particles: Vec<u32>,
     },
+    /// The mean of a field over a set of particles, with all its components.
+    Mean {
+        /// The field.
+        field: FieldDescription,
+        /// Their indices in memory, at least one.
+        particles: Vec<u32>,
+    },
+    /// The resultant of forces on a set of particles, and their moment about a point.
+    Force {
+        /// The field of the forces, in N.
+        field: FieldDescription,
+        /// The point in m, padded with zeros to three.
+        about: [f64; 3],
+        /// Their indices in memory, at least one.
+        particles: Vec<u32>,
+    },
+    /// How far a fluid reaches along a line.
+    Gauge(Gauge),
+    /// What goes through a plane.
+    Flux(Flux),
     /// Whole fields interpolated at one fixed point of space.
     Point(Interpolated),
     /// How far a field is from a function of place and time.
@@ -81,9 +102,20 @@ impl Probe {
             ProbeKind::Particle { fields, .. } | ProbeKind::Point(Interpolated { fields, .. }) => {
                 component_columns(&self.name, fields, dimension)
             }
-            ProbeKind::Sum { field, .. } => {
+            ProbeKind::Sum { field, .. } | ProbeKind::Mean { field, .. } => {
                 component_columns(&self.name, std::slice::from_ref(field), dimension)
             }
+            ProbeKind::Force { field, .. } => {
+                let mut columns =
+                    component_columns(&self.name, std::slice::from_ref(field), dimension);
+                let axes: &[&str] = [&[][..], &["z"], &["x", "y", "z"]][dimension - 1];
+                let moment =
+                    |axis: &&str| Column::new(format!("{}.moment.{axis}", self.name), "N m");
+                columns.extend(axes.iter().map(moment));
+                columns
+            }
+            ProbeKind::Gauge(_) => vec![Column::new(format!("{}.elevation", self.name), "m")],
+            ProbeKind::Flux(_) => vec![Column::new(format!("{}.flux", self.name), "kg/s")],
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS
                 .iter()
                 .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), *unit))
@@ -104,10 +136,14 @@ impl Probe {
             }
             ProbeKind::Extremum { particles, .. }
             | ProbeKind::Sum { particles, .. }
+            | ProbeKind::Mean { particles, .. }
+            | ProbeKind::Force { particles, .. }
+            | ProbeKind::Flux(Flux { particles, .. })
             | ProbeKind::Error(Deviation { particles, .. }) => {
                 *particles = particles.iter().filter_map(|&a| index(a)).collect();
             }
             ProbeKind::Point(point) => point.renumber(index),
+            ProbeKind::Gauge(gauge) => gauge.renumber(index),
             ProbeKind::Tangent { .. } => (),
         }
     }
@@ -133,14 +169,32 @@ impl Probe {
                     if *largest { values.reduce(f64::max) } else { values.reduce(f64::min) };
                 row.push(extremum.unwrap_or(f64::NAN));
             }
-            ProbeKind::Sum { field, particles } => {
-                scratch.clear();
-                now.read(field, particles, scratch);
-                let components = field.kind.components(now.scheme().dimension());
-                row.extend((0..components).map(|component| {
-                    scratch.iter().skip(component).step_by(components).sum::<f64>()
-                }));
+            ProbeKind::Sum { field, particles } => sum(field, particles, 1.0, now, scratch, row),
+            ProbeKind::Mean { field, particles } => {
+                sum(field, particles, 1.0 / particles.len() as f64, now, scratch, row);
             }
+            ProbeKind::Force { field, about, particles } => {
+                sum(field, particles, 1.0, now, scratch, row);
+                let dimension = now.scheme().dimension();
+                let places = now.values("position", particles);
+                let mut moment = [0.0; 3];
+                let padded = |vector: &[f64]| -> [f64; 3] {
+                    std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0))
+                };
+                for (place, force) in
+                    places.chunks_exact(dimension).zip(scratch.chunks_exact(dimension))
+                {
+                    let (place, force) = (padded(place), padded(force));
+                    let arm: [f64; 3] = std::array::from_fn(|i| place[i] - about[i]);
+                    for (i, sum) in moment.iter_mut().enumerate() {
+                        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                        *sum += arm[j] * force[k] - arm[k] * force[j];
+                    }
+                }
+                row.extend_from_slice([&[][..], &moment[2..], &moment][dimension - 1]);
+            }
+            ProbeKind::Gauge(gauge) => row.push(gauge.record(now)),
+            ProbeKind::Flux(flux) => row.push(flux.record(now)),
             ProbeKind::Point(point) => point.record(now, scratch, row),
             ProbeKind::Error(error) => row.push(error.record(now, scratch)),
             ProbeKind::Tangent { rule, step } => {
@@ -161,8 +215,28 @@ impl Probe {
     }
 }
 
+/// Appends the sums of a field over particles times a factor, by component; values are left in `scratch`.
+fn sum(
+    field: &FieldDescription,
+    particles: &[u32],
+    factor: f64,
+    now: &mut Observation,
+    scratch: &mut Vec<f64>,
+    row: &mut Vec<f64>,
+) {
+    scratch.clear();
+    now.read(field, particles, scratch);
+    let components = field.kind.components(now.scheme().dimension());
+    let of = |component: usize| scratch.iter().skip(component).step_by(components).sum::<f64>();
+    row.extend((0..components).map(|component| of(component) * factor));
+}
+
 /// Those of some particles that are in a box at a time.
-fn within([lower, upper]: &[Vec<f64>; 2], particles: &[u32], now: &mut Observation) -> Vec<u32> {
+pub(super) fn within(
+    [lower, upper]: &[Vec<f64>; 2],
+    particles: &[u32],
+    now: &mut Observation,
+) -> Vec<u32> {
     let places = now.values("position", particles);
     let is_inside = |place: &[f64]| {
         place.iter().zip(lower.iter().zip(upper)).all(|(x, (low, high))| low <= x && x <= high)

@@ -10,7 +10,7 @@ columns! {
     derived(0) transport_velocity: Vector, "m/s", "velocity uhat of the particle itself";
     kept kick: Vector, "m/s2", "acceleration for the next kick";
     derived(0) acceleration: Vector, "m/s2", "rate of the momentum velocity";
-    derived(0) force: Vector, "N", "total force; on a wall that of the fluid";
+    derived(0) force: Vector, "N", "total force; on a wall or a solid that of the fluid";
     evolved pressure: Scalar, "Pa", "pressure p, positive in compression";
     evolved density: Scalar, "kg/m3", "density rho as the scheme has it";
     derived(1) vorticity: Scalar, "1/s", "curl of u, in 3D its magnitude";

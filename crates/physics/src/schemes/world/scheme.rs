@@ -1,11 +1,31 @@
 //! A world as clock, observers and output see it: one formulation with the particles of all.
 
 use super::{MOST_STEPS, World, own_field};
+use crate::Vector;
 use crate::fields::{ABSENT, FieldDescription};
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::{
     CoupledScheme, Escape, Health, Particle, Phase, Scheme, SchemeDescription, StepLimit,
 };
+
+/// The fields of walls of the fluid that solids have in it too: what the fluid does to them.
+const BORNE: [&str; 4] = ["force", "pressure_force", "viscous_force", "contact_force"];
+
+impl<const D: usize> World<D> {
+    /// Forces that the fluid exerts on the particles of a solid, by a field of its walls.
+    fn borne(&self, solid: usize, field: &FieldDescription, state: &[f64]) -> Vec<Vector<D>> {
+        let solid = &self.solids[solid];
+        let mut borne = vec![Vector::zeros(); solid.mass.len()];
+        let (walls, mut forces) = (solid.interface.walls(), Vec::new());
+        if let Some(field) = own_field(&self.fluid, field) {
+            self.fluid.derive(&state[self.parts[0].state.clone()], &field, walls, &mut forces);
+        }
+        for (row, force) in forces.chunks_exact(D).enumerate() {
+            solid.interface.bear(row, &Vector::from_column_slice(force), &mut borne);
+        }
+        borne
+    }
+}
 
 impl<const D: usize> Scheme for World<D> {
     fn description(&self) -> &'static SchemeDescription {
@@ -133,10 +153,15 @@ impl<const D: usize> Scheme for World<D> {
     ) {
         let own: Vec<Option<FieldDescription>> =
             (0..self.parts.len()).map(|k| own_field(self.system(k), field)).collect();
+        let mut borne: Vec<Option<Vec<Vector<D>>>> = vec![None; self.parts.len()];
         for &particle in particles {
             let (k, local) = self.local(particle as usize);
             let (system, part) = (self.system(k), &state[self.parts[k].state.clone()]);
             match &own[k] {
+                None if BORNE.contains(&field.name) => {
+                    let all = borne[k].get_or_insert_with(|| self.borne(k - 1, field, state));
+                    values.extend_from_slice(all[local].as_slice());
+                }
                 None => {
                     let components = field.kind.components(D);
                     values.extend(std::iter::repeat_n(ABSENT, components));

@@ -5,12 +5,13 @@ use piola_formulas::kernels::Kernel;
 use super::bodies::vector;
 use super::selections::{function, select};
 use crate::Vector;
+use crate::boundaries::padded;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::case::source::Located;
 use crate::fields::FieldDescription;
 use crate::geometry::Particles;
-use crate::observe::{Deviation, Interpolated, Line, Probe, ProbeKind};
+use crate::observe::{Deviation, Flux, Gauge, Interpolated, Line, Probe, ProbeKind};
 use crate::schemes::ImplicitRule;
 use crate::time::Schedule;
 
@@ -35,6 +36,32 @@ pub(super) fn probes<const D: usize>(
                 field: field.value,
                 particles: select(case, particles, region, body, problems),
             },
+            model::ProbeKind::Mean { field, region } => ProbeKind::Mean {
+                field: field.value,
+                particles: select(case, particles, region, body, problems),
+            },
+            model::ProbeKind::Force { field, about, region } => ProbeKind::Force {
+                field: field.value,
+                about: padded(&vector::<D>(about)),
+                particles: select(case, particles, region, body, problems),
+            },
+            model::ProbeKind::Gauge { from, to } => {
+                let (kernel, ratio) = kernel_of(case);
+                let of_body = of_body(particles, body);
+                ProbeKind::Gauge(Gauge {
+                    ends: [from.value.clone(), to.value.clone()],
+                    kernel,
+                    smoothing_length: ratio * largest_spacing(particles),
+                    particles: of_body.map(|a| (a, particles.volume[a as usize])).collect(),
+                })
+            }
+            model::ProbeKind::Flux { point, normal, inside } => ProbeKind::Flux(Flux {
+                point: point.clone(),
+                normal: normal.clone(),
+                reach: 2.0 * largest_spacing(particles),
+                inside: inside.clone(),
+                particles: of_body(particles, body).collect(),
+            }),
             model::ProbeKind::Point { at, fields } => {
                 let places = vec![at.value.clone()];
                 ProbeKind::Point(interpolated(case, particles, body, places, fields))
@@ -95,9 +122,8 @@ fn nearest<const D: usize>(
     body: Option<&Located<usize>>,
     at: &Vector<D>,
 ) -> Option<usize> {
-    let of_body = |a: &usize| body.is_none_or(|body| particles.body[*a] as usize == body.value);
     let distance = |a: usize| (particles.position[a] - at).norm_squared();
-    let all = (0..particles.len()).filter(of_body);
+    let all = of_body(particles, body).map(|a| a as usize);
     all.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
 }
 
@@ -147,9 +173,6 @@ fn interpolated<const D: usize>(
     fields: &[Located<FieldDescription>],
 ) -> Interpolated {
     let (kernel, ratio) = kernel_of(case);
-    let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
-    let of_body =
-        |a: &u32| body.is_none_or(|body| particles.body[*a as usize] as usize == body.value);
     let period = |ends: &Option<Located<[f64; 2]>>| {
         ends.as_ref().map_or(f64::INFINITY, |ends| ends.value[1] - ends.value[0])
     };
@@ -157,10 +180,25 @@ fn interpolated<const D: usize>(
         places,
         fields: fields.iter().map(|field| field.value).collect(),
         kernel,
-        smoothing_length: ratio * spacing,
+        smoothing_length: ratio * largest_spacing(particles),
         periods: case.domain.periodic.iter().map(period).collect(),
-        particles: (0..particles.len() as u32).filter(of_body).collect(),
+        particles: of_body(particles, body).collect(),
     }
+}
+
+/// The particles of a body, or of all.
+fn of_body<const D: usize>(
+    particles: &Particles<D>,
+    body: Option<&Located<usize>>,
+) -> impl Iterator<Item = u32> {
+    let body = body.map(|body| body.value);
+    let is_its =
+        move |a: &u32| body.is_none_or(|body| particles.body[*a as usize] as usize == body);
+    (0..particles.len() as u32).filter(is_its)
+}
+
+fn largest_spacing<const D: usize>(particles: &Particles<D>) -> f64 {
+    particles.spacing.iter().copied().fold(0.0, f64::max)
 }
 
 /// The kernel of the scheme, and its smoothing length in spacings, for points between particles.

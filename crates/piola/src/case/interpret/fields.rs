@@ -132,35 +132,36 @@ impl Reader<'_, '_> {
             let help = suggestion(name, names.chain(["energy", "momentum", "step", "run"]));
             return self.refuse(Problem::new(text.place, message, "unknown probe").help(help));
         };
-        match &probe.kind {
-            ProbeKind::Extremum { .. } | ProbeKind::Error { .. } => {
-                let own = match &probe.kind {
-                    ProbeKind::Extremum { field, .. } => field.name(self.dimension),
-                    _ => "error".to_owned(),
-                };
-                if own == column {
-                    return Some(());
-                }
-                let message = format!("the probe `{name}` does not record `{column}`");
-                let problem = Problem::new(text.place, message, "not recorded");
-                self.refuse(problem.help(format!("its column is `{name}.{own}`")))
-            }
-            ProbeKind::Tangent { .. } => {
-                let known = TANGENT_COLUMNS.map(|(own, _)| own);
-                if known.contains(&column) {
-                    return Some(());
-                }
-                let message = format!("the probe `{name}` does not record `{column}`");
-                let problem = Problem::new(text.place, message, "not recorded");
-                self.refuse(problem.help(suggestion(column, known)))
-            }
+        let names = match &probe.kind {
             ProbeKind::Particle { fields, .. }
             | ProbeKind::Point { fields, .. }
-            | ProbeKind::Line { fields, .. } => self.whole_column(text, name, column, fields),
-            ProbeKind::Sum { field, .. } => {
-                self.whole_column(text, name, column, std::slice::from_ref(field))
+            | ProbeKind::Line { fields, .. } => {
+                return self.whole_column(text, name, column, fields);
             }
+            ProbeKind::Force { .. } if column.starts_with("moment") => {
+                let axes = [&[][..], &["z"], &["x", "y", "z"]][self.dimension - 1];
+                axes.iter().map(|axis| format!("moment.{axis}")).collect()
+            }
+            ProbeKind::Sum { field, .. }
+            | ProbeKind::Mean { field, .. }
+            | ProbeKind::Force { field, .. } => {
+                return self.whole_column(text, name, column, std::slice::from_ref(field));
+            }
+            ProbeKind::Extremum { field, .. } => vec![field.name(self.dimension)],
+            ProbeKind::Error { .. } => vec!["error".to_owned()],
+            ProbeKind::Gauge { .. } => vec!["elevation".to_owned()],
+            ProbeKind::Flux { .. } => vec!["flux".to_owned()],
+            ProbeKind::Tangent { .. } => TANGENT_COLUMNS.map(|(own, _)| own.to_owned()).to_vec(),
+        };
+        if names.iter().any(|own| own == column) {
+            return Some(());
         }
+        let message = format!("the probe `{name}` does not record `{column}`");
+        let problem = Problem::new(text.place, message, "not recorded");
+        self.refuse(problem.help(match &names[..] {
+            [own] => format!("its column is `{name}.{own}`"),
+            _ => suggestion(column, names.iter().map(String::as_str)),
+        }))
     }
 
     /// Checks a column of a probe that records whole fields.

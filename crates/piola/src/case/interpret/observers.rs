@@ -4,6 +4,7 @@ use super::*;
 use crate::case::model::{
     Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind, Quantity,
 };
+use crate::case::suggest::one_of;
 
 use crate::case::expression::Expression;
 use crate::fields::{Component, FieldDescription, FieldKind, FieldSelector};
@@ -27,11 +28,36 @@ impl Reader<'_, '_> {
                 ProbeKind::Point { fields: self.whole_fields(record)?, at: record.numbers("at")? }
             }
             "line" => self.line(record)?,
-            "sum" => {
+            "sum" | "mean" => {
                 let name = record.text("field")?;
                 let field = Located::new(self.field(&name, name.place)?, name.place);
-                let region = record.record("where").and_then(|region| self.region(region));
-                ProbeKind::Sum { field, region: region? }
+                let region = record.record("where").and_then(|region| self.region(region))?;
+                match record.kind {
+                    "sum" => ProbeKind::Sum { field, region },
+                    _ => ProbeKind::Mean { field, region },
+                }
+            }
+            "force" => {
+                // A solid in a fluid has the forces that the fluid shows of its walls.
+                let current = self.names.current.clone();
+                if !self.names.systems.is_empty() {
+                    self.enter_all();
+                }
+                let force = self.force(record);
+                self.names.current = current;
+                force?
+            }
+            "gauge" => {
+                self.is_of_one_body(record);
+                let (from, to) = (record.numbers("from")?, record.numbers("to")?);
+                self.has_direction(record, ProbeKind::Gauge { from, to })?
+            }
+            "flux" => {
+                self.is_of_one_body(record);
+                let normal = self.unit(record, "normal");
+                let point = record.numbers("point")?.value;
+                let inside = self.box_of(record);
+                ProbeKind::Flux { point, normal: normal?, inside: inside? }
             }
             "tangent" => ProbeKind::Tangent { step: record.number("step")?.value },
             "error" => {
@@ -148,6 +174,39 @@ impl Reader<'_, '_> {
             points: record.whole::<usize>("points")?.value,
             times: record.has("times").then(|| times.collect()),
         };
+        self.has_direction(record, line)
+    }
+
+    /// The resultant of a field of forces.
+    fn force(&mut self, record: &Record) -> Option<ProbeKind> {
+        let name = record.text("field")?;
+        let field = Located::new(self.field(&name, name.place)?, name.place);
+        let region = record.record("where").and_then(|region| self.region(region))?;
+        if (field.kind, field.unit) != (FieldKind::Vector, "N") {
+            let message = format!("`{}` is no force: it has the unit {}", field.name, field.unit);
+            let known = self.fields();
+            let forces = known.iter().filter(|it| (it.kind, it.unit) == (FieldKind::Vector, "N"));
+            let help = format!("expected {}", one_of(forces.map(|field| field.name)));
+            return self.refuse(Problem::new(field.place, message, "no force").help(help));
+        }
+        let about = record.numbers("about").map(|about| about.value);
+        let about = about.unwrap_or_else(|| vec![0.0; self.dimension]);
+        Some(ProbeKind::Force { field, about, region })
+    }
+
+    /// Reports a probe of a fluid that looks at walls too.
+    fn is_of_one_body(&mut self, record: &Record) {
+        if !record.has("body") && self.names.bodies.len() > 1 {
+            let message =
+                format!("a {} needs the key `body` where there are several bodies", record.kind);
+            let names = self.names.bodies.iter().map(String::as_str);
+            let problem = Problem::new(record.place, message, "`body` is missing");
+            self.report(problem.help(format!("name the fluid, one of {}", one_of(names))));
+        }
+    }
+
+    /// A probe along a line, unless it is a point.
+    fn has_direction(&mut self, record: &Record, line: ProbeKind) -> Option<ProbeKind> {
         let length = line.length().unwrap_or_default();
         if length.is_normal() {
             return Some(line);

@@ -45,6 +45,38 @@ pub enum ProbeKind {
         /// The particles.
         region: Located<Region>,
     },
+    /// The mean over a selection.
+    Mean {
+        /// A field, with all its components.
+        field: Located<FieldDescription>,
+        /// The particles.
+        region: Located<Region>,
+    },
+    /// The resultant of forces on a selection, and their moment.
+    Force {
+        /// The field of the forces.
+        field: Located<FieldDescription>,
+        /// The point that the moment is about, in m.
+        about: Vec<f64>,
+        /// The particles.
+        region: Located<Region>,
+    },
+    /// How far a fluid reaches along a line.
+    Gauge {
+        /// Where the line starts, in m.
+        from: Located<Vec<f64>>,
+        /// Where it ends, in m.
+        to: Located<Vec<f64>>,
+    },
+    /// What goes through a plane.
+    Flux {
+        /// A point of the plane in m.
+        point: Vec<f64>,
+        /// Its unit normal.
+        normal: Vec<f64>,
+        /// Corners in m of a box outside of which nothing counts.
+        inside: Option<[Vec<f64>; 2]>,
+    },
     /// Fields interpolated at a fixed point.
     Point {
         /// The point in m.
@@ -84,9 +116,9 @@ pub enum ProbeKind {
 }
 
 impl ProbeKind {
-    /// The length of a line in m; of other probes none.
+    /// The length of a line or a gauge in m; of other probes none.
     pub fn length(&self) -> Option<f64> {
-        let Self::Line { from, to, .. } = self else { return None };
+        let (Self::Line { from, to, .. } | Self::Gauge { from, to }) = self else { return None };
         let squares = from.iter().zip(&to.value).map(|(from, to)| (to - from).powi(2));
         Some(squares.sum::<f64>().sqrt())
     }

@@ -78,6 +78,93 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
             ],
         },
         KindSpec {
+            name: "mean",
+            meaning: "the mean of a field over a selection, for example of `pressure` over a patch of a wall, as a sensor has it",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key("field", Kind::Text, "", Required, "a field, with all its components"),
+                WHERE,
+            ],
+        },
+        KindSpec {
+            name: "force",
+            meaning: "the resultant of the forces of a fluid on a wall or a solid, and their moment: columns `NAME.FIELD` and `NAME.moment`",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "field",
+                    Kind::Text,
+                    "",
+                    Default("\"force\""),
+                    "a field of forces: `force`, or a part of it: `pressure_force`, `viscous_force`, `contact_force`",
+                ),
+                key(
+                    "about",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Derived("the origin"),
+                    "the point of space that the moment is about",
+                ),
+                WHERE,
+            ],
+        },
+        KindSpec {
+            name: "gauge",
+            meaning: "how far a fluid reaches along a line that is a support or more away from walls, like the free surface over the floor: column `NAME.elevation`, the distance from `from`",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "from",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "where the line starts, below the surface",
+                ),
+                key(
+                    "to",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "where it ends, above all that may come",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "flux",
+            meaning: "the mass of a fluid that goes through a plane in a second: column `NAME.flux`",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "point",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "a point of the plane",
+                ),
+                key(
+                    "normal",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "1",
+                    Required,
+                    "its normal, of any length: the way in which the flux is positive",
+                ),
+                key(
+                    "min",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Optional,
+                    "lower corner of a box outside of which nothing counts",
+                ),
+                key(
+                    "max",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Optional,
+                    "upper corner of that box",
+                ),
+            ],
+        },
+        KindSpec {
             name: "point",
             meaning: "fields interpolated at a fixed point of space",
             dimensions: &[1, 2, 3],

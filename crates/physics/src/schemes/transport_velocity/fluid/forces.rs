@@ -7,7 +7,7 @@ use piola_formulas::pairs::fluid::{
 
 use super::{Common, WeaklyCompressible};
 use crate::Vector;
-use crate::operators::{Among, Term, gather};
+use crate::operators::{Among, NeighborBlock, Term, add_at, gather};
 use crate::schemes::transport_velocity::{Dilatation, Forces, Shifting, Side};
 
 impl<const D: usize> WeaklyCompressible<D> {
@@ -79,6 +79,24 @@ impl<const D: usize> WeaklyCompressible<D> {
         let walls = Term { law: WallForces(law), source: (sides, shear), among: Among::Passive };
         let close = |place: usize, sums: &_, row: &mut _| *row = accelerations(sums, &sides[place]);
         gather(&common.support, &(fluid, walls), forces, |place| common.active(place), close);
+    }
+
+    /// What pressure and viscosity of the fluid do to a wall particle (number), over its mass; nothing to others.
+    pub(super) fn wall_forces(&self, common: &Common<D>, number: usize) -> [Vector<D>; 2] {
+        if !common.is_wall[number] {
+            return [Vector::zeros(); 2];
+        }
+        let place = common.support.list().places()[number] as usize;
+        let (ForceConstants { softening, viscosity, .. }, _) = self.force_law(common);
+        let of = |viscosity: f64| {
+            let source = (common.sides.as_slice(), self.shear.as_slice());
+            let law = Wall::<D> { softening, viscosity };
+            let (term, mut sum) = (Term { law, source, among: Among::Active }, Vector::zeros());
+            add_at(&common.support, &term, place, &mut NeighborBlock::default(), &mut sum);
+            sum
+        };
+        let pressure = of(0.0);
+        [pressure, of(viscosity) - pressure]
     }
 
     /// The forces of the fluid on wall particles, over their mass: what they do to the fluid, turned

@@ -29,6 +29,9 @@ pub(super) use barrier::TOUCH;
 columns! {
     enum Own;
     derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
+    derived(1) pressure_force: Vector, "N", "of `force` on a wall, that of the pressure";
+    derived(1) viscous_force: Vector, "N", "of `force` on a wall, that of viscosity";
+    derived(1) contact_force: Vector, "N", "of `force` on a wall, that by which it holds off what touches it";
 }
 
 /// The fields of all matter, then those of fluids.
@@ -238,13 +241,22 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         common: &Common<D>,
         field: &FieldDescription,
         number: usize,
-        _state: (&Columns<'_, D>, &[f64]),
+        (at, _): (&Columns<'_, D>, &[f64]),
         values: &mut Vec<f64>,
     ) {
-        match Own::of(field) {
-            Some(Own::summed_density) => values.push(summed_density(common, number)),
-            None => {}
+        let Some(field) = Own::of(field) else { return };
+        if field == Own::summed_density {
+            return values.push(summed_density(common, number));
         }
+        let mass = common.mass[number];
+        let [pressure, viscosity] = self.wall_forces(common, number).map(|force| force * mass);
+        let force = match field {
+            _ if !common.is_wall[number] => Vector::zeros(),
+            Own::pressure_force => pressure,
+            Own::viscous_force => viscosity,
+            _ => at.kick[number] * mass - pressure - viscosity,
+        };
+        values.extend_from_slice(force.as_slice());
     }
 
     fn memory() -> usize {
