@@ -1,6 +1,6 @@
 """Reference numbers of the cases of solids, by quadratic finite elements: `python3 elasticity.py CASE [n]`.
 
-CASE is one of plate, rubber, rubber-stress, hole, cube, cantilever, compression, vibration, modes, swing; n is the
+CASE is one of plate, rubber, rubber-stress, hole, cube, cantilever, clamped, compression, vibration, modes, swing; n is the
 number of elements along the length named in README.md. Units are those of the case; SI where nothing is said."""
 
 import sys
@@ -85,6 +85,20 @@ def cantilever(n=4):
         show(tip_uy=u.reshape(-1, 3)[solid.node(length, 0, 0), 1], energy=2 * energy)
 
 
+def clamped(n=4):
+    """n elements over the thickness of an aluminium plate that is clamped at both ends, half of it, under 2 m of water."""
+    weight, pressure = 2700 * 9.81, 2 * 1000 * 9.81
+    solid = Solid(MeshQuad.init_tensor(0.5 * graded(5 * n, 30, "start"), np.linspace(-0.05, 0, n + 1)),
+                  linear(67.5e9, 0.34))
+    held = np.concatenate([solid.where(lambda x, y: x < 1e-9, 0, 1), solid.where(lambda x, y: x > 0.5 - 1e-9, 0)])
+    load = solid.traction(lambda x: x[1] > -1e-9, 1, lambda x, y: -pressure + 0 * x)
+    nodal = (solid.mass(1.0) @ np.ones(solid.size))[1::2]
+    load[1::2] -= weight * nodal
+    [(_, u)] = solid.statics(load, held, None, [1.0])
+    u = u.reshape(-1, 2)
+    show(middle=u[solid.node(0.5, -0.025), 1], top=u[solid.node(0.5, 0), 1], below=u[solid.node(0.5, -0.05), 1])
+
+
 def compression(n=16):
     """n elements along half of the width; a quarter of the block. Rates of stress at the centre, Pa/s."""
     young, nu, half, rise, rate = 7.5e9, 0.398, 0.041, 0.07, 0.00075
@@ -163,7 +177,7 @@ def show(**numbers):
 
 
 CASES = {"plate": plate, "rubber": rubber, "rubber-stress": lambda *n: rubber(*(n or (10,)), plane_stress=True),
-         "hole": hole, "cube": cube, "cantilever": cantilever, "compression": compression, "vibration": vibration,
+         "hole": hole, "cube": cube, "cantilever": cantilever, "clamped": clamped, "compression": compression, "vibration": vibration,
          "modes": modes, "swing": swing}
 
 if __name__ == "__main__":

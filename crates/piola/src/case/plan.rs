@@ -6,7 +6,7 @@ use super::assembly::{self, bodies::BodyReport};
 use super::model;
 use super::session::Session;
 use crate::neighbors::NeighborStatistics;
-use crate::schemes::Particle;
+use crate::schemes::{Particle, Scheme};
 use crate::time::{StepControl, supersonic};
 
 /// What will happen when a case runs.
@@ -114,10 +114,17 @@ impl Session {
                 (limits.first().map_or(f64::NAN, |limit| limit.step), "fixed".to_owned())
             }
         };
-        let mut rate = vec![0.0; state.len()];
-        scheme.rates(0.0, &state, &mut rate); // touches all memory once
+        let mut other = vec![0.0; state.len()];
+        let integrator = self.executor.integrator.as_mut();
+        let is_coupled = scheme.coupled().is_some();
+        let mut evaluate = |scheme: &mut dyn Scheme| match is_coupled {
+            // Systems that act on each other are evaluated together in a step only; one that fails fails in the run.
+            true => integrator.step(scheme, 0.0, step, &state, &mut other).unwrap_or_default(),
+            false => scheme.rates(0.0, &state, &mut other),
+        };
+        evaluate(scheme); // touches all memory once
         let start = Instant::now();
-        scheme.rates(0.0, &state, &mut rate);
+        evaluate(scheme);
         let evaluation = start.elapsed().as_secs_f64().max(1e-9);
         let integrator = self.executor.integrator.as_ref();
         // An end that is a multiple of the step up to round-off takes no step more.

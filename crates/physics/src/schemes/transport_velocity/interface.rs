@@ -67,6 +67,29 @@ impl<const D: usize> TransportVelocity<D> {
         (0..position.len()).find(|a| !is_own[*a] && is_near(a))
     }
 
+    /// The particles (numbers) of walls that nobody else moves.
+    pub(crate) fn walls_at_rest(&self) -> impl Iterator<Item = u32> {
+        let walls = self.common.walls.iter().enumerate();
+        let own = walls.filter(|(index, _)| self.common.guided.velocity(*index).is_none());
+        own.map(|(_, wall)| wall.number)
+    }
+
+    /// The faces of a wall particle (number) as they are now.
+    pub(crate) fn faces_of(&self, number: u32) -> Option<&Faces<D>> {
+        self.common.faces(number as usize)
+    }
+
+    /// Place and velocity of a particle (number) in a state.
+    pub(crate) fn motion_of(&self, state: &[f64], number: u32) -> [Vector<D>; 2] {
+        let at = self.common.columns(state);
+        [at.position[number as usize], at.velocity[number as usize]]
+    }
+
+    /// Wave speed of the fluid in m/s.
+    pub(crate) fn wave_speed(&self) -> f64 {
+        self.matter.fluid().wave_speed
+    }
+
     /// Particle spacing in m.
     pub(crate) fn spacing(&self) -> f64 {
         self.common.particles.spacing[0]

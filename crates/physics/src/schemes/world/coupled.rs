@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
+use super::contact::{Origin, Point};
+use super::description::SHARED;
 use super::{MOST_STEPS, Part, Solid, World};
 use crate::Vector;
+use crate::geometry::Faces;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use crate::schemes::transport_velocity::Guide;
 use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme, StepLimit};
@@ -57,12 +60,54 @@ impl<const D: usize> World<D> {
     }
 
     /// Index of the work of the interface of a solid among the works of all, and that of its impulse among
-    /// the ways in.
+    /// the ways in. Those of contact are the next.
     fn entries(&self, solid: usize) -> [usize; 2] {
         let ledger = |k: usize| self.system(k).description().ledger;
         let works = (0..=solid + 1).map(|k| ledger(k).mechanisms.len()).sum::<usize>();
         let ways = (0..=solid + 1).map(|k| ledger(k).impulses.len()).sum::<usize>();
-        [works + solid, ways + solid]
+        [works, ways].map(|before| before + SHARED.len() * solid)
+    }
+
+    /// Finds what solids do to each other where they touch, and walls to them.
+    fn touch(&mut self, state: &[f64]) {
+        let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
+        for (forces, solid) in self.touches.iter_mut().zip(solids) {
+            forces.clear();
+            forces.resize(solid.mass.len(), Vector::zeros());
+        }
+        let (domain, spacing) = (fluid.domain(), fluid.spacing());
+        let fluid_state = &state[parts[0].state.clone()];
+        self.contact.update(domain, spacing, |origin, offset| match *origin {
+            Origin::Wall { number, face } => {
+                let [place, velocity] = fluid.motion_of(fluid_state, number);
+                let faces = fluid.faces_of(number);
+                let normal = faces.and_then(|faces| faces.normals().get(face));
+                let normal = normal.copied().unwrap_or_else(Vector::zeros);
+                Point { place: place + offset, normal, velocity }
+            }
+            Origin::Solid { solid, row, .. } => {
+                let own = &state[parts[solid + 1].state.clone()];
+                let (solid, interface) = (&solids[solid], &solids[solid].interface);
+                let place = interface.place_at(row, offset, |b| solid.displacement(own, b));
+                let velocity = interface.carried_at(row, offset, |b| solid.velocity(own, b));
+                let gradient = interface.deformation(row, |b| solid.displacement(own, b));
+                let mut faces = Faces::default();
+                faces.follow(&Faces::new(vec![offset.normalize()], 0.0), &gradient);
+                Point { place, normal: faces.between(), velocity }
+            }
+        });
+        let touches = &mut self.touches;
+        let scale = (spacing, fluid.wave_speed());
+        self.contact.forces(
+            domain,
+            scale,
+            |solid| solids[solid].law,
+            |origin, offset, force| {
+                if let Origin::Solid { solid, row, .. } = *origin {
+                    solids[solid].interface.bear_at(row, offset, force, &mut touches[solid]);
+                }
+            },
+        );
     }
 }
 
@@ -89,6 +134,7 @@ impl<const D: usize> CoupledScheme for World<D> {
     fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {
         let (works, components) =
             (self.description.ledger.mechanisms.len(), momentum_components(D).len());
+        self.touch(state);
         let (states, tail) = state.split_at_mut(self.ledger_at());
         for number in 0..self.solids.len() {
             let [mechanism, way] = self.entries(number);
@@ -101,24 +147,29 @@ impl<const D: usize> CoupledScheme for World<D> {
                 let force = self.fluid.force_on(fluid, wall);
                 solid.interface.bear(row, &force, &mut self.forces);
             }
-            let column = &mut own[solid.velocities.clone()];
-            let column: &mut [Vector<D>] = bytemuck::cast_slice_mut(column);
-            self.before.clear();
-            self.before.extend_from_slice(column);
-            for ((velocity, force), mass) in column.iter_mut().zip(&self.forces).zip(&solid.mass) {
-                *velocity += force * (duration / mass);
+            for (shared, forces) in [&self.forces, &self.touches[number]].into_iter().enumerate() {
+                if shared > 0 && forces.iter().all(|force| *force == Vector::<D>::zeros()) {
+                    continue;
+                }
+                let column = &mut own[solid.velocities.clone()];
+                let column: &mut [Vector<D>] = bytemuck::cast_slice_mut(column);
+                self.before.clear();
+                self.before.extend_from_slice(column);
+                for ((velocity, force), mass) in column.iter_mut().zip(forces).zip(&solid.mass) {
+                    *velocity += force * (duration / mass);
+                }
+                // What moves as prescribed takes nothing from outside: its support does.
+                solid.scheme.constrain(time, own);
+                let mut impulse = [0.0; MOST_COMPONENTS];
+                for (a, (mass, before)) in solid.mass.iter().zip(&self.before).enumerate() {
+                    let (after, place) = (solid.velocity(own, a), solid.place(own, a));
+                    let change = (after - before) * *mass;
+                    tail[mechanism + shared] += 0.5 * change.dot(&(after + before));
+                    add_moments(&place, &change, &mut impulse);
+                }
+                let sums = tail[works + (way + shared) * components..].iter_mut();
+                sums.zip(&impulse[..components]).for_each(|(sum, part)| *sum += part);
             }
-            // What moves as prescribed takes nothing from the fluid: its support does.
-            solid.scheme.constrain(time, own);
-            let mut impulse = [0.0; MOST_COMPONENTS];
-            for (a, (mass, before)) in solid.mass.iter().zip(&self.before).enumerate() {
-                let (after, place) = (solid.velocity(own, a), solid.place(own, a));
-                let change = (after - before) * *mass;
-                tail[mechanism] += 0.5 * change.dot(&(after + before));
-                add_moments(&place, &change, &mut impulse);
-            }
-            let sums = tail[works + way * components..].iter_mut().zip(&impulse[..components]);
-            sums.for_each(|(sum, part)| *sum += part);
         }
     }
 
@@ -161,8 +212,8 @@ impl<const D: usize> CoupledScheme for World<D> {
             let ledger = Ledger::of(self.system(k), &states[part.state.clone()]);
             works[work..][..ledger.work.len()].copy_from_slice(ledger.work);
             impulses[impulse..][..ledger.impulses.len()].copy_from_slice(ledger.impulses);
-            // Behind those of a solid stands what the fluid does to it.
-            let shared = usize::from(k > 0);
+            // Behind those of a solid stands what others do to it.
+            let shared = if k > 0 { SHARED.len() } else { 0 };
             work += ledger.work.len() + shared;
             impulse += ledger.impulses.len() + shared * components;
         }

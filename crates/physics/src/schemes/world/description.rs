@@ -6,8 +6,9 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 use crate::fields::{FieldDescription, Life};
 use crate::schemes::{Accounts, SchemeDescription};
 
-/// The mechanism by which a fluid works on a solid, and the way by which momentum enters from there.
-pub(super) const INTERFACE: &str = "interface";
+/// The mechanisms by which others work on a solid, and the ways by which momentum enters from there: the fluid, and
+/// walls and solids that it touches.
+pub(super) const SHARED: [&str; 2] = ["interface", "contact"];
 
 /// The combinations that have been asked for. A description is a constant of the program elsewhere, and
 /// there are as few of these as there are combinations in the cases that it reads.
@@ -54,7 +55,7 @@ fn joined(
         let mut names: Vec<&'static str> = of(fluid).to_vec();
         for (system, solid) in solids {
             names.extend(of(solid).iter().map(|name| named(system, name)));
-            names.extend(shares.then(|| named(system, INTERFACE)));
+            names.extend(SHARED.iter().filter(|_| shares).map(|name| named(system, name)));
         }
         Box::leak(names.into_boxed_slice())
     };

@@ -73,6 +73,13 @@ struct Carrier<const D: usize> {
     slope: Vector<D>,
 }
 
+impl<const D: usize> Carrier<D> {
+    /// Its weight for a point at an offset in m from the wall particle where the solid begins.
+    fn weight_at(&self, offset: &Vector<D>) -> f64 {
+        self.weight + self.slope.dot(offset)
+    }
+}
+
 /// Who carries which wall particle.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Interface<const D: usize> {
@@ -155,6 +162,41 @@ impl<const D: usize> Interface<D> {
     /// beyond a periodic bound are as good as others.
     pub fn place(&self, row: usize, displacement: impl Fn(usize) -> Vector<D>) -> Vector<D> {
         self.reference[row] + self.carried(row, displacement)
+    }
+
+    /// As [`Self::carried`], of a point that is at an `offset` in m from the wall particle where the solid begins.
+    pub fn carried_at(
+        &self,
+        row: usize,
+        offset: &Vector<D>,
+        of: impl Fn(usize) -> Vector<D>,
+    ) -> Vector<D> {
+        let own = &self.carriers[self.starts[row]..self.starts[row + 1]];
+        own.iter().map(|it| of(it.particle as usize) * it.weight_at(offset)).sum()
+    }
+
+    /// As [`Self::place`], of a point that is at an `offset` in m from the wall particle where the solid begins.
+    pub fn place_at(
+        &self,
+        row: usize,
+        offset: &Vector<D>,
+        displacement: impl Fn(usize) -> Vector<D>,
+    ) -> Vector<D> {
+        self.reference[row] + offset + self.carried_at(row, offset, displacement)
+    }
+
+    /// As [`Self::bear`], of what acts on a point that is at an `offset` in m from the wall particle where the solid
+    /// begins.
+    pub fn bear_at(
+        &self,
+        row: usize,
+        offset: &Vector<D>,
+        force: &Vector<D>,
+        forces: &mut [Vector<D>],
+    ) {
+        for carrier in &self.carriers[self.starts[row]..self.starts[row + 1]] {
+            forces[carrier.particle as usize] += force * carrier.weight_at(offset);
+        }
     }
 
     /// The deformation gradient at wall particle `row` for displacements of the solid's particles in m.

@@ -23,6 +23,7 @@
 //! less than a spacing, which is an added mass that acts a step late: with it solids lighter than the fluid
 //! are unstable. What it leaves out is of first order in the spacing.
 
+mod contact;
 mod coupled;
 mod description;
 mod interface;
@@ -32,6 +33,8 @@ use std::ops::Range;
 
 use thiserror::Error;
 
+use self::contact::Contact;
+pub use self::contact::ContactLaw;
 use self::interface::Interface;
 pub use self::interface::{InterfaceError, MOST_RATIO};
 use crate::Vector;
@@ -57,6 +60,8 @@ pub struct SolidInput {
     pub numbers: Vec<u32>,
     /// The CFL number of its own steps; `None` where they are as long as those of the fluid.
     pub cfl: Option<f64>,
+    /// How it is kept apart from walls and other solids.
+    pub law: ContactLaw,
 }
 
 /// Systems that make no world.
@@ -98,6 +103,8 @@ struct Solid<const D: usize> {
     scheme: Box<dyn Scheme>,
     interface: Interface<D>,
     cfl: Option<f64>,
+    law: ContactLaw,
+    spacing: f64,
     mass: Vec<f64>,
     reference: Vec<Vector<D>>,
     /// Whether its state has displacements, and not positions.
@@ -126,6 +133,7 @@ pub struct World<const D: usize> {
     description: &'static SchemeDescription,
     fluid: TransportVelocity<D>,
     solids: Vec<Solid<D>>,
+    contact: Contact<D>,
     /// Those of the fluid, then of each solid.
     parts: Vec<Part>,
     bodies: Vec<u32>,
@@ -134,6 +142,8 @@ pub struct World<const D: usize> {
     // Scratch: forces on the particles of a solid, their velocities before, and places of walls.
     forces: Vec<Vector<D>>,
     before: Vec<Vector<D>>,
+    /// By solid, what others do to its particles where they touch.
+    touches: Vec<Vec<Vector<D>>>,
     places: Vec<Vector<D>>,
 }
 
@@ -170,6 +180,8 @@ impl<const D: usize> World<D> {
             start: Vec::new(),
             forces: Vec::new(),
             before: Vec::new(),
+            touches: vec![Vec::new(); bound.len()],
+            contact: Contact::new(&fluid, &bound),
             places: Vec::new(),
             fluid,
             solids: bound,
@@ -265,7 +277,7 @@ impl<const D: usize> Solid<D> {
         fluid_spacing: f64,
         domain: &Domain<D>,
     ) -> Result<Self, WorldError> {
-        let SolidInput { name, scheme, spacing, numbers, cfl, .. } = input;
+        let SolidInput { name, scheme, spacing, numbers, cfl, law, .. } = input;
         let count = scheme.particle_count();
         let reference = (0..count).map(|a| Vector::from_vec(scheme.particle(a).reference));
         let reference: Vec<Vector<D>> = reference.collect();
@@ -291,12 +303,19 @@ impl<const D: usize> Solid<D> {
             is_displaced,
             interface,
             cfl,
+            law,
+            spacing,
             places,
             velocities,
             numbers,
             limits: Vec::new(),
             scheme,
         })
+    }
+
+    /// The density of what it is made of in kg/m^3: that of the particle that has most in a cell.
+    fn density(&self) -> f64 {
+        self.mass.iter().copied().fold(0.0, f64::max) / self.spacing.powi(D as i32)
     }
 
     /// The displacement of its particle `a` in its part of a state, in m.

@@ -98,6 +98,10 @@ impl<const D: usize> Scheme for World<D> {
             }));
             solid.limits = own;
         }
+        if let Some((solid, row)) = self.contact.through(self.fluid.spacing()) {
+            let carrier = self.solids[solid].interface.carrier(row) as usize;
+            all.first_escaped = all.first_escaped.or(Some(named(solid + 1, carrier)));
+        }
         all
     }
 
@@ -107,7 +111,17 @@ impl<const D: usize> Scheme for World<D> {
 
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
         let (k, own) = self.local(index);
-        self.system(k).escape(own, &state[self.parts[k].state.clone()])
+        let part = &state[self.parts[k].state.clone()];
+        let Some(solid) = k.checked_sub(1).map(|solid| &self.solids[solid]) else {
+            return self.fluid.escape(own, part);
+        };
+        Some(Escape {
+            position: solid.place(part, own).iter().copied().collect(),
+            speed: solid.velocity(part, own).norm(),
+            wall: None,
+            advice: "the solid goes through what it touches: raise the wave speed of the fluid to ten times the \
+                     speeds that occur, or `contact_stiffness` of the system with a smaller `time.cfl`",
+        })
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
@@ -214,7 +228,7 @@ impl<const D: usize> Scheme for World<D> {
     fn memory(&self) -> usize {
         let systems: usize = (0..self.parts.len()).map(|k| self.system(k).memory()).sum();
         let interfaces: usize = self.solids.iter().map(|solid| solid.interface.memory()).sum();
-        systems + interfaces + size_of_val(self.start.as_slice())
+        systems + interfaces + self.contact.memory() + size_of_val(self.start.as_slice())
     }
 
     /// Its systems are moved by integrators of their own.

@@ -34,6 +34,7 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
             spacing: spacings.fold(0.0, f64::max),
             bodies: numbers.clone(),
             numbers,
+            law: named.contact,
             cfl: match *named.time.step {
                 StepControl::Cfl(number) => Some(number),
                 _ => None,

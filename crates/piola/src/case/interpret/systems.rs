@@ -7,6 +7,7 @@ use crate::case::suggest::one_of;
 use crate::fields::FieldDescription;
 use crate::schemes::total_lagrangian::Form;
 use crate::schemes::transport_velocity::Slip;
+use crate::schemes::world::ContactLaw;
 use crate::schemes::{Capability, SchemeDescription};
 use crate::time::IntegratorKind;
 
@@ -202,6 +203,11 @@ impl Reader<'_, '_> {
             slip: match record.text("slip")?.as_str() {
                 "free" => Slip::Free,
                 _ => Slip::No,
+            },
+            contact: ContactLaw {
+                stiffness: record.number("contact_stiffness")?.value,
+                damping: record.number("contact_damping")?.value,
+                friction: record.number("friction")?.value,
             },
         })
     }

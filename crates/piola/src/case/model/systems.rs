@@ -7,6 +7,7 @@ use super::{
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::schemes::transport_velocity::Slip;
+use crate::schemes::world::ContactLaw;
 
 /// A formulation beside the main one, for bodies that name it: a solid in a fluid.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct System {
     pub time: Time,
     /// What its surface does to fluid along it.
     pub slip: Slip,
+    /// What keeps it apart from walls and other systems.
+    pub contact: ContactLaw,
 }
 
 impl Case {

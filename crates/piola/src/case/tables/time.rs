@@ -169,6 +169,27 @@ pub(super) static SYSTEM: TableSpec = TableSpec {
             Default("\"no\""),
             "what its surface does to fluid that moves along it",
         ),
+        key(
+            "friction",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("0.0"),
+            "Coulomb's coefficient where it slides along walls; between two systems their mean",
+        ),
+        key(
+            "contact_stiffness",
+            Kind::Number(Interval::POSITIVE),
+            "1",
+            Default("1.0"),
+            "what keeps it off walls and other systems, in density of the solid times the squared wave speed of the fluid, theory (85)",
+        ),
+        key(
+            "contact_damping",
+            Kind::Number(Interval::NOT_NEGATIVE),
+            "1",
+            Default("0.1"),
+            "what an impact loses, theory (85); 0 for nothing",
+        ),
     ],
 };
 

@@ -1,0 +1,254 @@
+//! Solids that touch walls or each other: what keeps them apart.
+//!
+//! A surface is known by points of it, one for each face that a wall particle of the fluid is right behind, with the
+//! normal there. A point i of one body meets the plane through the points j of another that are around it, with weights
+//! that fall to zero at one and a half spacings, and is held off where it is behind that plane by some
+//! depth `d > 0`, theory (85):
+//!
+//! ```text
+//! d = -sum_j w_ij (x_i - x_j) . n_j / sum_j w_ij,   n = sum_j w_ij n_j / |sum_j w_ij n_j|
+//! F_i = A/2 (rho c^2 d/dx - z rho c v . n) n - min(mu F_n, A/2 rho c |v_t|) v_t/|v_t|
+//! ```
+//!
+//! The points j get what is opposite, with the same weights. Both bodies take part as i and as j, which is why there is
+//! a half. A is the area of a point, c the wave speed of the fluid, with which `rho c^2 / dx` is as
+//! stiff as a step of the fluid allows: a body that comes with v is held within v/c of a spacing for each layer of
+//! particles that it is thick.
+
+use super::Solid;
+use crate::Vector;
+use crate::neighbors::{Domain, search};
+use crate::schemes::transport_velocity::TransportVelocity;
+
+/// How far in spacings the points of a surface make a plane.
+const REACH: f64 = 1.5;
+
+/// How far in spacings bodies move before points are looked for anew.
+const SKIN: f64 = 0.5;
+
+/// What of a spacing a wall particle is at most behind its face.
+const BEHIND: f64 = 0.75;
+
+/// Cosine of the angle between the normals of surfaces beyond which they do not meet face to face.
+const FACING: f64 = -0.5;
+
+/// The sum of weights at the end of a surface in two dimensions, beyond which it ends within a spacing.
+const COVERED: f64 = 1.3;
+
+/// How deep in spacings a point may be behind a plane before it has gone through.
+const THROUGH: f64 = 1.0;
+
+/// How a solid is kept apart from others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactLaw {
+    /// What `rho c^2` is multiplied by.
+    pub stiffness: f64,
+    /// The factor z of what is lost, a pure number.
+    pub damping: f64,
+    /// Coulomb's coefficient of friction.
+    pub friction: f64,
+}
+
+impl Default for ContactLaw {
+    fn default() -> Self {
+        Self { stiffness: 1.0, damping: 0.1, friction: 0.0 }
+    }
+}
+
+impl ContactLaw {
+    /// That between two solids.
+    fn with(&self, other: &Self) -> Self {
+        Self {
+            stiffness: self.stiffness.min(other.stiffness),
+            damping: 0.5 * (self.damping + other.damping),
+            friction: 0.5 * (self.friction + other.friction),
+        }
+    }
+}
+
+/// Whose a point is, and what of it: walls and solids are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Origin {
+    /// A particle (number) of a wall of the fluid, with one of its faces.
+    Wall { number: u32, face: usize },
+    /// A row of the interface of a solid, with one of its faces.
+    Solid { solid: usize, row: usize, face: usize },
+}
+
+impl Origin {
+    /// The solid that it is of.
+    fn solid(&self) -> Option<usize> {
+        match self {
+            Self::Wall { .. } => None,
+            Self::Solid { solid, .. } => Some(*solid),
+        }
+    }
+}
+
+/// A point of a surface at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Point<const D: usize> {
+    pub place: Vector<D>,
+    pub normal: Vector<D>,
+    pub velocity: Vector<D>,
+}
+
+/// What touches what.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Contact<const D: usize> {
+    origins: Vec<Origin>,
+    /// What stands between a wall particle and its surface where solids begin.
+    offsets: Vec<Vector<D>>,
+    points: Vec<Point<D>>,
+    /// Where points were when those around them were looked for.
+    seen: Vec<Vector<D>>,
+    /// Points that have points of other bodies around them, with these.
+    around: Vec<(u32, Vec<u32>)>,
+    /// Density of each solid in kg/m^3.
+    densities: Vec<f64>,
+    /// The deepest point behind another surface, in m, with its index.
+    deepest: Option<(f64, usize)>,
+}
+
+impl<const D: usize> Contact<D> {
+    /// Finds the points of surfaces.
+    pub fn new(fluid: &TransportVelocity<D>, solids: &[Solid<D>]) -> Self {
+        let mut made =
+            Self { densities: solids.iter().map(Solid::density).collect(), ..Self::default() };
+        let behind = BEHIND * fluid.spacing();
+        let mut add = |number: u32, origin: &dyn Fn(usize) -> Origin| {
+            let Some(faces) = fluid.faces_of(number).filter(|it| it.depth() <= behind) else {
+                return;
+            };
+            for (face, normal) in faces.normals().iter().enumerate() {
+                made.origins.push(origin(face));
+                made.offsets.push(normal * faces.depth());
+            }
+        };
+        for number in fluid.walls_at_rest() {
+            add(number, &|face| Origin::Wall { number, face });
+        }
+        for (solid, own) in solids.iter().enumerate() {
+            for (row, &number) in own.interface.walls().iter().enumerate() {
+                add(number, &|face| Origin::Solid { solid, row, face });
+            }
+        }
+        made
+    }
+
+    /// The deepest point behind another surface at the last look, in spacings, with the solid and the row that
+    /// it is of: it has gone through.
+    pub fn through(&self, spacing: f64) -> Option<(usize, usize)> {
+        let (depth, point) = self.deepest?;
+        match self.origins[point] {
+            Origin::Solid { solid, row, .. } if depth > THROUGH * spacing => Some((solid, row)),
+            _ => None,
+        }
+    }
+
+    /// Takes points where they are now, and looks for those around them if they have moved far enough.
+    pub fn update(
+        &mut self,
+        domain: &Domain<D>,
+        spacing: f64,
+        point: impl Fn(&Origin, &Vector<D>) -> Point<D>,
+    ) {
+        self.points.clear();
+        let points = self.origins.iter().zip(&self.offsets);
+        self.points.extend(points.map(|(origin, offset)| point(origin, offset)));
+        let far = (0.5 * SKIN * spacing).powi(2);
+        let stay = |(seen, point): (&Vector<D>, &Point<D>)| {
+            domain.separation(seen, &point.place).norm_squared() <= far
+        };
+        if self.seen.len() == self.points.len() && self.seen.iter().zip(&self.points).all(stay) {
+            return;
+        }
+        self.seen.clear();
+        self.seen.extend(self.points.iter().map(|point| domain.wrap(&point.place)));
+        self.around.clear();
+        let reach = vec![(REACH + SKIN) * spacing; self.seen.len()];
+        // Points that are not finite belong to a state that is refused.
+        let Ok(list) = search(&self.seen, &reach, domain) else { return };
+        for (i, origin) in self.origins.iter().enumerate() {
+            let is_other = |&&j: &&u32| self.origins[j as usize].solid() != origin.solid();
+            let others: Vec<u32> = list.row(i).iter().filter(is_other).copied().collect();
+            if !others.is_empty() {
+                self.around.push((i as u32, others));
+            }
+        }
+    }
+
+    /// Hands out the forces between points at hand: `bear` takes the origin of a point, what stands between its wall
+    /// particle and its surface where solids begin, and a force in N.
+    pub fn forces(
+        &mut self,
+        domain: &Domain<D>,
+        (spacing, wave_speed): (f64, f64),
+        law: impl Fn(usize) -> ContactLaw,
+        mut bear: impl FnMut(&Origin, &Vector<D>, &Vector<D>),
+    ) {
+        self.deepest = None;
+        let reach = REACH * spacing;
+        let area = spacing.powi(D as i32 - 1);
+        let whole = COVERED.powi(D as i32 - 1);
+        let mut weights = Vec::new();
+        for (i, others) in &self.around {
+            let (i, me) = (*i as usize, &self.points[*i as usize]);
+            weights.clear();
+            let (mut total, mut depth) = (0.0, 0.0);
+            let (mut normal, mut motion) = (Vector::zeros(), Vector::zeros());
+            for &j in others {
+                let other = &self.points[j as usize];
+                let way = domain.separation(&other.place, &me.place);
+                let share = 1.0 - way.norm_squared() / (reach * reach);
+                // Surfaces meet face to face.
+                if share <= 0.0 || me.normal.dot(&other.normal) >= FACING {
+                    continue;
+                }
+                let weight = share * share;
+                weights.push((j as usize, weight));
+                total += weight;
+                depth -= weight * way.dot(&other.normal);
+                normal += other.normal * weight;
+                motion += other.velocity * weight;
+            }
+            let Some(normal) = normal.try_normalize(1e-6 * total) else { continue };
+            depth /= total;
+            if depth.is_nan() || depth <= 0.0 {
+                continue;
+            }
+            if self.deepest.is_none_or(|(deepest, _)| depth > deepest) {
+                self.deepest = Some((depth, i));
+            }
+            let other = weights[0].0;
+            let owners = [i, other].map(|point| self.origins[point].solid());
+            let both = || owners.into_iter().flatten();
+            let laws = both().map(&law).reduce(|one, other| one.with(&other));
+            let Some(ContactLaw { stiffness, damping, friction }) = laws else { continue };
+            let density = both().map(|solid| self.densities[solid]).fold(f64::INFINITY, f64::min);
+            let share = 0.5 * area * (total / whole).min(1.0) * density * wave_speed;
+            let velocity = me.velocity - motion / total;
+            let across = velocity.dot(&normal);
+            let push = stiffness * wave_speed * depth / spacing - damping * across;
+            let push = (share * push).max(0.0);
+            let along = velocity - normal * across;
+            let slip = along.norm();
+            let drag = if slip > 0.0 { (friction * push).min(share * slip) / slip } else { 0.0 };
+            let force = normal * push - along * drag;
+            bear(&self.origins[i], &self.offsets[i], &force);
+            for &(j, weight) in &weights {
+                let part = force * (-weight / total);
+                bear(&self.origins[j], &self.offsets[j], &part);
+            }
+        }
+    }
+
+    /// Bytes that it holds.
+    pub fn memory(&self) -> usize {
+        let around = self.around.iter().map(|(_, others)| size_of_val(others.as_slice()));
+        size_of_val(self.origins.as_slice())
+            + size_of_val(self.points.as_slice())
+            + 2 * size_of_val(self.seen.as_slice())
+            + around.sum::<usize>()
+    }
+}
