@@ -6,6 +6,7 @@ mod held;
 mod history;
 pub(crate) mod prescribed;
 pub(crate) mod pressure;
+mod spring;
 pub(crate) mod traction;
 
 pub use body_force::BodyForce;
@@ -14,4 +15,5 @@ pub use held::{PrescribedDisplacement, PrescribedFaces, Tie};
 pub use history::{History, Scaled};
 pub use prescribed::PrescribedVelocity;
 pub use pressure::FollowerPressure;
+pub use spring::Spring;
 pub use traction::Traction;

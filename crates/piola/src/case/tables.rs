@@ -340,6 +340,48 @@ static LOAD: TaggedSpec = TaggedSpec {
                 ),
             ],
         },
+        KindSpec {
+            name: "spring",
+            meaning: "a spring with a damper from the centre of mass of the particles to a point of space, each of which gets the share of its mass; for the scheme `total_lagrangian` in explicit steps",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "where",
+                    Kind::Tagged(&geometry::REGION),
+                    "",
+                    Default("{ kind = \"all\" }"),
+                    "the particles that it is tied to",
+                ),
+                key(
+                    "to",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "the point that it is tied to",
+                ),
+                key(
+                    "stiffness",
+                    Kind::Number(Interval::NOT_NEGATIVE),
+                    "N/m",
+                    Default("0.0"),
+                    "of the spring, for 1 m in missing dimensions",
+                ),
+                key(
+                    "damping",
+                    Kind::Number(Interval::NOT_NEGATIVE),
+                    "N s/m",
+                    Default("0.0"),
+                    "of the damper",
+                ),
+                key(
+                    "length",
+                    Kind::Number(Interval::NOT_NEGATIVE),
+                    "m",
+                    Derived("that of the start"),
+                    "its length without force",
+                ),
+            ],
+        },
     ],
 };
 

@@ -3,6 +3,7 @@
 mod background;
 mod bodies;
 mod clamps;
+mod contact;
 #[path = "../support/device.rs"]
 mod device;
 mod edac;

@@ -194,7 +194,14 @@ end = 0.1
 /// what they do by themselves, so this sees a force that is lost between them.
 #[test]
 fn water_and_block_keep_their_momentum() {
-    let case = case::parse(DRIFTING, "drifting.toml", &LoadOptions::default());
+    keeps_momentum(DRIFTING);
+    let soft = "kind = \"neo_hookean_logarithmic\", density = 3.0, young_modulus = 200.0, poisson_ratio = 0.3";
+    assert!(DRIFTING.contains(soft));
+    keeps_momentum(&DRIFTING.replace(soft, "kind = \"rigid\", density = 3.0"));
+}
+
+fn keeps_momentum(text: &str) {
+    let case = case::parse(text, "drifting.toml", &LoadOptions::default());
     let case = case.unwrap_or_else(|problems| panic!("{problems}"));
     let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
     let mut momentum = || {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use piola::Vector;
-use piola::boundaries::{BodyForce, SpaceTime};
+use piola::boundaries::{BodyForce, SpaceTime, Spring};
 use piola::case::{self, LoadOptions};
 use piola::schemes::total_lagrangian::{
     Material, Part, RigidBody, TotalLagrangian, TotalLagrangianError, TotalLagrangianInput,
@@ -355,4 +355,33 @@ end = 0.1
         let said = said(from, to);
         assert!(said.contains(expected) && said.contains("case.toml:"), "for {to}\n{said}");
     }
+}
+
+/// A body of 0.32 kg on a spring and a damper that end above its middle: the damped oscillator's formula.
+#[test]
+fn a_body_hangs_on_a_spring() {
+    let (stiffness, damping) = (20.0_f64, 0.4_f64);
+    let off = |steps: usize| {
+        let mut input = input([0.4, 0.4], [4, 4], |_| Vector::from([0.0, 0.3]));
+        input.springs = vec![Spring {
+            name: "spring".into(),
+            particles: (0..input.particles.len() as u32).collect(),
+            anchor: Vector::from([0.2, 1.2]),
+            length: 1.0,
+            stiffness,
+            damping,
+        }];
+        let mass = 0.32;
+        let run = run(input, 2.0, steps);
+        let (decay, square) = (0.5 * damping / mass, stiffness / mass);
+        let frequency = (square - decay * decay).sqrt();
+        let exact = 0.3 / frequency * (-decay * 2.0).exp() * (frequency * 2.0).sin();
+        assert!(run.momentum.iter().all(|off| off.abs() < 1e-12), "{:?}", run.momentum);
+        // The corner rises as all of it does.
+        [(run.position[0][1] - exact).abs(), run.energy.abs()]
+    };
+    let [coarse, fine] = [400, 800].map(off);
+    assert!(fine[0] < 1e-3 && fine[0] < 0.6 * coarse[0], "{coarse:?} {fine:?}");
+    // The energy of the spring is in no column: work is what it has given.
+    assert!(fine[1] < 1e-12, "{fine:?}");
 }

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{
-    BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedVelocity, Traction,
+    BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedVelocity, Spring, Traction,
     traction::Loaded,
 };
 use crate::fields::width;
@@ -58,6 +58,8 @@ pub struct TotalLagrangianInput<const D: usize> {
     pub tractions: Vec<Traction<D>>,
     /// Pressures that follow the surface, which add up.
     pub pressures: Vec<FollowerPressure<D>>,
+    /// Springs and dampers to points.
+    pub springs: Vec<Spring<D>>,
     /// Prescribed velocity components.
     pub prescribed: Vec<PrescribedVelocity>,
     /// In the adjoint form symmetry planes and rollers, each with a particle on it whose velocity
@@ -95,6 +97,7 @@ impl<const D: usize> TotalLagrangianInput<D> {
             body_forces: Vec::new(),
             tractions: Vec::new(),
             pressures: Vec::new(),
+            springs: Vec::new(),
             prescribed: Vec::new(),
             mirrors: Vec::new(),
             holes: Vec::new(),
@@ -156,7 +159,8 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         };
         let pressed = input.pressures.iter().flat_map(|load| load.pressed(positions)).collect();
-        let loads = Loads { body_forces: input.body_forces, loaded, pressed };
+        let (body_forces, springs) = (input.body_forces, input.springs);
+        let loads = Loads { body_forces, loaded, pressed, springs };
         let is_static = matches!(input.motion, Motion::Static(_));
         let statics = match (input.motion, &matrices) {
             (Motion::Explicit, _) | (_, Matrices::Strong(_)) => None,

@@ -11,7 +11,7 @@ use crate::Vector;
 use crate::boundaries::{PrescribedDisplacement, SpaceTime};
 use crate::operators::Mirror;
 use crate::schemes::input::{
-    check_conditions, check_index, check_lengths, check_particles, check_pressure,
+    check_conditions, check_index, check_lengths, check_particles, check_pressure, check_selected,
 };
 
 /// Refuses arrays that do not fit together, impossible values, and parts that do not serve each other.
@@ -31,6 +31,13 @@ pub(super) fn check<const D: usize>(
     check_coefficients(settings)?;
     check_conditions(count, &input.tractions, &input.prescribed)?;
     input.pressures.iter().try_for_each(|load| check_pressure(load, count))?;
+    let springs = input.springs.iter();
+    springs.clone().try_for_each(|it| check_selected(&it.name, &it.particles, count))?;
+    for spring in springs {
+        check_coefficient("the stiffness of a spring", spring.stiffness)?;
+        check_coefficient("the damping of a spring", spring.damping)?;
+        check_coefficient("the length of a spring", spring.length)?;
+    }
     for (mirror, particle) in &input.mirrors {
         check_index(|| "a mirror: particle".into(), *particle as usize, count)?;
         check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
@@ -158,6 +165,14 @@ fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalL
     let no_energy = "it has no energy of which forces are derivatives; use `form = \"adjoint\"`";
     let faults = [
         (is_strong && is_solved_for, (implicit, strong, no_energy)),
+        (
+            !input.springs.is_empty() && is_solved_for,
+            (
+                Part::Springs,
+                "implicit steps and statics",
+                "their tangent has no springs; use explicit steps",
+            ),
+        ),
         (
             has_rigid && is_solved_for,
             (

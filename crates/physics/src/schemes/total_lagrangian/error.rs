@@ -153,6 +153,8 @@ pub enum Part {
     Dissipation,
     /// Bodies that are rigid.
     Rigid,
+    /// Springs to points.
+    Springs,
 }
 
 impl fmt::Display for Part {
@@ -165,6 +167,7 @@ impl fmt::Display for Part {
             Self::Initial => "initial values",
             Self::Dissipation => "viscosity and damping",
             Self::Rigid => "a rigid body",
+            Self::Springs => "a spring",
         })
     }
 }

@@ -2,9 +2,10 @@
 
 use super::fields::{Columns, ColumnsMut};
 use super::{
-    BODY_FORCE, BOUNDARY_MOTION, DAMPING, FIGURES, LEDGER, PRESSURE, TRACTION, TotalLagrangian,
-    VISCOSITY,
+    BODY_FORCE, BOUNDARY_MOTION, DAMPING, FIGURES, LEDGER, PRESSURE, SPRING, TRACTION,
+    TotalLagrangian, VISCOSITY,
 };
+use crate::boundaries::Spring;
 use crate::schemes::ledger::{Found, Total, Totals};
 use crate::schemes::outside::{Acted, over_all, prescribe, push};
 use crate::{Vector, parallel};
@@ -31,6 +32,15 @@ impl<const D: usize> TotalLagrangian<D> {
     /// The forces in N of tractions, with the particles they act on.
     fn tractions(&self, time: f64) -> impl Iterator<Item = (usize, Vector<D>)> {
         self.loads.loaded.iter().map(move |load| (load.particle, load.force(time)))
+    }
+
+    /// What springs do to the centres of their particles.
+    fn pulls(&self, at: &Columns<'_, D>) -> impl Iterator<Item = (&Spring<D>, Vector<D>)> {
+        self.loads.springs.iter().map(move |spring| {
+            let place = spring.mean(&self.solid.mass, |a| self.position(a, at));
+            let velocity = spring.mean(&self.solid.mass, |a| at.velocity[a]);
+            (spring, spring.force(&place, &velocity))
+        })
     }
 
     /// Writes the rates of the loaded state, whose forces have been evaluated.
@@ -74,6 +84,13 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         push(self.tractions(time), particle, own.velocity, &mut traction);
         push(self.pressures(time), particle, own.velocity, &mut pressure);
+        let mut spring = Total::default();
+        for (load, pull) in self.pulls(at) {
+            let whole: f64 = load.particles.iter().map(|&a| solid.mass[a as usize]).sum();
+            let share = |&a: &u32| (a as usize, pull * (solid.mass[a as usize] / whole));
+            push(load.particles.iter().map(share), particle, own.velocity, &mut spring);
+        }
+        totals.drive(SPRING, &spring);
         prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
         let moved = [at.displacement, velocity];
         self.rigid.accelerate(time, solid, moved, own.velocity, &mut boundary);
@@ -110,8 +127,15 @@ impl<const D: usize> TotalLagrangian<D> {
         totals.grow(BODY_FORCE, parallel::sum(self.pulled(), body));
         let drag = |a: usize| solid.mass[a] * own.velocity[a].dot(&kick[a]);
         let dragged = if self.dissipation.damping > 0.0 { count } else { 0 };
-        totals.grow(DAMPING, -2.0 * self.dissipation.damping * parallel::sum(dragged, drag));
+        totals.grow(DAMPING, -self.dissipation.damping * parallel::sum(dragged, drag));
         totals.grow(PRESSURE, self.pressures(time).map(growth).sum());
+        let springs = self.loads.springs.iter().map(|spring| {
+            let mean = |of: &[Vector<D>]| spring.mean(&solid.mass, |a| of[a]);
+            let (place, velocity) = (mean(own.displacement), mean(own.velocity));
+            let place = place + spring.mean(&solid.mass, |a| solid.particles.position[a]);
+            spring.force(&place, &velocity).dot(&mean(kick))
+        });
+        totals.grow(SPRING, springs.sum());
         let mut traction = self.tractions(time).map(growth).sum();
         if self.matrices.edges().is_some() {
             self.acceleration[..count].copy_from_slice(kick);

@@ -4,15 +4,16 @@ use super::Solid;
 use crate::Vector;
 use crate::boundaries::pressure::{Pressed, pressed_force};
 use crate::boundaries::traction::Loaded;
-use crate::boundaries::{BodyForce, padded};
+use crate::boundaries::{BodyForce, Spring, padded};
 use crate::operators::ReferenceGradient;
 
-/// Dead loads and follower pressures.
+/// Dead loads, follower pressures, and springs.
 #[derive(Clone, Default)]
 pub(super) struct Loads<const D: usize> {
     pub body_forces: Vec<BodyForce<D>>,
     pub loaded: Vec<Loaded<D>>,
     pub pressed: Vec<Pressed<D>>,
+    pub springs: Vec<Spring<D>>,
 }
 
 impl<const D: usize> Loads<D> {

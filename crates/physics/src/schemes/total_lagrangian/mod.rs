@@ -126,13 +126,22 @@ const ENERGIES: [&str; 3] = ["kinetic", "strain", "hourglass"];
 
 /// Forces between particles cancel, so that momentum enters by what acts from outside alone.
 const LEDGER: Accounts = Accounts {
-    mechanisms: &["body_force", "traction", "pressure", "boundary_motion", "viscosity", "damping"],
-    impulses: &["body_force", "traction", "pressure", "boundary_motion", "damping"],
+    mechanisms: &[
+        "body_force",
+        "traction",
+        "pressure",
+        "spring",
+        "boundary_motion",
+        "viscosity",
+        "damping",
+    ],
+    impulses: &["body_force", "traction", "pressure", "spring", "boundary_motion", "damping"],
     is_kicked: true,
 };
 const BODY_FORCE: Entry = LEDGER.entry("body_force");
 const TRACTION: Entry = LEDGER.entry("traction");
 const PRESSURE: Entry = LEDGER.entry("pressure");
+const SPRING: Entry = LEDGER.entry("spring");
 const BOUNDARY_MOTION: Entry = LEDGER.entry("boundary_motion");
 const VISCOSITY: Entry = LEDGER.entry("viscosity");
 const DAMPING: Entry = LEDGER.entry("damping");

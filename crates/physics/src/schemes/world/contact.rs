@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! d = -sum_j w_ij (x_i - x_j) . n_j / sum_j w_ij,   n = sum_j w_ij n_j / |sum_j w_ij n_j|
-//! F_i = A/2 (rho c^2 d/dx - z rho c v . n) n - min(mu F_n, A/2 rho c |v_t|) v_t/|v_t|
+//! F_i = A/2 (rho c^2 d/dx - z rho c v . n) n - min(mu F_n, 2 A rho c |v_t|) v_t/|v_t|
 //! ```
 //!
 //! The points j get what is opposite, with the same weights. Both bodies take part as i and as j, which is why there is
@@ -35,6 +35,10 @@ const FACING: f64 = -0.5;
 /// The sum of weights at the end of a surface in two dimensions, beyond which it ends within a spacing.
 const COVERED: f64 = 1.3;
 
+/// What holds back a point that creeps, in `A/2 rho c` times its velocity: what a step of the fluid allows with some
+/// margin, as the particles of a surface weigh `rho dx^D` and steps are about `0.3 dx/c`.
+const GRIP: f64 = 4.0;
+
 /// How deep in spacings a point may be behind a plane before it has gone through.
 const THROUGH: f64 = 1.0;
 
@@ -51,7 +55,7 @@ pub struct ContactLaw {
 
 impl Default for ContactLaw {
     fn default() -> Self {
-        Self { stiffness: 1.0, damping: 0.1, friction: 0.0 }
+        Self { stiffness: 1.0, damping: 0.5, friction: 0.0 }
     }
 }
 
@@ -233,7 +237,8 @@ impl<const D: usize> Contact<D> {
             let push = (share * push).max(0.0);
             let along = velocity - normal * across;
             let slip = along.norm();
-            let drag = if slip > 0.0 { (friction * push).min(share * slip) / slip } else { 0.0 };
+            let drag =
+                if slip > 0.0 { (friction * push).min(GRIP * share * slip) / slip } else { 0.0 };
             let force = normal * push - along * drag;
             bear(&self.origins[i], &self.offsets[i], &force);
             for &(j, weight) in &weights {

@@ -3,9 +3,9 @@
 use std::cell::OnceCell;
 
 use super::bodies::{self, vector};
-use super::selections::{Selection, not_empty, over_time, selection, trace_numbers};
+use super::selections::{self, Selection, not_empty, over_time, selection, trace_numbers};
 use crate::Vector;
-use crate::boundaries::{BodyForce, FollowerPressure, Traction};
+use crate::boundaries::{BodyForce, FollowerPressure, Spring, Traction};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, LoadKind};
 use crate::case::source::{Located, Place};
@@ -80,6 +80,35 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
             });
         }
         tractions
+    }
+
+    /// The springs.
+    pub fn springs(&self, problems: &mut Vec<Problem>) -> Vec<Spring<D>> {
+        let mut springs = Vec::new();
+        for load in &self.case.loads {
+            let model::LoadKind::Spring { region, to, stiffness, damping, length } = &load.kind
+            else {
+                continue;
+            };
+            let body = load.body.as_ref();
+            let particles = selections::select(self.case, self.particles, region, body, problems);
+            let anchor = vector::<D>(to);
+            let places = particles.iter().map(|&a| self.particles.position[a as usize]);
+            // Particles of a lattice weigh what their volume is.
+            let volumes = || particles.iter().map(|&a| self.particles.volume[a as usize]);
+            let whole: f64 = volumes().sum();
+            let centre = places.zip(volumes()).map(|(place, volume)| place * (volume / whole));
+            let centre = centre.sum::<Vector<D>>();
+            springs.push(Spring {
+                name: name(load, "spring"),
+                length: length.unwrap_or((centre - anchor).norm()),
+                stiffness: *stiffness,
+                damping: *damping,
+                particles,
+                anchor,
+            });
+        }
+        springs
     }
 
     /// The pressures: on particles in a plane with the part of each area that points along its

@@ -99,6 +99,7 @@ pub(super) fn build<const D: usize>(
     let surface = LoadedSurface::new(case, &particles, &domain, trace.as_ref(), known);
     let tractions = surface.tractions(&mut problems);
     let pressures = surface.pressures(&mut problems);
+    let springs = surface.springs(&mut problems);
     let gradients = gradients(case, settings, &mirrors, areas.clone(), &mut problems);
     if !problems.is_empty() {
         return Err(problems);
@@ -134,6 +135,7 @@ pub(super) fn build<const D: usize>(
         particles,
         tractions,
         pressures,
+        springs,
         prescribed,
         mirrors,
         rigid,
@@ -191,6 +193,9 @@ fn refused(
         let found = case.boundaries.iter().find_map(|it| it.mirror.as_ref());
         found.map_or(scheme, |mirror| mirror.place)
     };
+    let is_spring = |load: &&model::Load| matches!(load.kind, model::LoadKind::Spring { .. });
+    let spring = case.loads.iter().find(is_spring).and_then(|load| load.name.as_ref());
+    let spring = spring.map_or(integrator, |name| name.place);
     let of_part = |part: Part| match part {
         Part::Implicit => (integrator, "this integrator"),
         Part::PatchConsistent => {
@@ -200,6 +205,7 @@ fn refused(
         Part::Pressures => (settings.form.place, "this form"),
         Part::Initial => (case.bodies[0].name.place, "initial values of a body"),
         Part::Dissipation => (settings.dissipation.place, "with this integrator"),
+        Part::Springs => (spring, "this spring"),
         Part::Rigid => (rigid_body(case, None), "this body"),
     };
     let (place, label) = match error {

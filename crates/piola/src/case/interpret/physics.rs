@@ -67,6 +67,16 @@ impl Reader<'_, '_> {
                 region: self.loaded_region(record)?,
                 traction: record.expressions("traction")?,
             },
+            "spring" => {
+                self.meaningless(record, "history", "with a spring");
+                LoadKind::Spring {
+                    region: self.loaded_region(record)?,
+                    to: record.numbers("to")?.value,
+                    stiffness: record.number("stiffness")?.value,
+                    damping: record.number("damping")?.value,
+                    length: record.number("length").map(|length| length.value),
+                }
+            }
             "pressure" => LoadKind::Pressure {
                 region: self.loaded_region(record)?,
                 pressure: record.expression("pressure")?,
@@ -101,7 +111,7 @@ impl Reader<'_, '_> {
         let kind = record.kind;
         let scheme = self.names.current.scheme;
         let knows = match kind {
-            "pressure" => self.names.current.preset().is_some(),
+            "pressure" | "spring" => self.names.current.preset().is_some(),
             _ => scheme != "transport_velocity",
         };
         if !knows {

@@ -35,6 +35,19 @@ pub enum LoadKind {
         /// One expression of the reference position and time a component.
         traction: Vec<Expression>,
     },
+    /// A spring with a damper to a point.
+    Spring {
+        /// The particles that it is tied to.
+        region: Located<Region>,
+        /// The point in m.
+        to: Vec<f64>,
+        /// N/m.
+        stiffness: f64,
+        /// N s/m.
+        damping: f64,
+        /// Its length without force in m; that of the start if there is none.
+        length: Option<f64>,
+    },
     /// Pressure that follows a part of a body's surface.
     Pressure {
         /// The particles or faces that it acts on.
@@ -51,6 +64,7 @@ impl LoadKind {
             Self::BodyForce { acceleration } => acceleration,
             Self::Traction { traction, .. } => traction,
             Self::Pressure { pressure, .. } => std::slice::from_ref(pressure),
+            Self::Spring { .. } => &[],
         }
     }
 }

@@ -187,8 +187,8 @@ pub(super) static SYSTEM: TableSpec = TableSpec {
             "contact_damping",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
-            Default("0.1"),
-            "what an impact loses, theory (85); 0 for nothing",
+            Default("0.5"),
+            "what an impact loses, theory (85): 0 for nothing, 1 for nearly all",
         ),
     ],
 };

@@ -72,6 +72,7 @@ impl<const D: usize> StaticsInput<D> {
             body_forces: self.body_forces.clone(),
             loaded: self.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),
             pressed: self.pressures.iter().flat_map(|load| load.pressed(positions)).collect(),
+            springs: Vec::new(),
         })
     }
 }

@@ -1,0 +1,334 @@
+//! Rigid bodies that touch a floor and each other, beside a little water that they do not.
+
+use std::sync::atomic::AtomicBool;
+
+use piola::case::{self, LoadOptions, Session};
+use piola::observe::Series;
+
+/// A block and a ball over a floor.
+const BLOCK: &str = r#"
+version = 1
+title = "A block on a floor"
+dimension = 2
+[parameters]
+dx = 0.05
+slope = 0.0
+friction = 0.0
+damping = 0.1
+[[body]]
+name = "water"
+shape = { kind = "box", min = [-2.0, 0.0], max = [-1.6, 0.2] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 40.0 }
+[[body]]
+name = "floor"
+shape = { kind = "union", of = [
+  { kind = "box", min = [-2.2, -0.2], max = [4.0, 0.0] },
+  { kind = "box", min = [-2.2, -0.2], max = [-2.0, 1.0] },
+  { kind = "box", min = [-1.6, -0.2], max = [-1.4, 1.0] },
+] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 40.0 }
+wall = { slip = "free" }
+[[body]]
+name = "block"
+system = "block"
+shape = { kind = "box", min = [0.0, 0.0], max = [0.4, 0.4] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "rigid", density = 2000.0 }
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+[[system]]
+name = "block"
+scheme = { kind = "total_lagrangian" }
+friction = "friction"
+contact_damping = "damping"
+[[load]]
+kind = "body_force"
+body = "block"
+acceleration = ["slope", "-9.81"]
+[time]
+end = 1.0
+[[probe]]
+name = "block"
+kind = "mean"
+body = "block"
+field = "velocity"
+[[probe]]
+name = "corner"
+kind = "particle"
+body = "block"
+at = [0.0, 0.0]
+fields = ["displacement", "velocity"]
+[output]
+every = 10
+table_every = 0.01
+fields = ["velocity"]
+"#;
+
+/// Values of columns over time.
+fn columns<const N: usize>(text: &str, set: &[&str], names: [&str; N]) -> [Vec<f64>; N] {
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let case = case::parse(text, "case.toml", &LoadOptions { overrides, ..LoadOptions::default() });
+    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+    let session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let finished = session.run(&AtomicBool::new(false), &mut |_| {}).expect("it runs");
+    assert_eq!(finished.summary.outcome.summary(), "completed");
+    names.map(|name| match finished.quantity(name) {
+        Some(Series::Curve { values, .. }) => values.clone(),
+        other => panic!("{name}: {other:?}"),
+    })
+}
+
+/// Coulomb's law: with 3 m/s and a coefficient of 0.3 the block is as fast as friction lets it be. It may be
+/// 2 mm/s off: as fast as it creeps at rest, `mu g dx / c`.
+#[test]
+fn a_block_that_slides_is_held_back_by_friction() {
+    let set = ["parameters.friction=0.3", "body.block.initial={ velocity = [3.0, 0.0] }"];
+    let [speed, height] = columns(BLOCK, &set, ["block.velocity.x", "corner.displacement.y"]);
+    for (row, speed) in speed.iter().enumerate() {
+        let exact = (3.0 - 0.3 * 9.81 * 0.01 * row as f64).max(0.0);
+        assert!((speed - exact).abs() < 0.03, "{row}: {speed} for {exact}");
+    }
+    // It neither sinks nor hops more than what its weight presses in: `g H / c^2` of a spacing, and impacts.
+    assert!(height.iter().all(|height| height.abs() < 1e-3), "{height:?}");
+}
+
+/// Without damping a block comes back to where it fell from, as contact is a function of places.
+#[test]
+fn a_block_that_falls_comes_back() {
+    let set = [
+        "parameters.damping=0",
+        "body.block.shape={ kind = 'box', min = [0.0, 0.1], max = [0.4, 0.5] }",
+    ];
+    let [height, side] = columns(BLOCK, &set, ["corner.displacement.y", "corner.displacement.x"]);
+    // Free fall for 0.1 m and as long up again: three bounces.
+    let way = 2.0 * (2.0 * 0.1 / 9.81_f64).sqrt();
+    for bounce in 1..=3 {
+        let row = (f64::from(bounce) * way / 0.01).round() as usize;
+        let near = &height[row - 4..=row + 4];
+        let top = near.iter().copied().fold(f64::MIN, f64::max);
+        // What the contact lasts shifts the times, and 1 % of the height is the energy of 4 % of the step.
+        assert!(top > -0.002 * f64::from(bounce), "{bounce}: {top}");
+    }
+    assert!(side.iter().all(|side| side.abs() < 1e-9), "no side is another");
+}
+
+/// A disc rolls down a slope with two thirds of the acceleration of one that slides, as its inertia is half of
+/// `m R^2`. The disc has 16 particles across: its inertia is off by the
+/// square of 1/16 and more where cells are cut, a hundredth or two.
+#[test]
+fn a_disc_rolls() {
+    let disc = "body.block.shape={ kind = 'ball', center = [0.4, 0.4], radius = 0.4 }";
+    for (friction, share) in [(0.6, 2.0 / 3.0), (0.0, 1.0)] {
+        let friction = format!("parameters.friction={friction}");
+        let set = [disc, "parameters.slope=1.0", "parameters.damping=1", &friction];
+        let [speed] = columns(BLOCK, &set, ["block.velocity.x"]);
+        let speed = speed.last().expect("rows");
+        assert!((speed / share - 1.0).abs() < 0.03, "{friction}: {speed} for {share}");
+    }
+}
+
+/// Two blocks that meet off their middles, without gravity: linear momentum is kept to round-off, angular momentum
+/// to how far the points are apart that act on each other.
+#[test]
+fn blocks_that_meet_keep_their_momentum() {
+    let second = r#"
+[[body]]
+name = "other"
+system = "other"
+shape = { kind = "box", min = [0.5, 1.15], max = [0.8, 1.55] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "rigid", density = 1000.0 }
+initial = { velocity = [-2.0, 0.0] }
+[[system]]
+name = "other"
+scheme = { kind = "total_lagrangian" }
+friction = 0.2
+"#;
+    let text = format!("{BLOCK}{second}");
+    let set = [
+        "load=",
+        "parameters.friction=0.2",
+        "time.end=0.3",
+        "body.block.initial={ velocity = [1.0, 0.0] }",
+        "body.block.shape={ kind = 'box', min = [0.0, 1.05], max = [0.4, 1.45] }",
+    ];
+    let case = {
+        let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+        let options = LoadOptions { overrides, ..LoadOptions::default() };
+        case::parse(&text, "case.toml", &options).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut momentum = || {
+        let velocity = session.column("velocity").expect("it is there").values;
+        let place = session.column("position").expect("it is there").values;
+        let bodies = session.scheme().bodies().to_vec();
+        let mut all = [[0.0; 3]; 4];
+        for (a, (v, x)) in velocity.chunks_exact(2).zip(place.chunks_exact(2)).enumerate() {
+            let mass = session.scheme().mass(a);
+            let own = &mut all[bodies[a] as usize];
+            let parts = [v[0], v[1], x[0] * v[1] - x[1] * v[0]];
+            own.iter_mut().zip(parts).for_each(|(sum, part)| *sum += mass * part);
+        }
+        session.run_until(0.3).expect("it runs");
+        [all[2], all[3]]
+    };
+    let (start, end) = (momentum(), momentum());
+    let sum = |all: [[f64; 3]; 2], k: usize| all[0][k] + all[1][k];
+    let given = start[0][0] - end[0][0];
+    assert!(given > 200.0, "they meet: {given} kg m/s");
+    // Of 320 kg m/s, as often as there are steps.
+    for axis in 0..2 {
+        assert!((sum(end, axis) - sum(start, axis)).abs() < 1e-9, "{axis}: {start:?} {end:?}");
+    }
+    // A spacing times the impulse is 16 kg m2/s.
+    let turned = sum(end, 2) - sum(start, 2);
+    assert!(turned.abs() < 0.1 * 0.05 * given, "{turned} of {given}");
+}
+
+/// What a gauge, a flux, a mean and a force show of water at rest and of a uniform stream.
+#[test]
+fn probes_of_fluids_show_what_is_known() {
+    let still = r#"
+version = 1
+title = "A rigid box that is held under water"
+dimension = 2
+[parameters]
+dx = 0.05
+[[body]]
+name = "water"
+shape = { kind = "difference", from = { kind = "box", min = [0.0, 0.0], max = [2.0, 1.05] }, remove = [{ kind = "box", min = [0.8, 0.4], max = [1.2, 0.7] }] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 50.0 }
+initial = { pressure = "1000 * 9.81 * (1.05 - y)" }
+[[body]]
+name = "tank"
+shape = { kind = "difference", from = { kind = "box", min = ["-4*dx", "-4*dx"], max = ["2+4*dx", "1.5"] }, remove = [{ kind = "box", min = [0.0, 0.0], max = [2.0, 2.0] }] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 50.0 }
+wall = { slip = "free" }
+[[body]]
+name = "box"
+system = "box"
+shape = { kind = "box", min = [0.8, 0.4], max = [1.2, 0.7] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "rigid", density = 500.0 }
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+[[system]]
+name = "box"
+scheme = { kind = "total_lagrangian" }
+slip = "free"
+[[load]]
+kind = "body_force"
+body = "water"
+acceleration = ["0", "-9.81"]
+[[boundary]]
+name = "held"
+body = "box"
+where = { kind = "all" }
+velocity = { x = "0", y = "0" }
+angular_velocity = { z = "0" }
+[[probe]]
+name = "lift"
+kind = "force"
+body = "box"
+about = [1.0, 0.0]
+[[probe]]
+name = "pressed"
+kind = "force"
+body = "box"
+field = "pressure_force"
+about = [0.0, 0.0]
+[[probe]]
+name = "viscous"
+kind = "force"
+body = "box"
+field = "viscous_force"
+[[probe]]
+name = "level"
+kind = "gauge"
+body = "water"
+from = [0.4, 0.2]
+to = [0.4, 1.6]
+[[probe]]
+name = "dry"
+kind = "gauge"
+body = "water"
+from = [0.4, 1.2]
+to = [0.4, 1.6]
+[time]
+end = 1e-5
+"#;
+    let names = [
+        "lift.force.y",
+        "lift.moment.z",
+        "pressed.pressure_force.y",
+        "pressed.moment.z",
+        "viscous.viscous_force.y",
+        "level.elevation",
+        "dry.elevation",
+    ];
+    let found = columns(still, &[], names).map(|column| column[0]);
+    // The box displaces 0.12 m2 of water.
+    let weight = 0.12 * 9810.0;
+    assert!((found[0] / weight - 1.0).abs() < 0.02, "{found:?}");
+    assert!(found[1].abs() < 1e-9 * weight, "{found:?}");
+    assert!((found[2] - found[0]).abs() < 1e-9 * weight, "{found:?}");
+    assert!((found[3] - found[2]).abs() < 1e-9 * weight, "about the origin: {found:?}");
+    assert!(found[4].abs() < 1e-9 * weight, "{found:?}");
+    // A hundredth of the spacing is the ripple of a kernel sum.
+    assert!((found[5] - 0.85).abs() < 0.01 * 0.05, "{found:?}");
+    assert_eq!(found[6], 0.0);
+
+    let stream = r#"
+version = 1
+title = "A uniform stream"
+dimension = 2
+[domain]
+periodic = { x = [0.0, 1.0], y = [0.0, 0.5] }
+[[body]]
+name = "water"
+shape = { kind = "box", min = [0.0, 0.0], max = [1.0, 0.5] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 10.0 }
+initial = { velocity = [0.7, 0.1], pressure = "7" }
+[scheme]
+kind = "transport_velocity"
+[[probe]]
+name = "through"
+kind = "flux"
+point = [0.52, 0.0]
+normal = [2.0, 0.0]
+[[probe]]
+name = "part"
+kind = "flux"
+point = [0.52, 0.0]
+normal = [-1.0, 0.0]
+min = [0.0, 0.0]
+max = [1.0, 0.25]
+[[probe]]
+name = "mean"
+kind = "mean"
+field = "pressure"
+[time]
+end = 0.01
+"#;
+    let names = ["through.flux", "part.flux", "mean.pressure"];
+    let found = columns(stream, &[], names).map(|column| column[0]);
+    // A hat over a lattice of half its width sums up exactly; 7 Pa make the water denser by 7e-5.
+    assert!((found[0] - 350.0245).abs() < 1e-9, "{found:?}");
+    assert!((found[1] + 175.01225).abs() < 1e-9, "{found:?}");
+    assert!((found[2] - 7.0).abs() < 1e-9, "{found:?}");
+}
