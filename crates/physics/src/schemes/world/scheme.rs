@@ -86,7 +86,8 @@ impl<const D: usize> Scheme for World<D> {
             let mut own = std::mem::take(&mut solid.limits);
             let health = solid.scheme.inspect(&state[self.parts[k].state.clone()], &mut own);
             all = all.worse(rename(health, &|particle| named(k, particle)));
-            let bounds = own.iter().filter(|_| solid.cfl.is_some());
+            // What moves as one has no waves.
+            let bounds = own.iter().filter(|it| solid.cfl.is_some() && it.step < f64::INFINITY);
             limits.extend(bounds.map(|limit| StepLimit {
                 step: limit.step
                     * MOST_STEPS as f64
