@@ -37,9 +37,9 @@ impl<const D: usize> Faces<D> {
         let mut thinned = f64::INFINITY;
         self.normals.clear();
         self.normals.extend(rest.normals.iter().map(|normal| {
-            let turned = inverse.transpose() * normal;
-            thinned = thinned.min(1.0 / turned.norm());
-            turned.normalize()
+            let (turned, stretched) = turned(&inverse, normal);
+            thinned = thinned.min(1.0 / stretched);
+            turned
         }));
         self.depth = if thinned.is_finite() { rest.depth * thinned } else { rest.depth };
     }
@@ -70,6 +70,22 @@ impl<const D: usize> Faces<D> {
         let heights = self.normals.iter().map(|normal| (way.dot(normal) - self.depth, normal));
         heights.reduce(|best, other| if other.0 > best.0 { other } else { best })
     }
+}
+
+/// The unit normal of a plane with the unit normal `rest` as a deformation leaves it, which has this inverse, and
+/// `|F^-T N|`.
+fn turned<const D: usize>(inverse: &Tensor<D>, rest: &Vector<D>) -> (Vector<D>, f64) {
+    let turned = inverse.transpose() * rest;
+    (turned.normalize(), turned.norm())
+}
+
+/// The unit normal of a plane with the unit normal `rest` as a deformation gradient leaves it; the same where that
+/// has no inverse.
+pub(crate) fn turned_normal<const D: usize>(
+    deformation: &Tensor<D>,
+    rest: &Vector<D>,
+) -> Vector<D> {
+    tensor::inverse(deformation).map_or(*rest, |inverse| turned(&inverse, rest).0)
 }
 
 #[cfg(test)]

@@ -108,6 +108,8 @@ pub(super) struct Contact<const D: usize> {
     seen: Vec<Vector<D>>,
     /// Points that have points of other bodies around them, with these.
     around: Vec<(u32, Vec<u32>)>,
+    /// Points around one, by index, with their weights.
+    weights: Vec<(usize, f64)>,
     /// Density of each solid in kg/m^3.
     densities: Vec<f64>,
     /// The deepest point behind another surface, in m, with its index.
@@ -195,7 +197,7 @@ impl<const D: usize> Contact<D> {
         let reach = REACH * spacing;
         let area = spacing.powi(D as i32 - 1);
         let whole = COVERED.powi(D as i32 - 1);
-        let mut weights = Vec::new();
+        let mut weights = std::mem::take(&mut self.weights);
         for (i, others) in &self.around {
             let (i, me) = (*i as usize, &self.points[*i as usize]);
             weights.clear();
@@ -246,6 +248,7 @@ impl<const D: usize> Contact<D> {
                 bear(&self.origins[j], &self.offsets[j], &part);
             }
         }
+        self.weights = weights;
     }
 
     /// Bytes that it holds.

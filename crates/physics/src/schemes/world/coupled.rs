@@ -6,7 +6,7 @@ use super::contact::{Origin, Point};
 use super::description::SHARED;
 use super::{MOST_STEPS, Part, Solid, World};
 use crate::Vector;
-use crate::geometry::Faces;
+use crate::geometry::turned_normal;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use crate::schemes::transport_velocity::Guide;
 use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme, StepLimit};
@@ -91,9 +91,8 @@ impl<const D: usize> World<D> {
                 let place = interface.place_at(row, offset, |b| solid.displacement(own, b));
                 let velocity = interface.carried_at(row, offset, |b| solid.velocity(own, b));
                 let gradient = interface.deformation(row, |b| solid.displacement(own, b));
-                let mut faces = Faces::default();
-                faces.follow(&Faces::new(vec![offset.normalize()], 0.0), &gradient);
-                Point { place, normal: faces.between(), velocity }
+                let normal = turned_normal(&gradient, &offset.normalize());
+                Point { place, normal, velocity }
             }
         });
         let touches = &mut self.touches;
