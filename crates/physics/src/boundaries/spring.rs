@@ -1,6 +1,7 @@
 //! Springs and dampers between particles and a point of space.
 
 use crate::Vector;
+use crate::schemes::StepLimit;
 
 /// A spring with a damper from the centre of mass of some particles to a point of space.
 ///
@@ -37,5 +38,14 @@ impl<const D: usize> Spring<D> {
         let direction = way.try_normalize(0.0).unwrap_or_else(Vector::zeros);
         let tension = self.stiffness * (way.norm() - self.length);
         direction * -(tension + self.damping * direction.dot(velocity))
+    }
+
+    /// The largest step of central differences, with damping by the velocity half a step back, theory (67).
+    pub(crate) fn limit(&self, mass: &[f64]) -> StepLimit {
+        let whole: f64 = self.particles.iter().map(|&a| mass[a as usize]).sum();
+        let [square, rate] = [self.stiffness, self.damping].map(|it| it / whole);
+        let sum = rate + (rate * rate + 4.0 * square).sqrt();
+        let first = self.particles.first().map_or(0, |&a| a as usize);
+        StepLimit::scaled("spring", 4.0 / sum, first)
     }
 }

@@ -12,9 +12,11 @@ impl Executor {
 
     /// The speed in m/s above which a run that starts with these has gone wrong.
     fn speed_limit(&self, [speed, wave_speed]: [f64; 2]) -> f64 {
-        let usual = speed + wave_speed;
-        // A scheme without waves, at rest, gives no measure.
-        let limit = if usual > 0.0 { Self::TOO_FAST * usual } else { f64::INFINITY };
+        // A scheme without waves gives no measure.
+        let limit = match wave_speed > 0.0 {
+            true => Self::TOO_FAST * (speed + wave_speed),
+            false => f64::INFINITY,
+        };
         self.max_speed.unwrap_or(limit)
     }
 

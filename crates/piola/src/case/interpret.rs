@@ -128,6 +128,9 @@ pub(super) fn case(
     if let (Some(probes), Some(time)) = (&probes, &time) {
         reader.tangents_exist(probes, time);
     }
+    if let (Some(probes), Some(bodies)) = (&probes, &bodies) {
+        reader.forces_act(probes, bodies);
+    }
     let output = reader.output(record, end);
     let pictures: Vec<_> =
         record.records("picture").map(|picture| reader.picture(picture, end)).collect();

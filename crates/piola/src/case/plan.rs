@@ -84,7 +84,8 @@ pub struct PlannedLimit {
 const STATES: usize = 6;
 
 impl Session {
-    /// Looks at the initial state and times two evaluations of the rates.
+    /// Looks at the initial state and times two evaluations of the rates, or two first steps of systems that act on each
+    /// other.
     pub fn plan(&mut self) -> Plan {
         let control = assembly::step_control(&self.case);
         let scheme = self.executor.scheme.as_mut();
@@ -117,14 +118,20 @@ impl Session {
         let mut other = vec![0.0; state.len()];
         let integrator = self.executor.integrator.as_mut();
         let is_coupled = scheme.coupled().is_some();
+        // Systems that act on each other are evaluated together in a step only.
         let mut evaluate = |scheme: &mut dyn Scheme| match is_coupled {
-            // Systems that act on each other are evaluated together in a step only; one that fails fails in the run.
-            true => integrator.step(scheme, 0.0, step, &state, &mut other).unwrap_or_default(),
-            false => scheme.rates(0.0, &state, &mut other),
+            true => integrator.step(scheme, 0.0, step, &state, &mut other),
+            false => {
+                scheme.rates(0.0, &state, &mut other);
+                Ok(())
+            }
         };
-        evaluate(scheme); // touches all memory once
+        // The first one touches all memory once.
+        let failed = evaluate(scheme).err();
+        warnings.extend(failed.map(|failure| format!("the first step fails: {failure}")));
         let start = Instant::now();
-        evaluate(scheme);
+        let again = evaluate(scheme);
+        drop(again);
         let evaluation = start.elapsed().as_secs_f64().max(1e-9);
         let integrator = self.executor.integrator.as_ref();
         // An end that is a multiple of the step up to round-off takes no step more.

@@ -25,8 +25,22 @@ pub struct Gauge {
     pub kernel: Kernel,
     /// Its smoothing length in m.
     pub smoothing_length: f64,
+    /// Periods of space in m by axis, infinite where it is open.
+    pub periods: Vec<f64>,
     /// Indices in memory of the particles that count, with the volume of each in m^D.
     pub particles: Vec<(u32, f64)>,
+}
+
+/// The way from one place to the nearest image of another.
+fn way<'a>(
+    from: &'a [f64],
+    to: &'a [f64],
+    periods: &'a [f64],
+) -> impl Iterator<Item = f64> + Clone + 'a {
+    from.iter().zip(to).zip(periods).map(|((from, to), period)| {
+        let way = to - from;
+        if period.is_finite() { way - period * (way / period).round() } else { way }
+    })
 }
 
 impl Gauge {
@@ -41,15 +55,17 @@ impl Gauge {
         let particles: Vec<u32> = self.particles.iter().map(|(a, _)| *a).collect();
         let places = now.values("position", &particles);
         let [start, end] = &self.ends;
-        let way: Vec<f64> = start.iter().zip(end).map(|(start, end)| end - start).collect();
-        let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let along: Vec<f64> = start.iter().zip(end).map(|(start, end)| end - start).collect();
+        let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
         let reach = self.kernel.support_radius(self.smoothing_length);
+        let direction: Vec<f64> = along.iter().map(|x| x / length).collect();
+        let middle: Vec<f64> = start.iter().zip(end).map(|(a, b)| 0.5 * (a + b)).collect();
         // Where particles are along the line and how far from it, of those within reach.
         let near = places.chunks_exact(dimension).zip(&self.particles).filter_map(|(x, own)| {
-            let offset = || x.iter().zip(start).map(|(x, start)| x - start);
-            let along = offset().zip(&way).map(|(x, way)| x * way / length).sum::<f64>();
-            let across = offset().map(|x| x * x).sum::<f64>() - along * along;
-            (across < reach * reach).then_some((along, across.max(0.0), own.1))
+            let offset = way(&middle, x, &self.periods);
+            let along: f64 = offset.clone().zip(&direction).map(|(x, e)| x * e).sum();
+            let across = offset.map(|x| x * x).sum::<f64>() - along * along;
+            (across < reach * reach).then_some((along + 0.5 * length, across.max(0.0), own.1))
         });
         let near: Vec<(f64, f64, f64)> = near.collect();
         let share = |at: f64| -> f64 {
@@ -87,6 +103,8 @@ pub struct Flux {
     pub normal: Vec<f64>,
     /// Half the width of the hat in m.
     pub reach: f64,
+    /// Periods of space in m by axis, infinite where it is open.
+    pub periods: Vec<f64>,
     /// Corners in m of a box outside of which nothing counts.
     pub inside: Option<[Vec<f64>; 2]>,
     /// Indices in memory of the particles that count.
@@ -102,15 +120,16 @@ impl Flux {
         };
         let places = now.values("position", &counted);
         let velocities = now.values("velocity", &counted);
-        let along =
-            |vector: &[f64]| -> f64 { vector.iter().zip(&self.normal).map(|(x, n)| x * n).sum() };
-        let origin = along(&self.point);
+        let along = |vector: &mut dyn Iterator<Item = f64>| -> f64 {
+            vector.zip(&self.normal).map(|(x, n)| x * n).sum()
+        };
         let scheme = now.scheme();
         let both = places.chunks_exact(dimension).zip(velocities.chunks_exact(dimension));
         both.zip(&counted)
             .map(|((place, velocity), &a)| {
-                let share = 1.0 - (along(place) - origin).abs() / self.reach;
-                scheme.mass(a as usize) * along(velocity) * share.max(0.0) / self.reach
+                let distance = along(&mut way(&self.point, place, &self.periods)).abs();
+                let share = (1.0 - distance / self.reach).max(0.0) / self.reach;
+                scheme.mass(a as usize) * along(&mut velocity.iter().copied()) * share
             })
             .sum()
     }

@@ -42,7 +42,7 @@ pub(super) fn check<const D: usize>(
         check_index(|| "a mirror: particle".into(), *particle as usize, count)?;
         check_index(|| "a mirror: axis".into(), mirror.axis, D)?;
     }
-    rigid::check(&input.rigid, &input.particles)?;
+    rigid::check(&input.rigid, &input.particles, input.domain.periodic())?;
     let planes = input.mirrors.iter().map(|(mirror, _)| mirror.axis);
     let edges = if settings.form == Form::Strong { 0..D } else { 0..0 };
     let mut ended = planes.chain(edges);

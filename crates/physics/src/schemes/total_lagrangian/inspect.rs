@@ -34,7 +34,8 @@ impl<const D: usize> TotalLagrangian<D> {
             return Health { largest_speed: 0.0, ..health };
         }
         limits.push(self.stable.limit(stiffening, thickening, self.solid.is_linear()));
-        limits.extend(self.rigid.limit(&self.solid, at.displacement, at.velocity));
+        limits.extend(self.rigid.limit(&self.solid, [at.displacement, at.velocity, at.kick]));
+        limits.extend(self.loads.springs.iter().map(|spring| spring.limit(&self.solid.mass)));
         health
     }
 

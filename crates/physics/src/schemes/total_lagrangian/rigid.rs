@@ -304,7 +304,7 @@ impl<const D: usize> RigidBodies<D> {
             let held = body.held(|value, place| value.rate(place, time));
             let mut moments = body.moments(&solid.mass, arm, |k| acceleration[own(k)]);
             if D == 3 && !body.turns_freely() {
-                // Where a part of the angular velocity is prescribed, drifts do not turn the momentum.
+                // Where two components of it are prescribed, drifts do not turn the momentum.
                 let now = body.moments(&solid.mass, arm, |k| velocity[own(k)]);
                 let spin = now.motion(&body.held_nowhere()).spin;
                 moments.angular -= spin.cross(&(moments.inertia * spin));
@@ -378,19 +378,21 @@ impl<const D: usize> RigidBodies<D> {
         }
     }
 
-    /// The bound on a step by how far bodies turn in it.
+    /// The bound on a step by how far bodies turn in it, with velocities and accelerations as they are.
     pub fn limit(
         &self,
         solid: &Solid<D>,
-        displacement: &[Vector<D>],
-        velocity: &[Vector<D>],
+        [displacement, velocity, acceleration]: [&[Vector<D>]; 3],
     ) -> Option<StepLimit> {
         let of = |body: &Bound<D>| {
             let point = body.place(displacement);
             let arm = |k: usize| body.arm(solid, displacement, &point, k);
-            let moments = body.moments(&solid.mass, arm, |k| velocity[body.particles[k] as usize]);
-            let spin = moments.motion(&body.held_nowhere()).spin;
-            StepLimit::scaled("rotation", ANGLE / spin.norm(), body.particles[0] as usize)
+            let turn = |field: &[Vector<D>]| {
+                let moments = body.moments(&solid.mass, arm, |k| field[body.particles[k] as usize]);
+                moments.motion(&body.held_nowhere()).spin.norm()
+            };
+            let step = (ANGLE / turn(velocity)).min((2.0 * ANGLE / turn(acceleration)).sqrt());
+            StepLimit::scaled("rotation", step, body.particles[0] as usize)
         };
         let all = self.bodies.iter().map(of);
         all.reduce(|least, other| if other.step < least.step { other } else { least })
@@ -452,6 +454,7 @@ impl<const D: usize> Bound<D> {
 pub(super) fn check<const D: usize>(
     bodies: &[RigidBody<D>],
     particles: &Particles<D>,
+    periodic: &[Option<[f64; 2]>; D],
 ) -> Result<(), TotalLagrangianError> {
     let mut is_taken = vec![false; particles.len()];
     for body in bodies {
@@ -469,19 +472,45 @@ pub(super) fn check<const D: usize>(
         let centre = places().sum::<Vector<D>>() / count;
         let spread = places().map(|place| (place - centre) * (place - centre).transpose());
         let spread = spread.sum::<Tensor<D>>();
+        let size = spread.trace();
+        let is_flat = !(tensor::smallest_eigenvalue(&spread) > FLAT * size);
+        // A line in space turns freely about itself, and a point about everything.
+        let inertia = Tensor::<D>::identity() * size - spread;
+        let has_inertia = match D {
+            1 => count > 0.0,
+            2 => size > 0.0,
+            _ => tensor::smallest_eigenvalue(&inertia) > FLAT * size,
+        };
         let moved = |axis: usize| body.velocity.iter().any(|(component, _)| *component == axis);
-        let shares =
-            body.particles.iter().any(|&a| std::mem::replace(&mut is_taken[a as usize], true));
+        let turned = body.angular_velocity.len();
+        let take = |&a: &u32| std::mem::replace(&mut is_taken[a as usize], true);
+        let shares = body.particles.iter().map(take).fold(false, |any, one| any | one);
+        let is_torn = (0..D).any(|axis| {
+            let period = periodic[axis].map_or(f64::INFINITY, |[low, high]| high - low);
+            let ends = [f64::INFINITY, f64::NEG_INFINITY];
+            let [low, high] = places()
+                .fold(ends, |[low, high], place| [low.min(place[axis]), high.max(place[axis])]);
+            high - low > 0.5 * period
+        });
         let fault = match () {
             () if shares => {
                 "has a particle twice, or one that belongs to another rigid body; make one body of them"
             }
-            // Also of no particle.
-            () if !(tensor::smallest_eigenvalue(&spread) > FLAT * spread.norm()) => {
-                "lies in a plane or on a line, and has no inertia; give it more than one particle across"
+            () if !has_inertia => {
+                "lies on a line, about which it has no inertia; give it more than one particle across"
+            }
+            () if body.pivot.is_some() && is_flat => {
+                "is flat, so that its pivot is not carried along; give it more than one particle across"
+            }
+            () if is_torn => {
+                "is longer than half of the period of the domain, or crosses its bound; move it, or make the domain longer"
             }
             () if body.pivot.is_some() && !(0..D).all(moved) => {
                 "has a pivot that is free to move; prescribe all components of `velocity` there, or remove `pivot`"
+            }
+            () if D == 3 && turned == 1 => {
+                "has one prescribed component of its angular velocity, which its nutation about the other two axes \
+                 would make unstable; prescribe two, or all, or none"
             }
             () => continue,
         };

@@ -169,7 +169,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         let (walls, matter_at_rest) = ((is_wall, walls), (at_rest, densities.as_slice()));
         let mut common = Common::new(particles, support, settings, walls, matter_at_rest);
         (common.motion, common.sliding) = (motion, sliding);
-        common.body_forces = felt_by_walls(input.body_forces, &input.walls, &common.particles.body);
+        common.body_forces = felt_by_walls(input.body_forces, &input.walls);
         let matter = M::bind(matter, &mut common)?;
         let (drift, accelerate) = (Stages::default(), Stages::default());
         let mut scheme = Self { common, matter, start: Vec::new(), drift, accelerate };
@@ -286,21 +286,19 @@ fn components<const D: usize>(
     Ok(PrescribedComponents::new(&renumbered, &positions))
 }
 
-/// Body forces of which walls feel those of the matter beside them, as their ghost values need them, CTVF (47): of
-/// the first body that is no wall.
+/// Body forces of which walls feel those of the matter beside them, too, as their ghost values need them, CTVF (47): those
+/// of the first body that is no wall and has some of its own.
 fn felt_by_walls<const D: usize>(
-    forces: Vec<BodyForce<D>>,
+    mut forces: Vec<BodyForce<D>>,
     walls: &[Wall],
-    bodies: &[u32],
 ) -> Vec<BodyForce<D>> {
     let is_wall = |body: u32| walls.iter().any(|wall| wall.body == body);
-    let first = bodies.iter().copied().filter(|body| !is_wall(*body)).min();
-    let of_matter = forces.into_iter().filter(|force| !force.body.is_some_and(is_wall));
-    let all = of_matter.flat_map(|force| {
-        let beside = if force.body.is_some() && force.body == first { walls } else { &[] };
-        let felt = beside.iter().map(|wall| BodyForce { body: Some(wall.body), ..force.clone() });
-        let felt: Vec<_> = felt.collect();
-        std::iter::once(force).chain(felt)
+    let first = forces.iter().filter_map(|force| force.body).filter(|body| !is_wall(*body)).min();
+    let own = forces.iter().filter(|force| force.body.is_some() && force.body == first);
+    let felt = own.flat_map(|force| {
+        walls.iter().map(|wall| BodyForce { body: Some(wall.body), ..force.clone() })
     });
-    all.collect()
+    let felt: Vec<_> = felt.collect();
+    forces.extend(felt);
+    forces
 }

@@ -68,7 +68,7 @@ impl<const D: usize> TransportVelocity<D> {
     }
 
     /// The particles (numbers) of walls that nobody else moves.
-    pub(crate) fn walls_at_rest(&self) -> impl Iterator<Item = u32> {
+    pub(crate) fn own_walls(&self) -> impl Iterator<Item = u32> {
         let walls = self.common.walls.iter().enumerate();
         let own = walls.filter(|(index, _)| self.common.guided.velocity(*index).is_none());
         own.map(|(_, wall)| wall.number)
@@ -79,10 +79,11 @@ impl<const D: usize> TransportVelocity<D> {
         self.common.faces(number as usize)
     }
 
-    /// Place and velocity of a particle (number) in a state.
+    /// Place of a wall particle (number) in a state, and the velocity of its surface at the last pass over walls.
     pub(crate) fn motion_of(&self, state: &[f64], number: u32) -> [Vector<D>; 2] {
-        let at = self.common.columns(state);
-        [at.position[number as usize], at.velocity[number as usize]]
+        let place = self.common.columns(state).position[number as usize];
+        let values = self.common.wall_of(number).map(|index| &self.common.wall_values[index]);
+        [place, values.map_or_else(Vector::zeros, |values| values.motion + values.sliding)]
     }
 
     /// Wave speed of the fluid in m/s.

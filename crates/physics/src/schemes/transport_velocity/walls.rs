@@ -26,7 +26,7 @@ pub struct WallValues<const D: usize> {
     /// Velocity with which the wall moves in m/s.
     pub motion: Vector<D>,
     /// Velocity with which its surface slides besides, in m/s.
-    sliding: Vector<D>,
+    pub(super) sliding: Vector<D>,
     /// Acceleration of the wall in m/s^2.
     acceleration: Vector<D>,
     pub velocity: Vector<D>,

@@ -1,46 +1,51 @@
 //! Solids that touch walls or each other: what keeps them apart.
 //!
-//! A surface is known by points of it, one for each face that a wall particle of the fluid is right behind, with the
-//! normal there. A point i of one body meets the plane through the points j of another that are around it, with weights
-//! that fall to zero at one and a half spacings, and is held off where it is behind that plane by some
-//! depth `d > 0`, theory (85):
+//! A surface is known by points of it, one for each face that a wall particle of the fluid is the first behind, with the
+//! normal there. A point i of one body meets the plane through the points j of another that are around it, with weights of
+//! the distance s along the plane and of how they face each other, and is held off where it is behind that
+//! plane by some depth `d > 0`, theory (85):
 //!
 //! ```text
 //! d = -sum_j w_ij (x_i - x_j) . n_j / sum_j w_ij,   n = sum_j w_ij n_j / |sum_j w_ij n_j|
-//! F_i = A/2 (rho c^2 d/dx - z rho c v . n) n - min(mu F_n, 2 A rho c |v_t|) v_t/|v_t|
+//! w_ij = (1 - s_ij^2/dx^2)^2 (n_i . n_j)^2
+//! F_i = A/2 max(0, k rho c^2 d/dx - z rho c v . n) n - min(mu |F_n|, A rho c |v_t|) v_t/|v_t|
 //! ```
 //!
 //! The points j get what is opposite, with the same weights. Both bodies take part as i and as j, which is why there is
 //! a half. A is the area of a point, c the wave speed of the fluid, with which `rho c^2 / dx` is as
-//! stiff as a step of the fluid allows: a body that comes with v is held within v/c of a spacing for each layer of
-//! particles that it is thick.
+//! stiff as a step of the fluid allows with some margin.
 
 use super::Solid;
 use crate::Vector;
 use crate::neighbors::{Domain, search};
 use crate::schemes::transport_velocity::TransportVelocity;
 
-/// How far in spacings the points of a surface make a plane.
-const REACH: f64 = 1.5;
+/// How far in spacings the points of a surface make a plane along it.
+const ALONG: f64 = 1.0;
+
+/// How far in spacings in front of a plane and behind it points are seen.
+const ACROSS: f64 = 1.5;
 
 /// How far in spacings bodies move before points are looked for anew.
 const SKIN: f64 = 0.5;
 
-/// What of a spacing a wall particle is at most behind its face.
-const BEHIND: f64 = 0.75;
+/// What of a spacing a wall particle is less than behind its face: the first layer, wherever the lattice begins.
+const BEHIND: f64 = 1.0 - 1e-6;
 
-/// Cosine of the angle between the normals of surfaces beyond which they do not meet face to face.
-const FACING: f64 = -0.5;
-
-/// The sum of weights at the end of a surface in two dimensions, beyond which it ends within a spacing.
-const COVERED: f64 = 1.3;
+/// Cosine of the angle between the normals of surfaces beyond which they do not meet.
+const FACING: f64 = -0.1;
 
 /// What holds back a point that creeps, in `A/2 rho c` times its velocity: what a step of the fluid allows with some
 /// margin, as the particles of a surface weigh `rho dx^D` and steps are about `0.3 dx/c`.
-const GRIP: f64 = 4.0;
+const GRIP: f64 = 2.0;
 
 /// How deep in spacings a point may be behind a plane before it has gone through.
 const THROUGH: f64 = 1.0;
+
+/// Largest factors of stiffness and of damping that steps of the fluid can take.
+pub const MOST_STIFFNESS: f64 = 4.0;
+/// See [`MOST_STIFFNESS`].
+pub const MOST_DAMPING: f64 = 2.0;
 
 /// How a solid is kept apart from others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +108,8 @@ pub(super) struct Contact<const D: usize> {
     origins: Vec<Origin>,
     /// What stands between a wall particle and its surface where solids begin.
     offsets: Vec<Vector<D>>,
+    /// Its normal there.
+    normals: Vec<Vector<D>>,
     points: Vec<Point<D>>,
     /// Where points were when those around them were looked for.
     seen: Vec<Vector<D>>,
@@ -110,40 +117,40 @@ pub(super) struct Contact<const D: usize> {
     around: Vec<(u32, Vec<u32>)>,
     /// Points around one, by index, with their weights.
     weights: Vec<(usize, f64)>,
-    /// Density of each solid in kg/m^3.
+    /// Density of the solid behind each point in kg/m^3, infinite of walls.
     densities: Vec<f64>,
-    /// The deepest point behind another surface, in m, with its index.
+    /// The largest depth in m, with the point of a solid that has a part in it.
     deepest: Option<(f64, usize)>,
 }
 
 impl<const D: usize> Contact<D> {
     /// Finds the points of surfaces.
     pub fn new(fluid: &TransportVelocity<D>, solids: &[Solid<D>]) -> Self {
-        let mut made =
-            Self { densities: solids.iter().map(Solid::density).collect(), ..Self::default() };
+        let mut made = Self::default();
         let behind = BEHIND * fluid.spacing();
-        let mut add = |number: u32, origin: &dyn Fn(usize) -> Origin| {
-            let Some(faces) = fluid.faces_of(number).filter(|it| it.depth() <= behind) else {
+        let mut add = |number: u32, density: f64, origin: &dyn Fn(usize) -> Origin| {
+            let Some(faces) = fluid.faces_of(number).filter(|it| it.depth() < behind) else {
                 return;
             };
             for (face, normal) in faces.normals().iter().enumerate() {
                 made.origins.push(origin(face));
                 made.offsets.push(normal * faces.depth());
+                made.normals.push(*normal);
+                made.densities.push(density);
             }
         };
-        for number in fluid.walls_at_rest() {
-            add(number, &|face| Origin::Wall { number, face });
+        for number in fluid.own_walls() {
+            add(number, f64::INFINITY, &|face| Origin::Wall { number, face });
         }
         for (solid, own) in solids.iter().enumerate() {
             for (row, &number) in own.interface.walls().iter().enumerate() {
-                add(number, &|face| Origin::Solid { solid, row, face });
+                add(number, own.density(row), &|face| Origin::Solid { solid, row, face });
             }
         }
         made
     }
 
-    /// The deepest point behind another surface at the last look, in spacings, with the solid and the row that
-    /// it is of: it has gone through.
+    /// The solid and the row of a point that has gone through another surface, at the last look.
     pub fn through(&self, spacing: f64) -> Option<(usize, usize)> {
         let (depth, point) = self.deepest?;
         match self.origins[point] {
@@ -157,11 +164,13 @@ impl<const D: usize> Contact<D> {
         &mut self,
         domain: &Domain<D>,
         spacing: f64,
-        point: impl Fn(&Origin, &Vector<D>) -> Point<D>,
+        point: impl Fn(&Origin, [&Vector<D>; 2]) -> Point<D>,
     ) {
         self.points.clear();
-        let points = self.origins.iter().zip(&self.offsets);
-        self.points.extend(points.map(|(origin, offset)| point(origin, offset)));
+        let starts = self.offsets.iter().zip(&self.normals);
+        let points = self.origins.iter().zip(starts);
+        self.points
+            .extend(points.map(|(origin, (offset, normal))| point(origin, [offset, normal])));
         let far = (0.5 * SKIN * spacing).powi(2);
         let stay = |(seen, point): (&Vector<D>, &Point<D>)| {
             domain.separation(seen, &point.place).norm_squared() <= far
@@ -172,7 +181,8 @@ impl<const D: usize> Contact<D> {
         self.seen.clear();
         self.seen.extend(self.points.iter().map(|point| domain.wrap(&point.place)));
         self.around.clear();
-        let reach = vec![(REACH + SKIN) * spacing; self.seen.len()];
+        let reach = ALONG.hypot(ACROSS) + SKIN;
+        let reach = vec![reach * spacing; self.seen.len()];
         // Points that are not finite belong to a state that is refused.
         let Ok(list) = search(&self.seen, &reach, domain) else { return };
         for (i, origin) in self.origins.iter().enumerate() {
@@ -194,27 +204,27 @@ impl<const D: usize> Contact<D> {
         mut bear: impl FnMut(&Origin, &Vector<D>, &Vector<D>),
     ) {
         self.deepest = None;
-        let reach = REACH * spacing;
         let area = spacing.powi(D as i32 - 1);
-        let whole = COVERED.powi(D as i32 - 1);
         let mut weights = std::mem::take(&mut self.weights);
         for (i, others) in &self.around {
             let (i, me) = (*i as usize, &self.points[*i as usize]);
             weights.clear();
-            let (mut total, mut depth) = (0.0, 0.0);
+            let (mut covered, mut total, mut depth) = (0.0, 0.0, 0.0);
             let (mut normal, mut motion) = (Vector::zeros(), Vector::zeros());
             for &j in others {
                 let other = &self.points[j as usize];
                 let way = domain.separation(&other.place, &me.place);
-                let share = 1.0 - way.norm_squared() / (reach * reach);
-                // Surfaces meet face to face.
-                if share <= 0.0 || me.normal.dot(&other.normal) >= FACING {
+                let (height, facing) = (way.dot(&other.normal), me.normal.dot(&other.normal));
+                let aside = way.norm_squared() - height * height;
+                let share = 1.0 - aside / (ALONG * spacing).powi(2);
+                if share <= 0.0 || height.abs() >= ACROSS * spacing || facing > FACING {
                     continue;
                 }
-                let weight = share * share;
+                let weight = share * share * facing * facing;
                 weights.push((j as usize, weight));
+                covered += share * share;
                 total += weight;
-                depth -= weight * way.dot(&other.normal);
+                depth -= weight * height;
                 normal += other.normal * weight;
                 motion += other.velocity * weight;
             }
@@ -223,24 +233,25 @@ impl<const D: usize> Contact<D> {
             if depth.is_nan() || depth <= 0.0 {
                 continue;
             }
+            let both = [i, weights[0].0].map(|point| (point, self.origins[point].solid()));
+            let of_solids = || both.into_iter().filter_map(|(k, solid)| Some((k, solid?)));
+            let Some((point, _)) = of_solids().next() else { continue };
             if self.deepest.is_none_or(|(deepest, _)| depth > deepest) {
-                self.deepest = Some((depth, i));
+                self.deepest = Some((depth, point));
             }
-            let other = weights[0].0;
-            let owners = [i, other].map(|point| self.origins[point].solid());
-            let both = || owners.into_iter().flatten();
-            let laws = both().map(&law).reduce(|one, other| one.with(&other));
-            let Some(ContactLaw { stiffness, damping, friction }) = laws else { continue };
-            let density = both().map(|solid| self.densities[solid]).fold(f64::INFINITY, f64::min);
-            let share = 0.5 * area * (total / whole).min(1.0) * density * wave_speed;
+            let laws = of_solids().map(|(_, solid)| law(solid));
+            let Some(law) = laws.reduce(|one, other| one.with(&other)) else { continue };
+            let ContactLaw { stiffness, damping, friction } = law;
+            let density = of_solids().map(|(k, _)| self.densities[k]).fold(f64::INFINITY, f64::min);
+            let share = 0.5 * area * f64::min(covered, 1.0) * density * wave_speed;
             let velocity = me.velocity - motion / total;
             let across = velocity.dot(&normal);
             let push = stiffness * wave_speed * depth / spacing - damping * across;
             let push = (share * push).max(0.0);
             let along = velocity - normal * across;
             let slip = along.norm();
-            let drag =
-                if slip > 0.0 { (friction * push).min(GRIP * share * slip) / slip } else { 0.0 };
+            let drag = (friction * push).min(GRIP * share * slip);
+            let drag = if slip > 0.0 { drag / slip } else { 0.0 };
             let force = normal * push - along * drag;
             bear(&self.origins[i], &self.offsets[i], &force);
             for &(j, weight) in &weights {
@@ -256,7 +267,7 @@ impl<const D: usize> Contact<D> {
         let around = self.around.iter().map(|(_, others)| size_of_val(others.as_slice()));
         size_of_val(self.origins.as_slice())
             + size_of_val(self.points.as_slice())
-            + 2 * size_of_val(self.seen.as_slice())
+            + 3 * size_of_val(self.seen.as_slice())
             + around.sum::<usize>()
     }
 }

@@ -69,7 +69,7 @@ impl<const D: usize> World<D> {
     }
 
     /// Finds what solids do to each other where they touch, and walls to them.
-    fn touch(&mut self, state: &[f64]) {
+    pub(super) fn touch(&mut self, state: &[f64]) {
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         for (forces, solid) in self.touches.iter_mut().zip(solids) {
             forces.clear();
@@ -77,13 +77,10 @@ impl<const D: usize> World<D> {
         }
         let (domain, spacing) = (fluid.domain(), fluid.spacing());
         let fluid_state = &state[parts[0].state.clone()];
-        self.contact.update(domain, spacing, |origin, offset| match *origin {
-            Origin::Wall { number, face } => {
+        self.contact.update(domain, spacing, |origin, [offset, normal]| match *origin {
+            Origin::Wall { number, .. } => {
                 let [place, velocity] = fluid.motion_of(fluid_state, number);
-                let faces = fluid.faces_of(number);
-                let normal = faces.and_then(|faces| faces.normals().get(face));
-                let normal = normal.copied().unwrap_or_else(Vector::zeros);
-                Point { place: place + offset, normal, velocity }
+                Point { place: place + offset, normal: *normal, velocity }
             }
             Origin::Solid { solid, row, .. } => {
                 let own = &state[parts[solid + 1].state.clone()];
@@ -91,7 +88,7 @@ impl<const D: usize> World<D> {
                 let place = interface.place_at(row, offset, |b| solid.displacement(own, b));
                 let velocity = interface.carried_at(row, offset, |b| solid.velocity(own, b));
                 let gradient = interface.deformation(row, |b| solid.displacement(own, b));
-                let normal = turned_normal(&gradient, &offset.normalize());
+                let normal = turned_normal(&gradient, normal);
                 Point { place, normal, velocity }
             }
         });

@@ -3,12 +3,23 @@
 use std::collections::BTreeMap;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-use crate::fields::{FieldDescription, Life};
+use crate::fields::{FieldDescription, FieldKind, Life};
 use crate::schemes::{Accounts, SchemeDescription};
 
 /// The mechanisms by which others work on a solid, and the ways by which momentum enters from there: the fluid, and
 /// walls and solids that it touches.
 pub(super) const SHARED: [&str; 2] = ["interface", "contact"];
+
+/// What walls and other solids do to a solid in a fluid where they touch, theory (85).
+pub(super) const CONTACT: FieldDescription = FieldDescription {
+    life: Life::Derived(1),
+    ..FieldDescription::new(
+        "contact_force",
+        "N",
+        FieldKind::Vector,
+        "force of walls and other solids that a solid touches",
+    )
+};
 
 /// The combinations that have been asked for. A description is a constant of the program elsewhere, and
 /// there are as few of these as there are combinations in the cases that it reads.
@@ -51,6 +62,7 @@ fn joined(
             None => fields.push(own),
         }
     }
+    fields.push(FieldDescription { number: fields.len(), ..CONTACT });
     let join = |of: fn(&SchemeDescription) -> &[&'static str], shares: bool| {
         let mut names: Vec<&'static str> = of(fluid).to_vec();
         for (system, solid) in solids {

@@ -151,6 +151,12 @@ impl<const D: usize> Interface<D> {
         most.map_or(0, |carrier| carrier.particle)
     }
 
+    /// The mean of a number of the solid's particles (indices in memory) by their weights for wall particle `row`.
+    pub fn mean(&self, row: usize, of: impl Fn(usize) -> f64) -> f64 {
+        let own = &self.carriers[self.starts[row]..self.starts[row + 1]];
+        own.iter().map(|carrier| of(carrier.particle as usize) * carrier.weight).sum()
+    }
+
     /// The sum of a function of the solid's particles (indices in memory) over those that carry wall
     /// particle `row`.
     pub fn carried(&self, row: usize, of: impl Fn(usize) -> Vector<D>) -> Vector<D> {

@@ -34,7 +34,7 @@ use std::ops::Range;
 use thiserror::Error;
 
 use self::contact::Contact;
-pub use self::contact::ContactLaw;
+pub use self::contact::{ContactLaw, MOST_DAMPING, MOST_STIFFNESS};
 use self::interface::Interface;
 pub use self::interface::{InterfaceError, MOST_RATIO};
 use crate::Vector;
@@ -313,9 +313,11 @@ impl<const D: usize> Solid<D> {
         })
     }
 
-    /// The density of what it is made of in kg/m^3: that of the particle that has most in a cell.
-    fn density(&self) -> f64 {
-        self.mass.iter().copied().fold(0.0, f64::max) / self.spacing.powi(D as i32)
+    /// The density of what it is made of around a row of the interface, in kg/m^3.
+    fn density(&self, row: usize) -> f64 {
+        let mass = self.interface.mean(row, |b| self.mass[b]);
+        let least = self.mass.iter().copied().fold(f64::INFINITY, f64::min);
+        mass.max(least) / self.spacing.powi(D as i32)
     }
 
     /// The displacement of its particle `a` in its part of a state, in m.

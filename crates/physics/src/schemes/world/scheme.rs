@@ -1,5 +1,6 @@
 //! A world as clock, observers and output see it: one formulation with the particles of all.
 
+use super::description::CONTACT;
 use super::{MOST_STEPS, World, own_field};
 use crate::Vector;
 use crate::fields::{ABSENT, FieldDescription};
@@ -9,7 +10,7 @@ use crate::schemes::{
 };
 
 /// The fields of walls of the fluid that solids have in it too: what the fluid does to them.
-const BORNE: [&str; 4] = ["force", "pressure_force", "viscous_force", "contact_force"];
+const BORNE: [&str; 4] = ["force", "pressure_force", "viscous_force", "barrier_force"];
 
 impl<const D: usize> World<D> {
     /// Forces that the fluid exerts on the particles of a solid, by a field of its walls.
@@ -152,6 +153,7 @@ impl<const D: usize> Scheme for World<D> {
 
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
         self.guide(state);
+        self.touch(state);
         self.fluid.observe(stage, time, &state[self.parts[0].state.clone()]);
         for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
             solid.scheme.observe(stage, time, &state[part.state.clone()]);
@@ -173,7 +175,10 @@ impl<const D: usize> Scheme for World<D> {
             let (k, local) = self.local(particle as usize);
             let (system, part) = (self.system(k), &state[self.parts[k].state.clone()]);
             match &own[k] {
-                None if BORNE.contains(&field.name) => {
+                None if k > 0 && field.name == CONTACT.name => {
+                    values.extend_from_slice(self.touches[k - 1][local].as_slice());
+                }
+                None if k > 0 && BORNE.contains(&field.name) => {
                     let all = borne[k].get_or_insert_with(|| self.borne(k - 1, field, state));
                     values.extend_from_slice(all[local].as_slice());
                 }

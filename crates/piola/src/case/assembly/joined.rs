@@ -1,5 +1,7 @@
 //! Bodies that are one where their particles share places.
 
+use std::collections::BTreeMap;
+
 use crate::Vector;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, search};
@@ -13,7 +15,7 @@ pub(super) struct Joined {
     /// Index of a particle that stays, and of one that goes into it, before they are ordered.
     pairs: Vec<(u32, u32)>,
     /// By id of the particle that stays: bodies with their volumes.
-    parts: Vec<(u32, Vec<(u32, f64)>)>,
+    parts: BTreeMap<u32, Vec<(u32, f64)>>,
     /// Number of the group of joined bodies of each body.
     group: Vec<u32>,
     /// Whether a body is rigid: it holds the particles that it shares, and is not seen by others.
@@ -24,15 +26,15 @@ impl Joined {
     /// No bodies that are joined.
     pub fn none(is_rigid: Vec<bool>) -> Self {
         let group = (0..is_rigid.len() as u32).collect();
-        Self { pairs: Vec::new(), parts: Vec::new(), group, is_rigid }
+        Self { pairs: Vec::new(), parts: BTreeMap::new(), group, is_rigid }
     }
 
     /// The number of the group that a particle sees.
     pub fn groups<const D: usize>(&self, particles: &Particles<D>) -> Vec<u32> {
         let of = |a: usize| {
             let (body, id) = (particles.body[a], particles.id[a]);
-            let shared = self.parts.iter().find(|(known, _)| *known == id);
-            let mut bodies = shared.into_iter().flat_map(|(_, parts)| parts.iter().map(|it| it.0));
+            let shared = self.parts.get(&id);
+            let mut bodies = shared.into_iter().flatten().map(|it| it.0);
             let deformed = bodies.find(|&body| !self.is_rigid[body as usize]);
             self.group[deformed.unwrap_or(body) as usize]
         };
@@ -64,18 +66,17 @@ impl Joined {
                     is_gone[b as usize] = true;
                     joined.pairs.push((a as u32, b));
                     parts.push((other, particles.volume[b as usize]));
-                    if joined.is_rigid[other as usize]
-                        || joined.is_rigid[particles.body[a] as usize]
-                    {
-                        continue;
-                    }
-                    let groups = [particles.body[a], other].map(|body| joined.group[body as usize]);
-                    let (low, high) = (groups[0].min(groups[1]), groups[0].max(groups[1]));
-                    joined.group.iter_mut().filter(|it| **it == high).for_each(|it| *it = low);
                 }
             }
+            // Those that deform see each other.
+            let deformed = parts.iter().filter(|(body, _)| !joined.is_rigid[*body as usize]);
+            let groups: Vec<u32> = deformed.map(|(body, _)| joined.group[*body as usize]).collect();
+            if let Some(&low) = groups.iter().min() {
+                let is_joined = |group: &&mut u32| groups.contains(group);
+                joined.group.iter_mut().filter(is_joined).for_each(|group| *group = low);
+            }
             if parts.len() > 1 {
-                joined.parts.push((particles.id[a], parts));
+                joined.parts.insert(particles.id[a], parts);
             }
         }
         Ok(joined)
@@ -83,8 +84,7 @@ impl Joined {
 
     /// Whether a particle that stays, by its id, has a part of a body.
     pub fn has_part_of(&self, id: u32, body: u32) -> bool {
-        let parts = self.parts.iter().find(|(known, _)| *known == id);
-        parts.is_some_and(|(_, parts)| parts.iter().any(|(own, _)| *own == body))
+        self.parts.get(&id).is_some_and(|parts| parts.iter().any(|(own, _)| *own == body))
     }
 
     /// Makes one particle of those at one place, with the sum of their volumes and areas.

@@ -52,6 +52,7 @@ pub(super) fn probes<const D: usize>(
                     ends: [from.value.clone(), to.value.clone()],
                     kernel,
                     smoothing_length: ratio * largest_spacing(particles),
+                    periods: periods(case),
                     particles: of_body.map(|a| (a, particles.volume[a as usize])).collect(),
                 })
             }
@@ -59,6 +60,7 @@ pub(super) fn probes<const D: usize>(
                 point: point.clone(),
                 normal: normal.clone(),
                 reach: 2.0 * largest_spacing(particles),
+                periods: periods(case),
                 inside: inside.clone(),
                 particles: of_body(particles, body).collect(),
             }),
@@ -173,17 +175,22 @@ fn interpolated<const D: usize>(
     fields: &[Located<FieldDescription>],
 ) -> Interpolated {
     let (kernel, ratio) = kernel_of(case);
-    let period = |ends: &Option<Located<[f64; 2]>>| {
-        ends.as_ref().map_or(f64::INFINITY, |ends| ends.value[1] - ends.value[0])
-    };
     Interpolated {
         places,
         fields: fields.iter().map(|field| field.value).collect(),
         kernel,
         smoothing_length: ratio * largest_spacing(particles),
-        periods: case.domain.periodic.iter().map(period).collect(),
+        periods: periods(case),
         particles: of_body(particles, body).collect(),
     }
+}
+
+/// Periods of space in m by axis, infinite where it is open.
+fn periods(case: &Case) -> Vec<f64> {
+    let period = |ends: &Option<Located<[f64; 2]>>| {
+        ends.as_ref().map_or(f64::INFINITY, |ends| ends.value[1] - ends.value[0])
+    };
+    case.domain.periodic.iter().map(period).collect()
 }
 
 /// The particles of a body, or of all.

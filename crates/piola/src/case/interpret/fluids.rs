@@ -175,24 +175,53 @@ impl Reader<'_, '_> {
     /// Reports what a rigid body cannot do, and what others cannot.
     fn fits_rigid(&mut self, bodies: &[Body], boundaries: &[Boundary]) {
         let is_rigid = |body: &Body| matches!(body.material.value, Material::Rigid { .. });
+        // What boundaries have prescribed so far, by body: velocities, angular velocities and the pivot.
+        let mut prescribed = vec![[false; 7]; bodies.len()];
         for boundary in boundaries {
-            let of = boundary.body.as_ref().and_then(|body| bodies.get(body.value));
-            let problem = match (of, &boundary.turning) {
-                (Some(body), _) if is_rigid(body) => {
-                    if boundary.region.value == Region::All {
-                        continue;
-                    }
+            let number = boundary.body.as_ref().map(|body| body.value);
+            let of = number.and_then(|number| bodies.get(number));
+            let problem = match (of, number, &boundary.turning) {
+                (Some(body), _, _) if is_rigid(body) && boundary.region.value != Region::All => {
                     let message = format!(
                         "a rigid body moves as one, and this is a part of `{}`",
                         *body.name
                     );
-                    Problem::new(boundary.region.place, message, "a part of it")
-                        .help("select all of it with `where = { kind = \"all\" }`; `pivot` says which point the velocity is of")
+                    Problem::new(boundary.region.place, message, "a part of it").help(
+                        "select all of it with `where = { kind = \"all\" }`; `pivot` says which point the \
+                         velocity is of",
+                    )
                 }
-                (_, Some(turning)) => {
+                (Some(body), Some(number), turning) if is_rigid(body) => {
+                    let turns = turning.as_ref().map(|turning| &turning.value);
+                    let given: [bool; 7] = std::array::from_fn(|k| match k {
+                        0..3 => boundary.velocity.get(k).is_some_and(Option::is_some),
+                        3..6 => turns.is_some_and(|it| it.angular_velocity[k - 3].is_some()),
+                        _ => turns.is_some_and(|it| it.pivot.is_some()),
+                    });
+                    let mut is_second = false;
+                    for (known, given) in prescribed[number].iter_mut().zip(given) {
+                        is_second |= *known && given;
+                        *known |= given;
+                    }
+                    if !is_second {
+                        continue;
+                    }
+                    let message = format!(
+                        "another boundary prescribes the same of the rigid body `{}`",
+                        *body.name
+                    );
+                    Problem::new(boundary.name.place, message, "the second one")
+                        .help("make one of them")
+                }
+                (_, _, Some(turning)) => {
                     let message = "only a rigid body has an angular velocity and a pivot";
                     Problem::new(turning.place, message, "no rigid body")
                         .help("name one with the key `body`, of the material `rigid`")
+                }
+                (None, _, None) if bodies.iter().any(is_rigid) => {
+                    let message = "a boundary of all bodies would move parts of a rigid one";
+                    Problem::new(boundary.name.place, message, "of which body?")
+                        .help("name one with the key `body`")
                 }
                 _ => continue,
             };

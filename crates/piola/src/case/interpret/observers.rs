@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::case::model::{
-    Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind, Quantity,
+    Body, Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind, Quantity,
 };
 use crate::case::suggest::one_of;
 
@@ -38,6 +38,7 @@ impl Reader<'_, '_> {
                 }
             }
             "force" => {
+                self.is_of_one_body(record);
                 // A solid in a fluid has the forces that the fluid shows of its walls.
                 let current = self.names.current.clone();
                 if !self.names.systems.is_empty() {
@@ -146,6 +147,21 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Reports probes of the forces of a fluid on itself.
+    pub(super) fn forces_act(&mut self, probes: &[Probe], bodies: &[Body]) {
+        for probe in probes.iter().filter(|it| matches!(it.kind, ProbeKind::Force { .. })) {
+            let body = probe.body.as_ref().and_then(|body| bodies.get(body.value));
+            if body.is_some_and(|body| body.wall.is_none() && body.system.is_none()) {
+                let message = format!("the probe `{}` looks at no wall and no solid", *probe.name);
+                let place = probe.body.as_ref().map_or(probe.name.place, |body| body.place);
+                let problem = Problem::new(place, message, "the fluid itself");
+                self.report(
+                    problem.help("name a wall or the body of a system, or use the kind `sum`"),
+                );
+            }
+        }
+    }
+
     /// Reports tests of tangents where no step has one.
     pub(super) fn tangents_exist(&mut self, probes: &[Probe], time: &Time) {
         let has_one = matches!(time.rule, Some(ImplicitRule::Theta(_)));
@@ -194,14 +210,15 @@ impl Reader<'_, '_> {
         Some(ProbeKind::Force { field, about, region })
     }
 
-    /// Reports a probe of a fluid that looks at walls too.
+    /// Reports a probe that looks at fluid and walls together.
     fn is_of_one_body(&mut self, record: &Record) {
         if !record.has("body") && self.names.bodies.len() > 1 {
             let message =
                 format!("a {} needs the key `body` where there are several bodies", record.kind);
             let names = self.names.bodies.iter().map(String::as_str);
             let problem = Problem::new(record.place, message, "`body` is missing");
-            self.report(problem.help(format!("name the fluid, one of {}", one_of(names))));
+            let what = if record.kind == "force" { "a wall or a solid" } else { "the fluid" };
+            self.report(problem.help(format!("name {what}, one of {}", one_of(names))));
         }
     }
 

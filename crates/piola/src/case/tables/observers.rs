@@ -96,7 +96,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Text,
                     "",
                     Default("\"force\""),
-                    "a field of forces: `force`, or a part of it: `pressure_force`, `viscous_force`, `contact_force`",
+                    "a field of forces: `force`, or a part of it: `pressure_force`, `viscous_force`, `barrier_force`; of solids `contact_force`, what they touch",
                 ),
                 key(
                     "about",

@@ -218,7 +218,7 @@ const fn isotropic(name: &'static str, meaning: &'static str) -> KindSpec {
 
 pub(super) const RIGID: KindSpec = KindSpec {
     name: "rigid",
-    meaning: "a body that moves as one, theory (83), with the scheme `total_lagrangian` and its presets; with `joined = true` flexible bodies are clamped to it where their particles share places",
+    meaning: "a body that moves as one, theory (83), with the scheme `total_lagrangian` and its presets; with `joined = true` flexible bodies are clamped to it where their particles share places. Bodies touch each other only in a fluid, each in a `[[system]]` of its own",
     dimensions: &[1, 2, 3],
     keys: &[],
 };

@@ -1,6 +1,7 @@
 //! The clock, integrators and checkpoints.
 
 use super::*;
+use crate::schemes::world::{MOST_DAMPING, MOST_STIFFNESS};
 
 pub(super) static TIME: TableSpec = TableSpec {
     title: "[time]",
@@ -174,21 +175,21 @@ pub(super) static SYSTEM: TableSpec = TableSpec {
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Default("0.0"),
-            "Coulomb's coefficient where it slides along walls; between two systems their mean",
+            "Coulomb's coefficient where it slides along walls; between two systems their mean. Bodies of one system do not touch each other",
         ),
         key(
             "contact_stiffness",
-            Kind::Number(Interval::POSITIVE),
+            Kind::Number(Interval::between(0.01, MOST_STIFFNESS)),
             "1",
             Default("1.0"),
-            "what keeps it off walls and other systems, in density of the solid times the squared wave speed of the fluid, theory (85)",
+            "what keeps it off walls and other systems, in density of the solid times the squared wave speed of the fluid, theory (85); between two systems the smaller one",
         ),
         key(
             "contact_damping",
-            Kind::Number(Interval::NOT_NEGATIVE),
+            Kind::Number(Interval::between(0.0, MOST_DAMPING)),
             "1",
             Default("0.5"),
-            "what an impact loses, theory (85): 0 for nothing, 1 for nearly all",
+            "what an impact loses, theory (85): 0 for nothing, 1 for nearly all; between two systems the mean",
         ),
     ],
 };

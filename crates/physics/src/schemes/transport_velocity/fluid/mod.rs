@@ -31,7 +31,8 @@ columns! {
     derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
     derived(1) pressure_force: Vector, "N", "of `force` on a wall, that of the pressure";
     derived(1) viscous_force: Vector, "N", "of `force` on a wall, that of viscosity";
-    derived(1) contact_force: Vector, "N", "of `force` on a wall, that by which it holds off what touches it";
+    derived(1) barrier_force: Vector, "N",
+        "what is left of `force` on a wall: that by which it holds off fluid that touches it";
 }
 
 /// The fields of all matter, then those of fluids.
