@@ -1,7 +1,6 @@
 //! Springs and dampers between particles and a point of space.
 
 use crate::Vector;
-use crate::schemes::StepLimit;
 
 /// A spring with a damper from the centre of mass of some particles to a point of space.
 ///
@@ -40,12 +39,10 @@ impl<const D: usize> Spring<D> {
         direction * -(tension + self.damping * direction.dot(velocity))
     }
 
-    /// The largest step of central differences, with damping by the velocity half a step back, theory (67).
-    pub(crate) fn limit(&self, mass: &[f64]) -> StepLimit {
+    /// The largest step in s of central differences, with damping by the velocity half a step back, theory (67).
+    pub(crate) fn stable_step(&self, mass: &[f64]) -> f64 {
         let whole: f64 = self.particles.iter().map(|&a| mass[a as usize]).sum();
         let [square, rate] = [self.stiffness, self.damping].map(|it| it / whole);
-        let sum = rate + (rate * rate + 4.0 * square).sqrt();
-        let first = self.particles.first().map_or(0, |&a| a as usize);
-        StepLimit::scaled("spring", 4.0 / sum, first)
+        4.0 / (rate + (rate * rate + 4.0 * square).sqrt())
     }
 }

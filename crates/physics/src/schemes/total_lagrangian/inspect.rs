@@ -35,7 +35,10 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         limits.push(self.stable.limit(stiffening, thickening, self.solid.is_linear()));
         limits.extend(self.rigid.limit(&self.solid, [at.displacement, at.velocity, at.kick]));
-        limits.extend(self.loads.springs.iter().map(|spring| spring.limit(&self.solid.mass)));
+        limits.extend(self.loads.springs.iter().map(|spring| {
+            let first = spring.particles.first().map_or(0, |&a| a as usize);
+            StepLimit::scaled("spring", spring.stable_step(&self.solid.mass), first)
+        }));
         health
     }
 
