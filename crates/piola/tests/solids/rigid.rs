@@ -285,7 +285,8 @@ fn bodies_of_which_no_motion_is_known_are_refused() {
     };
     let mut line = start();
     line.rigid[0].particles = vec![0, 1, 2];
-    refused(line, "has no inertia");
+    line.rigid[0].pivot = Some(Vector::zeros());
+    refused(line, "is flat");
     let mut twice = start();
     twice.rigid.push(RigidBody {
         name: "other".into(),
@@ -303,6 +304,17 @@ fn bodies_of_which_no_motion_is_known_are_refused() {
     displaced.displacement[0][0] = 0.1;
     let error = refused(displaced, "initial displacement");
     assert!(matches!(error, TotalLagrangianError::Combination { part: Part::Rigid, .. }));
+    // A row in space has no inertia about itself; one prescribed axis leaves two that nutate.
+    let faults: [(Vec<u32>, usize, &str); 2] =
+        [((0..3).collect(), 0, "lies on a line"), ((0..27).collect(), 1, "two, or all, or none")];
+    for (particles, axes, expected) in faults {
+        let mut space = input([0.2; 3], [2; 3], |_| Vector::zeros());
+        space.rigid[0].particles = particles;
+        let prescribed = (0..axes).map(|axis| (axis, Arc::new(1.0) as Arc<dyn SpaceTime>));
+        space.rigid[0].angular_velocity = prescribed.collect();
+        let error = TotalLagrangian::new(space).err().unwrap();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
 }
 
 #[test]
