@@ -165,7 +165,8 @@ impl<const D: usize> Bound<D> {
         self.point + moved.map(|(&a, weight)| displacement[a as usize] * *weight).sum::<Vector<D>>()
     }
 
-    /// The moments of the body with a velocity, or an acceleration, of each particle.
+    /// The moments of the body with a velocity, or an acceleration, of each particle, of which it has numbers of
+    /// its own.
     fn moments(
         &self,
         mass: &[f64],
@@ -173,9 +174,8 @@ impl<const D: usize> Bound<D> {
         velocity: impl Fn(usize) -> Vector<D> + Sync,
     ) -> Moments {
         let all: [f64; 16] = parallel::sums(self.particles.len(), |k, all: &mut [f64; 16]| {
-            let a = self.particles[k] as usize;
-            let (mass, arm) = (mass[a], arm(a));
-            let linear = in_space(&velocity(a)) * mass;
+            let (mass, arm) = (mass[self.particles[k] as usize], arm(k));
+            let linear = in_space(&velocity(k)) * mass;
             let (angular, first) = (arm.cross(&linear), arm * mass);
             let second = [
                 first.y * arm.y + first.z * arm.z,
