@@ -24,7 +24,7 @@ pub enum DeviceError {
     /// The loader of OpenCL is not installed.
     #[error(
         "there is no OpenCL (libOpenCL) on this machine: install the driver of the GPU, or pocl \
-         (Debian: pocl-opencl-icd), which computes on the processor"
+         (Debian: pocl-opencl-icd and ocl-icd-libopencl1), which computes on the processor"
     )]
     NoOpenCl,
     /// OpenCL is there, but no driver of it.

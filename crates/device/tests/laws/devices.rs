@@ -18,7 +18,7 @@ pub fn device() -> Option<Device> {
     let found = devices();
     let found = found.iter().find(|found| found.name.starts_with("opencl") && found.has_double);
     if found.is_none() {
-        let missing = "there is no OpenCL device with double precision (Debian: pocl-opencl-icd)";
+        let missing = "there is no OpenCL device with double precision (Debian: pocl-opencl-icd and ocl-icd-libopencl1)";
         assert!(std::env::var_os("PIOLA_OPENCL_REQUIRED").is_none(), "{missing}");
         eprintln!("NOT RUN: {missing}");
     }
