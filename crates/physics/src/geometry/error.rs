@@ -53,6 +53,29 @@ pub enum GeometryError {
         /// Where it exists.
         expected: &'static str,
     },
+    /// A polygon encloses nothing.
+    #[error("a polygon has {count} corners, expected at least 3")]
+    FewCorners {
+        /// Their number.
+        count: usize,
+    },
+    /// A polygon is none.
+    #[error(
+        "sides {first} and {second} of a polygon cross or touch; side 1 goes from the first corner to the second, \
+         expected sides that meet at their corners alone"
+    )]
+    CrossingSides {
+        /// Number of a side, from 1.
+        first: usize,
+        /// Number of another one.
+        second: usize,
+    },
+    /// A lattice that is turned meets itself across no periodic bound.
+    #[error(
+        "a turned body reaches across the whole of a periodic domain; turn the rest of the case and leave this body \
+         as it is, or make it shorter"
+    )]
+    TurnedPeriodic,
     /// A combination of no shapes.
     #[error("{what} has no shapes, expected at least one")]
     NoShapes {

@@ -4,8 +4,8 @@ use super::cut::cut;
 use super::jitter::jitter;
 use super::lattice::Lattice;
 use super::{GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, Surface};
-use crate::Vector;
 use crate::parallel::sum;
+use crate::{Tensor, Vector};
 
 /// Most sites of the lattice around a body. A run needs a kilobyte a particle and more.
 pub(super) const MOST_SITES: usize = 100_000_000;
@@ -25,6 +25,8 @@ pub struct FillReport<const D: usize> {
     /// Edges of a particle's cell in m: the spacing along each axis of a square lattice; of a
     /// hexagonal one the distances within a row, of rows and of layers.
     pub actual_spacing: [f64; D],
+    /// How the lattice is turned: rows are along its columns.
+    pub rotation: Tensor<D>,
 }
 
 /// Fills `shape` with particles at the sites of a lattice that lie in it.
@@ -40,12 +42,20 @@ pub struct FillReport<const D: usize> {
 /// With jitter, particles move at random by up to `jitter` spacings along each axis, but not off
 /// the faces of the bounding box, nor out of the shape. The same seed gives the same particles.
 ///
+/// The lattice of a shape that is turned as a whole is turned with it, about the same point.
+///
 /// # Errors
-/// An impossible specification, too many sites, and a shape without particles.
+/// An impossible specification, too many sites, a shape without particles, and a turned one around a periodic domain.
 pub fn fill<const D: usize>(
     shape: &Shape<D>,
     spec: &LatticeSpec<D>,
 ) -> Result<FillReport<D>, GeometryError> {
+    if let Some((of, about, rotation)) = shape.as_turned() {
+        let mut report = fill(of, &unturned(spec)?)?;
+        turn(&mut report.particles.position, about, rotation);
+        report.rotation = rotation * report.rotation;
+        return Ok(report);
+    }
     let (min, max) = shape.bounding_box();
     let lattice = Lattice::new(spec, min, max)?;
     let square = spec.kind == LatticeKind::Square || D == 1;
@@ -73,8 +83,27 @@ pub fn fill<const D: usize>(
         total_volume: sum(count, |a| particles.volume[a]),
         exact_volume: shape.exact_volume(),
         actual_spacing: lattice.edges.into(),
+        rotation: Tensor::identity(),
         particles,
     })
+}
+
+/// The lattice of a shape before it was turned, which goes round no periodic domain.
+pub(super) fn unturned<const D: usize>(
+    spec: &LatticeSpec<D>,
+) -> Result<LatticeSpec<D>, GeometryError> {
+    if spec.periodic.contains(&true) { Err(GeometryError::TurnedPeriodic) } else { Ok(*spec) }
+}
+
+/// Turns points about a point.
+pub(super) fn turn<const D: usize>(
+    points: &mut [Vector<D>],
+    about: &Vector<D>,
+    rotation: &Tensor<D>,
+) {
+    for point in points {
+        *point = rotation * (*point - about) + about;
+    }
 }
 
 /// All sites, with half a cell for each axis on whose end a particle lies.

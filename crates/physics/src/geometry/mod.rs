@@ -11,6 +11,7 @@ mod lattice;
 mod mesh;
 mod particles;
 mod points;
+mod polygon;
 mod region;
 mod shape;
 mod surface;

@@ -2,9 +2,12 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::{Rotation3, Unit, Vector3};
+
 use super::GeometryError;
 use super::error::{axis_name, finite, positive};
-use crate::Vector;
+use super::polygon;
+use crate::{Tensor, Vector};
 
 /// A region of space with its boundary.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +30,16 @@ enum Kind<const D: usize> {
         direction: Vector<D>,
         length: f64,
         radius: f64,
+    },
+    /// In 3D between two ends along z.
+    Polygon {
+        corners: Vec<Vector<2>>,
+        ends: Option<[f64; 2]>,
+    },
+    Turned {
+        of: Box<Shape<D>>,
+        about: Vector<D>,
+        rotation: Tensor<D>,
     },
     Union(Vec<Shape<D>>),
     Intersection(Vec<Shape<D>>),
@@ -107,6 +120,51 @@ impl<const D: usize> Shape<D> {
         Ok(Self(Kind::Cylinder { start, direction, length, radius }))
     }
 
+    /// What the straight sides between `corners` in m enclose, in either sense of rotation; in 3D between two `ends`
+    /// in m along z.
+    ///
+    /// # Errors
+    /// Less than three corners, ones that are not finite, sides that cross or touch, 1D, in 3D ends that are missing
+    /// or not in order.
+    pub fn polygon(corners: Vec<Vector<2>>, ends: Option<[f64; 2]>) -> Result<Self, GeometryError> {
+        if D < 2 || (D == 3) != ends.is_some() {
+            let (what, expected) = ("a polygon", "2D, or 3D with two ends along z");
+            return Err(GeometryError::Dimension { what, got: D, expected });
+        }
+        corners.iter().try_for_each(|x| finite("a corner of a polygon", x.as_slice()))?;
+        if let Some([min, max]) = ends {
+            finite("the ends of a polygon along z", &[min, max])?;
+            if min >= max {
+                return Err(GeometryError::Corners { axis: axis_name(2), min, max });
+            }
+        }
+        polygon::check(&corners)?;
+        Ok(Self(Kind::Polygon { corners, ends }))
+    }
+
+    /// A shape turned by an angle in rad about a point in m, in 3D about a unit axis: counter-clockwise as seen from
+    /// its tip, in 2D from the tip of z. Particles that fill it are on a lattice that is turned with it.
+    ///
+    /// # Errors
+    /// An angle or point that is not finite, 1D.
+    pub fn turned(
+        self,
+        angle: f64,
+        about: Vector<D>,
+        axis: Vector3<f64>,
+    ) -> Result<Self, GeometryError> {
+        if D < 2 {
+            let (what, expected) = ("a turned shape", "2D or 3D");
+            return Err(GeometryError::Dimension { what, got: D, expected });
+        }
+        finite("the angle of a turned shape", &[angle])?;
+        finite("the point about which a shape is turned", about.as_slice())?;
+        finite("the axis of a turned shape", axis.as_slice())?;
+        let turn = Rotation3::from_axis_angle(&Unit::new_normalize(axis), angle);
+        let rotation = Tensor::<D>::from_fn(|i, j| turn[(i, j)]);
+        Ok(Self(Kind::Turned { of: Box::new(self), about, rotation }))
+    }
+
     /// What lies in any of `shapes`.
     ///
     /// # Errors
@@ -164,6 +222,14 @@ impl<const D: usize> Shape<D> {
                 let across = (arm - direction * along).norm();
                 along.min(length - along).min(radius - across)
             }
+            Kind::Polygon { corners, ends } => {
+                let depth = polygon::depth(corners, &point.fixed_rows::<2>(0).into_owned());
+                let along = |[min, max]: [f64; 2]| (point[D - 1] - min).min(max - point[D - 1]);
+                ends.map_or(depth, |ends| depth.min(along(ends)))
+            }
+            Kind::Turned { of, about, rotation } => {
+                of.depth(&(rotation.transpose() * (point - about) + about))
+            }
             Kind::Union(shapes) => {
                 shapes.iter().map(|shape| shape.depth(point)).fold(f64::NEG_INFINITY, f64::max)
             }
@@ -176,8 +242,8 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// Lower and upper corner in m of a box around the shape: the smallest one for all but
-    /// differences and intersections. The corners of an empty intersection may be out of order.
+    /// Lower and upper corner in m of a box around the shape: the smallest one for all but differences,
+    /// intersections and what is turned. The corners of an empty intersection may be out of order.
     pub fn bounding_box(&self) -> (Vector<D>, Vector<D>) {
         match &self.0 {
             Kind::Box { min, max } => (*min, *max),
@@ -189,13 +255,32 @@ impl<const D: usize> Shape<D> {
                 let reach = direction.map(|d| radius * (1.0 - d * d).max(0.0).sqrt());
                 (start.inf(&end) - reach, start.sup(&end) + reach)
             }
+            Kind::Polygon { corners, ends } => {
+                let [min, max] = [f64::min, f64::max].map(|choose: fn(f64, f64) -> f64| {
+                    corners[1..].iter().fold(corners[0], |x, y| x.zip_map(y, choose))
+                });
+                let whole = |plane: Vector<2>, end: fn([f64; 2]) -> f64| {
+                    Vector::from_fn(|axis, _| match axis {
+                        0 | 1 => plane[axis],
+                        _ => ends.map_or(0.0, end),
+                    })
+                };
+                (whole(min, |[low, _]| low), whole(max, |[_, high]| high))
+            }
+            Kind::Turned { of, about, rotation } => {
+                let (min, max) = of.bounding_box();
+                let (middle, half) = (0.5 * (min + max), 0.5 * (max - min));
+                let (middle, half) = (rotation * (middle - about) + about, rotation.abs() * half);
+                (middle - half, middle + half)
+            }
             Kind::Union(shapes) => join(shapes, |(a, b), (c, d)| (a.inf(&c), b.sup(&d))),
             Kind::Intersection(shapes) => join(shapes, |(a, b), (c, d)| (a.sup(&c), b.inf(&d))),
             Kind::Difference { from, .. } => from.bounding_box(),
         }
     }
 
-    /// The volume in m^D, where it is known: for boxes, balls, annuli and cylinders, and for these
+    /// The volume in m^D, where it is known: for boxes, balls, annuli, cylinders and polygons, for these turned, and
+    /// for these
     /// with others cut out of a box wholly inside of it and apart from each other.
     pub fn exact_volume(&self) -> Option<f64> {
         match &self.0 {
@@ -204,6 +289,10 @@ impl<const D: usize> Shape<D> {
                 Some(ball_volume(D, *outer) - ball_volume(D, *inner))
             }
             Kind::Cylinder { length, radius, .. } => Some(PI * radius * radius * length),
+            Kind::Polygon { corners, ends } => {
+                Some(polygon::area(corners).abs() * ends.map_or(1.0, |[min, max]| max - min))
+            }
+            Kind::Turned { of, .. } => of.exact_volume(),
             Kind::Union(shapes) | Kind::Intersection(shapes) => match shapes.as_slice() {
                 [only] => only.exact_volume(),
                 _ => None,
@@ -221,6 +310,14 @@ impl<const D: usize> Shape<D> {
                 let removed: Option<f64> = remove.iter().map(Self::exact_volume).sum();
                 (is_box && inside && apart).then_some(from.exact_volume()? - removed?)
             }
+        }
+    }
+
+    /// What was turned, the point and the rotation, where the shape is one that was turned as a whole.
+    pub(super) fn as_turned(&self) -> Option<(&Self, &Vector<D>, &Tensor<D>)> {
+        match &self.0 {
+            Kind::Turned { of, about, rotation } => Some((of, about, rotation)),
+            _ => None,
         }
     }
 

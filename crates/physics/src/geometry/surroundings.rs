@@ -1,6 +1,6 @@
 //! The sites of a lattice around a body: where ghosts continue it.
 
-use super::fill::ON_BOUNDARY;
+use super::fill::{ON_BOUNDARY, turn, unturned};
 use super::lattice::Lattice;
 use super::{GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, Surface};
 use crate::Vector;
@@ -17,6 +17,11 @@ pub fn surroundings<const D: usize>(
     spec: &LatticeSpec<D>,
     reach: f64,
 ) -> Result<Particles<D>, GeometryError> {
+    if let Some((of, about, rotation)) = shape.as_turned() {
+        let mut around = surroundings(of, &unturned(spec)?, reach)?;
+        turn(&mut around.position, about, rotation);
+        return Ok(around);
+    }
     let (min, max) = shape.bounding_box();
     let edges = Lattice::new(spec, min, max)?.edges;
     // An even number of rows and layers, so that those of a hexagonal lattice go on as they are.

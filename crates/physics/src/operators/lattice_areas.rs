@@ -5,26 +5,28 @@ use std::collections::HashSet;
 use piola_formulas::kernels::Kernel;
 
 use super::{Correction, GradientOperator, OperatorError, Support};
-use crate::Vector;
 use crate::geometry::{Particles, Surface};
 use crate::neighbors::Domain;
+use crate::{Tensor, Vector};
 
 /// Smoothing length in spacings with which a particle of a lattice sees those beside it and no
-/// diagonal ones.
-const NARROW: f64 = 0.7;
+/// diagonal ones, and one with which it sees these too, for corners that have none beside them along some axis.
+const NARROW: [f64; 2] = [0.7, 0.9];
 
 /// Areas below this share of a face of the cell are rounding errors.
 const ROUNDING: f64 = 1e-9;
 
 /// Outward boundary area vectors in m^(D-1) of the particles of a lattice with these edges of a cell
-/// in m: those of its narrow gradient operator, theory (14), which on a box are the shares of its
-/// faces. They sum to zero, and times the places to the volume, whatever the shape.
+/// in m, along the columns of a rotation: those of its narrow gradient operator, theory (14), which on a box are the shares of its
+/// faces. They sum to zero, and times the places to the volume, whatever the shape. Where a corner of a shape has no
+/// neighbour along some axis, those of a wider operator.
 ///
 /// # Errors
 /// When a particle has no neighbour along some axis, or the box repeats itself too soon.
 pub fn lattice_areas<const D: usize>(
     particles: &Particles<D>,
     edges: &[f64; D],
+    rotation: &Tensor<D>,
     domain: &Domain<D>,
 ) -> Result<Vec<Vector<D>>, OperatorError> {
     let edges = Vector::<D>::from(*edges);
@@ -32,7 +34,11 @@ pub fn lattice_areas<const D: usize>(
     let count = particles.len();
     // In units of the edges the lattice is one of cubes.
     let scaled = Particles {
-        position: particles.position.iter().map(|x| x.component_div(&edges)).collect(),
+        position: particles
+            .position
+            .iter()
+            .map(|x| rotation.tr_mul(x).component_div(&edges))
+            .collect(),
         volume: particles.volume.iter().map(|volume| volume / cell).collect(),
         weight: vec![1.0; count],
         spacing: vec![1.0; count],
@@ -44,24 +50,29 @@ pub fn lattice_areas<const D: usize>(
         domain.periodic()[axis].map(|ends| ends.map(|end| end / edges[axis]))
     });
     let domain = Domain::new(periodic)?;
-    let support = Support::new(&scaled, Kernel::CubicSpline, NARROW, domain)?;
-    let operator = GradientOperator::new(&scaled, &support, Correction::Gradient);
-    let operator = operator.map_err(|error| in_metres(error, particles))?;
-    let areas = operator.boundary_areas(&support, &scaled.volume);
+    let of = |smoothing| {
+        let support = Support::new(&scaled, Kernel::CubicSpline, smoothing, domain)?;
+        let operator = GradientOperator::new(&scaled, &support, Correction::Gradient);
+        let operator = operator.map_err(|error| in_metres(error, particles))?;
+        Ok(operator.boundary_areas(&support, &scaled.volume))
+    };
+    let [narrow, wider] = NARROW;
+    let areas = of(narrow).or_else(|error: OperatorError| of(wider).map_err(|_| error))?;
     let clean = |area: Vector<D>| match area.norm() < ROUNDING {
         true => Vector::zeros(),
-        false => area.component_div(&edges) * cell,
+        false => rotation * area.component_div(&edges) * cell,
     };
     Ok(areas.into_iter().map(clean).collect())
 }
 
 /// Outward areas in m^(D-1) of the faces of cells that no other cell shares, for cells with these
-/// edges in m around the `positions` of a lattice: what a load on the surface acts on. The areas of
+/// edges in m along the columns of a rotation around the `positions` of a lattice: what a load on the surface acts on. The areas of
 /// [`lattice_areas`] are there to be summed over all particles; where particles are centres of cells,
 /// those of the outermost layer alone are half as large again as its faces.
 pub fn exposed_areas<const D: usize>(
     positions: &[Vector<D>],
     edges: &[f64; D],
+    rotation: &Tensor<D>,
     domain: &Domain<D>,
 ) -> Vec<Vector<D>> {
     let Some(&origin) = positions.first() else { return Vec::new() };
@@ -76,7 +87,8 @@ pub fn exposed_areas<const D: usize>(
         site
     };
     let site = |x: &Vector<D>| -> [i64; D] {
-        std::array::from_fn(|axis| ((x[axis] - origin[axis]) / edges[axis]).round() as i64)
+        let way = rotation.tr_mul(&(x - origin));
+        std::array::from_fn(|axis| (way[axis] / edges[axis]).round() as i64)
     };
     let taken: HashSet<[i64; D]> = positions.iter().map(|x| wrapped(site(x))).collect();
     let cell = edges.product();
@@ -91,7 +103,7 @@ pub fn exposed_areas<const D: usize>(
                 }
             }
         }
-        area
+        rotation * area
     };
     positions.iter().map(exposed).collect()
 }
@@ -118,7 +130,7 @@ mod tests {
         let filled = fill(&shape, &LatticeSpec::square([0.1, 0.4])).expect("particles");
         let domain = Domain::new([None; 2]).expect("open");
         let (particles, edges) = (&filled.particles, &filled.actual_spacing);
-        let areas = lattice_areas(particles, edges, &domain).expect("areas");
+        let areas = lattice_areas(particles, edges, &Tensor::identity(), &domain).expect("areas");
         for (x, area) in particles.position.iter().zip(&areas) {
             let share = |axis: usize| {
                 let side =
@@ -156,7 +168,8 @@ mod tests {
             id: (0..count as u32).collect(),
             surface: Surface::default(),
         };
-        let areas = lattice_areas(&particles, &edges, &Domain::default()).expect("areas");
+        let areas = lattice_areas(&particles, &edges, &Tensor::identity(), &Domain::default())
+            .expect("areas");
         let layers = |k: i32, count: i32| match (k.min(count - 1 - k), 2 * k < count) {
             (0, low) => {
                 if low {
@@ -180,6 +193,50 @@ mod tests {
         }
     }
 
+    /// Of both kinds, about a point that is no corner.
+    #[test]
+    fn areas_turn_with_the_lattice() {
+        let (low, high) = (Vector::<3>::new(1.0, -1.0, 0.0), Vector::<3>::new(2.0, 1.0, 0.5));
+        let block = Shape::cuboid(low, high).expect("a box");
+        let about = Vector::<3>::new(0.3, 2.0, -1.0);
+        let turned = block.clone().turned(0.7, about, Vector::<3>::new(1.0, 2.0, -2.0));
+        let spec = LatticeSpec::square([0.25, 0.5, 0.125]);
+        let domain = Domain::default();
+        let [straight, turned] = [&block, &turned.expect("a turned box")].map(|shape| {
+            let filled = fill(shape, &spec).expect("particles");
+            let (particles, edges) = (&filled.particles, &filled.actual_spacing);
+            let areas = lattice_areas(particles, edges, &filled.rotation, &domain).expect("areas");
+            let exposed = exposed_areas(&particles.position, edges, &filled.rotation, &domain);
+            (filled, areas, exposed)
+        });
+        let rotation = turned.0.rotation;
+        assert!((rotation.determinant() - 1.0).abs() < 1e-14);
+        assert_eq!(turned.0.total_volume, straight.0.total_volume);
+        for a in 0..straight.1.len() {
+            let place = rotation * (straight.0.particles.position[a] - about) + about;
+            assert!((turned.0.particles.position[a] - place).norm() < 1e-14);
+            assert!((turned.1[a] - rotation * straight.1[a]).norm() < 1e-12);
+            assert!((turned.2[a] - rotation * straight.2[a]).norm() < 1e-12);
+        }
+    }
+
+    /// The corner of a wedge has a neighbour beside it, and one that is diagonal.
+    #[test]
+    fn a_sharp_corner_has_areas_by_its_diagonal_neighbours() {
+        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.9, 2.0]].map(Vector::<2>::from);
+        let shape = Shape::<2>::polygon(corners.to_vec(), None).expect("a polygon");
+        let filled = fill(&shape, &LatticeSpec::square([0.25; 2])).expect("particles");
+        let particles = &filled.particles;
+        let areas = lattice_areas(particles, &[0.25; 2], &filled.rotation, &Domain::default());
+        let areas = areas.expect("areas");
+        let sum: Vector<2> = areas.iter().sum();
+        assert!(sum.amax() < 1e-12, "{sum}");
+        let moment: Tensor<2> =
+            areas.iter().zip(&particles.position).map(|(a, x)| a * x.transpose()).sum();
+        let off = (moment - Tensor::identity() * filled.total_volume).amax();
+        assert!(off < 1e-12, "{moment}");
+    }
+
     #[test]
     fn a_single_row_has_no_areas_across_and_says_where() {
         let shape = Shape::cuboid(Vector::<2>::new(3.0, 0.0), Vector::<2>::new(4.0, 0.1));
@@ -191,7 +248,8 @@ mod tests {
             .collect();
         particles.reorder(&row);
         let domain = Domain::new([None; 2]).expect("open");
-        let error = lattice_areas(&particles, &[0.1, 0.1], &domain).expect_err("one row");
+        let error = lattice_areas(&particles, &[0.1, 0.1], &Tensor::identity(), &domain)
+            .expect_err("one row");
         let OperatorError::PoorSupport { position, .. } = error else { panic!("{error:?}") };
         assert!((3.0..=4.0).contains(&position[0]), "in metres: {position:?}");
     }
@@ -208,7 +266,7 @@ mod tests {
                 }
             }
         }
-        let open = exposed_areas(&places, &edges, &Domain::default());
+        let open = exposed_areas(&places, &edges, &Tensor::identity(), &Domain::default());
         let sum: Vector<2> = open.iter().sum();
         assert!(sum.amax() < 1e-15, "a closed surface, {sum}");
         let facing = |areas: &[Vector<2>], axis: usize| -> f64 {
@@ -219,7 +277,7 @@ mod tests {
         let inside = places.iter().position(|x| *x == Vector::from([0.75, 0.25]));
         assert_eq!(inside.map(|a| open[a]), Some(Vector::zeros()));
         let around = Domain::new([None, Some([0.0, 1.25])]).expect("a box");
-        let closed = exposed_areas(&places, &edges, &around);
+        let closed = exposed_areas(&places, &edges, &Tensor::identity(), &around);
         assert_eq!((facing(&closed, 0), facing(&closed, 1)), (1.25, 0.5));
     }
 }

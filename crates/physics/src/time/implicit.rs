@@ -100,6 +100,10 @@ impl Integrator for ImplicitStepping {
         100
     }
 
+    fn is_explicit(&self) -> bool {
+        false
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

@@ -19,6 +19,11 @@ pub trait Integrator: Send {
     /// Evaluations of the rates of `scheme` a step.
     fn evaluations(&self, scheme: &mut dyn Scheme) -> u64;
 
+    /// Whether a step costs no more than its evaluations, as nothing is solved in it.
+    fn is_explicit(&self) -> bool {
+        true
+    }
+
     /// What a step multiplies the energy of an undamped mode by that turns by `phase`, its angular
     /// frequency times the step; `None` where that is not known.
     fn energy_factor(&self, _phase: f64) -> Option<f64> {

@@ -22,6 +22,10 @@ impl Integrator for LoadStepping {
         300
     }
 
+    fn is_explicit(&self) -> bool {
+        false
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

@@ -327,7 +327,7 @@ impl Reader<'_, '_> {
         let mut periodic = vec![None; self.dimension];
         let axes = record.map_or(&[][..], |record| record.axes("periodic"));
         for (axis, ends) in periodic.iter_mut().zip(axes) {
-            let read = |item: &Located<Datum>| Some(Located::new(item.as_ends()?, item.place));
+            let read = |item: &Located<Datum>| Some(Located::new(item.as_pair()?, item.place));
             *axis = ends.as_ref().and_then(read);
         }
         Some(Domain { periodic })

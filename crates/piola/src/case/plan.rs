@@ -84,8 +84,7 @@ pub struct PlannedLimit {
 const STATES: usize = 6;
 
 impl Session {
-    /// Looks at the initial state and times two evaluations of the rates, or two first steps of systems that act on each
-    /// other.
+    /// Looks at the initial state and times two first steps, or two evaluations of the rates where steps are implicit.
     pub fn plan(&mut self) -> Plan {
         let control = assembly::step_control(&self.case);
         let scheme = self.executor.scheme.as_mut();
@@ -117,9 +116,11 @@ impl Session {
         };
         let mut other = vec![0.0; state.len()];
         let integrator = self.executor.integrator.as_mut();
-        let is_coupled = scheme.coupled().is_some();
-        // Systems that act on each other are evaluated together in a step only.
-        let mut evaluate = |scheme: &mut dyn Scheme| match is_coupled {
+        let count = scheme.particle_count();
+        let evaluations = integrator.evaluations(scheme);
+        // What is solved in a step would take as long here as in the run.
+        let is_explicit = integrator.is_explicit();
+        let mut evaluate = |scheme: &mut dyn Scheme| match is_explicit {
             true => integrator.step(scheme, 0.0, step, &state, &mut other),
             false => {
                 scheme.rates(0.0, &state, &mut other);
@@ -127,17 +128,15 @@ impl Session {
             }
         };
         // The first one touches all memory once.
-        let failed = evaluate(scheme).err();
-        warnings.extend(failed.map(|failure| format!("the first step fails: {failure}")));
+        let first = evaluate(scheme);
         let start = Instant::now();
-        let again = evaluate(scheme);
-        drop(again);
-        let evaluation = start.elapsed().as_secs_f64().max(1e-9);
+        let failed = first.and_then(|()| evaluate(scheme)).err();
+        let timed = if is_explicit { evaluations as f64 } else { 1.0 };
+        let evaluation = start.elapsed().as_secs_f64().max(1e-9) / timed;
+        warnings.extend(failed.map(|failure| format!("the first step fails: {failure}")));
         let integrator = self.executor.integrator.as_ref();
         // An end that is a multiple of the step up to round-off takes no step more.
         let steps = (*self.case.time.end / step - 1e-9).ceil().max(0.0) as u64;
-        let count = scheme.particle_count();
-        let evaluations = integrator.evaluations(scheme);
         let undamped = integrator.energy_factor(0.0).and_then(|_| {
             let frequency = scheme.undamped_frequency(&state).filter(|it| *it > 0.0)?;
             let period = std::f64::consts::TAU / frequency;
@@ -184,7 +183,7 @@ impl Session {
                 *case.output.table_every
             ),
         ];
-        for line in case.probes.iter().filter(|probe| probe.kind.length().is_some()) {
+        for line in &case.probes {
             let model::ProbeKind::Line { points, times, .. } = &line.kind else { continue };
             let profiles = times.as_ref().map_or(count(*case.output.every), |it| it.len() as u64);
             let profiles = counted(profiles, "profile", "profiles");

@@ -114,7 +114,7 @@ impl Record {
     }
 
     pub(super) fn ends(&self, key: &str) -> Option<Located<[f64; 2]>> {
-        self.read(key, Datum::as_ends)
+        self.read(key, Datum::as_pair)
     }
 
     pub(super) fn texts(&self, key: &str) -> Vec<Located<String>> {
@@ -173,7 +173,7 @@ impl Datum {
         each.collect()
     }
 
-    pub(super) fn as_ends(&self) -> Option<[f64; 2]> {
+    pub(super) fn as_pair(&self) -> Option<[f64; 2]> {
         self.as_numbers()?.try_into().ok()
     }
 }

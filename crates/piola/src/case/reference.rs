@@ -102,6 +102,7 @@ fn value(kind: &Kind) -> String {
         Kind::Name(_) => "name, see below".to_owned(),
         Kind::Numbers(length, interval) => match length {
             Length::Dimension => within("list, one number an axis", interval.describe()),
+            Length::Pair => within("list of 2 numbers", interval.describe()),
             Length::Ends => "list of 2 numbers, the smaller one first".to_owned(),
             Length::Any => within("list of numbers", interval.describe()),
         },

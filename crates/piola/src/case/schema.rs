@@ -159,7 +159,7 @@ fn list(item: Value, length: Length) -> Value {
     let mut schema = json!({ "type": "array", "items": item });
     let (least, most) = match length {
         Length::Dimension => (1, Some(3)),
-        Length::Ends => (2, Some(2)),
+        Length::Pair | Length::Ends => (2, Some(2)),
         Length::Any => (1, None),
     };
     schema["minItems"] = json!(least);

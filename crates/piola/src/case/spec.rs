@@ -123,6 +123,8 @@ pub enum Variables {
 pub enum Length {
     /// As many as the case has dimensions.
     Dimension,
+    /// Two.
+    Pair,
     /// Two, the first below the second.
     Ends,
     /// Any number, at least one.

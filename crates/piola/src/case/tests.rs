@@ -149,7 +149,7 @@ fn reads_loads_boundaries_and_regions() {
 fn reads_observers() {
     let case = full();
     let [top, toe] = &case.probes[..] else { panic!("two probes") };
-    let ProbeKind::Particle { at, fields } = &top.kind else { panic!("a particle") };
+    let ProbeKind::Particle { at, fields, .. } = &top.kind else { panic!("a particle") };
     assert_eq!(at.value, [1.5, 5.0]);
     assert_eq!(
         fields.iter().map(|field| field.name).collect::<Vec<_>>(),

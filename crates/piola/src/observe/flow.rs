@@ -2,6 +2,7 @@
 
 use piola_formulas::kernels::Kernel;
 
+use super::interpolation::way;
 use super::probe::within;
 use crate::schemes::Observation;
 
@@ -29,18 +30,6 @@ pub struct Gauge {
     pub periods: Vec<f64>,
     /// Indices in memory of the particles that count, with the volume of each in m^D.
     pub particles: Vec<(u32, f64)>,
-}
-
-/// The way from one place to the nearest image of another.
-fn way<'a>(
-    from: &'a [f64],
-    to: &'a [f64],
-    periods: &'a [f64],
-) -> impl Iterator<Item = f64> + Clone + 'a {
-    from.iter().zip(to).zip(periods).map(|((from, to), period)| {
-        let way = to - from;
-        if period.is_finite() { way - period * (way / period).round() } else { way }
-    })
 }
 
 impl Gauge {

@@ -85,7 +85,7 @@ impl Interpolated {
         let support = self.kernel.support_radius(self.smoothing_length);
         let (mut offsets, mut weights) = (Vec::new(), Vec::new());
         for (&particle, position) in self.particles.iter().zip(positions.chunks_exact(dimension)) {
-            let offset = self.offset(place, position);
+            let offset = DVector::from_iterator(dimension, way(place, position, &self.periods));
             let distance = offset.norm();
             if distance < support {
                 let weight: f64 = self.kernel.value(dimension, distance, self.smoothing_length);
@@ -97,15 +97,18 @@ impl Interpolated {
         around.counts.push(weights.len());
         around.coefficients.extend(fit(&offsets, weights));
     }
+}
 
-    /// From `place` to the nearest image of a particle.
-    fn offset(&self, place: &[f64], position: &[f64]) -> DVector<f64> {
-        let axes = position.iter().zip(place).zip(&self.periods).map(|((x, at), period)| {
-            let offset = x - at;
-            if period.is_finite() { offset - period * (offset / period).round() } else { offset }
-        });
-        DVector::from_iterator(place.len(), axes)
-    }
+/// The way from one place to the nearest image of another.
+pub(super) fn way<'a>(
+    from: &'a [f64],
+    to: &'a [f64],
+    periods: &'a [f64],
+) -> impl Iterator<Item = f64> + Clone + 'a {
+    from.iter().zip(to).zip(periods).map(|((from, to), period)| {
+        let way = to - from;
+        if period.is_finite() { way - period * (way / period).round() } else { way }
+    })
 }
 
 /// The coefficients of the values of particles at `offsets` in the value at the origin, theory (54).

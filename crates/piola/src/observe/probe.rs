@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use nalgebra::Vector3;
+
 use super::comparison::Deviation;
 use super::flow::{Flux, Gauge};
 use super::interpolation::Interpolated;
@@ -25,6 +27,8 @@ pub enum ProbeKind {
     Particle {
         /// Its index in memory.
         particle: u32,
+        /// Index of one whose fields are subtracted.
+        relative_to: Option<u32>,
         /// The fields, with all their components.
         fields: Vec<FieldDescription>,
     },
@@ -95,6 +99,15 @@ pub const TANGENT_COLUMNS: [(&str, &str); 7] = [
     ("remainder_5", "kg m/s"),
 ];
 
+/// The axes about which there are moments in `dimension` dimensions.
+pub fn moment_axes(dimension: usize) -> &'static [&'static str] {
+    match dimension {
+        1 => &[],
+        2 => &["z"],
+        _ => &["x", "y", "z"],
+    }
+}
+
 impl Probe {
     /// The columns that it fills, in `dimension` dimensions.
     pub fn columns(&self, dimension: usize) -> Vec<Column> {
@@ -108,10 +121,9 @@ impl Probe {
             ProbeKind::Force { field, .. } => {
                 let mut columns =
                     component_columns(&self.name, std::slice::from_ref(field), dimension);
-                let axes: &[&str] = [&[][..], &["z"], &["x", "y", "z"]][dimension - 1];
                 let moment =
                     |axis: &&str| Column::new(format!("{}.moment.{axis}", self.name), "N m");
-                columns.extend(axes.iter().map(moment));
+                columns.extend(moment_axes(dimension).iter().map(moment));
                 columns
             }
             ProbeKind::Gauge(_) => vec![Column::new(format!("{}.elevation", self.name), "m")],
@@ -131,8 +143,10 @@ impl Probe {
     /// Gives its particles other indices; those without one do not count any more.
     pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
         match &mut self.kind {
-            ProbeKind::Particle { particle, .. } => {
-                *particle = index(*particle).unwrap_or(*particle);
+            ProbeKind::Particle { particle, relative_to, .. } => {
+                for particle in std::iter::once(particle).chain(relative_to) {
+                    *particle = index(*particle).unwrap_or(*particle);
+                }
             }
             ProbeKind::Extremum { particles, .. }
             | ProbeKind::Sum { particles, .. }
@@ -151,9 +165,16 @@ impl Probe {
     /// Appends its numbers to `row`. `scratch` is overwritten.
     pub fn record(&self, now: &mut Observation, scratch: &mut Vec<f64>, row: &mut Vec<f64>) {
         match &self.kind {
-            ProbeKind::Particle { particle, fields } => {
+            ProbeKind::Particle { particle, relative_to, fields } => {
                 for field in fields {
+                    let first = row.len();
                     now.read(field, &[*particle], row);
+                    if let Some(other) = relative_to {
+                        scratch.clear();
+                        now.read(field, &[*other], scratch);
+                        let own = row[first..].iter_mut().zip(scratch.iter());
+                        own.for_each(|(value, other)| *value -= other);
+                    }
                 }
             }
             ProbeKind::Extremum { field, largest, particles, inside } => {
@@ -177,21 +198,16 @@ impl Probe {
                 sum(field, particles, 1.0, now, scratch, row);
                 let dimension = now.scheme().dimension();
                 let places = now.values("position", particles);
-                let mut moment = [0.0; 3];
-                let padded = |vector: &[f64]| -> [f64; 3] {
-                    std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0))
+                let padded = |vector: &[f64]| {
+                    Vector3::from_fn(|i, _| vector.get(i).copied().unwrap_or_default())
                 };
-                for (place, force) in
-                    places.chunks_exact(dimension).zip(scratch.chunks_exact(dimension))
-                {
-                    let (place, force) = (padded(place), padded(force));
-                    let arm: [f64; 3] = std::array::from_fn(|i| place[i] - about[i]);
-                    for (i, sum) in moment.iter_mut().enumerate() {
-                        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                        *sum += arm[j] * force[k] - arm[k] * force[j];
-                    }
-                }
-                row.extend_from_slice([&[][..], &moment[2..], &moment][dimension - 1]);
+                let both = places.chunks_exact(dimension).zip(scratch.chunks_exact(dimension));
+                let about = Vector3::from(*about);
+                let moments =
+                    both.map(|(place, force)| (padded(place) - about).cross(&padded(force)));
+                let moment: Vector3<f64> = moments.sum();
+                let first = 3 - moment_axes(dimension).len();
+                row.extend_from_slice(&moment.as_slice()[first..]);
             }
             ProbeKind::Gauge(gauge) => row.push(gauge.record(now)),
             ProbeKind::Flux(flux) => row.push(flux.record(now)),

@@ -17,3 +17,4 @@ mod runs;
 mod scalar;
 mod statics;
 mod stretch;
+mod turned;

@@ -175,3 +175,76 @@ proptest! {
         }
     }
 }
+
+fn arrow() -> Vec<Vector<2>> {
+    [[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]].map(Vector::<2>::from).to_vec()
+}
+
+#[test]
+fn polygons_may_be_hollow_and_go_either_way_round() {
+    for reverse in [false, true] {
+        let mut corners = arrow();
+        if reverse {
+            corners.reverse();
+        }
+        let flat = Shape::<2>::polygon(corners.clone(), None).unwrap();
+        let tall = Shape::<3>::polygon(corners, Some([1.0, 4.0])).unwrap();
+        for (x, y, inside) in [
+            (0.25, 0.25, true),
+            (0.6, 0.6, false),
+            (1.5, 0.1, true),
+            (1.5, 0.3, false),
+            (-0.1, 1.0, false),
+            (0.1, 1.9, false),
+            (0.1, 1.0, true),
+            (3.0, 0.0, false),
+        ] {
+            assert_eq!(flat.contains(&Vector::<2>::new(x, y)), inside, "{x} {y}");
+            assert_eq!(tall.contains(&Vector::<3>::new(x, y, 2.0)), inside, "{x} {y}");
+            assert!(!tall.contains(&Vector::<3>::new(x, y, 0.9)));
+        }
+        // The distance to the side from (2, 0) to (0.5, 0.5), whose normal is (1, 3).
+        let depth = flat.depth(&Vector::<2>::new(1.0, 0.2));
+        assert!((depth - 0.2_f64.min(0.4 / 10f64.sqrt())).abs() < 1e-15, "{depth}");
+        assert_eq!(flat.exact_volume(), Some(1.0));
+        assert_eq!(tall.exact_volume(), Some(3.0));
+        let (min, max) = tall.bounding_box();
+        assert_eq!((min, max), (Vector::<3>::new(0.0, 0.0, 1.0), Vector::<3>::new(2.0, 2.0, 4.0)));
+    }
+}
+
+#[test]
+fn polygons_that_are_none_are_refused() {
+    let of = |corners: &[[f64; 2]]| {
+        Shape::<2>::polygon(corners.iter().map(|corner| Vector::from(*corner)).collect(), None)
+            .map_err(|error| error.to_string())
+            .unwrap_err()
+    };
+    assert!(of(&[[0.0, 0.0], [1.0, 0.0]]).contains("2 corners"));
+    let hourglass = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+    assert!(of(&hourglass).contains("sides 1 and 3"));
+    assert!(of(&[[0.0, 0.0], [1.0, 0.0], [0.5, 0.0]]).contains("cross or touch"));
+    assert!(of(&[[0.0, 0.0], [0.0, 0.0], [0.5, 1.0]]).contains("side of a polygon"));
+    assert!(of(&[[0.0, 0.0], [f64::NAN, 0.0], [0.5, 1.0]]).contains("corner of a polygon"));
+    let ends = Some([1.0, 1.0]);
+    assert!(Shape::<3>::polygon(arrow(), ends).is_err());
+    assert!(Shape::<2>::polygon(arrow(), ends).is_err());
+    assert!(Shape::<3>::polygon(arrow(), None).is_err());
+}
+
+/// A point of the turned shape is one of the shape that was turned there.
+#[test]
+fn turned_shapes_are_where_rotations_take_them() {
+    let block = Shape::cuboid(Vector::zeros(), Vector::<3>::new(3.0, 2.0, 1.0)).unwrap();
+    let about = Vector::<3>::new(1.0, 0.0, 0.0);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let turned = block.clone().turned(quarter, about, Vector::<3>::new(0.0, 0.0, 2.0)).unwrap();
+    let (min, max) = turned.bounding_box();
+    let [low, high] = [[-1.0, -1.0, 0.0], [1.0, 2.0, 1.0]].map(Vector::<3>::from);
+    assert!((min - low).norm() < 1e-15 && (max - high).norm() < 1e-15, "{min} {max}");
+    assert_eq!(turned.exact_volume(), Some(6.0));
+    // Of the corner (3, 2), and of a point off it.
+    assert!((turned.depth(&Vector::<3>::new(-0.9, 1.9, 0.5)) - 0.1).abs() < 1e-15);
+    assert!((turned.depth(&Vector::<3>::new(1.2, 1.0, 0.5)) + 0.2).abs() < 1e-15);
+    assert!(block.turned(f64::NAN, about, Vector::<3>::z()).is_err());
+}

@@ -65,7 +65,8 @@ pub enum TransportVelocityError {
     /// Particles of different sizes.
     #[error(
         "particle {id} has a spacing of {got} m, expected {expected} m: all particles of fluid and \
-         walls share one spacing in this scheme"
+         walls share one spacing in this scheme, up to the 5 % by which lattices fit their shapes; change `spacing` of \
+         its body, or its size"
     )]
     Spacing {
         /// Number of the particle in the order of creation.

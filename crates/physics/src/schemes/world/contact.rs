@@ -7,9 +7,12 @@
 //!
 //! ```text
 //! d = -sum_j w_ij (x_i - x_j) . n_j / sum_j w_ij,   n = sum_j w_ij n_j / |sum_j w_ij n_j|
-//! w_ij = (1 - s_ij^2/dx^2)^2 (n_i . n_j)^2
+//! w_ij = (1 - s_ij^2/dx^2)^2 (n_i . n_j)^2 e_ij
 //! F_i = A/2 max(0, k rho c^2 d/dx - z rho c v . n) n - min(mu |F_n|, A rho c |v_t|) v_t/|v_t|
 //! ```
+//!
+//! At an edge, where point j ends at a plane through `x_m` with the normal `n_m`, `e_ij` falls from 1 at half a spacing
+//! before that plane to 0 on it: what slides along one face of an edge is not held by the other one. Elsewhere it is 1.
 //!
 //! The points j get what is opposite, with the same weights. Both bodies take part as i and as j, which is why there is
 //! a half. A is the area of a point, c the wave speed of the fluid, with which `rho c^2 / dx` is as
@@ -106,6 +109,8 @@ pub(super) struct Point<const D: usize> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contact<const D: usize> {
     origins: Vec<Origin>,
+    /// The points of the same particle, by index: the first, and the one after the last.
+    together: Vec<[usize; 2]>,
     /// What stands between a wall particle and its surface where solids begin.
     offsets: Vec<Vector<D>>,
     /// Its normal there.
@@ -132,7 +137,9 @@ impl<const D: usize> Contact<D> {
             let Some(faces) = fluid.faces_of(number).filter(|it| it.depth() < behind) else {
                 return;
             };
+            let first = made.origins.len();
             for (face, normal) in faces.normals().iter().enumerate() {
+                made.together.push([first, first + faces.normals().len()]);
                 made.origins.push(origin(face));
                 made.offsets.push(normal * faces.depth());
                 made.normals.push(*normal);
@@ -220,9 +227,13 @@ impl<const D: usize> Contact<D> {
                 if share <= 0.0 || height.abs() >= ACROSS * spacing || facing > FACING {
                     continue;
                 }
-                let weight = share * share * facing * facing;
+                let tile = share * share * self.before_edges(j as usize, me, domain, spacing);
+                let weight = tile * facing * facing;
+                if weight <= 0.0 {
+                    continue;
+                }
                 weights.push((j as usize, weight));
-                covered += share * share;
+                covered += tile;
                 total += weight;
                 depth -= weight * height;
                 normal += other.normal * weight;
@@ -260,6 +271,20 @@ impl<const D: usize> Contact<D> {
             }
         }
         self.weights = weights;
+    }
+
+    /// How much of point `j` is there beside another point: all but next to an edge.
+    fn before_edges(&self, j: usize, me: &Point<D>, domain: &Domain<D>, spacing: f64) -> f64 {
+        let [first, end] = self.together[j];
+        let own = self.points[j].normal;
+        // The other side of a thin part is no edge.
+        let is_edge = |edge: &&Point<D>| edge.normal.dot(&own) > -0.5;
+        let others = (first..end).filter(|&m| m != j).map(|m| &self.points[m]).filter(is_edge);
+        let before = others.map(|edge| {
+            let beyond = domain.separation(&edge.place, &me.place).dot(&edge.normal);
+            (-2.0 * beyond / spacing).clamp(0.0, 1.0)
+        });
+        before.product()
     }
 
     /// Bytes that it holds.

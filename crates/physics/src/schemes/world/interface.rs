@@ -160,17 +160,10 @@ impl<const D: usize> Interface<D> {
     /// The sum of a function of the solid's particles (indices in memory) over those that carry wall
     /// particle `row`.
     pub fn carried(&self, row: usize, of: impl Fn(usize) -> Vector<D>) -> Vector<D> {
-        let own = &self.carriers[self.starts[row]..self.starts[row + 1]];
-        own.iter().map(|carrier| of(carrier.particle as usize) * carrier.weight).sum()
+        self.carried_at(row, &Vector::zeros(), of)
     }
 
-    /// Where wall particle `row` is, in m, for displacements of the solid's particles in m: those of particles
-    /// beyond a periodic bound are as good as others.
-    pub fn place(&self, row: usize, displacement: impl Fn(usize) -> Vector<D>) -> Vector<D> {
-        self.reference[row] + self.carried(row, displacement)
-    }
-
-    /// As [`Self::carried`], of a point that is at an `offset` in m from the wall particle where the solid begins.
+    /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
     pub fn carried_at(
         &self,
         row: usize,
@@ -181,7 +174,13 @@ impl<const D: usize> Interface<D> {
         own.iter().map(|it| of(it.particle as usize) * it.weight_at(offset)).sum()
     }
 
-    /// As [`Self::place`], of a point that is at an `offset` in m from the wall particle where the solid begins.
+    /// Where wall particle `row` is, in m, for displacements of the solid's particles in m: those of particles
+    /// beyond a periodic bound are as good as others.
+    pub fn place(&self, row: usize, displacement: impl Fn(usize) -> Vector<D>) -> Vector<D> {
+        self.place_at(row, &Vector::zeros(), displacement)
+    }
+
+    /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
     pub fn place_at(
         &self,
         row: usize,
@@ -189,20 +188,6 @@ impl<const D: usize> Interface<D> {
         displacement: impl Fn(usize) -> Vector<D>,
     ) -> Vector<D> {
         self.reference[row] + offset + self.carried_at(row, offset, displacement)
-    }
-
-    /// As [`Self::bear`], of what acts on a point that is at an `offset` in m from the wall particle where the solid
-    /// begins.
-    pub fn bear_at(
-        &self,
-        row: usize,
-        offset: &Vector<D>,
-        force: &Vector<D>,
-        forces: &mut [Vector<D>],
-    ) {
-        for carrier in &self.carriers[self.starts[row]..self.starts[row + 1]] {
-            forces[carrier.particle as usize] += force * carrier.weight_at(offset);
-        }
     }
 
     /// The deformation gradient at wall particle `row` for displacements of the solid's particles in m.
@@ -217,8 +202,19 @@ impl<const D: usize> Interface<D> {
 
     /// Adds what acts on wall particle `row` to the particles of the solid that carry it.
     pub fn bear(&self, row: usize, force: &Vector<D>, forces: &mut [Vector<D>]) {
+        self.bear_at(row, &Vector::zeros(), force, forces);
+    }
+
+    /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
+    pub fn bear_at(
+        &self,
+        row: usize,
+        offset: &Vector<D>,
+        force: &Vector<D>,
+        forces: &mut [Vector<D>],
+    ) {
         for carrier in &self.carriers[self.starts[row]..self.starts[row + 1]] {
-            forces[carrier.particle as usize] += force * carrier.weight;
+            forces[carrier.particle as usize] += force * carrier.weight_at(offset);
         }
     }
 

@@ -1,6 +1,5 @@
 //! Bodies turned into particles.
 
-use crate::Vector;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Body, Case};
 use crate::case::source::Located;
@@ -10,6 +9,7 @@ use crate::geometry::{
 };
 use crate::neighbors::{Domain, refuse_coincident};
 use crate::operators::relax;
+use crate::{Tensor, Vector};
 
 /// Points of a cloud that are closer than this fraction of the mean spacing are one point.
 const COINCIDENT: f64 = 1e-6;
@@ -96,7 +96,8 @@ fn cloud<const D: usize>(
     refuse_coincident(&particles.position, COINCIDENT * mean, domain)
         .map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
     let actual_spacing = [mean; D];
-    Ok(FillReport { particles, total_volume, exact_volume: None, actual_spacing })
+    let rotation = Tensor::identity();
+    Ok(FillReport { particles, total_volume, exact_volume: None, actual_spacing, rotation })
 }
 
 /// A body that a lattice fills, displaced by up to `jitter` spacings.
@@ -199,6 +200,13 @@ pub(super) fn shape<const D: usize>(
         }
         model::Shape::Cylinder { start, end, radius } => {
             Shape::cylinder(vector(start), vector(end), *radius)
+        }
+        model::Shape::Polygon { corners, ends } => {
+            let corners = corners.iter().map(|corner| Vector::<2>::from(*corner)).collect();
+            Shape::polygon(corners, *ends)
+        }
+        model::Shape::Turned { of, angle, about, axis } => {
+            shape(case, body, of)?.turned(*angle, vector(about), (*axis).into())
         }
         model::Shape::Union(parts) => Shape::union(all(parts)?),
         model::Shape::Intersection(parts) => Shape::intersection(all(parts)?),

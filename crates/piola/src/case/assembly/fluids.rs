@@ -51,6 +51,10 @@ pub(super) fn build_fluid<const D: usize>(
     prepare(case, settings, particles, reports, domain)?.finish(case, settings, fluid(case)?)
 }
 
+/// What part of the largest spacing others may be below it: lattices fit their shapes, and their spacings become a
+/// little different. All particles then count as spaced by the largest; masses are those of their own cells.
+const ALIKE: f64 = 0.05;
+
 /// All but the matter, with what is known of the rest.
 struct Prepared<const D: usize> {
     input: TransportVelocityInput<D>,
@@ -70,6 +74,9 @@ fn prepare<const D: usize>(
 ) -> Result<Prepared<D>, Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
+    if particles.spacing.iter().all(|own| *own >= (1.0 - ALIKE) * spacing) {
+        particles.spacing.fill(spacing);
+    }
     let smoothing_length = *settings.smoothing_length * spacing;
     let support = kernel.support_radius(smoothing_length);
     let first_twin = double_thin(case, &mut particles, support)?;
@@ -136,7 +143,7 @@ impl<const D: usize> Prepared<D> {
         settings: &model::TransportVelocity,
         matter: M::Input,
     ) -> Result<(TransportVelocity<D, M>, Built), Vec<Problem>> {
-        let Self { input, probes, lines, reports: bodies, warnings, .. } = self;
+        let Self { input, probes, lines, reports: bodies, mut warnings, .. } = self;
         let place = settings.smoothing_length.place;
         let refuse = |error: TransportVelocityError| {
             let (place, label) = match &error {
@@ -159,8 +166,32 @@ impl<const D: usize> Prepared<D> {
         // Particles deep in a wall may be alone.
         let of_fluid = row_sizes(&scheme).filter(|(a, _)| !scheme.is_wall(*a));
         let (neighbors, poorly_supported) = row_statistics(D, of_fluid);
+        if materials(case).is_none() && !settings.settings.free_surface {
+            warnings.extend(open_end(&scheme, neighbors.most));
+        }
         Ok((scheme, Built { probes, lines, bodies, neighbors, poorly_supported, warnings }))
     }
+}
+
+/// What part of the neighbours inside a particle of fluid has at least next to a wall; at a free surface it is about
+/// 0.6.
+const ENCLOSED: f64 = 0.75;
+
+/// A warning of a fluid that ends where nothing holds it, while no free surface is looked for.
+fn open_end<const D: usize, M: Continuum<D>>(
+    scheme: &TransportVelocity<D, M>,
+    most: usize,
+) -> Option<String> {
+    let is_open =
+        |(a, size): &(u32, usize)| !scheme.is_wall(*a) && (*size as f64) < ENCLOSED * most as f64;
+    let open: Vec<u32> = row_sizes(scheme).filter(is_open).map(|(a, _)| a).collect();
+    let place = scheme.particle(*open.first()? as usize).reference;
+    Some(format!(
+        "the fluid ends at {place:?} m and {} other particles where there is neither a wall nor a solid, and \
+         `free_surface` is false: nothing holds it there, and its pressure is not that of air; put a wall there, \
+         make the domain periodic, or set `free_surface = true`",
+        open.len() - 1
+    ))
 }
 
 /// What of its density a fluid may be compressed by at the start without a warning: that of speeds of a

@@ -252,7 +252,8 @@ impl<'a, const D: usize, F: Fn() -> Result<Vec<Vector<D>>, String>> LoadedSurfac
             let still = bodies::lattice(self.case, body, self.domain, 0.0)
                 .map_err(|problem| problem.message)?;
             let edges = &still.actual_spacing;
-            let exposed = exposed_areas(&still.particles.position, edges, self.domain);
+            let exposed =
+                exposed_areas(&still.particles.position, edges, &still.rotation, self.domain);
             let own = || (0..areas.len()).filter(|&a| self.particles.body[a] == number);
             // Ids count in the order of creation, body after body.
             let first = own().map(|a| self.particles.id[a]).min().unwrap_or(0);

@@ -25,10 +25,13 @@ pub(super) fn probes<const D: usize>(
     for probe in &case.probes {
         let body = probe.body.as_ref();
         let kind = match &probe.kind {
-            model::ProbeKind::Particle { at, fields } => {
-                let at = vector::<D>(at);
+            model::ProbeKind::Particle { at, relative_to, fields } => {
+                let nearest = |at: &Located<Vec<f64>>| {
+                    nearest(particles, body, &vector::<D>(at)).unwrap_or(0) as u32
+                };
                 ProbeKind::Particle {
-                    particle: nearest(particles, body, &at).unwrap_or(0) as u32,
+                    particle: nearest(at),
+                    relative_to: relative_to.as_ref().map(nearest),
                     fields: fields.iter().map(|field| field.value).collect(),
                 }
             }
@@ -100,8 +103,7 @@ const NEAR: f64 = 1.5;
 
 /// What the user should know of probes whose particle is not where they are.
 pub(super) fn far<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<String> {
-    let warning = |probe: &model::Probe| {
-        let model::ProbeKind::Particle { at, .. } = &probe.kind else { return None };
+    let warning = |(probe, at): (&model::Probe, &Located<Vec<f64>>)| {
         let at = vector::<D>(at);
         let a = nearest(particles, probe.body.as_ref(), &at)?;
         let (distance, spacing) = ((particles.position[a] - at).norm(), particles.spacing[a]);
@@ -115,7 +117,14 @@ pub(super) fn far<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<
             )
         })
     };
-    case.probes.iter().filter_map(warning).collect()
+    let points = case.probes.iter().flat_map(|probe| {
+        let points = match &probe.kind {
+            model::ProbeKind::Particle { at, relative_to, .. } => [Some(at), relative_to.as_ref()],
+            _ => [None; 2],
+        };
+        points.into_iter().flatten().map(move |at| (probe, at))
+    });
+    points.filter_map(warning).collect()
 }
 
 /// The particle of a body, or of all, that is nearest to a point.

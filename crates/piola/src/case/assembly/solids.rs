@@ -288,7 +288,7 @@ fn areas<const D: usize>(
             _ => (),
         }
         let still = bodies::lattice(case, body, domain, 0.0).map_err(|problem| vec![problem])?;
-        let found = lattice_areas(&still.particles, &still.actual_spacing, domain);
+        let found = lattice_areas(&still.particles, &still.actual_spacing, &still.rotation, domain);
         let areas = found.map_err(|error| {
             let label = format!("body `{}`", *body.name);
             vec![case.problem_at(body.shape.place, error.to_string(), label, None)]

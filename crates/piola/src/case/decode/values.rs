@@ -183,6 +183,7 @@ impl Context<'_> {
                 None => return Some(()),
                 Some(dimension) => (dimension, format!(" in {dimension}D")),
             },
+            Length::Pair => (2, ": x and y".to_owned()),
             Length::Ends => (2, ": the ends of an interval".to_owned()),
             Length::Any if got == 0 => {
                 let message = format!("`{name}` must have at least one entry");
@@ -293,7 +294,7 @@ impl Context<'_> {
         };
         let count = |length: &Length| match length {
             Length::Dimension => self.dimension.map_or(String::new(), |count| format!("{count} ")),
-            Length::Ends => "2 ".to_owned(),
+            Length::Pair | Length::Ends => "2 ".to_owned(),
             Length::Any => String::new(),
         };
         match kind {

@@ -106,6 +106,37 @@ impl Reader<'_, '_> {
                 }
                 Shape::Cylinder { start, end: end.value, radius: number(record, "radius")? }
             }
+            "polygon" => {
+                let corners = record.list("corners").iter();
+                let corners: Option<Vec<_>> = corners.map(|it| it.value.as_pair()).collect();
+                let ends = record.ends("z").map(|ends| ends.value);
+                if self.dimension == 3 && ends.is_none() {
+                    let message = "a polygon in 3D needs the key `z`: its two ends";
+                    return self.refuse(Problem::new(record.place, message, "`z` is missing"));
+                }
+                if self.dimension == 2 {
+                    self.meaningless(record, "z", "in 2D");
+                }
+                Shape::Polygon { corners: corners?, ends }
+            }
+            "turned" => {
+                let of = record.record("of").and_then(|of| self.shape(of));
+                let about = record.numbers("about");
+                let axis = match (self.dimension, record.has("axis")) {
+                    (3, true) => self.unit(record, "axis")?.try_into().ok()?,
+                    (3, false) => {
+                        let message = "a turned shape in 3D needs the key `axis`: a direction";
+                        let problem = Problem::new(record.place, message, "`axis` is missing");
+                        return self.refuse(problem);
+                    }
+                    _ => {
+                        self.meaningless(record, "axis", "in 2D, where it is z");
+                        [0.0, 0.0, 1.0]
+                    }
+                };
+                let about = about.map_or_else(|| vec![0.0; self.dimension], |about| about.value);
+                Shape::Turned { of: Box::new(of?), angle: number(record, "angle")?, about, axis }
+            }
             "union" => Shape::Union(self.shapes(record, "of")?),
             "intersection" => Shape::Intersection(self.shapes(record, "of")?),
             "difference" => {

@@ -5,7 +5,7 @@ use crate::case::catalogue;
 use crate::case::model::{Probe, ProbeKind, Quantity};
 use crate::case::suggest::one_of;
 use crate::fields::{Component, FieldDescription, FieldKind, FieldSelector, component_name};
-use crate::observe::TANGENT_COLUMNS;
+use crate::observe::{TANGENT_COLUMNS, moment_axes};
 
 impl Reader<'_, '_> {
     /// The field called `name`, which stands at `place`.
@@ -139,8 +139,7 @@ impl Reader<'_, '_> {
                 return self.whole_column(text, name, column, fields);
             }
             ProbeKind::Force { .. } if column.starts_with("moment") => {
-                let axes = [&[][..], &["z"], &["x", "y", "z"]][self.dimension - 1];
-                axes.iter().map(|axis| format!("moment.{axis}")).collect()
+                moment_axes(self.dimension).iter().map(|axis| format!("moment.{axis}")).collect()
             }
             ProbeKind::Sum { field, .. }
             | ProbeKind::Mean { field, .. }

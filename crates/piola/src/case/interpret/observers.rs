@@ -23,6 +23,7 @@ impl Reader<'_, '_> {
             "particle" => ProbeKind::Particle {
                 fields: self.whole_fields(record)?,
                 at: record.numbers("at")?,
+                relative_to: record.numbers("relative_to"),
             },
             "point" => {
                 ProbeKind::Point { fields: self.whole_fields(record)?, at: record.numbers("at")? }
@@ -329,5 +330,6 @@ impl Reader<'_, '_> {
 /// The probe that a column belongs to, if that looks along a line.
 pub(super) fn line_of<'a>(quantity: &Quantity, probes: &'a [Probe]) -> Option<&'a Probe> {
     let Quantity::Probe { probe: name, .. } = quantity else { return None };
-    probes.iter().find(|probe| *probe.name == *name && probe.kind.length().is_some())
+    let is_line = |probe: &&Probe| matches!(probe.kind, ProbeKind::Line { .. });
+    probes.iter().filter(is_line).find(|probe| *probe.name == *name)
 }

@@ -70,6 +70,24 @@ pub enum Shape {
         /// Radius in m.
         radius: f64,
     },
+    /// What straight sides enclose in the plane of x and y.
+    Polygon {
+        /// Corners in m, at least three.
+        corners: Vec<[f64; 2]>,
+        /// In 3D the ends along z in m.
+        ends: Option<[f64; 2]>,
+    },
+    /// A shape turned with its lattice.
+    Turned {
+        /// The shape.
+        of: Box<Located<Shape>>,
+        /// Angle in rad.
+        angle: f64,
+        /// A point that stays, in m.
+        about: Vec<f64>,
+        /// The axis, of length 1: z in 2D.
+        axis: [f64; 3],
+    },
     /// What lies in any of the shapes. Not empty.
     Union(Vec<Located<Shape>>),
     /// What lies in all of the shapes. Not empty.
@@ -111,9 +129,12 @@ impl Shape {
             Self::Difference { from, remove } => {
                 from.files().into_iter().chain(remove.iter().flat_map(|cut| cut.files())).collect()
             }
-            Self::Box { .. } | Self::Ball { .. } | Self::Annulus { .. } | Self::Cylinder { .. } => {
-                Vec::new()
-            }
+            Self::Turned { of, .. } => of.files(),
+            Self::Box { .. }
+            | Self::Ball { .. }
+            | Self::Annulus { .. }
+            | Self::Cylinder { .. }
+            | Self::Polygon { .. } => Vec::new(),
         }
     }
 }

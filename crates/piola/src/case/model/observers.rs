@@ -24,6 +24,8 @@ pub enum ProbeKind {
     Particle {
         /// The point in m.
         at: Located<Vec<f64>>,
+        /// A point in m of whose particle the fields are subtracted.
+        relative_to: Option<Located<Vec<f64>>>,
         /// The fields that are recorded, with all their components.
         fields: Vec<Located<FieldDescription>>,
     },

@@ -137,6 +137,50 @@ static SHAPE: TaggedSpec = TaggedSpec {
             ],
         },
         KindSpec {
+            name: "polygon",
+            meaning: "what straight sides enclose in the plane of x and y; in 3D from one `z` to another",
+            dimensions: &[2, 3],
+            keys: &[
+                key(
+                    "corners",
+                    Kind::List(&Kind::Numbers(Length::Pair, Interval::ANY)),
+                    "m",
+                    Required,
+                    "x and y of the corners, one after the other, either way round",
+                ),
+                key(
+                    "z",
+                    Kind::Numbers(Length::Ends, Interval::ANY),
+                    "m",
+                    Derived("needed in 3D"),
+                    "the ends along z",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "turned",
+            meaning: "another shape, turned together with the lattice of its particles",
+            dimensions: &[2, 3],
+            keys: &[
+                key("of", Kind::Tagged(&SHAPE), "", Required, "the shape"),
+                key(
+                    "angle",
+                    Kind::Number(Interval::ANY),
+                    "rad",
+                    Required,
+                    "by which it is turned, counter-clockwise as seen from the tip of the axis: `10 * pi / 180` is 10 degrees",
+                ),
+                key("about", POINT, "m", Derived("the origin"), "a point that stays where it is"),
+                key(
+                    "axis",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "1",
+                    Derived("z in 2D; needed in 3D"),
+                    "the direction of the axis, of any length",
+                ),
+            ],
+        },
+        KindSpec {
             name: "union",
             meaning: "what lies in any of some shapes",
             dimensions: &[1, 2, 3],

@@ -23,6 +23,13 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     "the point",
                 ),
                 key(
+                    "relative_to",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Optional,
+                    "another point of the same body: what the particle there has is subtracted, as for the deflection of a part whose supports move",
+                ),
+                key(
                     "fields",
                     Kind::List(&Kind::Text),
                     "",

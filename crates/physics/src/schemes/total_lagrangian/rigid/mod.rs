@@ -10,31 +10,24 @@
 //!
 //! Particles that are joined to others hold these, so that flexible bodies are clamped to rigid ones.
 
+mod check;
+mod motion;
+
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
-use piola_formulas::tensor;
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use super::{Solid, TotalLagrangianError};
+pub(super) use self::check::check;
+use self::motion::{COMPONENTS, Moments, Motion, in_plane, in_space, is_missing, turn_freely};
+use super::Solid;
 use crate::boundaries::{SpaceTime, padded};
-use crate::geometry::Particles;
 use crate::schemes::StepLimit;
-use crate::schemes::input::{check_index, check_selected};
 use crate::schemes::ledger::Total;
 use crate::schemes::split::advance;
 use crate::{Tensor, Vector, parallel};
 
 /// Angle in rad that a body turns by in a step at a CFL number of one.
 const ANGLE: f64 = 0.2;
-
-/// Most iterations for the rotation of a step.
-const MOST_ITERATIONS: usize = 50;
-
-/// The share of its largest extent below which a body is flat.
-const FLAT: f64 = 1e-9;
-
-/// Components of a motion: those of V, then those of W.
-const COMPONENTS: usize = 6;
 
 /// Particles that move as one, and what is prescribed of their motion.
 #[derive(Clone, Default)]
@@ -68,74 +61,6 @@ pub(super) struct RigidBodies<const D: usize> {
     bodies: Vec<Bound<D>>,
     /// Whether a particle belongs to one; empty where there is none.
     is_rigid: Vec<bool>,
-}
-
-/// A motion of a body: the velocity, or the acceleration, of its point, and about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Motion {
-    velocity: Vector3<f64>,
-    spin: Vector3<f64>,
-}
-
-impl Motion {
-    fn at(&self, arm: &Vector3<f64>) -> Vector3<f64> {
-        self.velocity + self.spin.cross(arm)
-    }
-}
-
-/// Moments of a body about its point: its mass, mass times centre, the inertia, and both momenta.
-struct Moments {
-    mass: f64,
-    first: Vector3<f64>,
-    inertia: Matrix3<f64>,
-    linear: Vector3<f64>,
-    angular: Vector3<f64>,
-}
-
-impl Moments {
-    /// The motion with these momenta where components are as `held`.
-    fn motion(&self, held: &[Option<f64>; COMPONENTS]) -> Motion {
-        let across = self.first.cross_matrix();
-        let mut matrix = SMatrix::<f64, COMPONENTS, COMPONENTS>::zeros();
-        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * self.mass));
-        matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&-across);
-        matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&across);
-        matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.inertia);
-        let mut momenta = SVector::<f64, COMPONENTS>::zeros();
-        momenta.fixed_rows_mut::<3>(0).copy_from(&self.linear);
-        momenta.fixed_rows_mut::<3>(3).copy_from(&self.angular);
-        for (k, value) in held.iter().enumerate().filter_map(|(k, held)| Some((k, (*held)?))) {
-            momenta -= matrix.column(k) * value;
-        }
-        for (k, value) in held.iter().enumerate().filter_map(|(k, held)| Some((k, (*held)?))) {
-            matrix.row_mut(k).fill(0.0);
-            matrix.column_mut(k).fill(0.0);
-            matrix[(k, k)] = 1.0;
-            momenta[k] = value;
-        }
-        let nothing = SVector::<f64, COMPONENTS>::repeat(f64::NAN);
-        let all = matrix.cholesky().map_or(nothing, |factor| factor.solve(&momenta));
-        Motion { velocity: all.fixed_rows::<3>(0).into(), spin: all.fixed_rows::<3>(3).into() }
-    }
-}
-
-/// A vector in space.
-fn in_space<const D: usize>(vector: &Vector<D>) -> Vector3<f64> {
-    Vector3::from(padded(vector))
-}
-
-/// The components that there are in `D` dimensions of a vector in space.
-fn in_plane<const D: usize>(vector: &Vector3<f64>) -> Vector<D> {
-    Vector::from_fn(|i, _| vector[i])
-}
-
-/// The components of motions that there are not in `dimension` dimensions.
-fn is_missing(dimension: usize, component: usize) -> bool {
-    match component {
-        0..3 => component >= dimension,
-        5 => dimension < 2,
-        _ => dimension < 3,
-    }
 }
 
 impl<const D: usize> Bound<D> {
@@ -218,32 +143,6 @@ impl<const D: usize> Bound<D> {
     fn turns_freely(&self) -> bool {
         self.prescribed[3..].iter().all(Option::is_none)
     }
-}
-
-/// The rotation of a body in `step` s on which nothing acts, and its angular velocity behind it, theory (84): of
-/// a body with this inertia and angular velocity.
-fn turn_freely(
-    inertia: &Matrix3<f64>,
-    spin: &Vector3<f64>,
-    step: f64,
-) -> (Matrix3<f64>, Vector3<f64>) {
-    let Some(inverse) = inertia.try_inverse() else {
-        return (Matrix3::identity(), Vector3::repeat(f64::NAN));
-    };
-    let momentum = inertia * spin;
-    // Seen from the body, at both ends of the step.
-    let mut last = *spin;
-    let mean = |last: &Vector3<f64>| (spin + last) * 0.5;
-    for _ in 0..MOST_ITERATIONS {
-        let next = inverse * (Rotation3::new(mean(&last) * -step) * momentum);
-        let change = (next - last).norm();
-        last = next;
-        if change <= f64::EPSILON * spin.norm() {
-            break;
-        }
-    }
-    let turned = Rotation3::new(mean(&last) * step);
-    (*turned.matrix(), turned * last)
 }
 
 impl<const D: usize> RigidBodies<D> {
@@ -448,73 +347,4 @@ impl<const D: usize> Bound<D> {
             total.push(&place, &(velocity[a] * 0.5), &momentum);
         })
     }
-}
-
-/// Refuses bodies that no motion is known of.
-pub(super) fn check<const D: usize>(
-    bodies: &[RigidBody<D>],
-    particles: &Particles<D>,
-    periodic: &[Option<[f64; 2]>; D],
-) -> Result<(), TotalLagrangianError> {
-    let mut is_taken = vec![false; particles.len()];
-    for body in bodies {
-        check_selected(&body.name, &body.particles, particles.len())?;
-        let velocities = body.velocity.iter().map(|&(component, _)| (component, component < D));
-        let spins = body.angular_velocity.iter();
-        let spins = spins
-            .map(|&(component, _)| (component, component < 3 && !is_missing(D, 3 + component)));
-        for (component, is_there) in velocities.chain(spins) {
-            let what = || format!("`{}`: component", body.name);
-            check_index(what, component, if is_there { component + 1 } else { 0 })?;
-        }
-        let places = || body.particles.iter().map(|&a| particles.position[a as usize]);
-        let count = body.particles.len() as f64;
-        let centre = places().sum::<Vector<D>>() / count;
-        let spread = places().map(|place| (place - centre) * (place - centre).transpose());
-        let spread = spread.sum::<Tensor<D>>();
-        let size = spread.trace();
-        let is_flat = !(tensor::smallest_eigenvalue(&spread) > FLAT * size);
-        // A line in space turns freely about itself, and a point about everything.
-        let inertia = Tensor::<D>::identity() * size - spread;
-        let has_inertia = match D {
-            1 => count > 0.0,
-            2 => size > 0.0,
-            _ => tensor::smallest_eigenvalue(&inertia) > FLAT * size,
-        };
-        let moved = |axis: usize| body.velocity.iter().any(|(component, _)| *component == axis);
-        let turned = body.angular_velocity.len();
-        let take = |&a: &u32| std::mem::replace(&mut is_taken[a as usize], true);
-        let shares = body.particles.iter().map(take).fold(false, |any, one| any | one);
-        let is_torn = (0..D).any(|axis| {
-            let period = periodic[axis].map_or(f64::INFINITY, |[low, high]| high - low);
-            let ends = [f64::INFINITY, f64::NEG_INFINITY];
-            let [low, high] = places()
-                .fold(ends, |[low, high], place| [low.min(place[axis]), high.max(place[axis])]);
-            high - low > 0.5 * period
-        });
-        let fault = match () {
-            () if shares => {
-                "has a particle twice, or one that belongs to another rigid body; make one body of them"
-            }
-            () if !has_inertia => {
-                "lies on a line, about which it has no inertia; give it more than one particle across"
-            }
-            () if body.pivot.is_some() && is_flat => {
-                "is flat, so that its pivot is not carried along; give it more than one particle across"
-            }
-            () if is_torn => {
-                "is longer than half of the period of the domain, or crosses its bound; move it, or make the domain longer"
-            }
-            () if body.pivot.is_some() && !(0..D).all(moved) => {
-                "has a pivot that is free to move; prescribe all components of `velocity` there, or remove `pivot`"
-            }
-            () if D == 3 && turned == 1 => {
-                "has one prescribed component of its angular velocity, which its nutation about the other two axes \
-                 would make unstable; prescribe two, or all, or none"
-            }
-            () => continue,
-        };
-        return Err(TotalLagrangianError::Rigid { name: body.name.clone(), fault });
-    }
-    Ok(())
 }

@@ -1,0 +1,104 @@
+//! Steps of a fluid with a solid in it, and of the two by themselves: `cargo bench -p piola --bench coupled`.
+//!
+//! Water over a soft plate in a tank, in 2D and 3D. By itself the fluid has the plate as a wall that stands still, with the same
+//! particles, and the solid has none around it. The plate is soft enough to take one step a step of the fluid. Best of
+//! steps in turns, on all threads.
+
+use piola::case::{self, LoadOptions, Session};
+
+/// Steps of each that are timed, in turns.
+const TURNS: usize = 15;
+
+/// What of the case there is.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Both,
+    Fluid,
+    Solid,
+}
+
+/// The case, with `across` particles over the width of the tank.
+fn case(dimension: usize, across: usize, part: Part) -> String {
+    let vector = |x: f64, y: f64, z: f64| match dimension {
+        2 => format!("[{x}, {z}]"),
+        _ => format!("[{x}, {y}, {z}]"),
+    };
+    let (dx, up) = (1.0 / across as f64, if dimension == 2 { "y" } else { "z" });
+    let (slab, shell) = ((0.1 / dx).round() * dx, 4.0 * dx);
+    let lattice = format!("spacing = {dx}\nlattice = {{ on = 'cells' }}\n");
+    let water =
+        "material = { kind = 'weakly_compressible', density = 1000.0, wave_speed = 10.0 }\n";
+    let rubber = "material = { kind = 'neo_hookean', density = 1000.0, young_modulus = 2e4, poisson_ratio = 0.3 }\n";
+    let shape = |name: &str, min: String, max: String| {
+        format!(
+            "[[body]]\nname = '{name}'\nshape = {{ kind = 'box', min = {min}, max = {max} }}\n{lattice}"
+        )
+    };
+    let plate = shape("plate", vector(0.0, 0.0, -slab), vector(1.0, 1.0, 0.0));
+    let held = ["x = '0'", "y = '0'", "z = '0'"][..dimension].join(", ");
+    let mut text = format!("version = 1\ntitle = 'Water on a plate'\ndimension = {dimension}\n");
+    if part != Part::Solid {
+        text += &format!(
+            "{}{water}initial = {{ pressure = '500 - 1000 * {up}' }}\n",
+            shape("water", vector(0.0, 0.0, 0.0), vector(1.0, 1.0, 0.5))
+        );
+        text += &format!(
+            "[[body]]\nname = 'tank'\nshape = {{ kind = 'difference', from = {{ kind = 'box', min = {}, max = {} }}, \
+             remove = [{{ kind = 'box', min = {}, max = {} }}] }}\n{lattice}{water}wall = {{ slip = 'free' }}\n",
+            vector(-shell, -shell, -slab),
+            vector(1.0 + shell, 1.0 + shell, 0.75),
+            vector(0.0, 0.0, -1.0),
+            vector(1.0, 1.0, 1.0),
+        );
+    }
+    text += &plate;
+    text += &match part {
+        Part::Both => format!(
+            "{rubber}system = 'plate'\n[scheme]\nkind = 'transport_velocity'\nfree_surface = true\n\
+             [[system]]\nname = 'plate'\nscheme = {{ kind = 'total_lagrangian' }}\nslip = 'free'\n"
+        ),
+        Part::Fluid => format!(
+            "{water}wall = {{ slip = 'free' }}\n[scheme]\nkind = 'transport_velocity'\nfree_surface = true\n"
+        ),
+        Part::Solid => format!("{rubber}[scheme]\nkind = 'total_lagrangian'\n"),
+    };
+    if part != Part::Fluid {
+        text += &format!(
+            "[[boundary]]\nname = 'held'\nbody = 'plate'\n\
+             where = {{ kind = 'plane', point = {}, normal = {} }}\nvelocity = {{ {held} }}\n",
+            vector(0.0, 0.0, -slab + 0.5 * dx),
+            vector(0.0, 0.0, -1.0)
+        );
+    }
+    text + "[time]\nend = 1.0\n"
+}
+
+fn session(text: &str) -> Session {
+    let case = case::parse(text, "case.toml", &LoadOptions::default());
+    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+    Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn main() {
+    println!("| D | particles | both, ms | fluid, ms | solid, ms | both over the sum |");
+    println!("|--:|--:|--:|--:|--:|--:|");
+    for (dimension, across) in [(2, 100), (2, 200), (3, 40)] {
+        let parts = [Part::Both, Part::Fluid, Part::Solid];
+        let mut sessions = parts.map(|part| session(&case(dimension, across, part)));
+        let (mut best, mut particles) = ([f64::INFINITY; 3], [0; 3]);
+        for _ in 0..TURNS {
+            for (part, session) in sessions.iter_mut().enumerate() {
+                let plan = session.plan();
+                particles[part] = plan.bodies.iter().map(|body| body.particles).sum::<usize>();
+                let seconds = particles[part] as f64 / plan.evaluations_per_second;
+                best[part] = best[part].min(seconds);
+            }
+        }
+        let [both, fluid, solid] = best.map(|seconds| 1e3 * seconds);
+        println!(
+            "| {dimension} | {} | {both:.2} | {fluid:.2} | {solid:.2} | {:.2} |",
+            particles[0],
+            both / (fluid + solid)
+        );
+    }
+}
