@@ -90,8 +90,7 @@ fn main() {
             for (part, session) in sessions.iter_mut().enumerate() {
                 let plan = session.plan();
                 particles[part] = plan.bodies.iter().map(|body| body.particles).sum::<usize>();
-                let seconds = particles[part] as f64 / plan.evaluations_per_second;
-                best[part] = best[part].min(seconds);
+                best[part] = best[part].min(plan.seconds / plan.steps as f64);
             }
         }
         let [both, fluid, solid] = best.map(|seconds| 1e3 * seconds);

@@ -54,7 +54,7 @@ pub enum GeometryError {
         expected: &'static str,
     },
     /// A polygon encloses nothing.
-    #[error("a polygon has {count} corners, expected at least 3")]
+    #[error("a polygon has {count} corners, expected at least 3, none of them twice")]
     FewCorners {
         /// Their number.
         count: usize,
@@ -72,8 +72,8 @@ pub enum GeometryError {
     },
     /// A lattice that is turned meets itself across no periodic bound.
     #[error(
-        "a turned body reaches across the whole of a periodic domain; turn the rest of the case and leave this body \
-         as it is, or make it shorter"
+        "the box around a turned body reaches across the whole of the periodic domain, where its lattice would not \
+         meet itself: leave the body as it is and turn the rest of the case, or make it shorter"
     )]
     TurnedPeriodic,
     /// A combination of no shapes.

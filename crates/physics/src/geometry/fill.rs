@@ -45,13 +45,14 @@ pub struct FillReport<const D: usize> {
 /// The lattice of a shape that is turned as a whole is turned with it, about the same point.
 ///
 /// # Errors
-/// An impossible specification, too many sites, a shape without particles, and a turned one around a periodic domain.
+/// An impossible specification, too many sites, a shape without particles, and a turned one that reaches across
+/// a periodic axis which is turned.
 pub fn fill<const D: usize>(
     shape: &Shape<D>,
     spec: &LatticeSpec<D>,
 ) -> Result<FillReport<D>, GeometryError> {
     if let Some((of, about, rotation)) = shape.as_turned() {
-        let mut report = fill(of, &unturned(spec)?)?;
+        let mut report = fill(of, unturned(spec, rotation)?)?;
         turn(&mut report.particles.position, about, rotation);
         report.rotation = rotation * report.rotation;
         return Ok(report);
@@ -88,11 +89,20 @@ pub fn fill<const D: usize>(
     })
 }
 
-/// The lattice of a shape before it was turned, which goes round no periodic domain.
-pub(super) fn unturned<const D: usize>(
-    spec: &LatticeSpec<D>,
-) -> Result<LatticeSpec<D>, GeometryError> {
-    if spec.periodic.contains(&true) { Err(GeometryError::TurnedPeriodic) } else { Ok(*spec) }
+/// Whether a rotation changes the direction of an axis.
+pub fn turns<const D: usize>(rotation: &Tensor<D>, axis: usize) -> bool {
+    rotation[(axis, axis)] < 1.0 - 1e-14
+}
+
+/// The lattice of a shape before it was turned, which goes round a periodic domain along axes alone that are not turned.
+pub(super) fn unturned<'a, const D: usize>(
+    spec: &'a LatticeSpec<D>,
+    rotation: &Tensor<D>,
+) -> Result<&'a LatticeSpec<D>, GeometryError> {
+    match (0..D).any(|axis| spec.periodic[axis] && turns(rotation, axis)) {
+        true => Err(GeometryError::TurnedPeriodic),
+        false => Ok(spec),
+    }
 }
 
 /// Turns points about a point.

@@ -24,7 +24,7 @@ pub use cloud::{
 pub use error::GeometryError;
 pub use faces::Faces;
 pub(crate) use faces::turned_normal;
-pub use fill::{FillReport, fill};
+pub use fill::{FillReport, fill, turns};
 pub use lattice::{LatticeKind, LatticeSpec, Placement};
 pub use mesh::{Cell, CellKind, Mesh, MeshError, MeshFault, MeshSet};
 pub use particles::Particles;

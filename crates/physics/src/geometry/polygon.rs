@@ -50,7 +50,10 @@ pub(super) fn check(corners: &[Vector<2>]) -> Result<(), GeometryError> {
     }
     let sides: Vec<_> = sides(corners).collect();
     for [from, to] in &sides {
-        positive("a side of a polygon", (to - from).norm())?;
+        positive(
+            "a side of a polygon (its last corner is joined to its first)",
+            (to - from).norm(),
+        )?;
     }
     for (i, one) in sides.iter().enumerate() {
         for (j, other) in sides.iter().enumerate().skip(i + 1) {

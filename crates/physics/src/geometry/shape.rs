@@ -124,7 +124,7 @@ impl<const D: usize> Shape<D> {
     /// in m along z.
     ///
     /// # Errors
-    /// Less than three corners, ones that are not finite, sides that cross or touch, 1D, in 3D ends that are missing
+    /// Less than three corners, ones that are not finite or there twice, sides that cross or touch, 1D, in 3D ends that are missing
     /// or not in order.
     pub fn polygon(corners: Vec<Vector<2>>, ends: Option<[f64; 2]>) -> Result<Self, GeometryError> {
         if D < 2 || (D == 3) != ends.is_some() {
@@ -146,7 +146,7 @@ impl<const D: usize> Shape<D> {
     /// its tip, in 2D from the tip of z. Particles that fill it are on a lattice that is turned with it.
     ///
     /// # Errors
-    /// An angle or point that is not finite, 1D.
+    /// An angle or point that is not finite, an axis without a direction, 1D.
     pub fn turned(
         self,
         angle: f64,
@@ -160,6 +160,7 @@ impl<const D: usize> Shape<D> {
         finite("the angle of a turned shape", &[angle])?;
         finite("the point about which a shape is turned", about.as_slice())?;
         finite("the axis of a turned shape", axis.as_slice())?;
+        positive("the length of the axis of a turned shape", axis.norm())?;
         let turn = Rotation3::from_axis_angle(&Unit::new_normalize(axis), angle);
         let rotation = Tensor::<D>::from_fn(|i, j| turn[(i, j)]);
         Ok(Self(Kind::Turned { of: Box::new(self), about, rotation }))

@@ -18,7 +18,7 @@ pub fn surroundings<const D: usize>(
     reach: f64,
 ) -> Result<Particles<D>, GeometryError> {
     if let Some((of, about, rotation)) = shape.as_turned() {
-        let mut around = surroundings(of, &unturned(spec)?, reach)?;
+        let mut around = surroundings(of, unturned(spec, rotation)?, reach)?;
         turn(&mut around.position, about, rotation);
         return Ok(around);
     }

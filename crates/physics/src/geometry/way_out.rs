@@ -3,7 +3,7 @@
 use super::{Faces, Shape};
 use crate::Vector;
 
-/// Halvings of the turn by which directions are improved.
+/// Halvings of the turn by which directions are improved, and of the last step of a walk.
 const HALVINGS: u32 = 40;
 /// Steps of a walk along a ray, each as long as the depth allows.
 const MOST_STEPS: usize = 200;
@@ -90,7 +90,7 @@ impl<const D: usize> Shape<D> {
         extent: f64,
     ) -> f64 {
         let least = 1e-9 * extent;
-        let mut length = 0.0;
+        let (mut length, mut last) = (0.0, 0.0);
         for _ in 0..MOST_STEPS {
             let place = point + direction * length;
             let inside = (0..D).all(|axis| {
@@ -98,14 +98,38 @@ impl<const D: usize> Shape<D> {
             });
             let depth = self.depth(&place);
             if depth < 0.0 {
-                return if inside { length } else { f64::INFINITY };
+                return if inside {
+                    self.crossing(point, direction, last, length)
+                } else {
+                    f64::INFINITY
+                };
             }
             if length > extent {
                 break;
             }
+            last = length;
             length += depth.max(least);
         }
         f64::INFINITY
+    }
+
+    /// Where a ray leaves the shape between two lengths, inside at the first one and outside at the second.
+    fn crossing(
+        &self,
+        point: &Vector<D>,
+        direction: &Vector<D>,
+        mut inner: f64,
+        mut outer: f64,
+    ) -> f64 {
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inner + outer);
+            if self.depth(&(point + direction * middle)) < 0.0 {
+                outer = middle;
+            } else {
+                inner = middle;
+            }
+        }
+        outer
     }
 }
 
@@ -187,19 +211,24 @@ mod tests {
         assert!((way(1.1, 0.2) - side).norm() < 2e-3, "on a side");
     }
 
-    /// Halvings of a turn of 0.3 rad are 1e-12 of it.
+    /// Ways that differ by less than 1e-12 of their length count as equal: directions are off by the root of that.
     #[test]
     fn behind_the_corners_of_a_box_there_are_the_normals_of_its_sides() {
-        let block = Shape::cuboid(Vector::<2>::zeros(), Vector::<2>::new(1.0, 2.0)).unwrap();
         let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
-        for [x, y] in [[0.1, 0.1], [0.9, 0.1], [0.1, 1.9], [0.9, 1.9]] {
-            let faces = block.ways_out(&Vector::<2>::new(x, y), &bounds);
-            assert_eq!(faces.normals().len(), 2, "{faces:?}");
-            let out = Vector::<2>::new(2.0 * x - 1.0, y - 1.0).map(f64::signum);
-            for normal in faces.normals() {
-                let axis = normal.iamax();
-                let off = (normal[axis] - out[axis]).abs() + normal[1 - axis].abs();
-                assert!(off < 1e-6, "{normal} at {x}, {y}");
+        for angle in [0.0, 0.1, 0.4, 0.7, 1.3] {
+            let block = Shape::cuboid(Vector::<2>::zeros(), Vector::<2>::new(1.0, 2.0)).unwrap();
+            let block = block.turned(angle, Vector::<2>::zeros(), nalgebra::Vector3::z()).unwrap();
+            let turn = nalgebra::Rotation2::new(angle);
+            for [x, y] in [[0.1, 0.1], [0.9, 0.1], [0.1, 1.9], [0.9, 1.9]] {
+                let faces = block.ways_out(&(turn * Vector::<2>::new(x, y)), &bounds);
+                assert_eq!(faces.normals().len(), 2, "{faces:?}");
+                let out = Vector::<2>::new(2.0 * x - 1.0, y - 1.0).map(f64::signum);
+                for normal in faces.normals() {
+                    let normal = turn.inverse() * normal;
+                    let axis = normal.iamax();
+                    let off = (normal[axis] - out[axis]).abs() + normal[1 - axis].abs();
+                    assert!(off < 3e-6, "{normal} at {x}, {y}, turned by {angle}");
+                }
             }
         }
     }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use piola_formulas::kernels::Kernel;
 
 use super::{Correction, GradientOperator, OperatorError, Support};
-use crate::geometry::{Particles, Surface};
+use crate::geometry::{Particles, Surface, turns};
 use crate::neighbors::Domain;
 use crate::{Tensor, Vector};
 
@@ -19,10 +19,10 @@ const ROUNDING: f64 = 1e-9;
 /// Outward boundary area vectors in m^(D-1) of the particles of a lattice with these edges of a cell
 /// in m, along the columns of a rotation: those of its narrow gradient operator, theory (14), which on a box are the shares of its
 /// faces. They sum to zero, and times the places to the volume, whatever the shape. Where a corner of a shape has no
-/// neighbour along some axis, those of a wider operator.
+/// neighbour along some axis, all are those of a wider operator.
 ///
 /// # Errors
-/// When a particle has no neighbour along some axis, or the box repeats itself too soon.
+/// When a particle has no neighbour that is not on one line with it and the others, or the box repeats itself too soon.
 pub fn lattice_areas<const D: usize>(
     particles: &Particles<D>,
     edges: &[f64; D],
@@ -32,6 +32,7 @@ pub fn lattice_areas<const D: usize>(
     let edges = Vector::<D>::from(*edges);
     let cell = edges.product();
     let count = particles.len();
+    let domain = along_rows(domain, rotation)?;
     // In units of the edges the lattice is one of cubes.
     let scaled = Particles {
         position: particles
@@ -57,12 +58,25 @@ pub fn lattice_areas<const D: usize>(
         Ok(operator.boundary_areas(&support, &scaled.volume))
     };
     let [narrow, wider] = NARROW;
-    let areas = of(narrow).or_else(|error: OperatorError| of(wider).map_err(|_| error))?;
+    let areas = of(narrow).or_else(|_: OperatorError| of(wider))?;
     let clean = |area: Vector<D>| match area.norm() < ROUNDING {
         true => Vector::zeros(),
         false => rotation * area.component_div(&edges) * cell,
     };
     Ok(areas.into_iter().map(clean).collect())
+}
+
+/// The domain for rows along the columns of a rotation: periodic along axes that are not turned, as [`fill`] makes turned
+/// bodies that go round these alone.
+///
+/// [`fill`]: crate::geometry::fill()
+fn along_rows<const D: usize>(
+    domain: &Domain<D>,
+    rotation: &Tensor<D>,
+) -> Result<Domain<D>, OperatorError> {
+    let periodic =
+        std::array::from_fn(|axis| domain.periodic()[axis].filter(|_| !turns(rotation, axis)));
+    Ok(Domain::new(periodic)?)
 }
 
 /// Outward areas in m^(D-1) of the faces of cells that no other cell shares, for cells with these
@@ -78,7 +92,8 @@ pub fn exposed_areas<const D: usize>(
     let Some(&origin) = positions.first() else { return Vec::new() };
     let edges = Vector::<D>::from(*edges);
     let around: [Option<i64>; D] = std::array::from_fn(|axis| {
-        domain.periodic()[axis].map(|[low, high]| ((high - low) / edges[axis]).round() as i64)
+        let own = domain.periodic()[axis].filter(|_| !turns(rotation, axis));
+        own.map(|[low, high]| ((high - low) / edges[axis]).round() as i64)
     });
     let wrapped = |mut site: [i64; D]| {
         for (index, count) in site.iter_mut().zip(around) {

@@ -100,7 +100,7 @@ impl Integrator for ImplicitStepping {
         100
     }
 
-    fn is_explicit(&self) -> bool {
+    fn is_timed_by_steps(&self) -> bool {
         false
     }
 

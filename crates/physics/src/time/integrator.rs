@@ -19,8 +19,9 @@ pub trait Integrator: Send {
     /// Evaluations of the rates of `scheme` a step.
     fn evaluations(&self, scheme: &mut dyn Scheme) -> u64;
 
-    /// Whether a step costs no more than its evaluations, as nothing is solved in it.
-    fn is_explicit(&self) -> bool {
+    /// Whether one step is quick enough to be taken for an estimate of the run. Where it solves equations for all
+    /// particles, the estimate is by [`Self::evaluations`].
+    fn is_timed_by_steps(&self) -> bool {
         true
     }
 

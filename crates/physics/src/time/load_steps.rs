@@ -22,7 +22,7 @@ impl Integrator for LoadStepping {
         300
     }
 
-    fn is_explicit(&self) -> bool {
+    fn is_timed_by_steps(&self) -> bool {
         false
     }
 

@@ -6,7 +6,7 @@ use super::assembly::{self, bodies::BodyReport};
 use super::model;
 use super::session::Session;
 use crate::neighbors::NeighborStatistics;
-use crate::schemes::{Particle, Scheme};
+use crate::schemes::Particle;
 use crate::time::{StepControl, supersonic};
 
 /// What will happen when a case runs.
@@ -84,7 +84,7 @@ pub struct PlannedLimit {
 const STATES: usize = 6;
 
 impl Session {
-    /// Looks at the initial state and times two first steps, or two evaluations of the rates where steps are implicit.
+    /// Looks at the initial state and times the first two steps, or two evaluations of the rates where steps solve equations.
     pub fn plan(&mut self) -> Plan {
         let control = assembly::step_control(&self.case);
         let scheme = self.executor.scheme.as_mut();
@@ -114,24 +114,29 @@ impl Session {
                 (limits.first().map_or(f64::NAN, |limit| limit.step), "fixed".to_owned())
             }
         };
-        let mut other = vec![0.0; state.len()];
+        let [mut second, mut third] = [vec![0.0; state.len()], vec![0.0; state.len()]];
         let integrator = self.executor.integrator.as_mut();
         let count = scheme.particle_count();
         let evaluations = integrator.evaluations(scheme);
-        // What is solved in a step would take as long here as in the run.
-        let is_explicit = integrator.is_explicit();
-        let mut evaluate = |scheme: &mut dyn Scheme| match is_explicit {
-            true => integrator.step(scheme, 0.0, step, &state, &mut other),
+        let is_taken = integrator.is_timed_by_steps();
+        let mut evaluate = |time: f64, old: &[f64], new: &mut [f64]| match is_taken {
+            true => integrator.step(scheme, time, step, old, new),
             false => {
-                scheme.rates(0.0, &state, &mut other);
+                scheme.rates(time, old, new);
                 Ok(())
             }
         };
-        // The first one touches all memory once.
-        let first = evaluate(scheme);
-        let start = Instant::now();
-        let failed = first.and_then(|()| evaluate(scheme)).err();
-        let timed = if is_explicit { evaluations as f64 } else { 1.0 };
+        // The first one touches all memory once, and counts where there is no second.
+        let mut start = Instant::now();
+        let failed = evaluate(0.0, &state, &mut second).err();
+        if failed.is_none() {
+            start = Instant::now();
+            // Rates are no state: they are those of the first state again.
+            let (time, old) = if is_taken { (step, &second) } else { (0.0, &state) };
+            // What fails after the first step is for the run to tell.
+            let _ = evaluate(time, old, &mut third);
+        }
+        let timed = if is_taken { evaluations as f64 } else { 1.0 };
         let evaluation = start.elapsed().as_secs_f64().max(1e-9) / timed;
         warnings.extend(failed.map(|failure| format!("the first step fails: {failure}")));
         let integrator = self.executor.integrator.as_ref();
@@ -200,6 +205,6 @@ impl Session {
 }
 
 /// A number of things.
-fn counted(count: u64, one: &str, more: &str) -> String {
+pub(super) fn counted(count: u64, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
 }

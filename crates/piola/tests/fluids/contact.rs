@@ -409,9 +409,8 @@ field = "contact_force"
     }
 }
 
-/// What goes through a floor that is too soft for it ends the run by name.
 /// A piston beside its cylinder: all that there is at the edge is the other face. Normals are the directions of the
-/// shortest ways, whose lengths are known to 1e-12: they are off by the root of that.
+/// shortest ways, whose lengths are compared to 1e-12: they are off by the root of that.
 #[test]
 fn what_slides_past_an_edge_is_not_held_by_it() {
     let pillar = BLOCK
@@ -429,6 +428,7 @@ fn what_slides_past_an_edge_is_not_held_by_it() {
     }
 }
 
+/// What goes through a floor that is too soft for it ends the run by name.
 #[test]
 fn a_body_that_goes_through_a_floor_is_told() {
     let set =

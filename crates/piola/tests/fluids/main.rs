@@ -12,6 +12,7 @@ mod escapes;
 mod fields;
 mod held;
 mod operators;
+mod planning;
 mod runs;
 mod solids;
 mod speeds;

@@ -161,3 +161,24 @@ fn shapes_that_are_none_are_refused() {
         assert!(told.contains(expected) && told.contains("case.toml:7"), "{shape}: {told}");
     }
 }
+
+/// A bar across a domain that repeats itself: at an angle its lattice does not, and it has its ends where it is.
+#[test]
+fn a_turned_bar_in_a_periodic_domain_has_ends() {
+    let alone = bar(2, "total_lagrangian", "cells", true);
+    let domain = "[domain]\nperiodic = { x = [-2.0, 1.5] }\n\n[scheme]";
+    let names = ["tip.displacement.x", "tip.displacement.y"];
+    let around = alone.replace("[scheme]", domain);
+    assert_eq!(values(&alone, &names), values(&around, &names));
+    let long = around.replace("min = [0.0, 0.0], max = [1.0", "min = [-5.0, 0.0], max = [5.0");
+    let case = case::parse(&long, "case.toml", &LoadOptions::default()).unwrap();
+    let told = Session::new(&case).err().map_or_else(String::new, |problems| problems.to_string());
+    assert!(told.contains("turned body") && told.contains("case.toml:7"), "{told}");
+    // About z, along which the domain repeats itself, nothing is turned.
+    let strip = bar(3, "total_lagrangian", "cells", true)
+        .replace("axis = [2.0, -1.0, 2.0]", "axis = [0.0, 0.0, 1.0]")
+        .replace("[scheme]", "[domain]\nperiodic = { z = [0.0, 0.25] }\n\n[scheme]");
+    let case = case::parse(&strip, "case.toml", &LoadOptions::default()).unwrap();
+    let told = Session::new(&case).err().map_or_else(String::new, |problems| problems.to_string());
+    assert!(!told.contains("turned body"), "{told}");
+}

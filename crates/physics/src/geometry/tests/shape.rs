@@ -246,5 +246,6 @@ fn turned_shapes_are_where_rotations_take_them() {
     // Of the corner (3, 2), and of a point off it.
     assert!((turned.depth(&Vector::<3>::new(-0.9, 1.9, 0.5)) - 0.1).abs() < 1e-15);
     assert!((turned.depth(&Vector::<3>::new(1.2, 1.0, 0.5)) + 0.2).abs() < 1e-15);
-    assert!(block.turned(f64::NAN, about, Vector::<3>::z()).is_err());
+    assert!(block.clone().turned(f64::NAN, about, Vector::<3>::z()).is_err());
+    assert!(block.turned(1.0, about, Vector::<3>::zeros()).is_err());
 }

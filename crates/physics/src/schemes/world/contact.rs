@@ -11,8 +11,9 @@
 //! F_i = A/2 max(0, k rho c^2 d/dx - z rho c v . n) n - min(mu |F_n|, A rho c |v_t|) v_t/|v_t|
 //! ```
 //!
-//! At an edge, where point j ends at a plane through `x_m` with the normal `n_m`, `e_ij` falls from 1 at half a spacing
-//! before that plane to 0 on it: what slides along one face of an edge is not held by the other one. Elsewhere it is 1.
+//! At an edge, where the particle of point j is behind another face, through `x_m` with the normal `n_m`, `e_ij` falls from 1 at
+//! half a spacing before that face to 0 on it: what slides along one face of an edge is not held by the other one. It is the
+//! product over all such faces, and 1 elsewhere.
 //!
 //! The points j get what is opposite, with the same weights. Both bodies take part as i and as j, which is why there is
 //! a half. A is the area of a point, c the wave speed of the fluid, with which `rho c^2 / dx` is as
@@ -37,6 +38,9 @@ const BEHIND: f64 = 1.0 - 1e-6;
 
 /// Cosine of the angle between the normals of surfaces beyond which they do not meet.
 const FACING: f64 = -0.1;
+
+/// Cosine of the angle between two normals of one particle below which they are of the two sides of a thin part.
+const OPPOSITE: f64 = -0.9;
 
 /// What holds back a point that creeps, in `A/2 rho c` times its velocity: what a step of the fluid allows with some
 /// margin, as the particles of a surface weigh `rho dx^D` and steps are about `0.3 dx/c`.
@@ -277,8 +281,7 @@ impl<const D: usize> Contact<D> {
     fn before_edges(&self, j: usize, me: &Point<D>, domain: &Domain<D>, spacing: f64) -> f64 {
         let [first, end] = self.together[j];
         let own = self.points[j].normal;
-        // The other side of a thin part is no edge.
-        let is_edge = |edge: &&Point<D>| edge.normal.dot(&own) > -0.5;
+        let is_edge = |edge: &&Point<D>| edge.normal.dot(&own) > OPPOSITE;
         let others = (first..end).filter(|&m| m != j).map(|m| &self.points[m]).filter(is_edge);
         let before = others.map(|edge| {
             let beyond = domain.separation(&edge.place, &me.place).dot(&edge.normal);

@@ -124,6 +124,9 @@ pub(super) fn around<const D: usize>(
 }
 
 fn refuse_spacing(case: &Case, body: &Body, error: &GeometryError) -> Problem {
+    if matches!(error, GeometryError::TurnedPeriodic) {
+        return refuse(case, body, error);
+    }
     let label = format!("spacing of body `{}`", body.name.value);
     case.problem_at(body.spacing.place, error.to_string(), label, None)
 }

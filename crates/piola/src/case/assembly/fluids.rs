@@ -6,7 +6,8 @@ use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
-use crate::geometry::{Faces, Particles, Shape};
+use crate::case::plan::counted;
+use crate::geometry::{Faces, Particles, Shape, ball_volume};
 use crate::neighbors::{Domain, spatial_order};
 use crate::observe::{Line, Probe};
 use crate::schemes::transport_velocity::{
@@ -145,6 +146,9 @@ impl<const D: usize> Prepared<D> {
     ) -> Result<(TransportVelocity<D, M>, Built), Vec<Problem>> {
         let Self { input, probes, lines, reports: bodies, mut warnings, .. } = self;
         let place = settings.smoothing_length.place;
+        let support = input.kernel.support_radius(input.smoothing_length);
+        let full =
+            ball_volume(D, support / input.particles.spacing.first().copied().unwrap_or(1.0));
         let refuse = |error: TransportVelocityError| {
             let (place, label) = match &error {
                 TransportVelocityError::Start { .. } => {
@@ -166,31 +170,32 @@ impl<const D: usize> Prepared<D> {
         // Particles deep in a wall may be alone.
         let of_fluid = row_sizes(&scheme).filter(|(a, _)| !scheme.is_wall(*a));
         let (neighbors, poorly_supported) = row_statistics(D, of_fluid);
-        if materials(case).is_none() && !settings.settings.free_surface {
-            warnings.extend(open_end(&scheme, neighbors.most));
+        // Walls that are too thin have a warning of their own.
+        if materials(case).is_none() && !settings.settings.free_surface && warnings.is_empty() {
+            warnings.extend(open_end(&scheme, full));
         }
         Ok((scheme, Built { probes, lines, bodies, neighbors, poorly_supported, warnings }))
     }
 }
 
-/// What part of the neighbours inside a particle of fluid has at least next to a wall; at a free surface it is about
-/// 0.6.
+/// What part of the particles within the support around one inside a particle of fluid has at least beside a wall; at a
+/// free surface it is about 0.6.
 const ENCLOSED: f64 = 0.75;
 
-/// A warning of a fluid that ends where nothing holds it, while no free surface is looked for.
+/// A warning of a fluid that borders on empty space while no free surface is looked for, where `full` particles fill a
+/// support.
 fn open_end<const D: usize, M: Continuum<D>>(
     scheme: &TransportVelocity<D, M>,
-    most: usize,
+    full: f64,
 ) -> Option<String> {
     let is_open =
-        |(a, size): &(u32, usize)| !scheme.is_wall(*a) && (*size as f64) < ENCLOSED * most as f64;
+        |(a, size): &(u32, usize)| !scheme.is_wall(*a) && (*size as f64) < ENCLOSED * full;
     let open: Vec<u32> = row_sizes(scheme).filter(is_open).map(|(a, _)| a).collect();
     let place = scheme.particle(*open.first()? as usize).reference;
     Some(format!(
-        "the fluid ends at {place:?} m and {} other particles where there is neither a wall nor a solid, and \
-         `free_surface` is false: nothing holds it there, and its pressure is not that of air; put a wall there, \
-         make the domain periodic, or set `free_surface = true`",
-        open.len() - 1
+        "{} of the fluid, the first at {place:?} m, border on empty space, and `free_surface` is false: nothing holds \
+         the fluid there; put a wall there, make the domain periodic, or set `free_surface = true`",
+        counted(open.len() as u64, "particle", "particles")
     ))
 }
 

@@ -291,7 +291,9 @@ fn areas<const D: usize>(
         let found = lattice_areas(&still.particles, &still.actual_spacing, &still.rotation, domain);
         let areas = found.map_err(|error| {
             let label = format!("body `{}`", *body.name);
-            vec![case.problem_at(body.shape.place, error.to_string(), label, None)]
+            let help =
+                "cut sharp corners off: the particle there needs neighbours in all directions";
+            vec![case.problem_at(body.shape.place, error.to_string(), label, Some(help.into()))]
         })?;
         for (area, site) in areas.iter().zip(&still.particles.position) {
             if area.norm_squared() > 0.0 {

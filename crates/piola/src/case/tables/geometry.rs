@@ -38,7 +38,7 @@ pub(super) static BODY: TableSpec = TableSpec {
             Kind::NumberOrPerAxis(Interval::POSITIVE),
             "m",
             Derived("needed unless a file has the particles (`points`, `mesh`)"),
-            "distance between particles, one number or one per axis",
+            "distance between particles, one number or one per axis; a square lattice fits the shape, with the nearest spacing of which whole numbers do. Those of a fluid and its walls may differ by 5 %",
         ),
         key("lattice", Kind::Table(&LATTICE), "", Default("{}"), "how the particles are laid out"),
         key(
@@ -159,7 +159,7 @@ static SHAPE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "turned",
-            meaning: "another shape, turned together with the lattice of its particles",
+            meaning: "another shape, turned; if it is the whole of a body, together with the lattice of the particles",
             dimensions: &[2, 3],
             keys: &[
                 key("of", Kind::Tagged(&SHAPE), "", Required, "the shape"),
