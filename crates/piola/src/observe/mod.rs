@@ -12,6 +12,7 @@ mod probe;
 mod profile;
 mod recorder;
 pub mod reduce;
+mod sensor;
 mod tables;
 
 pub use comparison::{Deviation, Norm};
@@ -23,4 +24,5 @@ pub use pictures::{PictureRequest, PictureWriter};
 pub use probe::{Probe, ProbeKind, TANGENT_COLUMNS, moment_axes};
 pub use profile::{Line, ProfileRecorder};
 pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns, momentum_columns};
+pub use sensor::Sensor;
 pub use tables::{Series, SpaceTime, Tables};

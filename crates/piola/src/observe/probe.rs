@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::comparison::Deviation;
 use super::flow::{Flux, Gauge};
 use super::interpolation::Interpolated;
+use super::sensor::Sensor;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
 use crate::schemes::{Observation, Theta};
@@ -67,6 +68,8 @@ pub enum ProbeKind {
         /// Their indices in memory, at least one.
         particles: Vec<u32>,
     },
+    /// The pressure on a patch of a wall.
+    Sensor(Sensor),
     /// How far a fluid reaches along a line.
     Gauge(Gauge),
     /// What goes through a plane.
@@ -126,6 +129,7 @@ impl Probe {
                 columns.extend(moment_axes(dimension).iter().map(moment));
                 columns
             }
+            ProbeKind::Sensor(_) => vec![Column::new(format!("{}.pressure", self.name), "Pa")],
             ProbeKind::Gauge(_) => vec![Column::new(format!("{}.elevation", self.name), "m")],
             ProbeKind::Flux(_) => vec![Column::new(format!("{}.flux", self.name), "kg/s")],
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS
@@ -157,6 +161,7 @@ impl Probe {
                 *particles = particles.iter().filter_map(|&a| index(a)).collect();
             }
             ProbeKind::Point(point) => point.renumber(index),
+            ProbeKind::Sensor(sensor) => sensor.renumber(index),
             ProbeKind::Gauge(gauge) => gauge.renumber(index),
             ProbeKind::Tangent { .. } => (),
         }
@@ -209,6 +214,7 @@ impl Probe {
                 let first = 3 - moment_axes(dimension).len();
                 row.extend_from_slice(&moment.as_slice()[first..]);
             }
+            ProbeKind::Sensor(sensor) => row.push(sensor.record(now)),
             ProbeKind::Gauge(gauge) => row.push(gauge.record(now)),
             ProbeKind::Flux(flux) => row.push(flux.record(now)),
             ProbeKind::Point(point) => point.record(now, scratch, row),

@@ -294,6 +294,27 @@ kind = "gauge"
 body = "water"
 from = [0.4, 1.2]
 to = [0.4, 1.6]
+[[probe]]
+name = "floor"
+kind = "sensor"
+body = "tank"
+at = [0.43, 0.0]
+normal = [0.0, 2.0]
+radius = 0.11
+[[probe]]
+name = "side"
+kind = "sensor"
+body = "tank"
+at = [2.0, 0.525]
+normal = [-1.0, 0.0]
+radius = 0.06
+[[probe]]
+name = "above"
+kind = "sensor"
+body = "tank"
+at = [0.0, 1.35]
+normal = [1.0, 0.0]
+radius = 0.06
 [[plot]]
 name = "both"
 curves = ["level.elevation", "lift.force.y"]
@@ -308,6 +329,9 @@ end = 1e-5
         "viscous.viscous_force.y",
         "level.elevation",
         "dry.elevation",
+        "floor.pressure",
+        "side.pressure",
+        "above.pressure",
     ];
     let found = columns(still, &[], names).map(|column| column[0]);
     // The box displaces 0.12 m2 of water.
@@ -320,6 +344,11 @@ end = 1e-5
     // A hundredth of the spacing is the ripple of a kernel sum.
     assert!((found[5] - 0.85).abs() < 0.01 * 0.05, "{found:?}");
     assert_eq!(found[6], 0.0);
+    // Sensors 1.05 and 0.525 m under the surface: what a kernel's sum is off by on a lattice, as for the box.
+    for (pressure, depth) in [(found[7], 1.05), (found[8], 0.525)] {
+        assert!((pressure / (9810.0 * depth) - 1.0).abs() < 0.02, "{found:?}");
+    }
+    assert_eq!(found[9], 0.0);
 
     let stream = r#"
 version = 1

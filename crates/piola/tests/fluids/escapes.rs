@@ -125,6 +125,70 @@ fn what_is_removed_leaves_by_ways_of_its_own() {
     }
 }
 
+/// Fluid that flies over the rim of a wall, which ends there with all else, and falls on the other side of it.
+const RIM: &str = r#"
+version = 1
+title = "Over the rim"
+dimension = 2
+
+[[body]]
+name = "block"
+shape = { kind = "box", min = [-0.5, -0.3], max = [-0.4, -0.1] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 40.0, viscosity = 0.0 }
+initial = { velocity = ["1.2", "3.5"] }
+
+[[body]]
+name = "wall"
+shape = { kind = "box", min = [0.0, -0.5], max = [0.15, 0.0] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 40.0, viscosity = 0.0 }
+wall = { slip = "free" }
+
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+
+[[load]]
+kind = "body_force"
+acceleration = ["0", "-9.81"]
+
+[time]
+end = 0.75
+
+[[probe]]
+name = "left"
+kind = "extremum"
+body = "block"
+field = "position.x"
+of = "smallest"
+
+[[probe]]
+name = "top"
+kind = "extremum"
+body = "block"
+field = "position.y"
+of = "largest"
+
+[output]
+every = 0.75
+table_every = 0.01
+"#;
+
+#[test]
+fn what_goes_round_a_wall_has_not_gone_through_it() {
+    let finished = run(RIM, &[]);
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    // Up to 0.62 m higher and, at the end, below the rim on the far side, a spacing from it at least.
+    let last = |name: &str| values(&finished, name).last().copied().expect("rows");
+    let [left, top] = ["left.position.x", "top.position.y"].map(last);
+    assert!(left > 0.2 && top < 0.0, "{left} {top}");
+    assert!(values(&finished, "top.position.y").iter().any(|y| *y > 0.1));
+    assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0));
+}
+
 #[test]
 fn what_leaves_the_box_is_named() {
     let set = ["body.block.initial.velocity=['0', '20']", "time.end=1", "time.max_speed=100"];

@@ -126,7 +126,7 @@ impl<const D: usize> Common<D> {
         let depth = -TOLERANCE * self.particles.spacing[0];
         let reach = self.support.kernel().support_radius(self.support.smoothing_length());
         let (number, way) = self.wall_behind(place, reach, |place| list.positions()[place])?;
-        let (_, normal) = self.over(self.wall_of(number)?, &way)?;
+        let (_, normal) = self.inside(self.wall_of(number)?, &way)?;
         (way.dot(normal) < depth).then_some(Some(number))
     }
 

@@ -11,7 +11,7 @@ use crate::case::model::{self, Case};
 use crate::case::source::Located;
 use crate::fields::FieldDescription;
 use crate::geometry::Particles;
-use crate::observe::{Deviation, Flux, Gauge, Interpolated, Line, Probe, ProbeKind};
+use crate::observe::{Deviation, Flux, Gauge, Interpolated, Line, Probe, ProbeKind, Sensor};
 use crate::schemes::ImplicitRule;
 use crate::time::Schedule;
 
@@ -48,6 +48,15 @@ pub(super) fn probes<const D: usize>(
                 about: padded(&vector::<D>(about)),
                 particles: select(case, particles, region, body, problems),
             },
+            model::ProbeKind::Sensor { at, normal, radius } => {
+                match sensor(case, particles, body, (at, normal, *radius)) {
+                    Ok(sensor) => ProbeKind::Sensor(sensor),
+                    Err(problem) => {
+                        problems.push(problem);
+                        continue;
+                    }
+                }
+            }
             model::ProbeKind::Gauge { from, to } => {
                 let (kernel, ratio) = kernel_of(case);
                 let of_body = of_body(particles, body);
@@ -96,6 +105,41 @@ pub(super) fn probes<const D: usize>(
         probes.push(Probe { name: probe.name.value.clone(), kind });
     }
     probes
+}
+
+/// What of a spacing the first layer of a wall may be in front of its face, and behind it.
+const FIRST_LAYER: std::ops::Range<f64> = -0.25..0.75;
+
+/// The particles of a wall behind a patch of its face, with its middle in m, its unit normal and its radius in m.
+fn sensor<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    body: Option<&Located<usize>>,
+    (at, normal, radius): (&Located<Vec<f64>>, &[f64], f64),
+) -> Result<Sensor, Problem> {
+    let (kernel, ratio) = kernel_of(case);
+    let (middle, axis) = (vector::<D>(at), vector::<D>(normal));
+    let (mut behind, mut area) = (Vec::new(), 0.0);
+    for a in of_body(particles, body) {
+        let spacing = particles.spacing[a as usize];
+        let way = particles.position[a as usize] - middle;
+        let depth = -way.dot(&axis);
+        let share = Sensor::share((way + axis * depth).norm(), radius, spacing);
+        let deepest = kernel.support_radius(ratio * spacing);
+        if share == 0.0 || !(FIRST_LAYER.start * spacing..deepest).contains(&depth) {
+            continue;
+        }
+        behind.push((a, share));
+        if depth < FIRST_LAYER.end * spacing {
+            area += share * spacing.powi(D as i32 - 1);
+        }
+    }
+    if area > 0.0 {
+        return Ok(Sensor { particles: behind, normal: normal.to_vec(), area });
+    }
+    let message = "no particle of the wall is behind this place within the radius of the sensor";
+    let help = "`at` has to be on a face of the wall, and `normal` points from there to the fluid";
+    Err(case.problem_at(at.place, message, "no wall here", Some(help.to_owned())))
 }
 
 /// Probes of a particle are meant to have one within so many spacings.

@@ -148,6 +148,7 @@ impl Reader<'_, '_> {
             }
             ProbeKind::Extremum { field, .. } => vec![field.name(self.dimension)],
             ProbeKind::Error { .. } => vec!["error".to_owned()],
+            ProbeKind::Sensor { .. } => vec!["pressure".to_owned()],
             ProbeKind::Gauge { .. } => vec!["elevation".to_owned()],
             ProbeKind::Flux { .. } => vec!["flux".to_owned()],
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS.map(|(own, _)| own.to_owned()).to_vec(),

@@ -49,6 +49,12 @@ impl Reader<'_, '_> {
                 self.names.current = current;
                 force?
             }
+            "sensor" => {
+                self.is_of_one_body(record);
+                let normal = self.unit(record, "normal");
+                let (at, radius) = (record.numbers("at")?, record.number("radius")?.value);
+                ProbeKind::Sensor { at, normal: normal?, radius }
+            }
             "gauge" => {
                 self.is_of_one_body(record);
                 let (from, to) = (record.numbers("from")?, record.numbers("to")?);
@@ -148,18 +154,26 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reports probes of the forces of a fluid on itself.
+    /// Reports probes of forces that look at no wall and no solid, and sensors that are in no wall.
     pub(super) fn forces_act(&mut self, probes: &[Probe], bodies: &[Body]) {
-        for probe in probes.iter().filter(|it| matches!(it.kind, ProbeKind::Force { .. })) {
-            let body = probe.body.as_ref().and_then(|body| bodies.get(body.value));
-            if body.is_some_and(|body| body.wall.is_none() && body.system.is_none()) {
-                let message = format!("the probe `{}` looks at no wall and no solid", *probe.name);
-                let place = probe.body.as_ref().map_or(probe.name.place, |body| body.place);
-                let problem = Problem::new(place, message, "the fluid itself");
-                self.report(
-                    problem.help("name a wall or the body of a system, or use the kind `sum`"),
-                );
-            }
+        for probe in probes {
+            let Some(body) = probe.body.as_ref() else { continue };
+            let its = bodies.get(body.value);
+            let is_wall = its.is_none_or(|body| body.wall.is_some());
+            let is_solid = its.is_some_and(|body| body.system.is_some());
+            let (what, help) = match probe.kind {
+                ProbeKind::Force { .. } if !is_wall && !is_solid => (
+                    "looks at no wall and no solid",
+                    "name a wall or the body of a system, or use the kind `sum`",
+                ),
+                ProbeKind::Sensor { .. } if !is_wall => {
+                    ("is in no wall", "name a wall; the kind `force` serves solids in the fluid")
+                }
+                _ => continue,
+            };
+            let message = format!("the probe `{}` {what}", *probe.name);
+            let label = if is_solid { "a solid" } else { "the fluid itself" };
+            self.report(Problem::new(body.place, message, label).help(help));
         }
     }
 
@@ -218,7 +232,11 @@ impl Reader<'_, '_> {
                 format!("a {} needs the key `body` where there are several bodies", record.kind);
             let names = self.names.bodies.iter().map(String::as_str);
             let problem = Problem::new(record.place, message, "`body` is missing");
-            let what = if record.kind == "force" { "a wall or a solid" } else { "the fluid" };
+            let what = match record.kind {
+                "force" => "a wall or a solid",
+                "sensor" => "a wall",
+                _ => "the fluid",
+            };
             self.report(problem.help(format!("name {what}, one of {}", one_of(names))));
         }
     }

@@ -63,6 +63,15 @@ pub enum ProbeKind {
         /// The particles.
         region: Located<Region>,
     },
+    /// The pressure on a patch of a wall.
+    Sensor {
+        /// The middle of the patch in m.
+        at: Located<Vec<f64>>,
+        /// The unit normal of the wall there, towards the fluid.
+        normal: Vec<f64>,
+        /// Its radius in m.
+        radius: f64,
+    },
     /// How far a fluid reaches along a line.
     Gauge {
         /// Where the line starts, in m.

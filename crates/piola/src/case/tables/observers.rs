@@ -86,7 +86,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "mean",
-            meaning: "the mean of a field over a selection, for example of `pressure` over a patch of a wall, as a sensor has it",
+            meaning: "the mean of a field over a selection, for example of `velocity` over a body",
             dimensions: &[1, 2, 3],
             keys: &[
                 key("field", Kind::Text, "", Required, "a field, with all its components"),
@@ -113,6 +113,34 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     "the point of space that the moment is about",
                 ),
                 WHERE,
+            ],
+        },
+        KindSpec {
+            name: "sensor",
+            meaning: "the pressure on a round patch of a wall, as a sensor in it has it: what the fluid pushes it with, over its area; column `NAME.pressure`",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key(
+                    "at",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Required,
+                    "its middle, on the face of the wall",
+                ),
+                key(
+                    "normal",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "",
+                    Required,
+                    "the normal of the face there, towards the fluid, of any length",
+                ),
+                key(
+                    "radius",
+                    Kind::Number(Interval::POSITIVE),
+                    "m",
+                    Required,
+                    "its radius; of its edge, a spacing wide, a part counts",
+                ),
             ],
         },
         KindSpec {

@@ -8,7 +8,7 @@ use piola_formulas::{Number, fluid};
 
 use super::super::escape::TOLERANCE;
 use super::super::fluid::{ACCELERATING, TOUCH};
-use super::super::walls::BESIDE;
+use super::super::walls::{BESIDE, is_in_cell};
 use super::Plan;
 use super::passes::{FORCES, Vector, flat, one, side, side_width, square, take};
 
@@ -268,7 +268,9 @@ impl<const D: usize> Plan<D> {
                 let faces = Faces::<D>::take(&mut other, self.normals);
                 let way = meeting.pair.separation;
                 let (is_over, _, normal) = faces.over(&way, spacing);
-                let passed = is_over & way.dot(&normal).below(-TOLERANCE * spacing);
+                let passed = is_over
+                    & is_in_cell(&way, spacing)
+                    & way.dot(&normal).below(-TOLERANCE * spacing);
                 let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
                 let is_nearer = meeting.pair.square.less(*nearest);
                 *is_through =

@@ -159,7 +159,7 @@ fn is_behind<const D: usize>(common: &Common<D>, place: usize, state: &[f64]) ->
     let position = |place: usize| at.position[list.numbers()[place] as usize];
     // Candidates of the list are all that are near, at any state since it was made.
     common.wall_behind(place, f64::INFINITY, position).is_some_and(|(number, way)| {
-        let over = common.wall_of(number).and_then(|index| common.over(index, &way));
-        over.is_some_and(|(height, _)| height < -BEHIND * common.particles.spacing[0])
+        let inside = common.wall_of(number).and_then(|index| common.inside(index, &way));
+        inside.is_some_and(|(height, _)| height < -BEHIND * common.particles.spacing[0])
     })
 }
