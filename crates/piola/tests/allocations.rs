@@ -109,8 +109,15 @@ fn explicit_steps_of_all_schemes_allocate_nothing() {
     let undamped = "scheme={ kind='upwind', smoothing_length=0.7 }";
     let cells = "parameters.n=40";
     let beam = "parameters.dx=0.25";
-    let flows: [(&str, &[&str]); 12] = [
-        ("coupled/slab", &["parameters.n=60", "parameters.width='20 * dx'"]),
+    let (fine, narrow) = ("parameters.n=60", "parameters.width='20 * dx'");
+    let upwind = "system.slab.scheme={ kind='upwind', smoothing_length=0.7 }";
+    let law = "body.slab.material={ kind='linear', density='rho', bulk_modulus='25 * rho * c^2' }";
+    let hypoelastic = "system.slab.scheme={ kind='transport_velocity' }";
+    let rates = "body.slab.material={ kind='hypoelastic', density='rho', young_modulus='25 * rho * c^2', poisson_ratio=0 }";
+    let flows: [(&str, &[&str]); 14] = [
+        ("coupled/slab", &[fine, narrow]),
+        ("coupled/slab", &[fine, narrow, upwind, law]),
+        ("coupled/slab", &[fine, narrow, hypoelastic, rates]),
         ("ctvf/taylor-green", &["parameters.side=40"]),
         ("ctvf/taylor-green", &["parameters.side=40", "scheme.shifting='ipst'"]),
         ("ctvf/dam-break", &["parameters.dx=0.025"]),

@@ -175,6 +175,12 @@ pub trait Scheme: Send {
         true
     }
 
+    /// Whether particles interact with the same others all the time, and their places are those of the matter
+    /// that they are of: what is said by reference positions then holds as long as the run.
+    fn keeps_neighbors(&self) -> bool {
+        true
+    }
+
     /// The columns of its state that may be set from outside: those that nothing else in the state has to
     /// follow but accelerations.
     fn settable(&self) -> &'static [&'static str] {
@@ -212,10 +218,23 @@ pub struct Escape {
     pub position: Vec<f64>,
     /// Its speed in m/s.
     pub speed: f64,
-    /// Name of the wall that it has gone through; `None` if it has left the box around everything.
-    pub wall: Option<String>,
+    /// What it has left behind.
+    pub behind: Behind,
     /// What to change.
     pub advice: &'static str,
+}
+
+/// What a particle that escapes leaves behind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Behind {
+    /// The wall of this name, which it has gone through.
+    Wall(String),
+    /// The box around everything.
+    Box,
+    /// The surface of a wall or a solid that it touches.
+    Surface,
+    /// Those that were its neighbours at the start, of a solid in a fluid.
+    Neighbors,
 }
 
 /// Figures that tell whether a state is sound.

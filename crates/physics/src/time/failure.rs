@@ -4,7 +4,7 @@ use piola_device::DeviceError;
 use thiserror::Error;
 
 use super::integrator::Unserved;
-use crate::schemes::{Escape, Missed, NoSolution, Particle};
+use crate::schemes::{Behind, Escape, Missed, NoSolution, Particle};
 
 /// What went wrong, where and when, with what to do about it.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -57,9 +57,14 @@ pub enum Failure {
          t = {time:.6} s; {}",
         particle.id,
         particle.reference,
-        match &escape.wall {
-            Some(wall) => format!("has gone through the wall `{wall}`, and is"),
-            None => "has left the box around everything, and is".into(),
+        match &escape.behind {
+            Behind::Wall(wall) => format!("has gone through the wall `{wall}`, and is"),
+            Behind::Box => "has left the box around everything, and is".into(),
+            Behind::Surface => "has gone through the surface that it touches, and is".into(),
+            Behind::Neighbors => {
+                "is twice as far from a neighbour of the start as it was, or turned inside out with them, and is"
+                    .into()
+            }
         },
         escape.position,
         escape.speed,
@@ -70,7 +75,7 @@ pub enum Failure {
         index: usize,
         /// The particle.
         particle: Particle,
-        /// Where it is, how fast, and through which wall.
+        /// Where it is, how fast, and what it has left behind.
         escape: Box<Escape>,
         /// Steps taken.
         step: u64,

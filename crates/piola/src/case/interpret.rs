@@ -14,7 +14,6 @@ use super::model::{
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
 use super::suggest::suggestion;
-use crate::schemes::SchemeDescription;
 use crate::time::IntegratorKind;
 
 mod bodies;
@@ -65,7 +64,8 @@ pub(super) fn case(
     // Without a scheme nothing is known of what the rest of the case may say.
     let described = record.record("scheme")?;
     let scheme = reader.scheme(described);
-    reader.names.current = systems::Known::of("", described.kind, scheme.as_ref());
+    let is_solid = reader.names.current.is_solid;
+    reader.names.current = systems::Known::of("", described.kind, is_solid, scheme.as_ref());
     let systems = reader.systems(record);
     let domain = reader.domain(record.record("domain"));
     let bodies = record.records("body").enumerate().map(|(number, body)| {
@@ -213,15 +213,12 @@ struct Names {
     systems: Vec<systems::Known>,
     system_of: Vec<Option<usize>>,
     is_static: bool,
-    /// Whether a body of the main system is of a hypoelastic solid.
-    is_solid: bool,
 }
 
 impl Names {
     /// The formulation that is being read, with its matter.
     fn described(&self) -> catalogue::Described {
-        let matter = if self.is_solid { "solids" } else { "fluids" };
-        SchemeDescription::of(self.current.scheme, matter)
+        self.current.described()
     }
 }
 
@@ -241,7 +238,8 @@ impl Reader<'_, '_> {
         self.systems_of_bodies(record);
         let bodies = record.records("body").filter(|body| !body.has("system"));
         let materials = bodies.filter_map(|body| body.record("material"));
-        self.names.is_solid = materials.into_iter().any(|material| material.kind == "hypoelastic");
+        self.names.current.is_solid =
+            materials.into_iter().any(|material| material.kind == "hypoelastic");
         self.names.variants = self.unique_names(record, "variant", &["base"]);
         self.unique_names(record, "sweep", &[]);
         self.unique_names(record, "probe", &["energy", "momentum", "step", "run"]);

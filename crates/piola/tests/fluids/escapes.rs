@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use piola::case::{self, Case, Finished, LoadOptions, Session};
 use piola::observe::Series;
+use piola::schemes::Behind;
 use piola::time::{Failure, Outcome};
 
 use super::device::device;
@@ -81,7 +82,7 @@ fn what_goes_through_a_wall_is_named_at_once() {
     let Failure::Escaped { escape, time, .. } = failure(&finished) else {
         panic!("{:?}", finished.summary.outcome)
     };
-    assert_eq!(escape.wall.as_deref(), Some("floor"));
+    assert_eq!(escape.behind, Behind::Wall("floor".into()));
     // The first layer stands 0.025 m below the face; in a step the block moves by 0.25 * 0.05 m at
     // most, and no faster than it started by much.
     assert!((-0.05..-0.025).contains(&escape.position[1]), "{escape:?}");
@@ -197,7 +198,7 @@ fn what_leaves_the_box_is_named() {
         panic!("{:?}", finished.summary.outcome)
     };
     // The walls end half a spacing below 0 and everything is 2.35 m wide.
-    assert_eq!(escape.wall, None);
+    assert_eq!(escape.behind, Behind::Box);
     assert!((2.3..2.6).contains(&escape.position[1]), "{escape:?}");
     assert!(failure(&finished).to_string().contains("left the box"));
 }

@@ -120,6 +120,16 @@ fn implicit_steps_resume_to_the_bit() {
     }
 }
 
+/// Systems in a fluid that the base cases do not have: what each keeps must survive that another one has changed its
+/// velocities.
+#[test]
+fn solids_of_each_kind_in_a_fluid_resume_to_the_bit() {
+    let all = cases();
+    let slab = all.iter().find(|path| path.ends_with("slab/case.toml")).unwrap();
+    let variants = ["upwind", "upwind-damped", "upwind-implicit", "hypoelastic-fine"];
+    variants.par_iter().for_each(|variant| resumes_to_the_bit(slab, Some(variant)));
+}
+
 fn resumes_to_the_bit(path: &Path, variant: Option<&str>) {
     // What is drawn and packed only takes time here; one picture and five files have it all.
     let mut case = load(path, variant, &["output.compression='none'"]);

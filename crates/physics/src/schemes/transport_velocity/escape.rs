@@ -3,9 +3,9 @@
 use super::Common;
 use crate::Vector;
 use crate::parallel;
-use crate::schemes::Escape;
 use crate::schemes::ledger::Total;
 use crate::schemes::momentum::add_moments;
+use crate::schemes::{Behind, Escape};
 
 /// What a run does about particles that escape.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,7 +90,8 @@ impl<const D: usize> Common<D> {
         Some(Escape {
             position: at.position[number].iter().copied().collect(),
             speed: at.velocity[number].norm(),
-            wall: wall.map(|wall| name(wall).cloned().unwrap_or_default()),
+            behind: wall
+                .map_or(Behind::Box, |wall| Behind::Wall(name(wall).cloned().unwrap_or_default())),
             advice: ADVICE,
         })
     }

@@ -147,6 +147,10 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         false
     }
 
+    fn keeps_neighbors(&self) -> bool {
+        false
+    }
+
     fn on_device(&self, device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         M::to_device(self, device)
     }

@@ -14,7 +14,7 @@ use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme, StepLimit};
 impl<const D: usize> Solid<D> {
     /// Place and velocity of the wall particle in `row` of the interface.
     fn wall(&self, own: &[f64], row: usize) -> [Vector<D>; 2] {
-        let place = self.interface.place(row, |b| self.displacement(own, b));
+        let place = self.interface.place(row, self.displacements(own, row));
         [place, self.interface.carried(row, |b| self.velocity(own, b))]
     }
 }
@@ -48,7 +48,7 @@ impl<const D: usize> World<D> {
         for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
             let own = &state[part.state.clone()];
             for (row, &number) in solid.interface.walls().iter().enumerate() {
-                let displacement = |b: usize| solid.displacement(own, b);
+                let displacement = solid.displacements(own, row);
                 self.fluid.guide(&Guide {
                     number,
                     velocity: velocity(count, solid.wall(own, row)),
@@ -85,9 +85,9 @@ impl<const D: usize> World<D> {
             Origin::Solid { solid, row, .. } => {
                 let own = &state[parts[solid + 1].state.clone()];
                 let (solid, interface) = (&solids[solid], &solids[solid].interface);
-                let place = interface.place_at(row, offset, |b| solid.displacement(own, b));
+                let place = interface.place_at(row, offset, solid.displacements(own, row));
                 let velocity = interface.carried_at(row, offset, |b| solid.velocity(own, b));
-                let gradient = interface.deformation(row, |b| solid.displacement(own, b));
+                let gradient = interface.deformation(row, solid.displacements(own, row));
                 let normal = turned_normal(&gradient, normal);
                 Point { place, normal, velocity }
             }
@@ -154,8 +154,12 @@ impl<const D: usize> CoupledScheme for World<D> {
                 for ((velocity, force), mass) in column.iter_mut().zip(forces).zip(&solid.mass) {
                     *velocity += force * (duration / mass);
                 }
-                // What moves as prescribed takes nothing from outside: its support does.
+                // What moves as prescribed takes nothing from outside: its support does, and some solids book that.
+                let ledger = solid.scheme.ledger_start();
+                self.booked.clear();
+                self.booked.extend_from_slice(&own[ledger..]);
                 solid.scheme.constrain(time, own);
+                own[ledger..].copy_from_slice(&self.booked);
                 let mut impulse = [0.0; MOST_COMPONENTS];
                 for (a, (mass, before)) in solid.mass.iter().zip(&self.before).enumerate() {
                     let (after, place) = (solid.velocity(own, a), solid.place(own, a));

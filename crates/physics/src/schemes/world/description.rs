@@ -30,8 +30,9 @@ impl SchemeDescription {
     /// What a fluid shows with the solids in it, each by the name of its system. Names of energies, mechanisms
     /// and figures of solids have that of their system in front; fields of the same name are one.
     pub fn with_solids(&'static self, solids: &[(String, &'static Self)]) -> &'static Self {
-        let mut key = self.name.to_owned();
-        solids.iter().for_each(|(name, solid)| key += &format!(" {name}:{}", solid.name));
+        let of = |scheme: &Self| format!("{}/{}", scheme.name, scheme.matter.unwrap_or_default());
+        let mut key = of(self);
+        solids.iter().for_each(|(name, solid)| key += &format!(" {name}:{}", of(solid)));
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         known.entry(key).or_insert_with(|| Box::leak(Box::new(joined(self, solids))))
     }

@@ -15,6 +15,7 @@
 //! This is theory (81).
 
 use nalgebra::{DMatrix, DVector};
+use piola_formulas::tensor;
 use thiserror::Error;
 
 use crate::neighbors::{Domain, NeighborError, search};
@@ -29,6 +30,10 @@ const REACH: [f64; 2] = [1.8, 1.2];
 
 /// The least singular value of scaled moments that is no round-off.
 const LEAST: f64 = 1e-8;
+
+/// What the distance of two particles that carry a wall particle is multiplied by where the solid has come apart, or has
+/// flowed so far that who was around whom at the start says nothing: another wall particle would find room between.
+const TORN: f64 = 2.0;
 
 /// Largest ratio of the spacings of fluid and solid, either way.
 pub const MOST_RATIO: f64 = 3.0;
@@ -200,6 +205,26 @@ impl<const D: usize> Interface<D> {
         Tensor::identity() + gradient
     }
 
+    /// Whether those that carry wall particle `row` are not around each other as they were: one of them is twice as far
+    /// from the one that carries most, or they are turned inside out. Positions are those at the start.
+    pub fn is_torn(
+        &self,
+        row: usize,
+        (domain, reference): (&Domain<D>, &[Vector<D>]),
+        displacement: impl Fn(usize) -> Vector<D>,
+    ) -> bool {
+        let lead = self.carrier(row) as usize;
+        let moved = displacement(lead);
+        let own = &self.carriers[self.starts[row]..self.starts[row + 1]];
+        let is_far = |carrier: &Carrier<D>| {
+            let other = carrier.particle as usize;
+            let began = domain.separation(&reference[lead], &reference[other]);
+            let now = began + displacement(other) - moved;
+            now.norm_squared() > TORN * TORN * began.norm_squared()
+        };
+        own.iter().any(is_far) || tensor::determinant(&self.deformation(row, &displacement)) <= 0.0
+    }
+
     /// Adds what acts on wall particle `row` to the particles of the solid that carry it.
     pub fn bear(&self, row: usize, force: &Vector<D>, forces: &mut [Vector<D>]) {
         self.bear_at(row, &Vector::zeros(), force, forces);
@@ -325,6 +350,30 @@ mod tests {
         }
         let (same, ..) = interface(0.1);
         assert!(same.carriers.iter().all(|it| it.weight == 0.0 || it.weight == 1.0));
+    }
+
+    /// A uniform motion takes all around a wall particle apart by its stretches: twice the distance is too far, half of it
+    /// is not, and what is turned round but keeps its distances is found by the determinant.
+    #[test]
+    fn what_has_come_apart_or_is_inside_out_is_found() {
+        let domain = Domain::<2>::new([None; 2]).expect("open");
+        let motions = [
+            ([[1.99, 0.0], [0.0, 0.5]], false),
+            ([[2.01, 0.0], [0.0, 0.5]], true),
+            ([[0.0, -1.0], [1.0, 0.0]], false),
+            ([[-1.0, 0.0], [0.0, 1.0]], true),
+        ];
+        for dx in [0.05, 0.1, 0.2] {
+            let (interface, solid, walls) = interface(dx);
+            for (rows, expected) in motions {
+                let gradient = Tensor::<2>::from_fn(|i, j| rows[i][j]);
+                let displacement = |b: usize| gradient * solid[b] - solid[b];
+                for row in 0..walls.len() {
+                    let found = interface.is_torn(row, (&domain, &solid), displacement);
+                    assert_eq!(found, expected, "{dx} {rows:?}");
+                }
+            }
+        }
     }
 
     #[test]

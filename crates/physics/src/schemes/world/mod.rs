@@ -1,8 +1,10 @@
 //! Several systems in one run: a fluid, and solids that it flows around.
 //!
-//! The fluid is [`TransportVelocity`]; a solid is any formulation whose particles keep their neighbours. To the
+//! The fluid is [`TransportVelocity`]; a solid is any formulation with velocities and places in its state. To the
 //! fluid a solid is a wall that moves: particles of its own, at its own spacing, fill the solid and are
-//! carried by it, theory (81). Their ghost values are those of all walls, theory (31), (32), with the
+//! carried by it, theory (81): by the particles around them in the reference configuration. Those of a hypoelastic solid change
+//! their neighbours; they carry the same walls all the same, and the run ends where they have come apart or flowed so far
+//! that the reference says nothing any more ([`Scheme::keeps_neighbors`]). Their ghost values are those of all walls, theory (31), (32), with the
 //! velocity of the solid and with normals that follow its deformation, `n = F^-T N / |F^-T N|`. What the fluid
 //! does to them, from the same pairs turned round, is what the solid gets.
 //!
@@ -107,8 +109,9 @@ struct Solid<const D: usize> {
     spacing: f64,
     mass: Vec<f64>,
     reference: Vec<Vector<D>>,
-    /// Whether its state has displacements, and not positions.
+    /// Whether its state has displacements, and not positions, which may be wrapped into the box.
     is_displaced: bool,
+    domain: Domain<D>,
     /// Where displacements or positions, and velocities, stand in its part of a state.
     places: Range<usize>,
     velocities: Range<usize>,
@@ -142,6 +145,8 @@ pub struct World<const D: usize> {
     // Scratch: forces on the particles of a solid, their velocities before, and places of walls.
     forces: Vec<Vector<D>>,
     before: Vec<Vector<D>>,
+    /// The ledger of a solid.
+    booked: Vec<f64>,
     /// By solid, what others do to its particles where they touch.
     touches: Vec<Vec<Vector<D>>>,
     places: Vec<Vector<D>>,
@@ -180,6 +185,7 @@ impl<const D: usize> World<D> {
             start: Vec::new(),
             forces: Vec::new(),
             before: Vec::new(),
+            booked: Vec::new(),
             touches: vec![Vec::new(); bound.len()],
             contact: Contact::new(&fluid, &bound),
             places: Vec::new(),
@@ -301,6 +307,7 @@ impl<const D: usize> Solid<D> {
             mass: (0..count).map(|a| scheme.mass(a)).collect(),
             reference,
             is_displaced,
+            domain: *domain,
             interface,
             cfl,
             law,
@@ -320,15 +327,42 @@ impl<const D: usize> Solid<D> {
         mass.max(least) / self.spacing.powi(D as i32)
     }
 
-    /// The displacement of its particle `a` in its part of a state, in m.
-    fn displacement(&self, own: &[f64], a: usize) -> Vector<D> {
+    /// The displacements of its particles around wall particle `row` of the interface in its part of a state, in m, up
+    /// to periods of the box that are the same for all of them: positions may have been wrapped, ways between neighbours
+    /// tell what has not.
+    fn displacements<'a>(
+        &'a self,
+        own: &'a [f64],
+        row: usize,
+    ) -> impl Fn(usize) -> Vector<D> + Copy + 'a {
         let column: &[Vector<D>] = bytemuck::cast_slice(&own[self.places.clone()]);
-        if self.is_displaced { column[a] } else { column[a] - self.reference[a] }
+        let lead = if self.is_displaced { 0 } else { self.interface.carrier(row) as usize };
+        let way = |from: &Vector<D>, to: &Vector<D>| self.domain.separation(from, to);
+        let moved = way(&self.reference[lead], &column[lead]);
+        move |b| match self.is_displaced {
+            true => column[b],
+            false => {
+                let apart = way(&self.reference[lead], &self.reference[b]);
+                moved + way(&column[lead], &column[b]) - apart
+            }
+        }
     }
 
     /// Where its particle `a` is in its part of a state, in m.
     fn place(&self, own: &[f64], a: usize) -> Vector<D> {
-        self.reference[a] + self.displacement(own, a)
+        let column: &[Vector<D>] = bytemuck::cast_slice(&own[self.places.clone()]);
+        if self.is_displaced { self.reference[a] + column[a] } else { column[a] }
+    }
+
+    /// The first of its particles around which those are not any more that were there at the start, if it is of a
+    /// kind whose particles change their neighbours.
+    fn torn(&self, own: &[f64]) -> Option<usize> {
+        let rows = (!self.scheme.keeps_neighbors()).then(|| 0..self.interface.walls().len());
+        let start = (&self.domain, self.reference.as_slice());
+        let is_torn =
+            |row: &usize| self.interface.is_torn(*row, start, self.displacements(own, *row));
+        let row = rows?.find(is_torn)?;
+        Some(self.interface.carrier(row) as usize)
     }
 
     /// How fast its particle `a` is in its part of a state, in m/s.

@@ -6,11 +6,21 @@ use crate::Vector;
 use crate::fields::{ABSENT, FieldDescription};
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::{
-    CoupledScheme, Escape, Health, Particle, Phase, Scheme, SchemeDescription, StepLimit,
+    Behind, CoupledScheme, Escape, Health, Particle, Phase, Scheme, SchemeDescription, StepLimit,
 };
 
 /// The fields of walls of the fluid that solids have in it too: what the fluid does to them.
 const BORNE: [&str; 4] = ["force", "pressure_force", "viscous_force", "barrier_force"];
+
+/// What to change where a solid goes through what it touches.
+const THROUGH_ADVICE: &str = "raise the wave speed of the fluid to ten times the speeds that occur, or \
+    `contact_stiffness` of the system with a smaller `time.cfl`";
+
+/// What to change where a solid comes apart.
+const TORN_ADVICE: &str = "the fluid follows a hypoelastic solid by what was around a particle at the start, as long \
+    as the solid stays whole: make it stiffer or stronger or its loads smaller, set `shifting = \"none\"` of its \
+    scheme if it is shifting that moves its particles past each other, or end the run before; solids of \
+    `total_lagrangian` keep their neighbours";
 
 impl<const D: usize> World<D> {
     /// Forces that the fluid exerts on the particles of a solid, by a field of its walls.
@@ -104,6 +114,10 @@ impl<const D: usize> Scheme for World<D> {
             let carrier = self.solids[solid].interface.carrier(row) as usize;
             all.first_escaped = all.first_escaped.or(Some(named(solid + 1, carrier)));
         }
+        for (k, solid) in (1..).zip(&self.solids) {
+            let torn = solid.torn(&state[self.parts[k].state.clone()]);
+            all.first_escaped = all.first_escaped.or(torn.map(|particle| named(k, particle)));
+        }
         all
     }
 
@@ -117,12 +131,12 @@ impl<const D: usize> Scheme for World<D> {
         let Some(solid) = k.checked_sub(1).map(|solid| &self.solids[solid]) else {
             return self.fluid.escape(own, part);
         };
+        let is_torn = solid.torn(part) == Some(own);
         Some(Escape {
             position: solid.place(part, own).iter().copied().collect(),
             speed: solid.velocity(part, own).norm(),
-            wall: None,
-            advice: "the solid goes through what it touches: raise the wave speed of the fluid to ten times the \
-                     speeds that occur, or `contact_stiffness` of the system with a smaller `time.cfl`",
+            behind: if is_torn { Behind::Neighbors } else { Behind::Surface },
+            advice: if is_torn { TORN_ADVICE } else { THROUGH_ADVICE },
         })
     }
 
@@ -175,12 +189,12 @@ impl<const D: usize> Scheme for World<D> {
             let (k, local) = self.local(particle as usize);
             let (system, part) = (self.system(k), &state[self.parts[k].state.clone()]);
             match &own[k] {
-                None if k > 0 && field.name == CONTACT.name => {
-                    values.extend_from_slice(self.touches[k - 1][local].as_slice());
-                }
-                None if k > 0 && BORNE.contains(&field.name) => {
+                _ if k > 0 && BORNE.contains(&field.name) => {
                     let all = borne[k].get_or_insert_with(|| self.borne(k - 1, field, state));
                     values.extend_from_slice(all[local].as_slice());
+                }
+                None if k > 0 && field.name == CONTACT.name => {
+                    values.extend_from_slice(self.touches[k - 1][local].as_slice());
                 }
                 None => {
                     let components = field.kind.components(D);

@@ -19,7 +19,7 @@ const OF_SOLIDS: [&str; 4] =
 impl Reader<'_, '_> {
     /// Settings of the scheme `transport_velocity`.
     pub(super) fn transport_velocity(&mut self, record: &Record) -> Option<TransportVelocity> {
-        let is_solid = self.names.is_solid;
+        let is_solid = self.names.current.is_solid;
         for key in OF_SOLIDS.iter().filter(|_| !is_solid) {
             self.meaningless(record, key, "for fluids");
         }
@@ -120,6 +120,9 @@ impl Reader<'_, '_> {
                 )
                 | (interpolation::NAME, _)
                 | ("upwind", Material::Linear { .. } | Material::GammaLaw { .. }) => None,
+                ("transport_velocity", _) if system.is_some() => {
+                    Some("use `hypoelastic`".to_owned())
+                }
                 ("transport_velocity", _) => {
                     Some("use `weakly_compressible` or `hypoelastic`, for walls too".to_owned())
                 }
@@ -134,10 +137,28 @@ impl Reader<'_, '_> {
                 self.report(problem.help(help));
             }
             let is_solid = matches!(body.material.value, Material::Hypoelastic(_));
-            if is_fluid && is_solid != self.names.is_solid {
-                let message = "fluids and solids cannot be in one case";
-                let problem = Problem::new(body.material.place, message, "a fluid beside solids");
-                self.report(problem.help("give all bodies, walls too, one kind of material"));
+            if is_fluid && is_solid != self.names.current.is_solid {
+                let place = body.material.place;
+                self.report(match system {
+                    None => Problem::new(
+                        place,
+                        "fluids and solids cannot be in one system",
+                        "a fluid beside solids",
+                    )
+                    .help(
+                        "give all bodies, walls too, one kind of material; a solid in the fluid is a \
+                         `[[system]]` of its own, which its bodies name with `system`",
+                    ),
+                    Some(_) => Problem::new(
+                        place,
+                        format!("the body `{}` belongs to a solid in the fluid", *body.name),
+                        "a fluid",
+                    )
+                    .help(
+                        "use `hypoelastic`, or leave `system` out, so that it belongs to the fluid \
+                         of `[scheme]`",
+                    ),
+                });
             }
             if (is_elastic || is_solid) && body.initial.pressure.as_constant() != Some(0.0) {
                 let message =
@@ -164,7 +185,7 @@ impl Reader<'_, '_> {
             let of_wall = |body: &Located<usize>| {
                 bodies.get(body.value).is_some_and(|body| body.wall.is_some())
             };
-            if !self.names.is_solid && !boundary.body.as_ref().is_some_and(of_wall) {
+            if !self.names.current.is_solid && !boundary.body.as_ref().is_some_and(of_wall) {
                 let message = "only walls move as prescribed: the key `body` must name one";
                 let place = boundary.body.as_ref().map_or(boundary.name.place, |body| body.place);
                 self.report(Problem::new(place, message, "no wall"));

@@ -6,9 +6,9 @@ use crate::case::model::{Body, Preset, System};
 use crate::case::suggest::one_of;
 use crate::fields::FieldDescription;
 use crate::schemes::total_lagrangian::Form;
-use crate::schemes::transport_velocity::Slip;
+use crate::schemes::transport_velocity::{self, Slip};
 use crate::schemes::world::ContactLaw;
-use crate::schemes::{Capability, SchemeDescription};
+use crate::schemes::{Capability, SchemeDescription, upwind};
 use crate::time::IntegratorKind;
 
 /// What is known of a system before the rest of the case is read.
@@ -16,6 +16,8 @@ use crate::time::IntegratorKind;
 pub(super) struct Known {
     pub name: String,
     pub scheme: &'static str,
+    /// Whether its bodies are hypoelastic solids, where the scheme has them and fluids.
+    pub is_solid: bool,
     /// What the scheme does not offer with its settings.
     pub without: Option<Without>,
     /// Whether fields are those of all systems.
@@ -38,8 +40,18 @@ impl Known {
         Preset::from_name(self.scheme)
     }
 
+    /// The formulation, with its matter.
+    pub fn described(&self) -> Option<&'static SchemeDescription> {
+        SchemeDescription::of(self.scheme, if self.is_solid { "solids" } else { "fluids" })
+    }
+
     /// That of a scheme.
-    pub fn of(name: &str, scheme: &'static str, settings: Option<&Located<Scheme>>) -> Self {
+    pub fn of(
+        name: &str,
+        scheme: &'static str,
+        is_solid: bool,
+        settings: Option<&Located<Scheme>>,
+    ) -> Self {
         let without = match settings.map(|settings| &settings.value) {
             Some(Scheme::Upwind(upwind))
                 if upwind.tau_velocity > 0.0 || upwind.tau_pressure > 0.0 =>
@@ -57,7 +69,7 @@ impl Known {
             }),
             _ => None,
         };
-        Self { name: name.to_owned(), scheme, without, is_of_all: false }
+        Self { name: name.to_owned(), scheme, is_solid, without, is_of_all: false }
     }
 }
 
@@ -88,7 +100,7 @@ impl Reader<'_, '_> {
         let main = self.names.current.clone();
         let mut systems = Vec::new();
         for (number, system) in record.records("system").enumerate() {
-            if main.scheme != "transport_velocity" || self.names.is_solid {
+            if main.scheme != transport_velocity::NAME || main.is_solid {
                 let message = "systems are solids in a fluid, and the main one is no fluid";
                 let problem = Problem::new(system.place, message, "needs a fluid around it");
                 let help = "give the fluid in `[scheme]`, with `kind = \"transport_velocity\"` and bodies \
@@ -103,22 +115,31 @@ impl Reader<'_, '_> {
             let described = system.record("scheme");
             let kind = described.map_or("", |scheme| scheme.kind);
             if let Some(place) = described.map(|scheme| scheme.place)
-                && Preset::from_name(kind).is_none()
+                && kind == interpolation::NAME
             {
-                // `upwind` has no shear stress.
                 let message =
                     format!("the scheme `{kind}` has no surface that a fluid could follow");
-                let problem = Problem::new(place, message, "no solid that keeps its neighbours");
-                self.report(problem.help(format!(
-                    "expected {}",
-                    one_of(Preset::ALL.map(|preset| preset.description().name))
-                )));
+                let problem = Problem::new(place, message, "nothing moves in it");
+                let presets = Preset::ALL.map(|preset| preset.description().name);
+                let others = [upwind::DESCRIPTION.name, transport_velocity::NAME];
+                let able = one_of(presets.into_iter().chain(others));
+                self.report(problem.help(format!("expected {able}")));
             }
+            self.names.current.is_solid = kind == transport_velocity::NAME;
             let scheme = described.and_then(|scheme| self.scheme(scheme));
+            if let Some(described) = described.filter(|_| self.names.current.is_solid) {
+                self.meaningless(
+                    described,
+                    "escaped",
+                    "for a solid in a fluid, which has no walls",
+                );
+            }
             let name = system.text("name").map(|name| name.value).unwrap_or_default();
-            self.names.systems.push(Known::of(&name, kind, scheme.as_ref()));
+            let is_solid = self.names.current.is_solid;
+            self.names.systems.push(Known::of(&name, kind, is_solid, scheme.as_ref()));
             systems.push((system, scheme));
         }
+        self.names.current = main.clone();
         self.names.main = main;
         systems
     }
@@ -246,10 +267,8 @@ impl Reader<'_, '_> {
         if self.names.systems.is_empty() {
             return self.names.described();
         }
-        let main = SchemeDescription::of(self.names.main.scheme, "fluids")?;
-        let described = |known: &Known| {
-            Some((known.name.clone(), SchemeDescription::of(known.scheme, "solids")?))
-        };
+        let main = self.names.main.described()?;
+        let described = |known: &Known| Some((known.name.clone(), known.described()?));
         let solids: Vec<_> = self.names.systems.iter().filter_map(described).collect();
         Some(main.with_solids(&solids))
     }

@@ -70,10 +70,12 @@ impl Case {
         bodies.filter(|(_, body)| is_in(body)).map(|(number, _)| number).collect()
     }
 
-    /// A body as a system sees it.
+    /// A body as a system sees it: its own are those of the main one then.
     fn body_in(&self, number: usize, system: Option<usize>) -> Body {
         let body = &self.bodies[number];
-        let (None, Some(other)) = (system, body.system) else { return body.clone() };
+        let (None, Some(other)) = (system, body.system) else {
+            return Body { system: None, ..body.clone() };
+        };
         let is_fluid = |body: &&Body| {
             body.system.is_none() && matches!(*body.material, Material::WeaklyCompressible { .. })
         };

@@ -138,7 +138,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Name(ESCAPES),
             "",
             Default("\"stop\""),
-            "what is done about a particle that goes through a wall or leaves the box around everything",
+            "what is done about a particle that goes through a wall or leaves the box around everything; no meaning for solids in a fluid",
         ),
     ],
 };

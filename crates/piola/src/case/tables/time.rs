@@ -157,7 +157,7 @@ static METHOD: TableSpec = TableSpec {
 
 pub(super) static SYSTEM: TableSpec = TableSpec {
     title: "[[system]]",
-    meaning: "A solid in a fluid: a formulation of its own for the bodies that name it with `system`. The bodies \
+    meaning: "A solid in a fluid: a formulation of its own, any but `interpolation`, for the bodies that name it with `system`. The bodies \
               without that key are those of `[scheme]`, the fluid, for which these are walls that bend.",
     keys: &[
         key("name", Kind::Text, "", Required, "unique name, which bodies refer to"),
@@ -175,7 +175,7 @@ pub(super) static SYSTEM: TableSpec = TableSpec {
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Default("0.0"),
-            "Coulomb's coefficient where it slides along walls; between two systems their mean. Bodies of one system do not touch each other",
+            "Coulomb's coefficient where it slides along walls; between two systems their mean. Bodies of one system do not touch each other, but of `transport_velocity` as its `contact` says",
         ),
         key(
             "contact_stiffness",

@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::case::Session;
+use crate::case::model::Scheme;
+use crate::schemes::transport_velocity::PressureRule;
 
 const GOOD: &str = "\
 version = 1
@@ -95,6 +97,68 @@ fn each_system_has_its_own_fields_bodies_and_steps() {
     assert_eq!(session.scheme().bodies()[50..], [1; 30]);
 }
 
+/// Scheme, material and fields of a block of each formulation that is no preset of the total Lagrangian solid.
+const OTHERS: [[&str; 3]; 2] = [
+    [
+        "{ kind = \"upwind\", smoothing_length = 0.7 }",
+        "{ kind = \"gamma_law\", density = 1000.0, bulk_modulus = 1e6, gamma = 2.0 }",
+        "\"displacement\", \"volume_ratio\"",
+    ],
+    [
+        "{ kind = \"transport_velocity\", contact = \"full\" }",
+        "{ kind = \"hypoelastic\", density = 1000.0, young_modulus = 1e6, poisson_ratio = 0.3 }",
+        "\"displacement\", \"von_mises\"",
+    ],
+];
+
+/// The good case with a block of another formulation.
+fn with_block([scheme, material, fields]: [&str; 3]) -> String {
+    let old = [
+        "{ kind = \"elastodynamics\" }",
+        "{ kind = \"linear_elastic\", density = 1000.0, young_modulus = 1e6, poisson_ratio = 0.3 }",
+        "\"displacement\", \"von_mises\"",
+    ];
+    let new = [scheme, material, fields];
+    let text = GOOD.replace(", \"determinant\"]", "]");
+    old.iter().zip(new).fold(text, |text, (old, new)| {
+        assert!(text.contains(old), "{old}");
+        text.replacen(old, new, 1)
+    })
+}
+
+#[test]
+fn solids_of_other_formulations_are_systems_with_settings_and_fields_of_their_own() {
+    for block in OTHERS {
+        let case =
+            read_with(&with_block(block), &[]).unwrap_or_else(|problems| panic!("{problems}"));
+        let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+        session.step().expect("it starts");
+        // Both have a velocity; what the water does to the block is there whatever forces it knows itself.
+        for name in ["velocity", "displacement", "force"] {
+            let values = session.column(name).expect(name).values;
+            let of_block = &values[2 * 50..];
+            assert_eq!(of_block.len(), 2 * 30, "{name}");
+            assert!(of_block.iter().all(|value| value.is_finite()), "{name} {block:?}");
+        }
+        assert_eq!(session.scheme().bodies()[50..], [1; 30]);
+    }
+    let case = read_with(&with_block(OTHERS[1]), &[]).expect("it is read");
+    let settings = |scheme: &Scheme| match scheme {
+        Scheme::TransportVelocity(own) => own.settings,
+        other => panic!("{other:?}"),
+    };
+    let [water, block] = [settings(&case.scheme), settings(&case.systems[0].scheme)];
+    assert!(matches!(water.pressure, PressureRule::Edac { .. }) && !water.free_surface);
+    assert!(block.pressure == PressureRule::StateEquation && block.free_surface);
+    let text = with_block(OTHERS[1]).replace(
+        OTHERS[1][1],
+        "{ kind = \"weakly_compressible\", density = 1000.0, wave_speed = 10.0 }",
+    );
+    let problems = read_with(&text, &[]).expect_err("two fluids").to_string();
+    assert!(problems.contains("the body `block` belongs to a solid in the fluid"), "{problems}");
+    assert!(problems.contains("use `hypoelastic`, or leave `system` out"), "{problems}");
+}
+
 #[test]
 fn what_does_not_fit_together_is_named_in_its_place() {
     let faults = [
@@ -104,6 +168,42 @@ fn what_does_not_fit_together_is_named_in_its_place() {
             "kind = \"elastodynamics\"",
             "kind = \"interpolation\"",
             "the scheme `interpolation` has no surface that a fluid could follow",
+        ),
+        (
+            "kind = \"elastodynamics\"",
+            "kind = \"upwind\", smoothing_length = 0.7",
+            "the scheme `upwind` does not know this material",
+        ),
+        (
+            "scheme = { kind = \"elastodynamics\" }",
+            "scheme = { kind = \"upwind\", smoothing_length = 0.7, tau_velocity = 0.5 }\ntime = { integrator = \"kick_drift_kick\" }",
+            "cannot move the scheme `upwind` where it dissipates",
+        ),
+        (
+            "scheme = { kind = \"elastodynamics\" }",
+            "scheme = { kind = \"upwind\", smoothing_length = 0.7 }\ntime = { integrator = \"newmark\" }",
+            "the integrator `newmark` cannot move the scheme `upwind`",
+        ),
+        ("kind = \"elastodynamics\"", "kind = \"transport_velocity\"", "use `hypoelastic`"),
+        (
+            "kind = \"elastodynamics\"",
+            "kind = \"transport_velocity\", density = \"summation\"",
+            "the density of solids is found by the continuity equation",
+        ),
+        (
+            "kind = \"elastodynamics\"",
+            "kind = \"transport_velocity\", escaped = \"remove\"",
+            "`escaped` has no meaning for a solid in a fluid",
+        ),
+        (
+            "scheme = { kind = \"elastodynamics\" }",
+            "scheme = { kind = \"transport_velocity\" }\ntime = { integrator = \"tvd_rk2\" }",
+            "the integrator `tvd_rk2` cannot move the scheme `transport_velocity`",
+        ),
+        (
+            "[scheme]\nkind = \"transport_velocity\"",
+            "[scheme]\nkind = \"transport_velocity\"\ncontact = \"full\"",
+            "`contact` has no meaning for fluids",
         ),
         (
             "scheme = { kind = \"elastodynamics\" }",

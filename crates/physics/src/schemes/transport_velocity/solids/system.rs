@@ -28,6 +28,7 @@ use crate::{Tensor, Vector};
 
 columns! {
     pub(super) struct Stored, StoredMut, enum Own;
+    derived(0) displacement: Vector, "m", "x - X; in a periodic box the shorter way";
     kept deviatoric_stress: Symmetric, "Pa", "deviatoric stress";
     derived(0) cauchy_stress: Tensor, "Pa", "Cauchy stress, positive in tension";
     derived(0) von_mises: Scalar, "Pa",
@@ -283,6 +284,11 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
     ) {
         let (pressure, matter) = (at.pressure[number], matter_of(common, number, state));
         match Own::of(field) {
+            Some(Own::displacement) => {
+                let (start, end) = (&common.particles.position[number], &at.position[number]);
+                let way = common.support.list().domain().separation(start, end);
+                values.extend_from_slice(way.as_slice());
+            }
             Some(Own::cauchy_stress) => values.extend((0..D * D).map(|k| {
                 let (i, j) = (k / D, k % D);
                 matter[entry(i, j)] - if i == j { pressure } else { 0.0 }
