@@ -91,6 +91,11 @@ impl<const D: usize> TransportVelocity<D> {
         self.matter.fluid().wave_speed
     }
 
+    /// Density of the fluid where nothing presses, in kg/m^3.
+    pub(crate) fn density(&self) -> f64 {
+        self.matter.fluid().density
+    }
+
     /// Particle spacing in m.
     pub(crate) fn spacing(&self) -> f64 {
         self.common.particles.spacing[0]
