@@ -160,6 +160,11 @@ impl<const D: usize> TransportVelocity<D> {
         self.common.columns(state).kick[number as usize] * self.common.mass[number as usize]
     }
 
+    /// Its power in W on a wall particle (number) with the velocity in a state.
+    pub(crate) fn power_on(&self, state: &[f64], number: u32) -> f64 {
+        self.force_on(state, number).dot(&self.common.columns(state).velocity[number as usize])
+    }
+
     /// Finds the accelerations of the start anew, with walls as they have been placed and guided since.
     pub(crate) fn restart(&mut self, state: &mut [f64]) {
         self.common.parts(state).0.deviation.fill(Vector::zeros());

@@ -181,14 +181,9 @@ impl<const D: usize> CoupledScheme for World<D> {
 
     fn repay(&mut self, [time, duration]: [f64; 2], count: u64, state: &mut [f64]) {
         self.push_on(time, duration, state);
-        let mut power = 0.0;
-        for (solid, part) in self.with_parts() {
-            for (row, &wall) in solid.interface.walls().iter().enumerate() {
-                let [_, velocity] = solid.wall(&state[part.state.clone()], row);
-                power +=
-                    self.fluid.force_on(&state[self.parts[0].state.clone()], wall).dot(&velocity);
-            }
-        }
+        self.carry_walls(state);
+        let fluid = &state[self.parts[0].state.clone()];
+        let power = self.ways.iter().map(|way| self.fluid.power_on(fluid, way.number)).sum::<f64>();
         let entry = self.interface_at();
         state[entry] -= duration / count as f64 * power;
     }
@@ -208,7 +203,6 @@ impl<const D: usize> CoupledScheme for World<D> {
     }
 
     fn add_up(&mut self, counts: &[u64], state: &mut [f64]) {
-        self.carry_walls(state);
         let behind = self.counts_at();
         for (kept, &count) in state[behind..].chunks_exact_mut(2).zip(counts) {
             kept[0] = count as f64;

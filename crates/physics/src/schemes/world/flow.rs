@@ -16,7 +16,7 @@ const ROUND_OFF: f64 = 1e-8;
 /// How a wall particle goes through a step: on a parabola that begins with the velocity of the solid, theory (82).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way<const D: usize> {
-    number: u32,
+    pub number: u32,
     places: [Vector<D>; 2],
     velocities: [Vector<D>; 2],
     gradients: [Tensor<D>; 2],
