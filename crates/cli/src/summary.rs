@@ -59,6 +59,9 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
             format!("{how}, {steps}; matrices {assembly}, factors {factors}, solutions {solution}");
         line("equations", &text);
     }
+    if !finished.own_steps.is_empty() {
+        line("own steps", &own_steps(&finished.own_steps));
+    }
     energies(finished, &mut line);
     momentum(finished, &mut line);
     // Of a run that fails at its first look there are no figures.
@@ -89,6 +92,12 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
     }
     files(finished, folder, &mut text);
     text
+}
+
+/// How many steps of its own each system has taken.
+pub fn own_steps(systems: &[(String, u64)]) -> String {
+    let texts = systems.iter().map(|(name, steps)| format!("{name} {steps}"));
+    texts.collect::<Vec<_>>().join(", ")
 }
 
 /// The last row of the energy table: energies, work, and what of it does not balance.

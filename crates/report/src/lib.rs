@@ -44,7 +44,7 @@ pub use picture::{Bounds, Picture, When};
 pub use plot::{Plot, Series, Style};
 pub use record::{
     BodyRecord, FigureRecord, LinearRecord, RecordError, ReferenceRecord, RetryRecord, RunRecord,
-    StageRecord, timestamp,
+    StageRecord, SystemRecord, timestamp,
 };
 pub use table::{Column, Table};
 pub use vtp::Compression;

@@ -69,6 +69,9 @@ pub struct RunRecord {
     pub passes: Vec<StageRecord>,
     /// What linear equations took; none where there were none.
     pub linear: Option<LinearRecord>,
+    /// Steps of its own that each system has taken, where there are several.
+    #[serde(default)]
+    pub own_steps: Vec<SystemRecord>,
     /// Figures of the run as a whole, by the names that checks use after `run.`.
     pub figures: Vec<FigureRecord>,
     /// The reference curves of the case's checks.
@@ -89,6 +92,16 @@ pub struct BodyRecord {
     pub particles: usize,
     /// Spacing of its particles along each axis in m.
     pub spacing: Vec<f64>,
+}
+
+/// One of several systems of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SystemRecord {
+    /// Name of the system, `fluid` for the main one.
+    pub name: String,
+    /// Steps of its own that it has taken.
+    pub steps: u64,
 }
 
 /// One figure of a run.
@@ -220,6 +233,7 @@ impl Default for RunRecord {
             stages: Vec::new(),
             passes: Vec::new(),
             linear: None,
+            own_steps: Vec::new(),
             figures: Vec::new(),
             references: Vec::new(),
             files: Vec::new(),

@@ -6,6 +6,7 @@ use piola::schemes::{Particle, Phase};
 use super::{assemble, read, use_threads};
 use crate::arguments::{CheckArguments, StageForm};
 use crate::exit::{Exit, Fault};
+use crate::summary::own_steps;
 use crate::text::{bytes, count, duration, large, significant};
 use crate::{table, terminal};
 
@@ -90,6 +91,9 @@ fn report(case: &Case, plan: &Plan) -> String {
     section("first step", vec![format!("{first} s ({})", plan.limiter)]);
     let end = significant(*case.time.end, 6);
     section("steps", vec![format!("{} to t = {end} s, if all are as long", plan.steps)]);
+    if !plan.own_steps.is_empty() {
+        section("own steps", vec![format!("{} in the first step", own_steps(&plan.own_steps))]);
+    }
     section("undamped", plan.undamped.iter().map(undamped).collect());
     section(
         "wall time",

@@ -169,6 +169,11 @@ impl Accounts {
         Entry { mechanism, way: place(self.impulses, way) }
     }
 
+    /// Where a mechanism stands; behind all of them if it is none.
+    pub(crate) fn place_of(&self, name: &str) -> usize {
+        place(self.mechanisms, name).unwrap_or(self.mechanisms.len())
+    }
+
     /// What is wrong with the ledger of a formulation whose stages have run.
     pub fn faults(&self, phases: &[&Phase]) -> Vec<LedgerFault> {
         let mut filled = Filled::default();

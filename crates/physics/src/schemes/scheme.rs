@@ -181,6 +181,11 @@ pub trait Scheme: Send {
         true
     }
 
+    /// How many steps of its own each of its systems has taken up to `state`, by name; nothing where there are none.
+    fn own_steps(&self, _state: &[f64]) -> Vec<(String, u64)> {
+        Vec::new()
+    }
+
     /// The columns of its state that may be set from outside: those that nothing else in the state has to
     /// follow but accelerations.
     fn settable(&self) -> &'static [&'static str] {

@@ -17,6 +17,12 @@ pub trait SplitScheme: Scheme {
 
     /// Finds the accelerations of `state` at `time` and stores them in it.
     fn accelerate(&mut self, time: f64, state: &mut [f64]);
+
+    /// The same, to the bit, of a state that may differ from the last one in its velocities alone: what follows from
+    /// places need not be found again.
+    fn settle(&mut self, time: f64, state: &mut [f64]) {
+        self.accelerate(time, state);
+    }
 }
 
 /// A formulation whose accelerations depend on places alone, and all else on velocities and places:

@@ -188,10 +188,30 @@ impl<P: Copy> Stages<P> {
     /// That of the pass.
     pub fn attempt<E>(
         &mut self,
+        body: impl FnMut(P, &mut Totals) -> Result<(), E>,
+    ) -> Result<Totals, E> {
+        self.attempt_from(0, body)
+    }
+
+    /// As [`Self::run`], of the last pass alone.
+    pub fn run_last(&mut self, mut body: impl FnMut(P, &mut Totals)) -> Totals {
+        let done: Result<Totals, Infallible> =
+            self.attempt_from(self.passes.len().saturating_sub(1), |pass, totals| {
+                body(pass, totals);
+                Ok(())
+            });
+        let Ok(totals) = done;
+        totals
+    }
+
+    fn attempt_from<E>(
+        &mut self,
+        first: usize,
         mut body: impl FnMut(P, &mut Totals) -> Result<(), E>,
     ) -> Result<Totals, E> {
         let (mut all, mut last) = (Totals::default(), Instant::now());
-        for (&pass, (_, watch)) in self.passes.iter().zip(&mut self.phase.stages) {
+        let passes = self.passes.iter().zip(&mut self.phase.stages);
+        for (&pass, (_, watch)) in passes.skip(first) {
             // What a stage has filled is its own, so that it is seen if it fills that again.
             self.phase.filled.join(std::mem::take(&mut all.filled));
             body(pass, &mut all)?;

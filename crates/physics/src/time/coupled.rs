@@ -5,19 +5,23 @@ use super::integrator::{Integrator, Unserved};
 use super::kick_drift_kick::KickDriftKick;
 use crate::schemes::Scheme;
 
-/// A fluid by kick-drift-kick, and each solid in it by an integrator of its own, as often as its stable
-/// step asks for: theory (82).
+/// A fluid by kick-drift-kick, and each solid in it by an integrator of its own, each as often as its stable step asks
+/// for: theory (82).
 pub struct Coupled {
     solids: Vec<Box<dyn Integrator>>,
     /// The states of a solid at both ends of one of its steps.
     old: Vec<f64>,
     new: Vec<f64>,
+    /// Steps of each system in the last one, the fluid first.
+    counts: Vec<u64>,
+    /// What failures have multiplied steps by.
+    factor: f64,
 }
 
 impl Coupled {
     /// With the integrators of the solids.
     pub fn new(solids: Vec<Box<dyn Integrator>>) -> Self {
-        Self { solids, old: Vec::new(), new: Vec::new() }
+        Self { solids, old: Vec::new(), new: Vec::new(), counts: Vec::new(), factor: 1.0 }
     }
 }
 
@@ -28,6 +32,10 @@ impl Integrator for Coupled {
 
     fn evaluations(&self, _scheme: &mut dyn Scheme) -> u64 {
         1
+    }
+
+    fn shorten(&mut self, factor: f64) {
+        self.factor = factor;
     }
 
     fn step(
@@ -43,11 +51,17 @@ impl Integrator for Coupled {
             return Err(Unserved::new(name, scheme).into());
         }
         let Some(world) = scheme.coupled() else { return Ok(()) };
+        // Where failures have made steps shorter, those within are as much shorter.
+        let whole = step / self.factor;
+        let fluid_steps = world.fluid_steps(whole, old);
+        self.counts.clear();
+        self.counts.push(fluid_steps);
         new.copy_from_slice(old);
         world.push(time, 0.5 * step, new);
         world.settle(time, new);
         for (number, integrator) in self.solids.iter_mut().enumerate() {
-            let count = world.steps_of(number, step, new);
+            let count = world.solid_steps(number, whole, new);
+            self.counts.push(count);
             let (solid, part) = world.solid(number);
             self.old.clear();
             self.old.extend_from_slice(&new[part.clone()]);
@@ -60,9 +74,9 @@ impl Integrator for Coupled {
             }
             new[part].copy_from_slice(&self.old);
         }
-        world.flow(time, step, old, new);
-        world.push(time + step, 0.5 * step, new);
-        world.add_up(new);
+        world.flow([time, step], fluid_steps, old, new);
+        world.repay([time + step, 0.5 * step], fluid_steps, new);
+        world.add_up(&self.counts, new);
         Ok(())
     }
 }

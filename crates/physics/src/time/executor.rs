@@ -120,6 +120,12 @@ impl Executor {
         &self.run.state
     }
 
+    /// How many steps of its own each system of the run has taken, by name; nothing where there is one system.
+    pub fn own_steps(&mut self) -> Vec<(String, u64)> {
+        self.bring();
+        self.scheme.own_steps(&self.run.state)
+    }
+
     /// Where the run stands.
     pub fn progress(&self) -> Progress {
         let Run { clock, tally, .. } = &self.run;
@@ -391,6 +397,7 @@ impl Executor {
         }
         let soonest = run.due.iter().flatten().copied().fold(self.end, f64::min);
         let met = self.control.meet(chosen, run.clock.time, soonest);
+        integrator.shorten(run.tally.factor);
         let taken = run.tally.watches.step.time(|| match device {
             Some(device) => device.step(run.clock.time, met.step).map_err(Failure::from),
             None => integrator.step(scheme.as_mut(), run.clock.time, met.step, &run.state, next),

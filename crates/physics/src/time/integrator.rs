@@ -46,6 +46,9 @@ pub trait Integrator: Send {
         new: &mut [f64],
     ) -> Result<(), Failure>;
 
+    /// Says what failures have multiplied steps by, which holds for steps within a step as well.
+    fn shorten(&mut self, _factor: f64) {}
+
     /// What the next step should be over the one that was tried last, for its error to be what is
     /// allowed; `None` where no error is estimated.
     fn growth(&self) -> Option<f64> {

@@ -22,6 +22,8 @@ pub struct Finished {
     pub particles: usize,
     /// What linear equations took since the run started, or went on; `None` where there were none.
     pub linear: Option<Costs>,
+    /// Steps of its own that each system has taken, by name; nothing where there is one system.
+    pub own_steps: Vec<(String, u64)>,
 }
 
 /// A share of the largest energy that does not balance, above which the user is told.

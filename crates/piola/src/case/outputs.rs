@@ -15,7 +15,8 @@ use crate::observe::{
 use crate::output::checkpoint::Identity;
 use crate::output::{
     self, BodyRecord, Column, Compression, Curve, FigureRecord, LinearRecord, Map, ReferenceRecord,
-    ResultsFolder, RetryRecord, RunRecord, StageRecord, Table, atomic, report, timestamp,
+    ResultsFolder, RetryRecord, RunRecord, StageRecord, SystemRecord, Table, atomic, report,
+    timestamp,
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
 
@@ -201,6 +202,10 @@ impl Outputs {
             factorisation: costs.factorisation.as_secs_f64(),
             solution: costs.solution.as_secs_f64(),
         });
+        let own_steps = finished.own_steps.iter();
+        let own_steps =
+            own_steps.map(|(name, steps)| SystemRecord { name: name.clone(), steps: *steps });
+        record.own_steps = own_steps.collect();
         record.figures = RUN_QUANTITIES
             .iter()
             .filter_map(|name| match finished.quantity(&format!("run.{name}")) {

@@ -26,6 +26,8 @@ pub struct Plan {
     pub limiter: String,
     /// Number of steps to the end if all are as large as the first.
     pub steps: u64,
+    /// How many steps of its own each system takes in the first one, by name; nothing where there is one system.
+    pub own_steps: Vec<(String, u64)>,
     /// What the integrator makes of what nothing damps, where that is known.
     pub undamped: Option<Undamped>,
     /// Particle evaluations a second, measured on this machine.
@@ -138,7 +140,11 @@ impl Session {
         }
         let timed = if is_taken { evaluations as f64 } else { 1.0 };
         let evaluation = start.elapsed().as_secs_f64().max(1e-9) / timed;
-        warnings.extend(failed.map(|failure| format!("the first step fails: {failure}")));
+        warnings.extend(failed.as_ref().map(|failure| format!("the first step fails: {failure}")));
+        let own_steps = match failed {
+            Some(_) => Vec::new(),
+            None => scheme.own_steps(&second),
+        };
         let integrator = self.executor.integrator.as_ref();
         // An end that is a multiple of the step up to round-off takes no step more.
         let steps = (*self.case.time.end / step - 1e-9).ceil().max(0.0) as u64;
@@ -163,6 +169,7 @@ impl Session {
             step,
             limiter,
             steps,
+            own_steps,
             undamped,
             evaluations_per_second: count as f64 / evaluation,
             seconds: steps as f64 * evaluations as f64 * evaluation,

@@ -287,7 +287,7 @@ impl Session {
 
     /// What is left of a run: its tables, charts, record and report.
     fn conclude(self, summary: Summary) -> Result<Finished, RunError> {
-        let Self { case, built, executor, outputs, .. } = self;
+        let Self { case, built, mut executor, outputs, .. } = self;
         let tables = self.tables.lock().clone();
         let particles = executor.scheme.particle_count();
         let mut warnings = built.warnings;
@@ -300,8 +300,10 @@ impl Session {
             ));
         }
         let linear = executor.scheme.linear_costs();
+        let own_steps = executor.own_steps();
         let files: Vec<PathBuf> = Vec::new();
-        let mut finished = Finished { summary, tables, files, warnings, particles, linear };
+        let mut finished =
+            Finished { summary, tables, files, warnings, particles, linear, own_steps };
         let Some(outputs) = outputs else { return Ok(finished) };
         let folder = outputs.folder().to_owned();
         finished.files = outputs.finish(&case, &finished, self.build_seconds)?;

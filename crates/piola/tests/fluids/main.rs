@@ -17,6 +17,7 @@ mod runs;
 mod solids;
 mod speeds;
 mod structures;
+mod subcycles;
 mod support;
 mod surfaces;
 mod taylor_green;

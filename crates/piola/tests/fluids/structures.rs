@@ -179,7 +179,7 @@ fn water_does_not_see_through_a_plate_of_three_particles() {
 }
 
 /// A soft block that drifts through a bound of the box, without walls, in a box that is periodic both ways.
-const DRIFTING: &str = r#"
+pub const DRIFTING: &str = r#"
 version = 1
 title = "A block in water"
 dimension = 2
@@ -247,26 +247,28 @@ fn water_and_block_keep_their_momentum() {
     }
 }
 
+/// The momentum of each of two bodies in the plane.
+pub fn momentum_of(session: &mut Session) -> [[f64; 2]; 2] {
+    let velocity = session.column("velocity").expect("it is there").values;
+    let masses: Vec<f64> = (0..velocity.len() / 2).map(|a| session.scheme().mass(a)).collect();
+    let bodies = session.scheme().bodies().to_vec();
+    let mut all = [[0.0; 2]; 2];
+    for (a, v) in velocity.chunks_exact(2).enumerate() {
+        (0..2).for_each(|i| all[bodies[a] as usize][i] += masses[a] * v[i]);
+    }
+    all
+}
+
 fn keeps_momentum(overrides: Vec<String>) {
     let what = overrides.join(", ");
     let options = LoadOptions { overrides, ..LoadOptions::default() };
     let case = case::parse(DRIFTING, "drifting.toml", &options);
     let case = case.unwrap_or_else(|problems| panic!("{what}: {problems}"));
     let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
-    let mut momentum = || {
-        let velocity = session.column("velocity").expect("it is there").values;
-        let masses: Vec<f64> = (0..velocity.len() / 2).map(|a| session.scheme().mass(a)).collect();
-        let bodies = session.scheme().bodies().to_vec();
-        let mut all = [[0.0; 2]; 2];
-        for (a, v) in velocity.chunks_exact(2).enumerate() {
-            (0..2).for_each(|i| all[bodies[a] as usize][i] += masses[a] * v[i]);
-        }
-        let end = session.run_until(0.1);
-        end.expect("it runs");
-        assert!(session.time() > 0.1 * (1.0 - 1e-9), "{what}: it ends at {} s", session.time());
-        all
-    };
-    let (start, end) = (momentum(), momentum());
+    let start = momentum_of(&mut session);
+    session.run_until(0.1).expect("it runs");
+    assert!(session.time() > 0.1 * (1.0 - 1e-9), "{what}: it ends at {} s", session.time());
+    let end = momentum_of(&mut session);
     for axis in 0..2 {
         let [before, after] = [start, end].map(|all| all[0][axis] + all[1][axis]);
         assert!((after - before).abs() < 1e-12, "{what}, {axis}: {before} {after}");

@@ -42,4 +42,18 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
         self.store((time, &rate), totals, state);
         self.rate = rate;
     }
+
+    /// Without viscosity the forces between particles are those of the displacements, and at hand; damping, springs,
+    /// rigid bodies and the powers of loads take velocities where they act from outside.
+    fn settle(&mut self, time: f64, state: &mut [f64]) {
+        let at = self.columns(state);
+        let is_at_hand = self.velocity.is_empty() && !self.dissipation.is_viscous();
+        if !(is_at_hand && self.is_evaluated_at(&at)) {
+            return self.accelerate(time, state);
+        }
+        let mut rate = std::mem::take(&mut self.rate);
+        let totals = self.evaluate_from_outside(time, state, &mut rate);
+        self.store((time, &rate), totals, state);
+        self.rate = rate;
+    }
 }

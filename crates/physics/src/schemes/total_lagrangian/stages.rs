@@ -88,6 +88,20 @@ impl<const D: usize> TotalLagrangian<D> {
         totals
     }
 
+    /// The same, where the forces between particles are those at hand.
+    pub(super) fn evaluate_from_outside(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        rate: &mut [f64],
+    ) -> Totals {
+        let at = self.columns(state);
+        let mut stages = std::mem::take(&mut self.stages);
+        let totals = stages.run_last(|pass, totals| self.run(pass, time, &at, (rate, totals)));
+        self.stages = stages;
+        totals
+    }
+
     /// Runs the passes that lead to forces.
     pub(super) fn evaluate_forces(&mut self, time: f64, at: &Columns<'_, D>) {
         let passes = self.stages.passes().to_vec();

@@ -37,6 +37,19 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         if self.common.guard.is_some() {
             self.common.load(state);
         }
+        let mut health = self.bound_step(state, limits);
+        let common = &self.common;
+        if let Some((guard, _)) = &common.guard
+            && !guard.removes
+            && health.first_not_finite.is_none()
+        {
+            health.first_escaped = common.escaped(state).first().copied();
+        }
+        health
+    }
+
+    /// The same, without a look for particles that have escaped.
+    pub(crate) fn bound_step(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let common = &self.common;
         let (mut health, [signal, acceleration]) =
             look(common.particles.len(), [0.0; 2], |number| self.look_at(number, state));
@@ -50,12 +63,6 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         };
         let h = common.support.smoothing_length();
         step_limits(h, self.matter.viscosity(), [signal, fastest, acceleration], limits);
-        if let Some((guard, _)) = &common.guard
-            && !guard.removes
-            && health.first_not_finite.is_none()
-        {
-            health.first_escaped = common.escaped(state).first().copied();
-        }
         health
     }
 

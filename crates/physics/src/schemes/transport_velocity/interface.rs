@@ -91,6 +91,11 @@ impl<const D: usize> TransportVelocity<D> {
         self.matter.fluid().wave_speed
     }
 
+    /// Density of the fluid where nothing presses, in kg/m^3.
+    pub(crate) fn density(&self) -> f64 {
+        self.matter.fluid().density
+    }
+
     /// Particle spacing in m.
     pub(crate) fn spacing(&self) -> f64 {
         self.common.particles.spacing[0]
@@ -153,6 +158,11 @@ impl<const D: usize> TransportVelocity<D> {
     /// The force of the fluid on a wall particle (number) in N, as a state has it.
     pub(crate) fn force_on(&self, state: &[f64], number: u32) -> Vector<D> {
         self.common.columns(state).kick[number as usize] * self.common.mass[number as usize]
+    }
+
+    /// Its power in W on a wall particle (number) with the velocity in a state.
+    pub(crate) fn power_on(&self, state: &[f64], number: u32) -> f64 {
+        self.force_on(state, number).dot(&self.common.columns(state).velocity[number as usize])
     }
 
     /// Finds the accelerations of the start anew, with walls as they have been placed and guided since.

@@ -205,6 +205,20 @@ impl<const D: usize> Contact<D> {
         }
     }
 
+    /// Whether points at hand are so close to some of other bodies that they see each other, or nearly.
+    pub fn is_near(&self, domain: &Domain<D>, spacing: f64) -> bool {
+        self.around.iter().any(|(i, others)| {
+            let me = &self.points[*i as usize];
+            others.iter().any(|&j| {
+                let other = &self.points[j as usize];
+                let way = domain.separation(&other.place, &me.place);
+                let is_close =
+                    way.norm_squared() < (ALONG.powi(2) + ACROSS.powi(2)) * spacing * spacing;
+                is_close && me.normal.dot(&other.normal) <= FACING
+            })
+        })
+    }
+
     /// Hands out the forces between points at hand: `bear` takes the origin of a point, what stands between its wall
     /// particle and its surface where solids begin, and a force in N.
     pub fn forces(

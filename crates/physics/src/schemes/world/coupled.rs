@@ -4,16 +4,17 @@ use std::ops::Range;
 
 use super::contact::{Origin, Point};
 use super::description::SHARED;
+use super::flow::shortest;
 use super::{MOST_STEPS, Part, Solid, World};
 use crate::Vector;
 use crate::geometry::turned_normal;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use crate::schemes::transport_velocity::Guide;
-use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme, StepLimit};
+use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme};
 
 impl<const D: usize> Solid<D> {
     /// Place and velocity of the wall particle in `row` of the interface.
-    fn wall(&self, own: &[f64], row: usize) -> [Vector<D>; 2] {
+    pub(super) fn wall(&self, own: &[f64], row: usize) -> [Vector<D>; 2] {
         let place = self.interface.place(row, self.displacements(own, row));
         [place, self.interface.carried(row, |b| self.velocity(own, b))]
     }
@@ -39,22 +40,13 @@ impl<const D: usize> World<D> {
 
     /// Tells the fluid how its walls move and which way they face in a state.
     pub(super) fn guide(&mut self, state: &[f64]) {
-        self.guide_with(state, |_, [_, velocity]| velocity);
-    }
-
-    /// The same, with a velocity made of the number of the wall, from 0 on, and of its place and velocity.
-    fn guide_with(&mut self, state: &[f64], velocity: impl Fn(usize, [Vector<D>; 2]) -> Vector<D>) {
-        let mut count = 0;
         for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
             let own = &state[part.state.clone()];
             for (row, &number) in solid.interface.walls().iter().enumerate() {
                 let displacement = solid.displacements(own, row);
-                self.fluid.guide(&Guide {
-                    number,
-                    velocity: velocity(count, solid.wall(own, row)),
-                    deformation: solid.interface.deformation(row, displacement),
-                });
-                count += 1;
+                let [_, velocity] = solid.wall(own, row);
+                let deformation = solid.interface.deformation(row, displacement);
+                self.fluid.guide(&Guide { number, velocity, deformation });
             }
         }
     }
@@ -63,18 +55,14 @@ impl<const D: usize> World<D> {
     /// the ways in. Those of contact are the next.
     fn entries(&self, solid: usize) -> [usize; 2] {
         let ledger = |k: usize| self.system(k).description().ledger;
-        let works = (0..=solid + 1).map(|k| ledger(k).mechanisms.len()).sum::<usize>();
+        let works = 1 + (0..=solid + 1).map(|k| ledger(k).mechanisms.len()).sum::<usize>();
         let ways = (0..=solid + 1).map(|k| ledger(k).impulses.len()).sum::<usize>();
         [works, ways].map(|before| before + SHARED.len() * solid)
     }
 
-    /// Finds what solids do to each other where they touch, and walls to them.
-    pub(super) fn touch(&mut self, state: &[f64]) {
+    /// Takes the points of surfaces where they are.
+    pub(super) fn find_points(&mut self, state: &[f64]) {
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
-        for (forces, solid) in self.touches.iter_mut().zip(solids) {
-            forces.clear();
-            forces.resize(solid.mass.len(), Vector::zeros());
-        }
         let (domain, spacing) = (fluid.domain(), fluid.spacing());
         let fluid_state = &state[parts[0].state.clone()];
         self.contact.update(domain, spacing, |origin, [offset, normal]| match *origin {
@@ -92,7 +80,18 @@ impl<const D: usize> World<D> {
                 Point { place, normal, velocity }
             }
         });
+    }
+
+    /// Finds what solids do to each other where they touch, and walls to them.
+    pub(super) fn touch(&mut self, state: &[f64]) {
+        self.find_points(state);
+        let (solids, fluid) = (&self.solids, &self.fluid);
+        for (forces, solid) in self.touches.iter_mut().zip(solids) {
+            forces.clear();
+            forces.resize(solid.mass.len(), Vector::zeros());
+        }
         let touches = &mut self.touches;
+        let (domain, spacing) = (fluid.domain(), fluid.spacing());
         let scale = (spacing, fluid.wave_speed());
         self.contact.forces(
             domain,
@@ -105,29 +104,10 @@ impl<const D: usize> World<D> {
             },
         );
     }
-}
 
-impl<const D: usize> CoupledScheme for World<D> {
-    fn solid_count(&self) -> usize {
-        self.solids.len()
-    }
-
-    fn solid(&mut self, number: usize) -> (&mut dyn Scheme, Range<usize>) {
-        (self.solids[number].scheme.as_mut(), self.parts[number + 1].state.clone())
-    }
-
-    fn steps_of(&mut self, number: usize, step: f64, state: &[f64]) -> u64 {
-        let solid = &mut self.solids[number];
-        let Some(cfl) = solid.cfl else { return 1 };
-        solid.scheme.inspect(&state[self.parts[number + 1].state.clone()], &mut solid.limits);
-        let own = |limit: &StepLimit| limit.step * if limit.scaled { cfl } else { 1.0 };
-        let least = solid.limits.iter().map(own).fold(f64::INFINITY, f64::min);
-        // What has broken down is found by the look at the state that this step leads to.
-        let steps = (step / least * (1.0 - 1e-12)).ceil();
-        if steps >= 1.0 { (steps as u64).min(MOST_STEPS) } else { 1 }
-    }
-
-    fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {
+    /// Gives the solids the impulse in `duration` s of forces of the fluid, which are those that a step has left to
+    /// give or those of its state, and of others where they touch.
+    fn push_on(&mut self, time: f64, duration: f64, state: &mut [f64]) {
         let (works, components) =
             (self.description.ledger.mechanisms.len(), momentum_components(D).len());
         self.touch(state);
@@ -140,7 +120,8 @@ impl<const D: usize> CoupledScheme for World<D> {
             self.forces.clear();
             self.forces.resize(solid.mass.len(), Vector::zeros());
             for (row, &wall) in solid.interface.walls().iter().enumerate() {
-                let force = self.fluid.force_on(fluid, wall);
+                let left = self.rest.get(solid.first + row).copied();
+                let force = left.unwrap_or_else(|| self.fluid.force_on(fluid, wall));
                 solid.interface.bear(row, &force, &mut self.forces);
             }
             for (shared, forces) in [&self.forces, &self.touches[number]].into_iter().enumerate() {
@@ -172,38 +153,65 @@ impl<const D: usize> CoupledScheme for World<D> {
             }
         }
     }
+}
+
+impl<const D: usize> CoupledScheme for World<D> {
+    fn solid_count(&self) -> usize {
+        self.solids.len()
+    }
+
+    fn solid(&mut self, number: usize) -> (&mut dyn Scheme, Range<usize>) {
+        (self.solids[number].scheme.as_mut(), self.parts[number + 1].state.clone())
+    }
+
+    fn fluid_steps(&mut self, step: f64, state: &[f64]) -> u64 {
+        self.fluid_steps_in(step, state)
+    }
+
+    fn solid_steps(&mut self, number: usize, step: f64, state: &[f64]) -> u64 {
+        let solid = &mut self.solids[number];
+        let Some(cfl) = solid.cfl else { return 1 };
+        solid.scheme.inspect(&state[self.parts[number + 1].state.clone()], &mut solid.limits);
+        let least = shortest(&solid.limits, cfl);
+        // What has broken down is found by the look at the state that this step leads to.
+        let steps = (step / least * (1.0 - 1e-12)).ceil();
+        if steps >= 1.0 { (steps as u64).min(MOST_STEPS) } else { 1 }
+    }
+
+    fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {
+        self.rest.clear();
+        self.push_on(time, duration, state);
+    }
+
+    fn repay(&mut self, [time, duration]: [f64; 2], count: u64, state: &mut [f64]) {
+        self.push_on(time, duration, state);
+        self.carry_walls(state);
+        let fluid = &state[self.parts[0].state.clone()];
+        let power = self.ways.iter().map(|way| self.fluid.power_on(fluid, way.number)).sum::<f64>();
+        let entry = self.interface_at();
+        state[entry] -= duration / count as f64 * power;
+    }
 
     fn settle(&mut self, time: f64, state: &mut [f64]) {
         for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
             // What implicit steps keep is of their own making.
             if let (Some(solid), Some(_)) = (solid.scheme.split(), solid.cfl) {
-                solid.accelerate(time, &mut state[part.state.clone()]);
+                solid.settle(time, &mut state[part.state.clone()]);
             }
         }
     }
 
-    fn flow(&mut self, time: f64, step: f64, old: &[f64], new: &mut [f64]) {
-        let mut after = std::mem::take(&mut self.places);
-        after.clear();
-        for (solid, part) in self.with_parts() {
-            let rows = 0..solid.interface.walls().len();
-            after.extend(rows.map(|row| solid.wall(&new[part.state.clone()], row)[0]));
-        }
-        // The drift sees walls where they were, as it sees the fluid.
-        self.guide_with(old, |number, [place, _]| (after[number] - place) / step);
-        self.places = after;
-        let fluid = self.parts[0].state.clone();
-        self.fluid.kick(0.5 * step, &mut new[fluid.clone()]);
-        self.fluid.drift(time, step, &mut new[fluid.clone()]);
-        self.carry_walls(new);
-        self.guide(new);
-        self.fluid.constrain(time + step, &mut new[fluid.clone()]);
-        self.fluid.accelerate(time + step, &mut new[fluid.clone()]);
-        self.fluid.kick(0.5 * step, &mut new[fluid]);
+    fn flow(&mut self, [time, step]: [f64; 2], count: u64, old: &[f64], new: &mut [f64]) {
+        self.find_ways(step, count, [old, new]);
+        self.flow_along(time, step, count, new);
     }
 
-    fn add_up(&mut self, state: &mut [f64]) {
-        self.carry_walls(state);
+    fn add_up(&mut self, counts: &[u64], state: &mut [f64]) {
+        let behind = self.counts_at();
+        for (kept, &count) in state[behind..].chunks_exact_mut(2).zip(counts) {
+            kept[0] = count as f64;
+            kept[1] += count as f64;
+        }
         let (states, tail) = state.split_at_mut(self.ledger_at());
         let (works, impulses) = tail.split_at_mut(self.description.ledger.mechanisms.len());
         let components = momentum_components(D).len();
@@ -211,10 +219,13 @@ impl<const D: usize> CoupledScheme for World<D> {
         for (k, part) in self.parts.iter().enumerate() {
             let ledger = Ledger::of(self.system(k), &states[part.state.clone()]);
             works[work..][..ledger.work.len()].copy_from_slice(ledger.work);
+            if k == 0 {
+                works[self.walls] -= works[ledger.work.len()];
+            }
             impulses[impulse..][..ledger.impulses.len()].copy_from_slice(ledger.impulses);
-            // Behind those of a solid stands what others do to it.
-            let shared = if k > 0 { SHARED.len() } else { 0 };
-            work += ledger.work.len() + shared;
+            // Behind those of a solid stands what others do to it, behind those of the fluid the work of solids.
+            let [own, shared] = if k > 0 { [SHARED.len(); 2] } else { [1, 0] };
+            work += ledger.work.len() + own;
             impulse += ledger.impulses.len() + shared * components;
         }
     }

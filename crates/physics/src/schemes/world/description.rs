@@ -10,6 +10,10 @@ use crate::schemes::{Accounts, SchemeDescription};
 /// walls and solids that it touches.
 pub(super) const SHARED: [&str; 2] = ["interface", "contact"];
 
+/// The mechanism by which solids work on the fluid, and that of the fluid which has it with the work of all walls.
+pub(super) const INTERFACE: &str = "interface";
+pub(super) const WALLS: &str = "walls";
+
 /// What walls and other solids do to a solid in a fluid where they touch, theory (85).
 pub(super) const CONTACT: FieldDescription = FieldDescription {
     life: Life::Derived(1),
@@ -28,7 +32,8 @@ static KNOWN: LazyLock<Mutex<BTreeMap<String, &'static SchemeDescription>>> =
 
 impl SchemeDescription {
     /// What a fluid shows with the solids in it, each by the name of its system. Names of energies, mechanisms
-    /// and figures of solids have that of their system in front; fields of the same name are one.
+    /// and figures of solids have that of their system in front; fields of the same name are one. The fluid has the
+    /// work of solids apart from that of walls, and all of them how many steps of their own were one of the run.
     pub fn with_solids(&'static self, solids: &[(String, &'static Self)]) -> &'static Self {
         let of = |scheme: &Self| format!("{}/{}", scheme.name, scheme.matter.unwrap_or_default());
         let mut key = of(self);
@@ -64,27 +69,30 @@ fn joined(
         }
     }
     fields.push(FieldDescription { number: fields.len(), ..CONTACT });
-    let join = |of: fn(&SchemeDescription) -> &[&'static str], shares: bool| {
-        let mut names: Vec<&'static str> = of(fluid).to_vec();
-        for (system, solid) in solids {
-            names.extend(of(solid).iter().map(|name| named(system, name)));
-            names.extend(SHARED.iter().filter(|_| shares).map(|name| named(system, name)));
-        }
-        Box::leak(names.into_boxed_slice())
-    };
+    let join =
+        |of: fn(&SchemeDescription) -> &[&'static str], shares: bool, own: &[&'static str]| {
+            let mut names: Vec<&'static str> = [of(fluid), own].concat();
+            for (system, solid) in solids {
+                names.extend(of(solid).iter().map(|name| named(system, name)));
+                names.extend(SHARED.iter().filter(|_| shares).map(|name| named(system, name)));
+            }
+            Box::leak(names.into_boxed_slice())
+        };
     let mut figures: Vec<(&str, &str)> = fluid.figures.to_vec();
+    figures.push(("fluid_steps", "1"));
     for (system, solid) in solids {
         figures.extend(solid.figures.iter().map(|(name, unit)| (named(system, name), *unit)));
+        figures.push((named(system, "steps"), "1"));
     }
     SchemeDescription {
         name: "world",
         matter: None,
         offers: &[],
         fields: Box::leak(fields.into_boxed_slice()),
-        energies: join(|system| system.energies, false),
+        energies: join(|system| system.energies, false, &[]),
         ledger: Accounts {
-            mechanisms: join(|system| system.ledger.mechanisms, true),
-            impulses: join(|system| system.ledger.impulses, true),
+            mechanisms: join(|system| system.ledger.mechanisms, true, &[INTERFACE]),
+            impulses: join(|system| system.ledger.impulses, true, &[]),
             is_kicked: false,
         },
         figures: Box::leak(figures.into_boxed_slice()),

@@ -13,13 +13,13 @@
 //! ```text
 //! v_s <- v_s + dt/2 f(t)/m          the solid takes half of the impulse of the fluid
 //! (x_s, v_s, ...) <- n own steps    of the solid, by its own integrator
-//! the fluid's kick, drift, kick     with walls that go from the old to the new places of the solid
-//! v_s <- v_s + dt/2 f(t + dt)/m
+//! m times kick, drift, kick         of the fluid, with walls that go from the old to the new places of the solid
+//! v_s <- v_s + (J - dt/2 f(t))/m    with the impulse J of the fluid in its steps
 //! ```
 //!
-//! Each part is of second order, but for terms of first order that the fluid has by itself, and the order of the
-//! parts is symmetric; both systems take the same force at the same two times, so linear momentum is kept to round-off. A solid
-//! with faster waves takes more steps of its own, and one in implicit steps takes one.
+//! Each part is of second order, but for terms of first order that the fluid has by itself. The solid gets the impulse that
+//! the fluid gives, so linear momentum is kept to round-off. A solid with faster waves takes more steps of its own, and
+//! one in implicit steps takes one; of slower and heavy ones the fluid takes several steps in one of theirs.
 //!
 //! The ghost pressure of a solid's surface leaves out the acceleration of the surface, `-rho a . r` over
 //! less than a spacing, which is an added mass that acts a step late: with it solids lighter than the fluid
@@ -28,6 +28,7 @@
 mod contact;
 mod coupled;
 mod description;
+mod flow;
 mod interface;
 mod scheme;
 
@@ -37,6 +38,9 @@ use thiserror::Error;
 
 use self::contact::Contact;
 pub use self::contact::{ContactLaw, MOST_DAMPING, MOST_STIFFNESS};
+use self::description::{INTERFACE, WALLS};
+pub use self::flow::MOST_FLUID_STEPS;
+use self::flow::{Way, shortest};
 use self::interface::Interface;
 pub use self::interface::{InterfaceError, MOST_RATIO};
 use crate::Vector;
@@ -102,11 +106,17 @@ pub enum WorldError {
 
 /// A solid bound to the fluid around it.
 struct Solid<const D: usize> {
+    /// The name of its system.
+    name: String,
     scheme: Box<dyn Scheme>,
     interface: Interface<D>,
     cfl: Option<f64>,
     law: ContactLaw,
     spacing: f64,
+    /// The number of its first wall particle among those of all solids.
+    first: usize,
+    /// In which time in s waves of the fluid stop a layer of its particles.
+    layer: f64,
     mass: Vec<f64>,
     reference: Vec<Vector<D>>,
     /// Whether its state has displacements, and not positions, which may be wrapped into the box.
@@ -135,30 +145,39 @@ struct Part {
 pub struct World<const D: usize> {
     description: &'static SchemeDescription,
     fluid: TransportVelocity<D>,
+    /// The CFL number of the fluid's own steps; `None` where steps are given.
+    cfl: Option<f64>,
     solids: Vec<Solid<D>>,
     contact: Contact<D>,
+    /// Where the work of all walls stands among those of the fluid.
+    walls: usize,
     /// Those of the fluid, then of each solid.
     parts: Vec<Part>,
     bodies: Vec<u32>,
     ids: Vec<u32>,
     start: Vec<f64>,
-    // Scratch: forces on the particles of a solid, their velocities before, and places of walls.
+    // Scratch: forces on the particles of a solid, their velocities before, how walls go through a step, which forces
+    // are left to give by wall, and bounds on the step.
     forces: Vec<Vector<D>>,
     before: Vec<Vector<D>>,
     /// The ledger of a solid.
     booked: Vec<f64>,
     /// By solid, what others do to its particles where they touch.
     touches: Vec<Vec<Vector<D>>>,
-    places: Vec<Vector<D>>,
+    ways: Vec<Way<D>>,
+    rest: Vec<Vector<D>>,
+    limits: Vec<StepLimit>,
 }
 
 impl<const D: usize> World<D> {
-    /// Couples `solids` with a `fluid` that has walls in their place.
+    /// Couples `solids` with a `fluid` that has walls in their place. With the CFL number `cfl` of its own steps, the
+    /// fluid may take several in one of the run, which is then that of slower solids.
     ///
     /// # Errors
     /// [`WorldError`] for systems that do not fit together.
     pub fn new(
         mut fluid: TransportVelocity<D>,
+        cfl: Option<f64>,
         solids: Vec<SolidInput>,
         domain: &Domain<D>,
     ) -> Result<Self, WorldError> {
@@ -172,13 +191,17 @@ impl<const D: usize> World<D> {
                 let Particle { id, reference: position } = fluid.particle(other);
                 return Err(WorldError::Overlap { system: input.name, id, position });
             }
+            let mut solid = Solid::new(number, input, &walls, fluid.spacing(), domain)?;
+            solid.first = guided.len();
+            solid.layer = solid.layer_stop(&fluid);
             guided.extend(walls.iter().map(|(wall, ..)| *wall));
-            bound.push(Solid::new(number, input, &walls, fluid.spacing(), domain)?);
+            bound.push(solid);
         }
         fluid.let_walls_be_guided(&guided);
         let description = fluid.description().with_solids(&names);
         let mut world = Self {
             description,
+            walls: fluid.description().ledger.place_of(WALLS),
             parts: Vec::new(),
             bodies: Vec::new(),
             ids: Vec::new(),
@@ -188,12 +211,17 @@ impl<const D: usize> World<D> {
             booked: Vec::new(),
             touches: vec![Vec::new(); bound.len()],
             contact: Contact::new(&fluid, &bound),
-            places: Vec::new(),
+            ways: Vec::new(),
+            rest: Vec::new(),
+            limits: Vec::new(),
             fluid,
+            cfl,
             solids: bound,
         };
         let mut start = world.line_up(&guided);
-        start.resize(start.len() + description.ledger.integrals(D), 0.0);
+        // Behind the ledger stands how many steps of each system were the last one of the run, and all of it.
+        let counts = 2 * world.parts.len();
+        start.resize(start.len() + description.ledger.integrals(D) + counts, 0.0);
         world.begin(&mut start);
         world.start = start;
         Ok(world)
@@ -269,6 +297,16 @@ impl<const D: usize> World<D> {
         }
     }
 
+    /// Where the work of solids on the fluid stands in a state.
+    fn interface_at(&self) -> usize {
+        self.ledger_at() + self.description.ledger.place_of(INTERFACE)
+    }
+
+    /// Where numbers of steps begin in a state.
+    fn counts_at(&self) -> usize {
+        self.ledger_at() + self.description.ledger.integrals(D)
+    }
+
     /// Where the ledger of all begins in a state.
     fn ledger_at(&self) -> usize {
         self.parts.last().map_or(0, |part| part.state.end)
@@ -305,6 +343,7 @@ impl<const D: usize> Solid<D> {
         let is_displaced = column("displacement").is_some();
         Ok(Self {
             mass: (0..count).map(|a| scheme.mass(a)).collect(),
+            name,
             reference,
             is_displaced,
             domain: *domain,
@@ -312,6 +351,8 @@ impl<const D: usize> Solid<D> {
             cfl,
             law,
             spacing,
+            first: 0,
+            layer: 0.0,
             places,
             velocities,
             numbers,
@@ -325,6 +366,21 @@ impl<const D: usize> Solid<D> {
         let mass = self.interface.mean(row, |b| self.mass[b]);
         let least = self.mass.iter().copied().fold(f64::INFINITY, f64::min);
         mass.max(least) / self.spacing.powi(D as i32)
+    }
+
+    /// The time in s in which waves of a fluid stop a layer of particles, of the solid or as thick as those of the
+    /// fluid, which share what is done to one of them.
+    fn layer_stop(&self, fluid: &TransportVelocity<D>) -> f64 {
+        let rows = 0..self.interface.walls().len();
+        let least = rows.map(|row| self.density(row)).fold(f64::INFINITY, f64::min);
+        least * self.spacing.max(fluid.spacing()) / (fluid.density() * fluid.wave_speed())
+    }
+
+    /// The longest step in s that it would take by itself from the state that was looked at last; nothing where it has
+    /// none, as in implicit steps and without waves.
+    fn stable_step(&self) -> f64 {
+        let has_waves = self.limits.iter().all(|limit| limit.step < f64::INFINITY);
+        self.cfl.filter(|_| has_waves).map_or(0.0, |cfl| shortest(&self.limits, cfl))
     }
 
     /// The displacements of its particles around wall particle `row` of the interface in its part of a state, in m, up

@@ -85,14 +85,15 @@ impl<const D: usize> Scheme for World<D> {
         }
     }
 
-    /// The bounds on the step are those of the fluid, and of each solid that of so many of its own steps
-    /// that no run would end.
+    /// The bounds on the step are those of the fluid, of as many of its steps as are one of all, and of each solid that
+    /// of so many of its own steps that no run would end.
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.guide(state);
         let mut all = self.fluid.inspect(&state[self.parts[0].state.clone()], limits);
         let named = |of: usize, particle: usize| self.parts[of].index[particle] as usize;
         all = rename(all, &|particle| named(0, particle));
         limits.iter_mut().for_each(|limit| limit.particle = named(0, limit.particle));
+        let of_fluid = limits.len();
         for (k, solid) in (1..).zip(&mut self.solids) {
             let mut own = std::mem::take(&mut solid.limits);
             let health = solid.scheme.inspect(&state[self.parts[k].state.clone()], &mut own);
@@ -118,6 +119,8 @@ impl<const D: usize> Scheme for World<D> {
             let torn = solid.torn(&state[self.parts[k].state.clone()]);
             all.first_escaped = all.first_escaped.or(torn.map(|particle| named(k, particle)));
         }
+        let count = self.fluid_steps_of(&limits[..of_fluid], state);
+        limits[..of_fluid].iter_mut().for_each(|limit| limit.step *= count as f64);
         all
     }
 
@@ -141,8 +144,10 @@ impl<const D: usize> Scheme for World<D> {
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
-        for (k, part) in self.parts.iter().enumerate() {
+        let counts = state[self.counts_at()..].chunks_exact(2);
+        for ((k, part), count) in self.parts.iter().enumerate().zip(counts) {
             self.system(k).figures(&state[part.state.clone()], figures);
+            figures.push(count[0]);
         }
     }
 
@@ -254,6 +259,13 @@ impl<const D: usize> Scheme for World<D> {
     /// Its systems are moved by integrators of their own.
     fn has_rates(&self) -> bool {
         false
+    }
+
+    fn own_steps(&self, state: &[f64]) -> Vec<(String, u64)> {
+        let names = self.solids.iter().map(|solid| solid.name.clone());
+        let names = std::iter::once("fluid".to_owned()).chain(names);
+        let counts = state[self.counts_at()..].chunks_exact(2);
+        names.zip(counts).map(|(name, count)| (name, count[1] as u64)).collect()
     }
 
     fn settable(&self) -> &'static [&'static str] {

@@ -42,7 +42,11 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
         });
         all.push(built);
     }
-    let world = World::new(fluid, solids, &domain).map_err(|error| {
+    let cfl = match *main.time.step {
+        StepControl::Cfl(number) => Some(number),
+        _ => None,
+    };
+    let world = World::new(fluid, cfl, solids, &domain).map_err(|error| {
         let place = match &error {
             WorldError::Interface { solid, .. } => case.systems[*solid].name.place,
             WorldError::Motion { system, .. } | WorldError::Overlap { system, .. } => {

@@ -150,8 +150,8 @@ const LINEAR_SOLVER: KeySpec = key(
 /// How a system beside the main one goes on in time.
 static METHOD: TableSpec = TableSpec {
     title: "[system.time]",
-    meaning: "How the system takes its own steps within one of the fluid: as many as its stable step asks for, \
-              or one with an implicit integrator.",
+    meaning: "How the system takes its own steps: as many within one of the fluid as its stable step asks for, \
+              one for several of the fluid where it is slow and heavy, or one with an implicit integrator.",
     keys: &[INTEGRATOR, CFL, BETA, GAMMA, ALPHA, SPECTRAL_RADIUS, THETA, TOLERANCE, LINEAR_SOLVER],
 };
 

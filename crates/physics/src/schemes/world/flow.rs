@@ -1,0 +1,170 @@
+//! The steps of the fluid in a step of all: where its walls are, and what the solids get for it.
+
+use super::World;
+use crate::schemes::transport_velocity::Guide;
+use crate::schemes::{Scheme, SplitScheme, StepLimit};
+use crate::{Tensor, Vector};
+
+/// Most steps of the fluid in one of all. At a CFL number of 0.25 what moves with a tenth of the wave speed goes
+/// 0.4 of a smoothing length in so many: the look at the state after a step sees it before it is through
+/// a layer of particles, and the look before it sees surfaces that will touch.
+pub const MOST_FLUID_STEPS: u64 = 16;
+
+/// What a step may be longer than its steps of the fluid together, for round-off of times that are met.
+const ROUND_OFF: f64 = 1e-8;
+
+/// How a wall particle goes through a step: on a parabola that begins with the velocity of the solid, theory (82).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way<const D: usize> {
+    pub number: u32,
+    places: [Vector<D>; 2],
+    velocities: [Vector<D>; 2],
+    gradients: [Tensor<D>; 2],
+    /// The step in s.
+    step: f64,
+}
+
+impl<const D: usize> Way<D> {
+    /// Where it is after `k` of `count` parts of the step.
+    fn place(&self, k: u64, count: u64) -> Vector<D> {
+        let [from, to] = self.places;
+        let share = k as f64 / count as f64;
+        match k {
+            0 => from,
+            _ if k == count => to,
+            _ => {
+                from + self.velocities[0] * (self.step * share * (1.0 - share))
+                    + (to - from) * (share * share)
+            }
+        }
+    }
+
+    /// How it moves then, with a velocity from one place to the next or its own.
+    fn guide(&self, k: u64, count: u64, velocity: Option<Vector<D>>) -> Guide<D> {
+        let share = k as f64 / count as f64;
+        let between = |[from, to]: [Vector<D>; 2]| from + (to - from) * share;
+        let [from, to] = self.gradients;
+        let (own, deformation) = match k {
+            0 => (self.velocities[0], from),
+            _ if k == count => (self.velocities[1], to),
+            _ => (between(self.velocities), from + (to - from) * share),
+        };
+        Guide { number: self.number, velocity: velocity.unwrap_or(own), deformation }
+    }
+}
+
+impl<const D: usize> World<D> {
+    /// How many steps of the fluid, as they are for its `limits`, may be one of all: as many as fit into what the
+    /// solids may take by themselves, and into the time in which the waves of the fluid stop a layer of
+    /// particles of a solid, `rho_s dx / (rho c)`, theory (82). One where that of a solid is not known, where solids
+    /// touch something, as contact is as stiff as a step of the fluid allows, and where steps are fixed.
+    pub(super) fn fluid_steps_of(&mut self, limits: &[StepLimit], state: &[f64]) -> u64 {
+        let Some(cfl) = self.cfl else { return 1 };
+        let of_solids = self.solids.iter().map(|solid| solid.stable_step().min(solid.layer));
+        let longest = of_solids.fold(f64::INFINITY, f64::min);
+        let count = (longest / shortest(limits, cfl)).floor();
+        if !(longest < f64::INFINITY && count >= 2.0) {
+            return 1;
+        }
+        self.find_points(state);
+        let (domain, spacing) = (self.fluid.domain(), self.fluid.spacing());
+        if self.contact.is_near(domain, spacing) { 1 } else { (count as u64).min(MOST_FLUID_STEPS) }
+    }
+
+    /// The least number of steps of the fluid from `state` that makes stable ones of a step in s.
+    pub(super) fn fluid_steps_in(&mut self, step: f64, state: &[f64]) -> u64 {
+        let Some(cfl) = self.cfl.filter(|_| self.solids.iter().all(|solid| solid.cfl.is_some()))
+        else {
+            return 1;
+        };
+        let mut limits = std::mem::take(&mut self.limits);
+        self.fluid.bound_step(&state[self.parts[0].state.clone()], &mut limits);
+        let count = (step / shortest(&limits, cfl) * (1.0 - ROUND_OFF)).ceil();
+        self.limits = limits;
+        // What has broken down is found by the look at the state that this step leads to.
+        if count >= 1.0 { (count as u64).min(MOST_FLUID_STEPS) } else { 1 }
+    }
+
+    /// Finds how walls go through a step in `count` parts of the fluid, from one state to another.
+    pub(super) fn find_ways(&mut self, step: f64, count: u64, [old, new]: [&[f64]; 2]) {
+        self.ways.clear();
+        for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
+            let [old, new] = [&old[part.state.clone()], &new[part.state.clone()]];
+            for (row, &number) in solid.interface.walls().iter().enumerate() {
+                let [[from, begin], [to, end]] = [old, new].map(|own| solid.wall(own, row));
+                // Positions may have been wrapped into the box on the way.
+                let to = if solid.is_displaced {
+                    to
+                } else {
+                    from + solid.domain.separation(&from, &to)
+                };
+                let gradients = [old, new]
+                    .map(|own| solid.interface.deformation(row, solid.displacements(own, row)));
+                // The velocity at the end of the step is not known before the solid has the rest of the impulse.
+                let end = if count > 1 { (to - from) * (2.0 / step) - begin } else { end };
+                let (places, velocities) = ([from, to], [begin, end]);
+                self.ways.push(Way { number, places, velocities, gradients, step });
+            }
+        }
+    }
+
+    /// Takes the fluid in `state` through a step in `count` parts, and finds with which forces the solids would get in
+    /// half of the step what is left of the impulse.
+    pub(super) fn flow_along(&mut self, time: f64, step: f64, count: u64, state: &mut [f64]) {
+        let (fluid, own) = (self.parts[0].state.clone(), step / count as f64);
+        self.rest.clear();
+        if count > 1 {
+            let ways = self.ways.iter();
+            self.rest
+                .extend(ways.map(|way| -self.fluid.force_on(&state[fluid.clone()], way.number)));
+        }
+        let entry = self.interface_at();
+        for k in 0..count {
+            let begin = time + k as f64 * own;
+            // What the end of the step has of the work follows when the solids have the rest of the impulse.
+            let weight = if k > 0 { own } else { 0.5 * own };
+            let power = self.power_of_walls(k, count, &state[fluid.clone()]);
+            state[entry] -= weight * power;
+            self.bear_part(own / step, &state[fluid.clone()]);
+            for way in &self.ways {
+                // The drift sees walls where they were, as it sees the fluid.
+                let velocity = (way.place(k + 1, count) - way.place(k, count)) / own;
+                self.fluid.guide(&way.guide(k, count, Some(velocity)));
+            }
+            let part = &mut state[fluid.clone()];
+            self.fluid.kick(0.5 * own, part);
+            self.fluid.drift(begin, own, part);
+            for way in &self.ways {
+                let guide = way.guide(k + 1, count, None);
+                let place = way.place(k + 1, count);
+                self.fluid.place_wall(part, way.number, &place, &guide.velocity);
+                self.fluid.guide(&guide);
+            }
+            self.fluid.constrain(begin + own, part);
+            self.fluid.accelerate(begin + own, part);
+            self.fluid.kick(0.5 * own, part);
+            self.bear_part(own / step, &state[fluid.clone()]);
+        }
+    }
+
+    /// The power in W of the fluid in its own `state` on walls after `k` of `count` parts of the step.
+    fn power_of_walls(&self, k: u64, count: u64, state: &[f64]) -> f64 {
+        let power = |way: &Way<D>| {
+            self.fluid.force_on(state, way.number).dot(&way.guide(k, count, None).velocity)
+        };
+        self.ways.iter().map(power).sum()
+    }
+
+    /// Adds the forces of the fluid in its own `state` on walls for half of one of its steps, a `share` of the whole.
+    fn bear_part(&mut self, share: f64, state: &[f64]) {
+        for (rest, way) in self.rest.iter_mut().zip(&self.ways) {
+            *rest += self.fluid.force_on(state, way.number) * share;
+        }
+    }
+}
+
+/// The step of some limits with a CFL number in s.
+pub(super) fn shortest(limits: &[StepLimit], cfl: f64) -> f64 {
+    let own = |limit: &StepLimit| limit.step * if limit.scaled { cfl } else { 1.0 };
+    limits.iter().map(own).fold(f64::INFINITY, f64::min)
+}
