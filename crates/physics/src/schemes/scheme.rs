@@ -20,7 +20,7 @@ use crate::solve::Costs;
 /// [`Ledger`](super::Ledger): the work of each mechanism, then the impulse of each way in. The
 /// rate of an integral is a power or a force, so an integrator carries the bookkeeping to its own
 /// order without knowing of it, theory (18), and a copy of the state is all there is to save.
-pub trait Scheme: Send {
+pub trait Scheme: Send + Sync {
     /// What it is called and what it shows.
     fn description(&self) -> &'static SchemeDescription;
 

@@ -5,24 +5,32 @@ use super::fluid::LEDGER;
 use crate::geometry::Faces;
 use crate::neighbors::{Domain, search};
 use crate::schemes::SplitScheme;
-use crate::{Tensor, Vector};
+use crate::{Tensor, Vector, parallel};
 
 /// How a wall particle that somebody else moves does so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Guide<const D: usize> {
-    /// The number of the particle.
-    pub number: u32,
     /// Its velocity in m/s.
     pub velocity: Vector<D>,
     /// Its deformation gradient, which its faces follow.
     pub deformation: Tensor<D>,
 }
 
+/// A wall particle that somebody else moves.
+#[derive(Clone, Debug)]
+struct Guidance<const D: usize> {
+    /// Its number among these.
+    number: usize,
+    velocity: Vector<D>,
+    /// Its faces at the start.
+    rest: Faces<D>,
+}
+
 /// The wall particles that somebody else moves.
 #[derive(Clone, Debug)]
 pub(super) struct Guided<const D: usize> {
-    /// By index among walls: the velocity, and the faces at the start; nothing for other walls.
-    walls: Vec<Option<(Vector<D>, Faces<D>)>>,
+    /// By index among walls; nothing for other walls.
+    walls: Vec<Option<Guidance<D>>>,
     /// By number: whether the wall particle is seen on the side of its face alone.
     is_sided: Vec<bool>,
 }
@@ -35,7 +43,7 @@ impl<const D: usize> Guided<D> {
 
     /// Velocity of a wall by its index, if somebody else moves it.
     pub fn velocity(&self, index: usize) -> Option<Vector<D>> {
-        self.walls.get(index)?.as_ref().map(|(velocity, _)| *velocity)
+        self.walls.get(index)?.as_ref().map(|guided| guided.velocity)
     }
 }
 
@@ -118,25 +126,31 @@ impl<const D: usize> TransportVelocity<D> {
             pair.iter().for_each(|(_, number)| common.guided.is_sided[*number as usize] = true);
         }
         common.guided.walls = vec![None; common.walls.len()];
-        for &number in numbers {
-            let Some(index) = common.wall_of(number) else { continue };
-            let faces = common.walls[index].faces.clone();
-            common.guided.walls[index] = Some((Vector::zeros(), faces));
+        for (number, &wall) in numbers.iter().enumerate() {
+            let Some(index) = common.wall_of(wall) else { continue };
+            let rest = common.walls[index].faces.clone();
+            common.guided.walls[index] = Some(Guidance { number, velocity: Vector::zeros(), rest });
         }
     }
 
-    /// Says how a wall particle moves at the moment.
-    pub(crate) fn guide(&mut self, guide: &Guide<D>) {
+    /// Says how the guided wall particles move at the moment, by their number among those.
+    pub(crate) fn guide(&mut self, how: impl Fn(usize) -> Guide<D> + Sync) {
         let common = &mut self.common;
-        let Some(index) = common.wall_of(guide.number) else { return };
-        if let Some((velocity, rest)) = &mut common.guided.walls[index] {
-            *velocity = guide.velocity;
-            let faces = &mut common.walls[index].faces;
-            faces.follow(rest, &guide.deformation);
-            if common.guided.is_sided(guide.number)
-                && let Some(side) = faces.normals().first()
+        let (walls, guided) = (&mut common.walls, &mut common.guided.walls);
+        parallel::for_each_pair_of_chunks(guided, walls, |_, guided, walls| {
+            for (guided, wall) in guided.iter_mut().zip(walls) {
+                if let Some(Guidance { number, velocity, rest }) = guided {
+                    let guide = how(*number);
+                    *velocity = guide.velocity;
+                    wall.faces.follow(rest, &guide.deformation);
+                }
+            }
+        });
+        for (_, wall) in common.guided.walls.iter().zip(&common.walls).filter(|it| it.0.is_some()) {
+            if common.guided.is_sided(wall.number)
+                && let Some(side) = wall.faces.normals().first()
             {
-                common.support.show_on(guide.number, *side);
+                common.support.show_on(wall.number, *side);
             }
         }
     }

@@ -40,15 +40,15 @@ impl<const D: usize> World<D> {
 
     /// Tells the fluid how its walls move and which way they face in a state.
     pub(super) fn guide(&mut self, state: &[f64]) {
-        for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
-            let own = &state[part.state.clone()];
-            for (row, &number) in solid.interface.walls().iter().enumerate() {
-                let displacement = solid.displacements(own, row);
-                let [_, velocity] = solid.wall(own, row);
-                let deformation = solid.interface.deformation(row, displacement);
-                self.fluid.guide(&Guide { number, velocity, deformation });
-            }
-        }
+        let (solids, parts) = (&self.solids, &self.parts);
+        self.fluid.guide(|wall| {
+            let number = solids.partition_point(|solid| solid.first <= wall) - 1;
+            let (solid, own) = (&solids[number], &state[parts[number + 1].state.clone()]);
+            let row = wall - solid.first;
+            let velocity = solid.interface.carried(row, |b| solid.velocity(own, b));
+            let deformation = solid.interface.deformation(row, solid.displacements(own, row));
+            Guide { velocity, deformation }
+        });
     }
 
     /// Index of the work of the interface of a solid among the works of all, and that of its impulse among

@@ -1,9 +1,11 @@
 //! The steps of the fluid in a step of all: where its walls are, and what the solids get for it.
 
-use super::World;
+use nalgebra::ArrayStorage;
+
+use super::{Solid, World};
 use crate::schemes::transport_velocity::Guide;
 use crate::schemes::{Scheme, SplitScheme, StepLimit};
-use crate::{Tensor, Vector};
+use crate::{Tensor, Vector, parallel};
 
 /// Most steps of the fluid in one of all. At a CFL number of 0.25 what moves with a tenth of the wave speed goes
 /// 0.4 of a smoothing length in so many: the look at the state after a step sees it before it is through
@@ -25,6 +27,29 @@ pub(super) struct Way<const D: usize> {
 }
 
 impl<const D: usize> Way<D> {
+    /// That of no wall particle.
+    const NOWHERE: Self = Self {
+        number: 0,
+        places: [Vector::<D>::from_array_storage(ArrayStorage([[0.0; D]])); 2],
+        velocities: [Vector::<D>::from_array_storage(ArrayStorage([[0.0; D]])); 2],
+        gradients: [Tensor::<D>::from_array_storage(ArrayStorage([[0.0; D]; D])); 2],
+        step: 0.0,
+    };
+
+    /// That of the wall particle in a `row` of the interface of a solid, from one of its states to another, a step in s later,
+    /// in which the fluid takes `count` of its own.
+    fn of(solid: &Solid<D>, row: usize, states: [&[f64]; 2], (step, count): (f64, u64)) -> Self {
+        let [[from, begin], [to, end]] = states.map(|own| solid.wall(own, row));
+        // Positions may have been wrapped into the box on the way.
+        let to = if solid.is_displaced { to } else { from + solid.domain.separation(&from, &to) };
+        let gradients =
+            states.map(|own| solid.interface.deformation(row, solid.displacements(own, row)));
+        // The velocity at the end of the step is not known before the solid has the rest of the impulse.
+        let end = if count > 1 { (to - from) * (2.0 / step) - begin } else { end };
+        let number = solid.interface.walls()[row];
+        Self { number, places: [from, to], velocities: [begin, end], gradients, step }
+    }
+
     /// Where it is after `k` of `count` parts of the step.
     fn place(&self, k: u64, count: u64) -> Vector<D> {
         let [from, to] = self.places;
@@ -39,17 +64,25 @@ impl<const D: usize> Way<D> {
         }
     }
 
+    /// Its velocity then.
+    fn velocity(&self, k: u64, count: u64) -> Vector<D> {
+        let [from, to] = self.velocities;
+        match k {
+            0 => from,
+            _ if k == count => to,
+            _ => from + (to - from) * (k as f64 / count as f64),
+        }
+    }
+
     /// How it moves then, with a velocity from one place to the next or its own.
     fn guide(&self, k: u64, count: u64, velocity: Option<Vector<D>>) -> Guide<D> {
-        let share = k as f64 / count as f64;
-        let between = |[from, to]: [Vector<D>; 2]| from + (to - from) * share;
         let [from, to] = self.gradients;
-        let (own, deformation) = match k {
-            0 => (self.velocities[0], from),
-            _ if k == count => (self.velocities[1], to),
-            _ => (between(self.velocities), from + (to - from) * share),
+        let deformation = match k {
+            0 => from,
+            _ if k == count => to,
+            _ => from + (to - from) * (k as f64 / count as f64),
         };
-        Guide { number: self.number, velocity: velocity.unwrap_or(own), deformation }
+        Guide { velocity: velocity.unwrap_or_else(|| self.velocity(k, count)), deformation }
     }
 }
 
@@ -87,24 +120,18 @@ impl<const D: usize> World<D> {
 
     /// Finds how walls go through a step in `count` parts of the fluid, from one state to another.
     pub(super) fn find_ways(&mut self, step: f64, count: u64, [old, new]: [&[f64]; 2]) {
-        self.ways.clear();
+        let all = self.solids.iter().map(|solid| solid.interface.walls().len()).sum();
+        self.ways.resize(all, Way::NOWHERE);
+        let mut rest = self.ways.as_mut_slice();
         for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
-            let [old, new] = [&old[part.state.clone()], &new[part.state.clone()]];
-            for (row, &number) in solid.interface.walls().iter().enumerate() {
-                let [[from, begin], [to, end]] = [old, new].map(|own| solid.wall(own, row));
-                // Positions may have been wrapped into the box on the way.
-                let to = if solid.is_displaced {
-                    to
-                } else {
-                    from + solid.domain.separation(&from, &to)
-                };
-                let gradients = [old, new]
-                    .map(|own| solid.interface.deformation(row, solid.displacements(own, row)));
-                // The velocity at the end of the step is not known before the solid has the rest of the impulse.
-                let end = if count > 1 { (to - from) * (2.0 / step) - begin } else { end };
-                let (places, velocities) = ([from, to], [begin, end]);
-                self.ways.push(Way { number, places, velocities, gradients, step });
-            }
+            let states = [old, new].map(|state| &state[part.state.clone()]);
+            let (own, others) = rest.split_at_mut(solid.interface.walls().len());
+            parallel::for_each_chunk(own, |first, ways| {
+                for (row, way) in (first..).zip(ways) {
+                    *way = Way::of(solid, row, states, (step, count));
+                }
+            });
+            rest = others;
         }
     }
 
@@ -126,20 +153,21 @@ impl<const D: usize> World<D> {
             let power = self.power_of_walls(k, count, &state[fluid.clone()]);
             state[entry] -= weight * power;
             self.bear_part(own / step, &state[fluid.clone()]);
-            for way in &self.ways {
-                // The drift sees walls where they were, as it sees the fluid.
+            // The drift sees walls where they were, as it sees the fluid.
+            let ways = &self.ways;
+            self.fluid.guide(|wall| {
+                let way = &ways[wall];
                 let velocity = (way.place(k + 1, count) - way.place(k, count)) / own;
-                self.fluid.guide(&way.guide(k, count, Some(velocity)));
-            }
+                way.guide(k, count, Some(velocity))
+            });
             let part = &mut state[fluid.clone()];
             self.fluid.kick(0.5 * own, part);
             self.fluid.drift(begin, own, part);
             for way in &self.ways {
-                let guide = way.guide(k + 1, count, None);
                 let place = way.place(k + 1, count);
-                self.fluid.place_wall(part, way.number, &place, &guide.velocity);
-                self.fluid.guide(&guide);
+                self.fluid.place_wall(part, way.number, &place, &way.velocity(k + 1, count));
             }
+            self.fluid.guide(|wall| self.ways[wall].guide(k + 1, count, None));
             self.fluid.constrain(begin + own, part);
             self.fluid.accelerate(begin + own, part);
             self.fluid.kick(0.5 * own, part);
@@ -149,9 +177,8 @@ impl<const D: usize> World<D> {
 
     /// The power in W of the fluid in its own `state` on walls after `k` of `count` parts of the step.
     fn power_of_walls(&self, k: u64, count: u64, state: &[f64]) -> f64 {
-        let power = |way: &Way<D>| {
-            self.fluid.force_on(state, way.number).dot(&way.guide(k, count, None).velocity)
-        };
+        let power =
+            |way: &Way<D>| self.fluid.force_on(state, way.number).dot(&way.velocity(k, count));
         self.ways.iter().map(power).sum()
     }
 

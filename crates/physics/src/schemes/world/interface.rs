@@ -93,6 +93,8 @@ pub(super) struct Interface<const D: usize> {
     reference: Vec<Vector<D>>,
     /// Where the carriers of each begin, and where the last ones end.
     starts: Vec<usize>,
+    /// Where those of each end that have a weight: one that carries alone stands in front of the others.
+    ends: Vec<usize>,
     carriers: Vec<Carrier<D>>,
 }
 
@@ -124,6 +126,7 @@ impl<const D: usize> Interface<D> {
             walls: Vec::new(),
             reference: Vec::new(),
             starts: vec![0],
+            ends: Vec::new(),
             carriers: Vec::new(),
         };
         for (row, (number, body, position)) in walls.iter().enumerate() {
@@ -136,7 +139,11 @@ impl<const D: usize> Interface<D> {
             let own = carriers(&around, reach, same_place).ok_or_else(|| InterfaceError::Thin {
                 position: position.iter().copied().collect(),
             })?;
+            let first = built.carriers.len();
             built.carriers.extend(own);
+            let own = &mut built.carriers[first..];
+            own.sort_by_key(|carrier| carrier.weight == 0.0);
+            built.ends.push(first + own.partition_point(|carrier| carrier.weight != 0.0));
             built.walls.push(*number);
             built.reference.push(*position);
             built.starts.push(built.carriers.len());
@@ -164,8 +171,15 @@ impl<const D: usize> Interface<D> {
 
     /// The sum of a function of the solid's particles (indices in memory) over those that carry wall
     /// particle `row`.
+    #[inline]
     pub fn carried(&self, row: usize, of: impl Fn(usize) -> Vector<D>) -> Vector<D> {
-        self.carried_at(row, &Vector::zeros(), of)
+        self.weighted(row).map(|it| of(it.particle as usize) * it.weight).sum()
+    }
+
+    /// The carriers of wall particle `row` that have a weight.
+    #[inline]
+    fn weighted(&self, row: usize) -> impl Iterator<Item = &Carrier<D>> {
+        self.carriers[self.starts[row]..self.ends[row]].iter()
     }
 
     /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
@@ -182,7 +196,7 @@ impl<const D: usize> Interface<D> {
     /// Where wall particle `row` is, in m, for displacements of the solid's particles in m: those of particles
     /// beyond a periodic bound are as good as others.
     pub fn place(&self, row: usize, displacement: impl Fn(usize) -> Vector<D>) -> Vector<D> {
-        self.place_at(row, &Vector::zeros(), displacement)
+        self.reference[row] + self.carried(row, displacement)
     }
 
     /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
@@ -227,7 +241,9 @@ impl<const D: usize> Interface<D> {
 
     /// Adds what acts on wall particle `row` to the particles of the solid that carry it.
     pub fn bear(&self, row: usize, force: &Vector<D>, forces: &mut [Vector<D>]) {
-        self.bear_at(row, &Vector::zeros(), force, forces);
+        for carrier in self.weighted(row) {
+            forces[carrier.particle as usize] += force * carrier.weight;
+        }
     }
 
     /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
@@ -247,6 +263,7 @@ impl<const D: usize> Interface<D> {
     pub fn memory(&self) -> usize {
         size_of_val(self.walls.as_slice())
             + size_of_val(self.starts.as_slice())
+            + size_of_val(self.ends.as_slice())
             + size_of_val(self.carriers.as_slice())
     }
 }
