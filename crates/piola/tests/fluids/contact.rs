@@ -350,6 +350,19 @@ end = 1e-5
         assert!((pressure / (9810.0 * depth) - 1.0).abs() < 0.02, "{found:?}");
     }
     assert_eq!(found[9], 0.0);
+    let misplaced = [
+        ("at = [0.43, 0.0]", "at = [0.43, 0.5]", "no particle of the wall is behind this place"),
+        ("normal = [0.0, 2.0]", "normal = [0.0, -2.0]", "the wall goes on in front of the sensor"),
+        ("body = \"tank\"\nat = [0.43", "body = \"water\"\nat = [0.43", "`floor` is in no wall"),
+        ("body = \"tank\"\nat = [0.43", "body = \"box\"\nat = [0.43", "`floor` is in no wall"),
+    ];
+    for (from, to, said) in misplaced {
+        assert!(still.contains(from), "{from}");
+        let read = case::parse(&still.replacen(from, to, 1), "test", &LoadOptions::default());
+        let refused = read.and_then(|case| Session::new(&case).map(|_| ()));
+        let text = refused.expect_err(to).to_string();
+        assert!(text.contains(said) && text.contains("test:"), "{text}");
+    }
 
     let stream = r#"
 version = 1

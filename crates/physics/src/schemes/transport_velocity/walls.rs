@@ -12,13 +12,11 @@ use crate::{Vector, parallel};
 /// a face of particles in 3D is 0.71.
 pub(super) const BESIDE: f64 = 0.75;
 
-/// Whether a way from the middle of a cell of a lattice ends in that cell, or at most 0.11 of a spacing outside of it in 2D, 0.19 in 3D: in one
-/// of the balls that reach from the middle to a corner, `|r|^2 <= dx/2 (|x| + |y| + |z|)`.
+/// Whether a way from the middle of a cell of a lattice, however that is turned, ends in the cell or next to it: within half of
+/// its diagonal.
 pub(super) fn is_in_cell<T: Number, const D: usize>(way: &SVector<T, D>, spacing: f64) -> T::Mask {
-    let nothing = || T::from(0.0);
-    let square = way.iter().fold(nothing(), |sum, part| sum + *part * *part);
-    let along = way.iter().fold(nothing(), |sum, part| sum + part.abs());
-    square.at_most(along * (0.5 * spacing))
+    let square = way.iter().fold(T::from(0.0), |sum, part| sum + *part * *part);
+    square.at_most(T::from(0.25 * D as f64 * spacing * spacing))
 }
 
 /// A particle of a wall.
@@ -159,7 +157,7 @@ impl<const D: usize> Common<D> {
     }
 
     /// The same of a place inside of the wall, as far as it is not in front of it: what has gone over the end of a wall, and
-    /// what is on its far side, is nowhere. The cells of walls that somebody else moves may be stretched, and are not asked for.
+    /// what is on its far side, does not count. The cells of walls that somebody else moves may be stretched, and are not asked for.
     pub(super) fn inside(&self, index: usize, way: &Vector<D>) -> Option<(f64, &Vector<D>)> {
         let is_inside =
             self.guided.velocity(index).is_some() || is_in_cell(way, self.particles.spacing[0]);

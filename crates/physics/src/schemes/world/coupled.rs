@@ -61,7 +61,7 @@ impl<const D: usize> World<D> {
     }
 
     /// Takes the points of surfaces where they are.
-    pub(super) fn find_points(&mut self, state: &[f64]) {
+    fn find_points(&mut self, state: &[f64]) {
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         let (domain, spacing) = (fluid.domain(), fluid.spacing());
         let fluid_state = &state[parts[0].state.clone()];

@@ -12,6 +12,11 @@ use crate::{Tensor, Vector, parallel};
 /// a layer of particles, and the look before it sees surfaces that will touch.
 pub const MOST_FLUID_STEPS: u64 = 16;
 
+/// The same at another CFL number: as far in all.
+fn most_steps(cfl: f64) -> u64 {
+    (0.25 / cfl * MOST_FLUID_STEPS as f64).clamp(1.0, MOST_FLUID_STEPS as f64) as u64
+}
+
 /// What a step may be longer than its steps of the fluid together, for round-off of times that are met.
 const ROUND_OFF: f64 = 1e-8;
 
@@ -91,7 +96,7 @@ impl<const D: usize> World<D> {
     /// solids may take by themselves, and into the time in which the waves of the fluid stop a layer of
     /// particles of a solid, `rho_s dx / (rho c)`, theory (82). One where that of a solid is not known, where solids
     /// touch something, as contact is as stiff as a step of the fluid allows, and where steps are fixed.
-    pub(super) fn fluid_steps_of(&mut self, limits: &[StepLimit], state: &[f64]) -> u64 {
+    pub(super) fn fluid_steps_of(&self, limits: &[StepLimit]) -> u64 {
         let Some(cfl) = self.cfl else { return 1 };
         let of_solids = self.solids.iter().map(|solid| solid.stable_step().min(solid.layer));
         let longest = of_solids.fold(f64::INFINITY, f64::min);
@@ -99,9 +104,8 @@ impl<const D: usize> World<D> {
         if !(longest < f64::INFINITY && count >= 2.0) {
             return 1;
         }
-        self.find_points(state);
         let (domain, spacing) = (self.fluid.domain(), self.fluid.spacing());
-        if self.contact.is_near(domain, spacing) { 1 } else { (count as u64).min(MOST_FLUID_STEPS) }
+        if self.contact.is_near(domain, spacing) { 1 } else { (count as u64).min(most_steps(cfl)) }
     }
 
     /// The least number of steps of the fluid from `state` that makes stable ones of a step in s.
@@ -115,7 +119,7 @@ impl<const D: usize> World<D> {
         let count = (step / shortest(&limits, cfl) * (1.0 - ROUND_OFF)).ceil();
         self.limits = limits;
         // What has broken down is found by the look at the state that this step leads to.
-        if count >= 1.0 { (count as u64).min(MOST_FLUID_STEPS) } else { 1 }
+        if count >= 1.0 { (count as u64).min(most_steps(cfl)) } else { 1 }
     }
 
     /// Finds how walls go through a step in `count` parts of the fluid, from one state to another.

@@ -89,6 +89,8 @@ impl<const D: usize> Scheme for World<D> {
     /// of so many of its own steps that no run would end.
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.guide(state);
+        // What touches in this state: after a retry the last pass was of one that has failed.
+        self.touch(state);
         let mut all = self.fluid.inspect(&state[self.parts[0].state.clone()], limits);
         let named = |of: usize, particle: usize| self.parts[of].index[particle] as usize;
         all = rename(all, &|particle| named(0, particle));
@@ -119,7 +121,7 @@ impl<const D: usize> Scheme for World<D> {
             let torn = solid.torn(&state[self.parts[k].state.clone()]);
             all.first_escaped = all.first_escaped.or(torn.map(|particle| named(k, particle)));
         }
-        let count = self.fluid_steps_of(&limits[..of_fluid], state);
+        let count = self.fluid_steps_of(&limits[..of_fluid]);
         limits[..of_fluid].iter_mut().for_each(|limit| limit.step *= count as f64);
         all
     }

@@ -51,8 +51,8 @@ pub(super) fn probes<const D: usize>(
             model::ProbeKind::Sensor { at, normal, radius } => {
                 match sensor(case, particles, body, (at, normal, *radius)) {
                     Ok(sensor) => ProbeKind::Sensor(sensor),
-                    Err(problem) => {
-                        problems.push(problem);
+                    Err(found) => {
+                        problems.extend(found);
                         continue;
                     }
                 }
@@ -116,18 +116,27 @@ fn sensor<const D: usize>(
     particles: &Particles<D>,
     body: Option<&Located<usize>>,
     (at, normal, radius): (&Located<Vec<f64>>, &[f64], f64),
-) -> Result<Sensor, Problem> {
+) -> Result<Sensor, Vec<Problem>> {
     let (kernel, ratio) = kernel_of(case);
+    let domain = super::domain::<D>(case)?;
     let (middle, axis) = (vector::<D>(at), vector::<D>(normal));
+    let refuse = |message: &str, label: &str| {
+        let help =
+            "`at` has to be on a face of the wall, and `normal` points from there to the fluid";
+        vec![case.problem_at(at.place, message, label, Some(help.to_owned()))]
+    };
     let (mut behind, mut area) = (Vec::new(), 0.0);
     for a in of_body(particles, body) {
         let spacing = particles.spacing[a as usize];
-        let way = particles.position[a as usize] - middle;
+        let way = domain.separation(&middle, &particles.position[a as usize]);
         let depth = -way.dot(&axis);
         let share = Sensor::share((way + axis * depth).norm(), radius, spacing);
         let deepest = kernel.support_radius(ratio * spacing);
-        if share == 0.0 || !(FIRST_LAYER.start * spacing..deepest).contains(&depth) {
+        if share == 0.0 || depth.abs() >= deepest {
             continue;
+        }
+        if depth < FIRST_LAYER.start * spacing {
+            return Err(refuse("the wall goes on in front of the sensor", "inside of the wall"));
         }
         behind.push((a, share));
         if depth < FIRST_LAYER.end * spacing {
@@ -138,8 +147,7 @@ fn sensor<const D: usize>(
         return Ok(Sensor { particles: behind, normal: normal.to_vec(), area });
     }
     let message = "no particle of the wall is behind this place within the radius of the sensor";
-    let help = "`at` has to be on a face of the wall, and `normal` points from there to the fluid";
-    Err(case.problem_at(at.place, message, "no wall here", Some(help.to_owned())))
+    Err(refuse(message, "no wall here"))
 }
 
 /// Probes of a particle are meant to have one within so many spacings.

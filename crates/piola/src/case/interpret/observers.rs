@@ -157,8 +157,13 @@ impl Reader<'_, '_> {
     /// Reports probes of forces that look at no wall and no solid, and sensors that are in no wall.
     pub(super) fn forces_act(&mut self, probes: &[Probe], bodies: &[Body]) {
         for probe in probes {
-            let Some(body) = probe.body.as_ref() else { continue };
-            let its = bodies.get(body.value);
+            let is_sensor = matches!(probe.kind, ProbeKind::Sensor { .. });
+            // Where there is one body only it is that one.
+            let (its, place) = match &probe.body {
+                Some(body) => (bodies.get(body.value), body.place),
+                None if is_sensor => (bodies.first(), probe.name.place),
+                None => continue,
+            };
             let is_wall = its.is_none_or(|body| body.wall.is_some());
             let is_solid = its.is_some_and(|body| body.system.is_some());
             let (what, help) = match probe.kind {
@@ -172,8 +177,12 @@ impl Reader<'_, '_> {
                 _ => continue,
             };
             let message = format!("the probe `{}` {what}", *probe.name);
-            let label = if is_solid { "a solid" } else { "the fluid itself" };
-            self.report(Problem::new(body.place, message, label).help(help));
+            let label = match () {
+                () if is_solid => "a solid",
+                () if is_sensor => "no wall",
+                () => "the fluid itself",
+            };
+            self.report(Problem::new(place, message, label).help(help));
         }
     }
 

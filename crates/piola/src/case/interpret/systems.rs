@@ -76,7 +76,7 @@ impl Known {
 impl Reader<'_, '_> {
     /// Which system each body names, of those of the file.
     pub(super) fn systems_of_bodies(&mut self, record: &Record) {
-        let names = self.unique_names(record, "system", &[]);
+        let names = self.unique_names(record, "system", &["fluid"]);
         for body in record.records("body") {
             let system = body.text("system");
             let index = system.as_ref().and_then(|it| names.iter().position(|name| *name == **it));

@@ -117,7 +117,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "sensor",
-            meaning: "the pressure on a round patch of a wall, as a sensor in it has it: what the fluid pushes it with, over its area; column `NAME.pressure`",
+            meaning: "the pressure that a round sensor in a wall has: the force of the fluid on the patch of the wall over its area; column `NAME.pressure`. In a wall thinner than a support, what is on its far side counts too",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
