@@ -64,6 +64,13 @@ impl PrescribedComponents {
         }
     }
 
+    /// Those of one particle.
+    pub fn of(&self, particle: usize) -> &[Entry] {
+        let first = self.entries.partition_point(|entry| entry.particle < particle);
+        let own = &self.entries[first..];
+        &own[..own.partition_point(|entry| entry.particle == particle)]
+    }
+
     /// Whether nothing is prescribed.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()

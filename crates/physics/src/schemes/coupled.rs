@@ -12,11 +12,12 @@ pub trait CoupledScheme: Scheme {
     /// A solid by its number, and its part of a state.
     fn solid(&mut self, number: usize) -> (&mut dyn Scheme, Range<usize>);
 
-    /// How many steps of its own the fluid takes from `state` in a step of `step` s.
-    fn fluid_steps(&mut self, step: f64, state: &[f64]) -> u64;
+    /// How many steps of its own the fluid takes in a step of `step` s from the state that [`Scheme::inspect`] has
+    /// looked at last; one before any look.
+    fn fluid_steps(&self, step: f64) -> u64;
 
     /// The same of a solid.
-    fn solid_steps(&mut self, number: usize, step: f64, state: &[f64]) -> u64;
+    fn solid_steps(&self, number: usize, step: f64) -> u64;
 
     /// Gives the solids the impulse of the forces that the fluid in `state` has on them at `time`, in
     /// `duration` s.

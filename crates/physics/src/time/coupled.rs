@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::integrator::{Integrator, Unserved};
 use super::kick_drift_kick::KickDriftKick;
+use crate::parallel;
 use crate::schemes::Scheme;
 
 /// A fluid by kick-drift-kick, and each solid in it by an integrator of its own, each as often as its stable step asks
@@ -53,14 +54,14 @@ impl Integrator for Coupled {
         let Some(world) = scheme.coupled() else { return Ok(()) };
         // Where failures have made steps shorter, those within are as much shorter.
         let whole = step / self.factor;
-        let fluid_steps = world.fluid_steps(whole, old);
+        let fluid_steps = world.fluid_steps(whole);
         self.counts.clear();
         self.counts.push(fluid_steps);
-        new.copy_from_slice(old);
+        parallel::copy(new, old);
         world.push(time, 0.5 * step, new);
         world.settle(time, new);
         for (number, integrator) in self.solids.iter_mut().enumerate() {
-            let count = world.solid_steps(number, whole, new);
+            let count = world.solid_steps(number, whole);
             self.counts.push(count);
             let (solid, part) = world.solid(number);
             self.old.clear();

@@ -49,7 +49,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     }
 
     /// The same, without a look for particles that have escaped.
-    pub(crate) fn bound_step(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+    fn bound_step(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let common = &self.common;
         let (mut health, [signal, acceleration]) =
             look(common.particles.len(), [0.0; 2], |number| self.look_at(number, state));

@@ -87,11 +87,21 @@ impl<const D: usize> TransportVelocity<D> {
         self.common.faces(number as usize)
     }
 
-    /// Place of a wall particle (number) in a state, and the velocity of its surface at the last pass over walls.
-    pub(crate) fn motion_of(&self, state: &[f64], number: u32) -> [Vector<D>; 2] {
-        let place = self.common.columns(state).position[number as usize];
-        let values = self.common.wall_of(number).map(|index| &self.common.wall_values[index]);
-        [place, values.map_or_else(Vector::zeros, |values| values.motion + values.sliding)]
+    /// Place of a wall particle (number) in a state.
+    pub(crate) fn place_of(&self, state: &[f64], number: u32) -> Vector<D> {
+        self.common.columns(state).position[number as usize]
+    }
+
+    /// The velocity of the surface of a wall particle (number) in a state of a time in s.
+    pub(crate) fn surface_velocity(&self, time: f64, state: &[f64], number: u32) -> Vector<D> {
+        let common = &self.common;
+        let mut velocity = common.columns(state).velocity[number as usize];
+        if let Some(index) = common.wall_of(number) {
+            for entry in common.sliding.of(index) {
+                velocity[entry.component] += entry.value.value(entry.place, time);
+            }
+        }
+        velocity
     }
 
     /// Wave speed of the fluid in m/s.

@@ -20,9 +20,9 @@
 //! stiff as a step of the fluid allows with some margin.
 
 use super::Solid;
-use crate::Vector;
 use crate::neighbors::{Domain, search};
 use crate::schemes::transport_velocity::TransportVelocity;
+use crate::{Vector, parallel};
 
 /// How far in spacings the points of a surface make a plane along it.
 const ALONG: f64 = 1.0;
@@ -103,10 +103,31 @@ impl Origin {
 
 /// A point of a surface at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Point<const D: usize> {
-    pub place: Vector<D>,
-    pub normal: Vector<D>,
-    pub velocity: Vector<D>,
+struct Point<const D: usize> {
+    place: Vector<D>,
+    normal: Vector<D>,
+}
+
+/// A point that has points of other bodies around it.
+#[derive(Clone, Debug)]
+struct Near<const D: usize> {
+    point: u32,
+    others: Vec<u32>,
+    /// Those that make a plane at the point, with their weights.
+    weights: Vec<(u32, f64)>,
+    /// The plane, if the point is behind it.
+    behind: Option<Plane<D>>,
+}
+
+/// The plane that some points make at another one.
+#[derive(Clone, Copy, Debug)]
+struct Plane<const D: usize> {
+    normal: Vector<D>,
+    /// How far the point is behind it in m.
+    depth: f64,
+    /// Sum of the weights, and that without how points face each other.
+    total: f64,
+    covered: f64,
 }
 
 /// What touches what.
@@ -122,10 +143,9 @@ pub(super) struct Contact<const D: usize> {
     points: Vec<Point<D>>,
     /// Where points were when those around them were looked for.
     seen: Vec<Vector<D>>,
-    /// Points that have points of other bodies around them, with these.
-    around: Vec<(u32, Vec<u32>)>,
-    /// Points around one, by index, with their weights.
-    weights: Vec<(usize, f64)>,
+    near: Vec<Near<D>>,
+    /// Whether the normal of a point is asked for.
+    is_asked: Vec<bool>,
     /// Density of the solid behind each point in kg/m^3, infinite of walls.
     densities: Vec<f64>,
     /// The largest depth in m, with the point of a solid that has a part in it.
@@ -170,28 +190,65 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// Takes points where they are now, and looks for those around them if they have moved far enough.
+    /// Takes points where they are now, looks for those around them if they have moved far enough, and finds which are
+    /// behind a plane of others.
+    ///
+    /// `place` and `normal` take the origin of a point, and what stands between its wall particle and its surface
+    /// where solids begin or the normal there.
     pub fn update(
         &mut self,
         domain: &Domain<D>,
         spacing: f64,
-        point: impl Fn(&Origin, [&Vector<D>; 2]) -> Point<D>,
+        place: impl Fn(&Origin, &Vector<D>) -> Vector<D> + Sync,
+        normal: impl Fn(&Origin, &Vector<D>) -> Vector<D> + Sync,
     ) {
-        self.points.clear();
-        let starts = self.offsets.iter().zip(&self.normals);
-        let points = self.origins.iter().zip(starts);
-        self.points
-            .extend(points.map(|(origin, (offset, normal))| point(origin, [offset, normal])));
+        let mut points = std::mem::take(&mut self.points);
+        points
+            .resize(self.origins.len(), Point { place: Vector::zeros(), normal: Vector::zeros() });
+        let (origins, offsets) = (&self.origins, &self.offsets);
+        parallel::for_each_chunk(&mut points, |first, points| {
+            for (i, point) in (first..).zip(points) {
+                point.place = place(&origins[i], &offsets[i]);
+            }
+        });
+        self.look_around(domain, spacing, &points);
+        if !self.near.is_empty() {
+            let Self { origins, normals, is_asked, .. } = &*self;
+            parallel::for_each_chunk(&mut points, |first, points| {
+                for (i, point) in (first..).zip(points).filter(|(i, _)| is_asked[*i]) {
+                    point.normal = normal(&origins[i], &normals[i]);
+                }
+            });
+        }
+        self.points = points;
+        let mut near = std::mem::take(&mut self.near);
+        parallel::for_each_item(&mut near, |_, near| self.find_plane(near, domain, spacing));
+        self.near = near;
+        self.deepest = None;
+        for Near { point, weights, behind, .. } in &self.near {
+            let Some(Plane { depth, .. }) = *behind else { continue };
+            let both = [*point as usize, weights[0].0 as usize];
+            let of_solid = both.into_iter().find(|k| self.origins[*k].solid().is_some());
+            if let Some(point) = of_solid
+                && self.deepest.is_none_or(|(deepest, _)| depth > deepest)
+            {
+                self.deepest = Some((depth, point));
+            }
+        }
+    }
+
+    /// Looks for what is around points, if they have moved far enough since.
+    fn look_around(&mut self, domain: &Domain<D>, spacing: f64, points: &[Point<D>]) {
         let far = (0.5 * SKIN * spacing).powi(2);
-        let stay = |(seen, point): (&Vector<D>, &Point<D>)| {
-            domain.separation(seen, &point.place).norm_squared() <= far
-        };
-        if self.seen.len() == self.points.len() && self.seen.iter().zip(&self.points).all(stay) {
+        let moved = |i: usize| domain.separation(&self.seen[i], &points[i].place).norm_squared();
+        if self.seen.len() == points.len() && parallel::maximum(points.len(), 0.0, moved) <= far {
             return;
         }
         self.seen.clear();
-        self.seen.extend(self.points.iter().map(|point| domain.wrap(&point.place)));
-        self.around.clear();
+        self.seen.extend(points.iter().map(|point| domain.wrap(&point.place)));
+        self.near.clear();
+        self.is_asked.clear();
+        self.is_asked.resize(points.len(), false);
         let reach = ALONG.hypot(ACROSS) + SKIN;
         let reach = vec![reach * spacing; self.seen.len()];
         // Points that are not finite belong to a state that is refused.
@@ -199,17 +256,59 @@ impl<const D: usize> Contact<D> {
         for (i, origin) in self.origins.iter().enumerate() {
             let is_other = |&&j: &&u32| self.origins[j as usize].solid() != origin.solid();
             let others: Vec<u32> = list.row(i).iter().filter(is_other).copied().collect();
-            if !others.is_empty() {
-                self.around.push((i as u32, others));
+            if others.is_empty() {
+                continue;
             }
+            self.is_asked[i] = true;
+            for &j in &others {
+                let [first, end] = self.together[j as usize];
+                self.is_asked[first..end].fill(true);
+            }
+            let weights = Vec::with_capacity(others.len());
+            self.near.push(Near { point: i as u32, others, weights, behind: None });
+        }
+    }
+
+    /// Finds the plane that a point is behind.
+    fn find_plane(&self, near: &mut Near<D>, domain: &Domain<D>, spacing: f64) {
+        let Near { point, others, weights, behind } = near;
+        let me = &self.points[*point as usize];
+        weights.clear();
+        *behind = None;
+        let (mut covered, mut total, mut depth) = (0.0, 0.0, 0.0);
+        let mut normal = Vector::zeros();
+        for &j in others.iter() {
+            let other = &self.points[j as usize];
+            let way = domain.separation(&other.place, &me.place);
+            let (height, facing) = (way.dot(&other.normal), me.normal.dot(&other.normal));
+            let aside = way.norm_squared() - height * height;
+            let share = 1.0 - aside / (ALONG * spacing).powi(2);
+            if share <= 0.0 || height.abs() >= ACROSS * spacing || facing > FACING {
+                continue;
+            }
+            let tile = share * share * self.before_edges(j as usize, me, domain, spacing);
+            let weight = tile * facing * facing;
+            if weight <= 0.0 {
+                continue;
+            }
+            weights.push((j, weight));
+            covered += tile;
+            total += weight;
+            depth -= weight * height;
+            normal += other.normal * weight;
+        }
+        let Some(normal) = normal.try_normalize(1e-6 * total) else { return };
+        depth /= total;
+        if depth > 0.0 {
+            *behind = Some(Plane { normal, depth, total, covered });
         }
     }
 
     /// Whether points at hand are so close to some of other bodies that they see each other, or nearly.
     pub fn is_near(&self, domain: &Domain<D>, spacing: f64) -> bool {
-        self.around.iter().any(|(i, others)| {
-            let me = &self.points[*i as usize];
-            others.iter().any(|&j| {
+        self.near.iter().any(|near| {
+            let me = &self.points[near.point as usize];
+            near.others.iter().any(|&j| {
                 let other = &self.points[j as usize];
                 let way = domain.separation(&other.place, &me.place);
                 let is_close =
@@ -219,61 +318,32 @@ impl<const D: usize> Contact<D> {
         })
     }
 
-    /// Hands out the forces between points at hand: `bear` takes the origin of a point, what stands between its wall
-    /// particle and its surface where solids begin, and a force in N.
+    /// Hands out the forces between points at hand: `velocity` and `bear` take the origin of a point and what stands
+    /// between its wall particle and its surface where solids begin, and `bear` a force in N.
     pub fn forces(
-        &mut self,
-        domain: &Domain<D>,
+        &self,
         (spacing, wave_speed): (f64, f64),
         law: impl Fn(usize) -> ContactLaw,
+        velocity: impl Fn(&Origin, &Vector<D>) -> Vector<D>,
         mut bear: impl FnMut(&Origin, &Vector<D>, &Vector<D>),
     ) {
-        self.deepest = None;
         let area = spacing.powi(D as i32 - 1);
-        let mut weights = std::mem::take(&mut self.weights);
-        for (i, others) in &self.around {
-            let (i, me) = (*i as usize, &self.points[*i as usize]);
-            weights.clear();
-            let (mut covered, mut total, mut depth) = (0.0, 0.0, 0.0);
-            let (mut normal, mut motion) = (Vector::zeros(), Vector::zeros());
-            for &j in others {
-                let other = &self.points[j as usize];
-                let way = domain.separation(&other.place, &me.place);
-                let (height, facing) = (way.dot(&other.normal), me.normal.dot(&other.normal));
-                let aside = way.norm_squared() - height * height;
-                let share = 1.0 - aside / (ALONG * spacing).powi(2);
-                if share <= 0.0 || height.abs() >= ACROSS * spacing || facing > FACING {
-                    continue;
-                }
-                let tile = share * share * self.before_edges(j as usize, me, domain, spacing);
-                let weight = tile * facing * facing;
-                if weight <= 0.0 {
-                    continue;
-                }
-                weights.push((j as usize, weight));
-                covered += tile;
-                total += weight;
-                depth -= weight * height;
-                normal += other.normal * weight;
-                motion += other.velocity * weight;
-            }
-            let Some(normal) = normal.try_normalize(1e-6 * total) else { continue };
-            depth /= total;
-            if depth.is_nan() || depth <= 0.0 {
-                continue;
-            }
-            let both = [i, weights[0].0].map(|point| (point, self.origins[point].solid()));
+        let velocity = |k: usize| velocity(&self.origins[k], &self.offsets[k]);
+        let mut bear =
+            |k: usize, force: &Vector<D>| bear(&self.origins[k], &self.offsets[k], force);
+        for Near { point, weights, behind, .. } in &self.near {
+            let Some(Plane { normal, depth, total, covered }) = *behind else { continue };
+            let i = *point as usize;
+            let both = [i, weights[0].0 as usize].map(|point| (point, self.origins[point].solid()));
             let of_solids = || both.into_iter().filter_map(|(k, solid)| Some((k, solid?)));
-            let Some((point, _)) = of_solids().next() else { continue };
-            if self.deepest.is_none_or(|(deepest, _)| depth > deepest) {
-                self.deepest = Some((depth, point));
-            }
             let laws = of_solids().map(|(_, solid)| law(solid));
             let Some(law) = laws.reduce(|one, other| one.with(&other)) else { continue };
             let ContactLaw { stiffness, damping, friction } = law;
             let density = of_solids().map(|(k, _)| self.densities[k]).fold(f64::INFINITY, f64::min);
             let share = 0.5 * area * f64::min(covered, 1.0) * density * wave_speed;
-            let velocity = me.velocity - motion / total;
+            let mut motion = Vector::zeros();
+            weights.iter().for_each(|(j, weight)| motion += velocity(*j as usize) * *weight);
+            let velocity = velocity(i) - motion / total;
             let across = velocity.dot(&normal);
             let push = stiffness * wave_speed * depth / spacing - damping * across;
             let push = (share * push).max(0.0);
@@ -282,13 +352,11 @@ impl<const D: usize> Contact<D> {
             let drag = (friction * push).min(GRIP * share * slip);
             let drag = if slip > 0.0 { drag / slip } else { 0.0 };
             let force = normal * push - along * drag;
-            bear(&self.origins[i], &self.offsets[i], &force);
-            for &(j, weight) in &weights {
-                let part = force * (-weight / total);
-                bear(&self.origins[j], &self.offsets[j], &part);
+            bear(i, &force);
+            for &(j, weight) in weights {
+                bear(j as usize, &(force * (-weight / total)));
             }
         }
-        self.weights = weights;
     }
 
     /// How much of point `j` is there beside another point: all but next to an edge.
@@ -306,10 +374,11 @@ impl<const D: usize> Contact<D> {
 
     /// Bytes that it holds.
     pub fn memory(&self) -> usize {
-        let around = self.around.iter().map(|(_, others)| size_of_val(others.as_slice()));
+        let near = self.near.iter();
+        let near = near.map(|it| size_of_val(it) + it.others.len() * (4 + size_of::<(u32, f64)>()));
         size_of_val(self.origins.as_slice())
             + size_of_val(self.points.as_slice())
             + 3 * size_of_val(self.seen.as_slice())
-            + around.sum::<usize>()
+            + near.sum::<usize>()
     }
 }

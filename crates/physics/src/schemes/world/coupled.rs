@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use super::contact::{Origin, Point};
+use super::contact::Origin;
 use super::description::SHARED;
-use super::flow::shortest;
+use super::flow::{most_steps, shortest, steps_within};
 use super::{MOST_STEPS, Part, Solid, World};
-use crate::Vector;
 use crate::geometry::turned_normal;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use crate::schemes::transport_velocity::Guide;
 use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme};
+use crate::{Vector, parallel};
 
 impl<const D: usize> Solid<D> {
     /// Place and velocity of the wall particle in `row` of the interface.
@@ -27,15 +27,23 @@ impl<const D: usize> World<D> {
     }
 
     /// Puts the walls of the fluid where the solids are, with their velocities.
-    pub(super) fn carry_walls(&self, state: &mut [f64]) {
-        let (fluid, solids) = state.split_at_mut(self.parts[0].state.end);
+    pub(super) fn carry_walls(&mut self, state: &mut [f64]) {
+        let mut carried = std::mem::take(&mut self.carried);
+        let mut rest = carried.as_mut_slice();
         for (solid, part) in self.with_parts() {
-            let own = &solids[part.state.start - fluid.len()..part.state.end - fluid.len()];
-            for (row, &number) in solid.interface.walls().iter().enumerate() {
-                let [place, velocity] = solid.wall(own, row);
-                self.fluid.place_wall(fluid, number, &place, &velocity);
-            }
+            let own = &state[part.state.clone()];
+            let (walls, others) = rest.split_at_mut(solid.interface.walls().len());
+            parallel::for_each_chunk(walls, |first, walls| {
+                (first..).zip(walls).for_each(|(row, wall)| *wall = solid.wall(own, row));
+            });
+            rest = others;
         }
+        let fluid = &mut state[self.parts[0].state.clone()];
+        let numbers = self.solids.iter().flat_map(|solid| solid.interface.walls());
+        for (&number, [place, velocity]) in numbers.zip(&carried) {
+            self.fluid.place_wall(fluid, number, place, velocity);
+        }
+        self.carried = carried;
     }
 
     /// Tells the fluid how its walls move and which way they face in a state.
@@ -46,7 +54,7 @@ impl<const D: usize> World<D> {
             let (solid, own) = (&solids[number], &state[parts[number + 1].state.clone()]);
             let row = wall - solid.first;
             let velocity = solid.interface.carried(row, |b| solid.velocity(own, b));
-            let deformation = solid.interface.deformation(row, solid.displacements(own, row));
+            let deformation = solid.deformation(own, row);
             Guide { velocity, deformation }
         });
     }
@@ -60,49 +68,55 @@ impl<const D: usize> World<D> {
         [works, ways].map(|before| before + SHARED.len() * solid)
     }
 
-    /// Takes the points of surfaces where they are.
-    fn find_points(&mut self, state: &[f64]) {
+    /// Finds where surfaces touch in a state.
+    pub(super) fn meet(&mut self, state: &[f64]) {
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         let (domain, spacing) = (fluid.domain(), fluid.spacing());
-        let fluid_state = &state[parts[0].state.clone()];
-        self.contact.update(domain, spacing, |origin, [offset, normal]| match *origin {
+        let of = |solid: usize| (&solids[solid], &state[parts[solid + 1].state.clone()]);
+        let place = |origin: &Origin, offset: &Vector<D>| match *origin {
             Origin::Wall { number, .. } => {
-                let [place, velocity] = fluid.motion_of(fluid_state, number);
-                Point { place: place + offset, normal: *normal, velocity }
+                fluid.place_of(&state[parts[0].state.clone()], number) + offset
             }
             Origin::Solid { solid, row, .. } => {
-                let own = &state[parts[solid + 1].state.clone()];
-                let (solid, interface) = (&solids[solid], &solids[solid].interface);
-                let place = interface.place_at(row, offset, solid.displacements(own, row));
-                let velocity = interface.carried_at(row, offset, |b| solid.velocity(own, b));
-                let gradient = interface.deformation(row, solid.displacements(own, row));
-                let normal = turned_normal(&gradient, normal);
-                Point { place, normal, velocity }
+                let (solid, own) = of(solid);
+                solid.interface.place_at(row, offset, solid.displacements(own, row))
             }
-        });
+        };
+        let normal = |origin: &Origin, rest: &Vector<D>| match *origin {
+            Origin::Wall { .. } => *rest,
+            Origin::Solid { solid, row, .. } => {
+                let (solid, own) = of(solid);
+                turned_normal(&solid.deformation(own, row), rest)
+            }
+        };
+        self.contact.update(domain, spacing, place, normal);
     }
 
-    /// Finds what solids do to each other where they touch, and walls to them.
-    pub(super) fn touch(&mut self, state: &[f64]) {
-        self.find_points(state);
-        let (solids, fluid) = (&self.solids, &self.fluid);
+    /// Finds what solids do to each other where they touch, and walls to them, in a state of a time in s.
+    pub(super) fn touch(&mut self, time: f64, state: &[f64]) {
+        self.meet(state);
+        let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         for (forces, solid) in self.touches.iter_mut().zip(solids) {
             forces.clear();
             forces.resize(solid.mass.len(), Vector::zeros());
         }
         let touches = &mut self.touches;
-        let (domain, spacing) = (fluid.domain(), fluid.spacing());
-        let scale = (spacing, fluid.wave_speed());
-        self.contact.forces(
-            domain,
-            scale,
-            |solid| solids[solid].law,
-            |origin, offset, force| {
-                if let Origin::Solid { solid, row, .. } = *origin {
-                    solids[solid].interface.bear_at(row, offset, force, &mut touches[solid]);
-                }
-            },
-        );
+        let velocity = |origin: &Origin, offset: &Vector<D>| match *origin {
+            Origin::Wall { number, .. } => {
+                fluid.surface_velocity(time, &state[parts[0].state.clone()], number)
+            }
+            Origin::Solid { solid, row, .. } => {
+                let (solid, own) = (&solids[solid], &state[parts[solid + 1].state.clone()]);
+                solid.interface.carried_at(row, offset, |b| solid.velocity(own, b))
+            }
+        };
+        let bear = |origin: &Origin, offset: &Vector<D>, force: &Vector<D>| {
+            if let Origin::Solid { solid, row, .. } = *origin {
+                solids[solid].interface.bear_at(row, offset, force, &mut touches[solid]);
+            }
+        };
+        let scale = (fluid.spacing(), fluid.wave_speed());
+        self.contact.forces(scale, |solid| solids[solid].law, velocity, bear);
     }
 
     /// Gives the solids the impulse in `duration` s of forces of the fluid, which are those that a step has left to
@@ -110,7 +124,7 @@ impl<const D: usize> World<D> {
     fn push_on(&mut self, time: f64, duration: f64, state: &mut [f64]) {
         let (works, components) =
             (self.description.ledger.mechanisms.len(), momentum_components(D).len());
-        self.touch(state);
+        self.touch(time, state);
         let (states, tail) = state.split_at_mut(self.ledger_at());
         for number in 0..self.solids.len() {
             let [mechanism, way] = self.entries(number);
@@ -141,13 +155,15 @@ impl<const D: usize> World<D> {
                 self.booked.extend_from_slice(&own[ledger..]);
                 solid.scheme.constrain(time, own);
                 own[ledger..].copy_from_slice(&self.booked);
-                let mut impulse = [0.0; MOST_COMPONENTS];
-                for (a, (mass, before)) in solid.mass.iter().zip(&self.before).enumerate() {
+                let (before, own) = (&self.before, &*own);
+                let [work, impulse] = parallel::sums(before.len(), |a, sums| {
+                    let [[work, ..], impulse]: &mut [[f64; MOST_COMPONENTS]; 2] = sums;
                     let (after, place) = (solid.velocity(own, a), solid.place(own, a));
-                    let change = (after - before) * *mass;
-                    tail[mechanism + shared] += 0.5 * change.dot(&(after + before));
-                    add_moments(&place, &change, &mut impulse);
-                }
+                    let change = (after - before[a]) * solid.mass[a];
+                    *work += 0.5 * change.dot(&(after + before[a]));
+                    add_moments(&place, &change, impulse);
+                });
+                tail[mechanism + shared] += work[0];
                 let sums = tail[works + (way + shared) * components..].iter_mut();
                 sums.zip(&impulse[..components]).for_each(|(sum, part)| *sum += part);
             }
@@ -164,18 +180,14 @@ impl<const D: usize> CoupledScheme for World<D> {
         (self.solids[number].scheme.as_mut(), self.parts[number + 1].state.clone())
     }
 
-    fn fluid_steps(&mut self, step: f64, state: &[f64]) -> u64 {
-        self.fluid_steps_in(step, state)
+    fn fluid_steps(&self, step: f64) -> u64 {
+        let cfl = self.cfl.filter(|_| self.solids.iter().all(|solid| solid.cfl.is_some()));
+        cfl.map_or(1, |cfl| steps_within(step, shortest(&self.limits, cfl), most_steps(cfl)))
     }
 
-    fn solid_steps(&mut self, number: usize, step: f64, state: &[f64]) -> u64 {
-        let solid = &mut self.solids[number];
-        let Some(cfl) = solid.cfl else { return 1 };
-        solid.scheme.inspect(&state[self.parts[number + 1].state.clone()], &mut solid.limits);
-        let least = shortest(&solid.limits, cfl);
-        // What has broken down is found by the look at the state that this step leads to.
-        let steps = (step / least * (1.0 - 1e-12)).ceil();
-        if steps >= 1.0 { (steps as u64).min(MOST_STEPS) } else { 1 }
+    fn solid_steps(&self, number: usize, step: f64) -> u64 {
+        let Solid { cfl, limits, .. } = &self.solids[number];
+        cfl.map_or(1, |cfl| steps_within(step, shortest(limits, cfl), MOST_STEPS))
     }
 
     fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {

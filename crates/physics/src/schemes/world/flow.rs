@@ -13,11 +13,11 @@ use crate::{Tensor, Vector, parallel};
 pub const MOST_FLUID_STEPS: u64 = 16;
 
 /// The same at another CFL number: as far in all.
-fn most_steps(cfl: f64) -> u64 {
+pub(super) fn most_steps(cfl: f64) -> u64 {
     (0.25 / cfl * MOST_FLUID_STEPS as f64).clamp(1.0, MOST_FLUID_STEPS as f64) as u64
 }
 
-/// What a step may be longer than its steps of the fluid together, for round-off of times that are met.
+/// What a step may be longer than the stable ones in it together, for round-off of times that are met.
 const ROUND_OFF: f64 = 1e-8;
 
 /// How a wall particle goes through a step: on a parabola that begins with the velocity of the solid, theory (82).
@@ -47,8 +47,7 @@ impl<const D: usize> Way<D> {
         let [[from, begin], [to, end]] = states.map(|own| solid.wall(own, row));
         // Positions may have been wrapped into the box on the way.
         let to = if solid.is_displaced { to } else { from + solid.domain.separation(&from, &to) };
-        let gradients =
-            states.map(|own| solid.interface.deformation(row, solid.displacements(own, row)));
+        let gradients = states.map(|own| solid.deformation(own, row));
         // The velocity at the end of the step is not known before the solid has the rest of the impulse.
         let end = if count > 1 { (to - from) * (2.0 / step) - begin } else { end };
         let number = solid.interface.walls()[row];
@@ -106,20 +105,6 @@ impl<const D: usize> World<D> {
         }
         let (domain, spacing) = (self.fluid.domain(), self.fluid.spacing());
         if self.contact.is_near(domain, spacing) { 1 } else { (count as u64).min(most_steps(cfl)) }
-    }
-
-    /// The least number of steps of the fluid from `state` that makes stable ones of a step in s.
-    pub(super) fn fluid_steps_in(&mut self, step: f64, state: &[f64]) -> u64 {
-        let Some(cfl) = self.cfl.filter(|_| self.solids.iter().all(|solid| solid.cfl.is_some()))
-        else {
-            return 1;
-        };
-        let mut limits = std::mem::take(&mut self.limits);
-        self.fluid.bound_step(&state[self.parts[0].state.clone()], &mut limits);
-        let count = (step / shortest(&limits, cfl) * (1.0 - ROUND_OFF)).ceil();
-        self.limits = limits;
-        // What has broken down is found by the look at the state that this step leads to.
-        if count >= 1.0 { (count as u64).min(most_steps(cfl)) } else { 1 }
     }
 
     /// Finds how walls go through a step in `count` parts of the fluid, from one state to another.
@@ -192,6 +177,13 @@ impl<const D: usize> World<D> {
             *rest += self.fluid.force_on(state, way.number) * share;
         }
     }
+}
+
+/// The least number of steps that makes stable ones, of at most `stable` s, of a `step` in s, up to `most`.
+pub(super) fn steps_within(step: f64, stable: f64, most: u64) -> u64 {
+    let count = (step / stable * (1.0 - ROUND_OFF)).ceil();
+    // What has broken down is found by the look at the state that this step leads to.
+    if count >= 1.0 { (count as u64).min(most) } else { 1 }
 }
 
 /// The step of some limits with a CFL number in s.

@@ -183,6 +183,7 @@ impl<const D: usize> Interface<D> {
     }
 
     /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
+    #[inline]
     pub fn carried_at(
         &self,
         row: usize,
@@ -195,11 +196,13 @@ impl<const D: usize> Interface<D> {
 
     /// Where wall particle `row` is, in m, for displacements of the solid's particles in m: those of particles
     /// beyond a periodic bound are as good as others.
+    #[inline]
     pub fn place(&self, row: usize, displacement: impl Fn(usize) -> Vector<D>) -> Vector<D> {
         self.reference[row] + self.carried(row, displacement)
     }
 
     /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
+    #[inline]
     pub fn place_at(
         &self,
         row: usize,
@@ -210,6 +213,7 @@ impl<const D: usize> Interface<D> {
     }
 
     /// The deformation gradient at wall particle `row` for displacements of the solid's particles in m.
+    #[inline]
     pub fn deformation(&self, row: usize, displacement: impl Fn(usize) -> Vector<D>) -> Tensor<D> {
         let own = &self.carriers[self.starts[row]..self.starts[row + 1]];
         let gradient: Tensor<D> = own
@@ -240,6 +244,7 @@ impl<const D: usize> Interface<D> {
     }
 
     /// Adds what acts on wall particle `row` to the particles of the solid that carry it.
+    #[inline]
     pub fn bear(&self, row: usize, force: &Vector<D>, forces: &mut [Vector<D>]) {
         for carrier in self.weighted(row) {
             forces[carrier.particle as usize] += force * carrier.weight;
@@ -247,6 +252,7 @@ impl<const D: usize> Interface<D> {
     }
 
     /// The same for a point that is at an `offset` in m from the wall particle where the solid begins.
+    #[inline]
     pub fn bear_at(
         &self,
         row: usize,

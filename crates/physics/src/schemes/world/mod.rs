@@ -43,11 +43,11 @@ pub use self::flow::MOST_FLUID_STEPS;
 use self::flow::{Way, shortest};
 use self::interface::Interface;
 pub use self::interface::{InterfaceError, MOST_RATIO};
-use crate::Vector;
 use crate::fields::{FieldDescription, FieldKind};
 use crate::neighbors::Domain;
 use crate::schemes::transport_velocity::TransportVelocity;
 use crate::schemes::{Particle, Scheme, SchemeDescription, StepLimit};
+use crate::{Tensor, Vector};
 
 /// Most steps of a solid in one of the fluid.
 pub const MOST_STEPS: u64 = 1000;
@@ -165,6 +165,8 @@ pub struct World<const D: usize> {
     /// By solid, what others do to its particles where they touch.
     touches: Vec<Vec<Vector<D>>>,
     ways: Vec<Way<D>>,
+    /// By wall, its place and its velocity.
+    carried: Vec<[Vector<D>; 2]>,
     rest: Vec<Vector<D>>,
     limits: Vec<StepLimit>,
 }
@@ -212,6 +214,7 @@ impl<const D: usize> World<D> {
             touches: vec![Vec::new(); bound.len()],
             contact: Contact::new(&fluid, &bound),
             ways: Vec::new(),
+            carried: vec![[Vector::zeros(); 2]; guided.len()],
             rest: Vec::new(),
             limits: Vec::new(),
             fluid,
@@ -386,6 +389,7 @@ impl<const D: usize> Solid<D> {
     /// The displacements of its particles around wall particle `row` of the interface in its part of a state, in m, up
     /// to periods of the box that are the same for all of them: positions may have been wrapped, ways between neighbours
     /// tell what has not.
+    #[inline]
     fn displacements<'a>(
         &'a self,
         own: &'a [f64],
@@ -404,7 +408,13 @@ impl<const D: usize> Solid<D> {
         }
     }
 
+    /// The deformation gradient at wall particle `row` of the interface in its part of a state.
+    fn deformation(&self, own: &[f64], row: usize) -> Tensor<D> {
+        self.interface.deformation(row, self.displacements(own, row))
+    }
+
     /// Where its particle `a` is in its part of a state, in m.
+    #[inline]
     fn place(&self, own: &[f64], a: usize) -> Vector<D> {
         let column: &[Vector<D>] = bytemuck::cast_slice(&own[self.places.clone()]);
         if self.is_displaced { self.reference[a] + column[a] } else { column[a] }
@@ -422,6 +432,7 @@ impl<const D: usize> Solid<D> {
     }
 
     /// How fast its particle `a` is in its part of a state, in m/s.
+    #[inline]
     fn velocity(&self, own: &[f64], a: usize) -> Vector<D> {
         let column: &[Vector<D>] = bytemuck::cast_slice(&own[self.velocities.clone()]);
         column[a]

@@ -90,12 +90,13 @@ impl<const D: usize> Scheme for World<D> {
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.guide(state);
         // What touches in this state: after a retry the last pass was of one that has failed.
-        self.touch(state);
+        self.meet(state);
         let mut all = self.fluid.inspect(&state[self.parts[0].state.clone()], limits);
         let named = |of: usize, particle: usize| self.parts[of].index[particle] as usize;
         all = rename(all, &|particle| named(0, particle));
         limits.iter_mut().for_each(|limit| limit.particle = named(0, limit.particle));
         let of_fluid = limits.len();
+        self.limits.clone_from(limits);
         for (k, solid) in (1..).zip(&mut self.solids) {
             let mut own = std::mem::take(&mut solid.limits);
             let health = solid.scheme.inspect(&state[self.parts[k].state.clone()], &mut own);
@@ -174,7 +175,7 @@ impl<const D: usize> Scheme for World<D> {
 
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
         self.guide(state);
-        self.touch(state);
+        self.touch(time, state);
         self.fluid.observe(stage, time, &state[self.parts[0].state.clone()]);
         for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
             solid.scheme.observe(stage, time, &state[part.state.clone()]);
