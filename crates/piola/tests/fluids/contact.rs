@@ -505,7 +505,7 @@ fn what_bends_touches_too() {
 }
 
 /// What is near is looked for anew after a checkpoint, which changes no bit of where a block slides with friction, on a
-/// damper.
+/// damper: on a floor that stands, on one that is shaken, and on one whose surface runs.
 #[test]
 fn contact_resumes_to_the_bit() {
     let spring = r#"
@@ -517,7 +517,19 @@ to = [3.0, 0.5]
 stiffness = 500.0
 damping = 20.0
 "#;
-    let text = format!("{BLOCK}{spring}");
+    let floor = |keys: &str| format!("\n[[boundary]]\nname = 'floor'\nbody = 'floor'\n{keys}\n");
+    let ends = [
+        String::new(),
+        floor("velocity = { x = '2 * sin(90 * t)' }"),
+        floor("sliding = { x = '2 * sin(90 * t)' }"),
+    ]
+    .map(|floor| resumed_end(&format!("{BLOCK}{spring}{floor}")));
+    // The floor takes the block with it.
+    assert!(ends[0] != ends[1] && ends[0] != ends[2] && ends[1] != ends[2]);
+}
+
+/// The bits of where all is in the end, which are the same whether the run is broken off, resumed, or neither.
+fn resumed_end(text: &str) -> Vec<u64> {
     let overrides = [
         "parameters.friction=0.3",
         "body.block.initial={ velocity = ['3 - y', 'x'] }",
@@ -525,7 +537,7 @@ damping = 20.0
     ];
     let overrides = overrides.iter().map(|text| (*text).to_owned()).collect();
     let options = LoadOptions { overrides, ..LoadOptions::default() };
-    let case = case::parse(&text, "case.toml", &options).unwrap_or_else(|error| panic!("{error}"));
+    let case = case::parse(text, "case.toml", &options).unwrap_or_else(|error| panic!("{error}"));
     let open = || Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
     let end = |mut session: Session| -> Vec<u64> {
         session.run_until(0.1).expect("it runs");
@@ -539,4 +551,5 @@ damping = 20.0
     let whole = end(open());
     assert!(whole == end(broken), "steps that end at a time change the ones after it");
     assert!(whole == end(resumed));
+    whole
 }

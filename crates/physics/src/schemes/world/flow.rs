@@ -47,7 +47,8 @@ impl<const D: usize> Way<D> {
         let [[from, begin], [to, end]] = states.map(|own| solid.wall(own, row));
         // Positions may have been wrapped into the box on the way.
         let to = if solid.is_displaced { to } else { from + solid.domain.separation(&from, &to) };
-        let gradients = states.map(|own| solid.deformation(own, row));
+        let displacements = states.map(|own| solid.displacements(own, row));
+        let gradients = solid.interface.deformations(row, displacements);
         // The velocity at the end of the step is not known before the solid has the rest of the impulse.
         let end = if count > 1 { (to - from) * (2.0 / step) - begin } else { end };
         let number = solid.interface.walls()[row];
