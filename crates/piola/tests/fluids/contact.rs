@@ -517,13 +517,15 @@ to = [3.0, 0.5]
 stiffness = 500.0
 damping = 20.0
 "#;
-    let floor = |keys: &str| format!("\n[[boundary]]\nname = 'floor'\nbody = 'floor'\n{keys}\n");
+    let text = format!("{BLOCK}{spring}");
+    let shaken = "\n[[boundary]]\nname = 'floor'\nbody = 'floor'\nwhere = { kind = 'all' }\n\
+                  velocity = { x = '2 * sin(90 * t)', y = '0' }\n";
+    let runs = "slip = \"free\", sliding = { x = '2 * sin(90 * t)' }";
     let ends = [
-        String::new(),
-        floor("velocity = { x = '2 * sin(90 * t)' }"),
-        floor("sliding = { x = '2 * sin(90 * t)' }"),
-    ]
-    .map(|floor| resumed_end(&format!("{BLOCK}{spring}{floor}")));
+        resumed_end(&text),
+        resumed_end(&format!("{text}{shaken}")),
+        resumed_end(&text.replace("slip = \"free\"", runs)),
+    ];
     // The floor takes the block with it.
     assert!(ends[0] != ends[1] && ends[0] != ends[2] && ends[1] != ends[2]);
 }

@@ -87,6 +87,11 @@ impl<const D: usize> TransportVelocity<D> {
         self.common.faces(number as usize)
     }
 
+    /// Whether walls move that nobody else does.
+    pub(crate) fn moves_walls(&self) -> bool {
+        !self.common.motion.is_empty()
+    }
+
     /// Place of a wall particle (number) in a state.
     pub(crate) fn place_of(&self, state: &[f64], number: u32) -> Vector<D> {
         self.common.columns(state).position[number as usize]

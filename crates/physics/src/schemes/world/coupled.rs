@@ -68,8 +68,32 @@ impl<const D: usize> World<D> {
         [works, ways].map(|before| before + SHARED.len() * solid)
     }
 
-    /// Finds where surfaces touch in a state.
+    /// Turns walls with the solids and finds where surfaces touch, where that is not known of a state with solids in the
+    /// same places.
+    pub(super) fn follow(&mut self, state: &[f64]) {
+        if !self.knows(state) {
+            self.guide(state);
+            self.meet(state);
+        }
+    }
+
+    /// Whether walls are turned, and surfaces met, as in a state.
+    fn knows(&self, state: &[f64]) -> bool {
+        let mut rest = self.known.as_slice();
+        let mut is_known = !rest.is_empty() && !self.fluid.moves_walls();
+        for places in self.with_parts().map(|it| places_in(state, it)) {
+            is_known = is_known && rest[..places.len()] == *places;
+            rest = rest.get(places.len()..).unwrap_or(&[]);
+        }
+        is_known
+    }
+
+    /// Finds where surfaces touch in a state, for which walls have been turned.
     pub(super) fn meet(&mut self, state: &[f64]) {
+        self.known.clear();
+        for places in self.solids.iter().zip(&self.parts[1..]).map(|it| places_in(state, it)) {
+            self.known.extend_from_slice(places);
+        }
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         let (domain, spacing) = (fluid.domain(), fluid.spacing());
         let of = |solid: usize| (&solids[solid], &state[parts[solid + 1].state.clone()]);
@@ -92,9 +116,8 @@ impl<const D: usize> World<D> {
         self.contact.update(domain, spacing, place, normal);
     }
 
-    /// Finds what solids do to each other where they touch, and walls to them, in a state of a time in s.
+    /// Finds what solids do to each other where they touch, and walls to them, in a state of a time in s that they have met in.
     pub(super) fn touch(&mut self, time: f64, state: &[f64]) {
-        self.meet(state);
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         for (forces, solid) in self.touches.iter_mut().zip(solids) {
             forces.clear();
@@ -171,6 +194,11 @@ impl<const D: usize> World<D> {
     }
 }
 
+/// Displacements or positions of a solid in a state.
+fn places_in<'a, const D: usize>(state: &'a [f64], (solid, part): (&Solid<D>, &Part)) -> &'a [f64] {
+    &state[part.state.clone()][solid.places.clone()]
+}
+
 impl<const D: usize> CoupledScheme for World<D> {
     fn solid_count(&self) -> usize {
         self.solids.len()
@@ -192,10 +220,13 @@ impl<const D: usize> CoupledScheme for World<D> {
 
     fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {
         self.rest.clear();
+        self.follow(state);
         self.push_on(time, duration, state);
     }
 
     fn repay(&mut self, [time, duration]: [f64; 2], count: u64, state: &mut [f64]) {
+        // Its last step has turned the walls.
+        self.meet(state);
         self.push_on(time, duration, state);
         self.carry_walls(state);
         let fluid = &state[self.parts[0].state.clone()];
@@ -214,6 +245,8 @@ impl<const D: usize> CoupledScheme for World<D> {
     }
 
     fn flow(&mut self, [time, step]: [f64; 2], count: u64, old: &[f64], new: &mut [f64]) {
+        // Walls turn on the way.
+        self.known.clear();
         self.find_ways(step, count, [old, new]);
         self.flow_along(time, step, count, new);
     }
@@ -245,6 +278,7 @@ impl<const D: usize> CoupledScheme for World<D> {
     fn refresh(&mut self, time: f64, state: &mut [f64]) {
         self.carry_walls(state);
         self.guide(state);
+        self.known.clear();
         self.fluid.accelerate(time, &mut state[self.parts[0].state.clone()]);
     }
 }

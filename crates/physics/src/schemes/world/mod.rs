@@ -164,6 +164,8 @@ pub struct World<const D: usize> {
     booked: Vec<f64>,
     /// By solid, what others do to its particles where they touch.
     touches: Vec<Vec<Vector<D>>>,
+    /// Places of the solids for which walls have been turned and surfaces have met; none while they turn.
+    known: Vec<f64>,
     ways: Vec<Way<D>>,
     /// By wall, its place and its velocity.
     carried: Vec<[Vector<D>; 2]>,
@@ -213,6 +215,7 @@ impl<const D: usize> World<D> {
             booked: Vec::new(),
             touches: vec![Vec::new(); bound.len()],
             contact: Contact::new(&fluid, &bound),
+            known: Vec::new(),
             ways: Vec::new(),
             carried: vec![[Vector::zeros(); 2]; guided.len()],
             rest: Vec::new(),

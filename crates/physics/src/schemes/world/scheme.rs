@@ -88,9 +88,8 @@ impl<const D: usize> Scheme for World<D> {
     /// The bounds on the step are those of the fluid, of as many of its steps as are one of all, and of each solid that
     /// of so many of its own steps that no run would end.
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
-        self.guide(state);
-        // What touches in this state: after a retry the last pass was of one that has failed.
-        self.meet(state);
+        // After a retry the last pass was of a state that has failed.
+        self.follow(state);
         let mut all = self.fluid.inspect(&state[self.parts[0].state.clone()], limits);
         let named = |of: usize, particle: usize| self.parts[of].index[particle] as usize;
         all = rename(all, &|particle| named(0, particle));
@@ -175,6 +174,7 @@ impl<const D: usize> Scheme for World<D> {
 
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
         self.guide(state);
+        self.meet(state);
         self.touch(time, state);
         self.fluid.observe(stage, time, &state[self.parts[0].state.clone()]);
         for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
