@@ -114,10 +114,14 @@ fn explicit_steps_of_all_schemes_allocate_nothing() {
     let law = "body.slab.material={ kind='linear', density='rho', bulk_modulus='25 * rho * c^2' }";
     let hypoelastic = "system.slab.scheme={ kind='transport_velocity' }";
     let rates = "body.slab.material={ kind='hypoelastic', density='rho', young_modulus='25 * rho * c^2', poisson_ratio=0 }";
-    let flows: [(&str, &[&str]); 14] = [
+    // Heavy and soft, for which one step is several of the water.
+    let heavy = "system.slab.scheme={ kind='dual_support' }";
+    let soft = "body.slab.material={ kind='linear_elastic', density='10 * rho', young_modulus='2.5 * rho * c^2', poisson_ratio=0 }";
+    let flows: [(&str, &[&str]); 15] = [
         ("coupled/slab", &[fine, narrow]),
         ("coupled/slab", &[fine, narrow, upwind, law]),
         ("coupled/slab", &[fine, narrow, hypoelastic, rates]),
+        ("coupled/slab", &[fine, narrow, heavy, soft]),
         ("ctvf/taylor-green", &["parameters.side=40"]),
         ("ctvf/taylor-green", &["parameters.side=40", "scheme.shifting='ipst'"]),
         ("ctvf/dam-break", &["parameters.dx=0.025"]),

@@ -165,6 +165,42 @@ fn several_steps_of_the_fluid_are_the_same_resumed_and_on_any_threads() {
     assert!(whole == bits(2, true), "resumed");
 }
 
+/// A stiffer block by steps that are too long for it: the run goes back and takes all of them shorter, several of the
+/// fluid in each as before. Nothing of momentum is lost on the way, and a run that is resumed behind it ends the same.
+#[test]
+fn a_run_that_goes_back_keeps_several_steps_of_the_fluid() {
+    let set = [
+        "body.block.material={ kind = 'neo_hookean_logarithmic', density = 30.0, young_modulus = 3000.0, poisson_ratio = 0.3 }",
+        "time.cfl=0.2",
+        "system.block.time={ cfl = 1.5 }",
+        "time.on_failure='retry'",
+        "time.end=0.2",
+    ];
+    let end = |mut run: Session| {
+        run.run_until(0.2).expect("it runs");
+        let momentum = momentum_of(&mut run);
+        let values = run.column("position").expect("it is there").values;
+        let bits: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
+        (momentum, bits, run.finish().expect("it ends"))
+    };
+    let mut whole = heavy(&set);
+    let start = momentum_of(&mut whole);
+    // Where it is broken off it has gone back already.
+    whole.run_until(0.1).expect("it runs");
+    let mut resumed = heavy(&set);
+    resumed.resume(whole.checkpoint()).expect("it fits");
+    let [(momentum, bits, finished), (_, resumed_bits, _)] = [whole, resumed].map(end);
+    let retries = &finished.summary.retries;
+    assert!(retries.first().is_some_and(|retry| retry.time < 0.1), "{retries:?}");
+    let [fluid, block] = [0, 1].map(|number: usize| finished.own_steps[number].1);
+    assert!(fluid >= 3 * block, "{fluid} {block}");
+    for axis in 0..2 {
+        let [before, after] = [&start, &momentum].map(|all| all[0][axis] + all[1][axis]);
+        assert!((after - before).abs() < 1e-12, "{axis}: {before} {after}");
+    }
+    assert!(bits == resumed_bits);
+}
+
 /// A gel on water in a box that is periodic along x, its rows and columns of particles shaken against each other.
 const GEL: &str = r#"
 version = 1
@@ -219,4 +255,22 @@ fn a_light_gel_is_stable_in_several_steps_of_the_water() {
     let energy = finished.tables.energy.values("total").expect("there are energies");
     let most = energy.iter().fold(0.0, |most: f64, value| most.max(*value));
     assert!(energy[0] > 0.0 && most <= 1.06 * energy[0], "{energy:?}");
+}
+
+/// Contact is as stiff as a step of the water allows: a gel under a lid that it may touch takes none that are longer. Points
+/// see each other within a spacing along the surface and one and a half across.
+#[test]
+fn solids_that_may_touch_take_steps_of_the_water() {
+    let steps = |gap: f64| {
+        let (low, high) = (0.6 + gap, 0.8 + gap);
+        let lid = format!(
+            "\n[[body]]\nname = 'lid'\nshape = {{ kind = 'box', min = [0.0, {low}], max = [0.5, {high}] }}\n\
+             spacing = 0.05\nlattice = {{ on = 'cells' }}\nwall = {{ slip = 'free' }}\n\
+             material = {{ kind = 'weakly_compressible', density = 1000.0, wave_speed = 100.0 }}\n[scheme]\n"
+        );
+        let plan = session(&read(&GEL.replacen("[scheme]\n", &lid, 1), &[])).plan();
+        plan.own_steps.iter().map(|(_, count)| *count).collect::<Vec<u64>>()
+    };
+    assert_eq!(steps(0.05), [1, 1]);
+    assert_eq!(steps(0.15), [4, 1]);
 }

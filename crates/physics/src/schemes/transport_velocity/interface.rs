@@ -12,8 +12,8 @@ use crate::{Tensor, Vector, parallel};
 pub(crate) struct Guide<const D: usize> {
     /// Its velocity in m/s.
     pub velocity: Vector<D>,
-    /// Its deformation gradient, which its faces follow.
-    pub deformation: Tensor<D>,
+    /// Its deformation gradient, which its faces follow; nothing where they have.
+    pub deformation: Option<Tensor<D>>,
 }
 
 /// A wall particle that somebody else moves.
@@ -157,7 +157,9 @@ impl<const D: usize> TransportVelocity<D> {
                 if let Some(Guidance { number, velocity, rest }) = guided {
                     let guide = how(*number);
                     *velocity = guide.velocity;
-                    wall.faces.follow(rest, &guide.deformation);
+                    if let Some(deformation) = &guide.deformation {
+                        wall.faces.follow(rest, deformation);
+                    }
                 }
             }
         });

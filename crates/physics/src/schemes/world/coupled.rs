@@ -55,7 +55,7 @@ impl<const D: usize> World<D> {
             let row = wall - solid.first;
             let velocity = solid.interface.carried(row, |b| solid.velocity(own, b));
             let deformation = solid.deformation(own, row);
-            Guide { velocity, deformation }
+            Guide { velocity, deformation: Some(deformation) }
         });
     }
 

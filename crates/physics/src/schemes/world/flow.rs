@@ -26,6 +26,7 @@ pub(super) struct Way<const D: usize> {
     pub number: u32,
     places: [Vector<D>; 2],
     velocities: [Vector<D>; 2],
+    /// Deformation gradients; the first one is that at the end, too, where nobody asks for those in between.
     gradients: [Tensor<D>; 2],
     /// The step in s.
     step: f64,
@@ -47,8 +48,10 @@ impl<const D: usize> Way<D> {
         let [[from, begin], [to, end]] = states.map(|own| solid.wall(own, row));
         // Positions may have been wrapped into the box on the way.
         let to = if solid.is_displaced { to } else { from + solid.domain.separation(&from, &to) };
-        let displacements = states.map(|own| solid.displacements(own, row));
-        let gradients = solid.interface.deformations(row, displacements);
+        let gradients = match count {
+            1 => [solid.deformation(states[1], row); 2],
+            _ => states.map(|own| solid.deformation(own, row)),
+        };
         // The velocity at the end of the step is not known before the solid has the rest of the impulse.
         let end = if count > 1 { (to - from) * (2.0 / step) - begin } else { end };
         let number = solid.interface.walls()[row];
@@ -79,15 +82,18 @@ impl<const D: usize> Way<D> {
         }
     }
 
-    /// How it moves then, with a velocity from one place to the next or its own.
-    fn guide(&self, k: u64, count: u64, velocity: Option<Vector<D>>) -> Guide<D> {
+    /// How it goes on then to the next place.
+    fn guide_on(&self, k: u64, count: u64) -> Guide<D> {
+        let way = self.place(k + 1, count) - self.place(k, count);
+        Guide { velocity: way * (count as f64 / self.step), deformation: None }
+    }
+
+    /// How it moves then.
+    fn guide(&self, k: u64, count: u64) -> Guide<D> {
         let [from, to] = self.gradients;
-        let deformation = match k {
-            0 => from,
-            _ if k == count => to,
-            _ => from + (to - from) * (k as f64 / count as f64),
-        };
-        Guide { velocity: velocity.unwrap_or_else(|| self.velocity(k, count)), deformation }
+        let part = (to - from) * (k as f64 / count as f64);
+        let deformation = if k == count { to } else { from + part };
+        Guide { velocity: self.velocity(k, count), deformation: Some(deformation) }
     }
 }
 
@@ -125,7 +131,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Takes the fluid in `state` through a step in `count` parts, and finds with which forces the solids would get in
+    /// Takes the fluid in `state`, for which walls have been turned, through a step in `count` parts, and finds with which forces the solids would get in
     /// half of the step what is left of the impulse.
     pub(super) fn flow_along(&mut self, time: f64, step: f64, count: u64, state: &mut [f64]) {
         let (fluid, own) = (self.parts[0].state.clone(), step / count as f64);
@@ -143,13 +149,8 @@ impl<const D: usize> World<D> {
             let power = self.power_of_walls(k, count, &state[fluid.clone()]);
             state[entry] -= weight * power;
             self.bear_part(own / step, &state[fluid.clone()]);
-            // The drift sees walls where they were, as it sees the fluid.
-            let ways = &self.ways;
-            self.fluid.guide(|wall| {
-                let way = &ways[wall];
-                let velocity = (way.place(k + 1, count) - way.place(k, count)) / own;
-                way.guide(k, count, Some(velocity))
-            });
+            // The drift sees walls where they were, turned as they were, as it sees the fluid.
+            self.fluid.guide(|wall| self.ways[wall].guide_on(k, count));
             let part = &mut state[fluid.clone()];
             self.fluid.kick(0.5 * own, part);
             self.fluid.drift(begin, own, part);
@@ -157,7 +158,7 @@ impl<const D: usize> World<D> {
                 let place = way.place(k + 1, count);
                 self.fluid.place_wall(part, way.number, &place, &way.velocity(k + 1, count));
             }
-            self.fluid.guide(|wall| self.ways[wall].guide(k + 1, count, None));
+            self.fluid.guide(|wall| self.ways[wall].guide(k + 1, count));
             self.fluid.constrain(begin + own, part);
             self.fluid.accelerate(begin + own, part);
             self.fluid.kick(0.5 * own, part);

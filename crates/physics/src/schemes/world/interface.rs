@@ -215,28 +215,15 @@ impl<const D: usize> Interface<D> {
     /// The deformation gradient at wall particle `row` for displacements of the solid's particles in m.
     #[inline]
     pub fn deformation(&self, row: usize, displacement: impl Fn(usize) -> Vector<D>) -> Tensor<D> {
-        let [gradient] = self.deformations(row, [displacement]);
-        gradient
-    }
-
-    /// The same for several states at once.
-    #[inline]
-    pub fn deformations<const N: usize>(
-        &self,
-        row: usize,
-        displacements: [impl Fn(usize) -> Vector<D>; N],
-    ) -> [Tensor<D>; N] {
-        let mut gradients = [Tensor::<D>::zeros(); N];
+        let mut gradient = Tensor::<D>::zeros();
         for carrier in &self.carriers[self.starts[row]..self.starts[row + 1]] {
-            for (gradient, displacement) in gradients.iter_mut().zip(&displacements) {
-                let moved = displacement(carrier.particle as usize);
-                for axis in 0..D {
-                    let mut column = gradient.column_mut(axis);
-                    column += moved * carrier.slope[axis];
-                }
+            let moved = displacement(carrier.particle as usize);
+            for axis in 0..D {
+                let mut column = gradient.column_mut(axis);
+                column += moved * carrier.slope[axis];
             }
         }
-        gradients.map(|gradient| Tensor::identity() + gradient)
+        Tensor::identity() + gradient
     }
 
     /// Whether those that carry wall particle `row` are not around each other as they were: one of them is twice as far

@@ -158,10 +158,10 @@ impl Reader<'_, '_> {
     pub(super) fn forces_act(&mut self, probes: &[Probe], bodies: &[Body]) {
         for probe in probes {
             let is_sensor = matches!(probe.kind, ProbeKind::Sensor { .. });
-            // Where there is one body only it is that one.
+            // Where there is one body only it is that one; where there are several it has to be named.
             let (its, place) = match &probe.body {
                 Some(body) => (bodies.get(body.value), body.place),
-                None if is_sensor => (bodies.first(), probe.name.place),
+                None if is_sensor && bodies.len() == 1 => (bodies.first(), probe.name.place),
                 None => continue,
             };
             let is_wall = its.is_none_or(|body| body.wall.is_some());
