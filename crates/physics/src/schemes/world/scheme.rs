@@ -1,6 +1,7 @@
 //! A world as clock, observers and output see it: one formulation with the particles of all.
 
 use super::description::CONTACT;
+use super::flow::Way;
 use super::{MOST_STEPS, World, own_field};
 use crate::Vector;
 use crate::fields::{ABSENT, FieldDescription};
@@ -256,7 +257,12 @@ impl<const D: usize> Scheme for World<D> {
     fn memory(&self) -> usize {
         let systems: usize = (0..self.parts.len()).map(|k| self.system(k).memory()).sum();
         let interfaces: usize = self.solids.iter().map(|solid| solid.interface.memory()).sum();
-        systems + interfaces + self.contact.memory() + size_of_val(self.start.as_slice())
+        // Ways and forces are found in the first step.
+        let a_wall = size_of::<Way<D>>() + size_of::<[Vector<D>; 3]>();
+        let a_particle = size_of::<[Vector<D>; 4]>();
+        let particles: usize = self.solids.iter().map(|solid| solid.mass.len()).sum();
+        let passing = self.carried.len() * a_wall + particles * a_particle;
+        systems + interfaces + self.contact.memory() + passing + size_of_val(self.start.as_slice())
     }
 
     /// Its systems are moved by integrators of their own.
