@@ -31,7 +31,7 @@ pub trait CoupledScheme: Scheme {
     fn settle(&mut self, time: f64, state: &mut [f64]);
 
     /// Takes the fluid in `new` in `count` steps through one from a time and of a length in s, around solids that go from
-    /// where they are in `old` to where they are in `new`.
+    /// where they are in `old` to where they are in `new`, behind [`Self::push`] from `old`.
     fn flow(&mut self, step: [f64; 2], count: u64, old: &[f64], new: &mut [f64]);
 
     /// Brings what `state` says of all systems together into line with the systems, which have taken so many steps of

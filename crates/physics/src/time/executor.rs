@@ -151,6 +151,11 @@ impl Executor {
         self.is_seen = false;
     }
 
+    /// Has the state looked at once more before the next step: somebody has let the formulation look at another one.
+    pub fn look_anew(&mut self) {
+        self.is_seen = false;
+    }
+
     /// Its observers, who are shown nothing any more.
     pub fn take_observers(&mut self) -> Vec<Box<dyn Observer>> {
         self.run.due.clear();

@@ -143,7 +143,10 @@ impl History {
         let mut next = state.clone();
         let first = self.older.clock.step;
         let shown = self.steps.len().saturating_sub(Trace::STEPS);
+        let mut limits = Vec::new();
         for (count, &(time, size)) in self.steps.iter().enumerate() {
+            // What a step does may follow from the look before it.
+            scheme.inspect(&state, &mut limits);
             if integrator.step(scheme, time, size, &state, &mut next).is_err() {
                 break;
             }

@@ -32,7 +32,8 @@ pub trait Integrator: Send {
     }
 
     /// Writes the state at `time + step` to `new`, from `old` at `time`. Both have the layout of
-    /// the scheme's state; `old` satisfies the constraints at `time`.
+    /// the scheme's state; `old` satisfies the constraints at `time`. Of several systems it is the state that
+    /// [`Scheme::inspect`] has looked at last, by which the numbers of their own steps go: one each without a look.
     ///
     /// # Errors
     /// There is no such state, as far as was looked, or the scheme is not the one that the integrator

@@ -156,6 +156,8 @@ impl Session {
             Some(Undamped { period, by_period, by_end })
         });
         warnings.extend(undamped.and_then(|it| it.warning(integrator.name())));
+        self.executor.look_anew();
+        let scheme = &self.executor.scheme;
         Plan {
             bodies: self.built.bodies.clone(),
             neighbors: self.built.neighbors,

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use piola::case::{self, Case, Finished, LoadOptions, Session};
+use piola::time::{Failure, Outcome};
 
 use crate::structures::{DRIFTING, momentum_of};
 
@@ -165,17 +166,37 @@ fn several_steps_of_the_fluid_are_the_same_resumed_and_on_any_threads() {
     assert!(whole == bits(2, true), "resumed");
 }
 
-/// A stiffer block by steps that are too long for it: the run goes back and takes all of them shorter, several of the
-/// fluid in each as before. Nothing of momentum is lost on the way, and a run that is resumed behind it ends the same.
+/// A stiffer block, and steps that are too long for it.
+const TOO_LONG: [&str; 4] = [
+    "body.block.material={ kind = 'neo_hookean_logarithmic', density = 30.0, young_modulus = 3000.0, poisson_ratio = 0.3 }",
+    "time.cfl=0.2",
+    "system.block.time={ cfl = 1.5 }",
+    "time.end=0.2",
+];
+
+/// What is said of a run that has failed is found by taking its last steps once more, with as many steps of each system
+/// in them as they had: the particle ends with the speed that has stopped the run.
+#[test]
+fn the_trace_of_several_steps_is_what_happened() {
+    let finished = heavy(&TOO_LONG).run(&AtomicBool::new(false), &mut |_| {}).expect("it is told");
+    let Outcome::Failed(Failure::TooFast { speed, .. }) = &finished.summary.outcome else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    let [fluid, block] = [0, 1].map(|number: usize| finished.own_steps[number].1);
+    assert!(fluid >= 3 * block, "{fluid} {block}");
+    let trace = finished.summary.trace.as_ref().expect("steps were taken");
+    let place = |name: &str| trace.columns.iter().position(|it| it.0 == name).expect(name);
+    let [x, y, is_bad] = ["velocity.x", "velocity.y", "is_bad"].map(place);
+    let mut rows = trace.numbers.chunks_exact(trace.columns.len());
+    let last = rows.rfind(|row| row[is_bad] == 1.0).expect("the particle is in it");
+    assert_eq!((last[x] * last[x] + last[y] * last[y]).sqrt(), *speed);
+}
+
+/// With retries the run goes back and takes shorter steps, several of the fluid in each as before. Nothing of momentum is
+/// lost on the way, and a run that is resumed behind it ends the same, whether or not somebody asks for its plan.
 #[test]
 fn a_run_that_goes_back_keeps_several_steps_of_the_fluid() {
-    let set = [
-        "body.block.material={ kind = 'neo_hookean_logarithmic', density = 30.0, young_modulus = 3000.0, poisson_ratio = 0.3 }",
-        "time.cfl=0.2",
-        "system.block.time={ cfl = 1.5 }",
-        "time.on_failure='retry'",
-        "time.end=0.2",
-    ];
+    let set = [&TOO_LONG[..], &["time.on_failure='retry'"]].concat();
     let end = |mut run: Session| {
         run.run_until(0.2).expect("it runs");
         let momentum = momentum_of(&mut run);
@@ -189,6 +210,7 @@ fn a_run_that_goes_back_keeps_several_steps_of_the_fluid() {
     whole.run_until(0.1).expect("it runs");
     let mut resumed = heavy(&set);
     resumed.resume(whole.checkpoint()).expect("it fits");
+    whole.plan();
     let [(momentum, bits, finished), (_, resumed_bits, _)] = [whole, resumed].map(end);
     let retries = &finished.summary.retries;
     assert!(retries.first().is_some_and(|retry| retry.time < 0.1), "{retries:?}");

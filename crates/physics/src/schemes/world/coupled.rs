@@ -68,8 +68,7 @@ impl<const D: usize> World<D> {
         [works, ways].map(|before| before + SHARED.len() * solid)
     }
 
-    /// Turns walls with the solids and finds where surfaces touch, where that is not known of a state with solids in the
-    /// same places.
+    /// Turns walls with the solids and finds where surfaces touch, unless that is known for the same places of the solids.
     pub(super) fn follow(&mut self, state: &[f64]) {
         if !self.knows(state) {
             self.guide(state);
@@ -116,7 +115,8 @@ impl<const D: usize> World<D> {
         self.contact.update(domain, spacing, place, normal);
     }
 
-    /// Finds what solids do to each other where they touch, and walls to them, in a state of a time in s that they have met in.
+    /// Finds what solids do to each other where they touch, and walls to them, at a time in s in the state that
+    /// [`Self::meet`] was called with last.
     pub(super) fn touch(&mut self, time: f64, state: &[f64]) {
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         for (forces, solid) in self.touches.iter_mut().zip(solids) {

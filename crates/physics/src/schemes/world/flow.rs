@@ -131,8 +131,8 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Takes the fluid in `state`, for which walls have been turned, through a step in `count` parts, and finds with which forces the solids would get in
-    /// half of the step what is left of the impulse.
+    /// Takes the fluid in `state`, for which walls have been turned, through a step in `count` parts, and finds with which
+    /// forces the solids would get in half of the step what is left of the impulse.
     pub(super) fn flow_along(&mut self, time: f64, step: f64, count: u64, state: &mut [f64]) {
         let (fluid, own) = (self.parts[0].state.clone(), step / count as f64);
         self.rest.clear();
