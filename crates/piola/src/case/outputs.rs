@@ -118,6 +118,10 @@ impl Outputs {
         let mut observers: Vec<Box<dyn Observer>> = vec![Box::new(frames)];
         let spacings = bodies.iter().flat_map(|body| &body.spacing);
         let spacing = spacings.copied().fold(f64::INFINITY, f64::min);
+        // In 3D walls would hide what is between them.
+        let is_wall = |body: &model::Body| case.dimension == 3 && body.wall.is_some();
+        let walls = (0..).zip(&case.bodies).filter(|(_, body)| is_wall(body));
+        let hidden: Vec<u32> = walls.map(|(number, _)| number).collect();
         for picture in &case.pictures {
             let times = picture.times.iter().map(|time| time.value).collect();
             observers.push(Box::new(PictureWriter::new(
@@ -128,6 +132,7 @@ impl Outputs {
                     field: picture.field.value,
                     range: picture.range,
                     spacing,
+                    hidden: hidden.clone(),
                 },
                 self.written.clone(),
             )));

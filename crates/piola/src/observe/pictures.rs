@@ -17,6 +17,8 @@ pub struct PictureRequest {
     pub range: Option<[f64; 2]>,
     /// Spacing of the particles in the reference in m.
     pub spacing: f64,
+    /// Numbers of the bodies that are left out.
+    pub hidden: Vec<u32>,
 }
 
 /// Draws the particles at due times, and the last state of a run that ends before them.
@@ -41,13 +43,19 @@ impl PictureWriter {
     }
 
     fn draw(&mut self, moment: &mut Moment) -> Result<(), OutputError> {
-        let PictureRequest { title, field, range, spacing } = &self.request;
+        let PictureRequest { title, field, range, spacing, hidden } = &self.request;
         let name = field.field.name;
         let shot = moment.now.snapshot(moment.step, &[name]);
         let Some(found) = shot.field(name) else { return Ok(()) };
         let components = field.field.kind.components(shot.dimension);
+        let bodies = moment.now.scheme().bodies().iter();
+        let is_shown: Vec<bool> = bodies.map(|body| !hidden.contains(body)).collect();
+        let shown = |(all, is_shown): (&[f64], &bool)| is_shown.then(|| all.to_vec());
+        let positions = shot.positions.chunks_exact(shot.dimension).zip(&is_shown);
+        let positions: Vec<f64> = positions.filter_map(shown).flatten().collect();
+        let values = found.values.chunks_exact(components).zip(&is_shown);
         let values: Vec<f64> =
-            found.values.chunks_exact(components).map(|value| field.value(value)).collect();
+            values.filter(|(_, is_shown)| **is_shown).map(|it| field.value(it.0)).collect();
         let label = field.name(shot.dimension);
         let when = match moment.now.is_static() {
             true => When::LoadFactor(moment.now.time()),
@@ -60,7 +68,7 @@ impl PictureWriter {
             label: &label,
             unit: field.field.unit,
             dimension: shot.dimension,
-            positions: &shot.positions,
+            positions: &positions,
             values: &values,
             range: *range,
             spacing: *spacing,

@@ -168,7 +168,7 @@ pub enum Compression {
     Zlib,
 }
 
-/// A picture of the particles coloured by a field.
+/// A picture of the particles coloured by a field. In 3D without walls of ghost particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// A single number of each particle.

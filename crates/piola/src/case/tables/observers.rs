@@ -387,7 +387,7 @@ const COMPRESSIONS: Choices = choices(&[choice("zlib", "with zlib"), choice("non
 
 pub(super) static PICTURE: TableSpec = TableSpec {
     title: "[[picture]]",
-    meaning: "A picture of the particles coloured by a field.",
+    meaning: "A picture of the particles coloured by a field. In 3D walls of ghost particles are left out, which would hide what is between them.",
     keys: &[
         key(
             "field",
