@@ -48,14 +48,12 @@ impl PictureWriter {
         let shot = moment.now.snapshot(moment.step, &[name]);
         let Some(found) = shot.field(name) else { return Ok(()) };
         let components = field.field.kind.components(shot.dimension);
-        let bodies = moment.now.scheme().bodies().iter();
-        let is_shown: Vec<bool> = bodies.map(|body| !hidden.contains(body)).collect();
-        let shown = |(all, is_shown): (&[f64], &bool)| is_shown.then(|| all.to_vec());
-        let positions = shot.positions.chunks_exact(shot.dimension).zip(&is_shown);
-        let positions: Vec<f64> = positions.filter_map(shown).flatten().collect();
-        let values = found.values.chunks_exact(components).zip(&is_shown);
-        let values: Vec<f64> =
-            values.filter(|(_, is_shown)| **is_shown).map(|it| field.value(it.0)).collect();
+        let bodies = moment.now.scheme().bodies();
+        let shown = || (0..bodies.len()).filter(|&a| !hidden.contains(&bodies[a]));
+        let place = |a: usize| &shot.positions[a * shot.dimension..][..shot.dimension];
+        let value = |a: usize| field.value(&found.values[a * components..][..components]);
+        let positions: Vec<f64> = shown().flat_map(place).copied().collect();
+        let values: Vec<f64> = shown().map(value).collect();
         let label = field.name(shot.dimension);
         let when = match moment.now.is_static() {
             true => When::LoadFactor(moment.now.time()),

@@ -13,6 +13,7 @@ mod fields;
 mod held;
 mod operators;
 mod planning;
+mod probes;
 mod runs;
 mod solids;
 mod speeds;

@@ -157,7 +157,7 @@ pub struct World<const D: usize> {
     ids: Vec<u32>,
     start: Vec<f64>,
     // Scratch: forces on the particles of a solid, their velocities before, how walls go through a step, which forces
-    // are left to give by wall, and bounds on the step.
+    // are left to give by wall.
     forces: Vec<Vector<D>>,
     before: Vec<Vector<D>>,
     /// The ledger of a solid.
@@ -170,6 +170,7 @@ pub struct World<const D: usize> {
     /// By wall, its place and its velocity.
     carried: Vec<[Vector<D>; 2]>,
     rest: Vec<Vector<D>>,
+    /// Bounds on the step of the fluid by itself, of the state that was looked at last.
     limits: Vec<StepLimit>,
 }
 
