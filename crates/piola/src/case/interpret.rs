@@ -67,6 +67,9 @@ pub(super) fn case(
     let is_solid = reader.names.current.is_solid;
     reader.names.current = systems::Known::of("", described.kind, is_solid, scheme.as_ref());
     let systems = reader.systems(record);
+    if systems.iter().any(|(system, _)| system.record("scheme").is_none()) {
+        return None;
+    }
     let domain = reader.domain(record.record("domain"));
     let bodies = record.records("body").enumerate().map(|(number, body)| {
         let system = reader.names.system_of[number];

@@ -159,6 +159,14 @@ fn solids_of_other_formulations_are_systems_with_settings_and_fields_of_their_ow
     assert!(problems.contains("use `hypoelastic`, or leave `system` out"), "{problems}");
 }
 
+/// What a scheme that is not known would not know is not told.
+#[test]
+fn a_scheme_of_a_system_that_is_not_known_is_told_once() {
+    let said = said("kind = \"elastodynamics\"", "kind = \"elastodynamic\"");
+    assert!(said.contains("did you mean `elastodynamics`?"), "{said}");
+    assert_eq!(said.matches("error: ").count(), 1, "{said}");
+}
+
 #[test]
 fn what_does_not_fit_together_is_named_in_its_place() {
     let faults = [
