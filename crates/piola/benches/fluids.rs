@@ -58,6 +58,7 @@ fn vortices<const D: usize>(
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces: Vec::new(),
+        open: Default::default(),
         particles,
     };
     let fluid = Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 };

@@ -92,6 +92,7 @@ fn block<const D: usize>(
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces: Vec::new(),
+        open: Default::default(),
         particles,
     };
     let solids = SolidsInput {

@@ -225,8 +225,9 @@ pub struct Wall<const D: usize> {
 }
 
 impl<const D: usize> Wall<D> {
+    /// Adds the force of another particle, one of the two of a wall, where velocities differ by a `jump` in m/s.
     #[inline(always)]
-    fn push<T: Number>(
+    pub fn push<T: Number>(
         &self,
         [me, other]: [&Side<T, D>; 2],
         jump: &Of<Components<D>, T>,

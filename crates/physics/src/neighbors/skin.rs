@@ -137,7 +137,13 @@ impl<const D: usize> SkinList<D> {
     /// Renews the places and lists the candidates of the current positions.
     fn build(&mut self) -> Result<(), NeighborError> {
         let reach = self.support + self.skin;
-        let order = spatial_order(&self.positions, reach)?;
+        let mut order = spatial_order(&self.positions, reach)?;
+        // Those that nobody sees come last and are not looked for: many may be in one place.
+        let is_out = |place: u32| {
+            self.excluded.get(self.numbers[place as usize] as usize).is_some_and(|is_out| *is_out)
+        };
+        order.sort_by_key(|&place| is_out(place));
+        let seen = order.partition_point(|&place| !is_out(place));
         let ordered: Vec<_> = order.iter().map(|&place| self.positions[place as usize]).collect();
         let at = |number: &u32| self.ranks[*number as usize];
         let ranks: Vec<u32> =
@@ -147,16 +153,13 @@ impl<const D: usize> SkinList<D> {
             ranked[rank as usize] = place as u32;
         }
         let both = [ranks.as_slice(), ranked.as_slice()];
-        let mut list = search_ranked(&ordered, reach, &self.domain, both, self.active)?;
+        let list = search_ranked(&ordered[..seen], reach, &self.domain, both, self.active)?;
         self.numbers = order.iter().map(|&place| self.numbers[place as usize]).collect();
         for (place, &number) in self.numbers.iter().enumerate() {
             self.places[number as usize] = place as u32;
         }
-        if self.excluded.contains(&true) {
-            let is_out = |place: u32| self.excluded[self.numbers[place as usize] as usize];
-            list = list.retain(|a, b| !is_out(a) && !is_out(b));
-        }
         (self.offsets, self.entries) = list.into_arrays();
+        self.offsets.resize(self.numbers.len() + 1, self.entries.len());
         let active = self.active;
         self.passive_from = (self.offsets.windows(2))
             .map(|ends| {

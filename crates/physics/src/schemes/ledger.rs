@@ -134,6 +134,18 @@ impl Totals {
         fill(&mut self.done, entry, total);
     }
 
+    /// Fills in what one mechanism has in what is another's.
+    pub fn part(&mut self, whole: Entry, part: Entry, total: &Total) {
+        self.filled.fill(part.mechanism);
+        fill(&mut self.rates, part, total);
+        let rest = Total {
+            power: -total.power,
+            growth: -total.growth,
+            force: total.force.map(|force| -force),
+        };
+        fill(&mut self.rates, whole, &rest);
+    }
+
     /// Adds those of another stage.
     pub fn join(&mut self, other: &Self) {
         self.rates.add(&other.rates);

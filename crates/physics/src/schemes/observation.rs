@@ -1,5 +1,7 @@
 //! A state as those see it who look at its fields.
 
+use std::borrow::Cow;
+
 use super::Scheme;
 use crate::fields::{FieldDescription, FieldValues, Snapshot};
 
@@ -59,6 +61,17 @@ impl<'a> Observation<'a> {
         field.read(&self.state[column], self.scheme.dimension(), particles, values);
     }
 
+    /// Those of some particles (indices in memory) that are there, as parts of the body that they are of at the start.
+    pub fn present<'p>(&self, particles: &'p [u32]) -> Cow<'p, [u32]> {
+        if self.scheme.is_closed() {
+            return Cow::Borrowed(particles);
+        }
+        let bodies = self.scheme.bodies();
+        let is_there =
+            |a: &u32| self.scheme.body_of(self.state, *a as usize) == Some(bodies[*a as usize]);
+        Cow::Owned(particles.iter().copied().filter(is_there).collect())
+    }
+
     /// The components of the field called `name` for each of `particles`, nothing of a name that the
     /// formulation does not have.
     pub fn values(&mut self, name: &str, particles: &[u32]) -> Vec<f64> {
@@ -72,7 +85,17 @@ impl<'a> Observation<'a> {
     /// Positions and the named fields of all particles, after `step` steps; names that the
     /// formulation does not have are left out.
     pub fn snapshot(&mut self, step: u64, names: &[&str]) -> Snapshot {
-        let particles: Vec<u32> = (0..self.scheme.particle_count() as u32).collect();
+        let all = 0..self.scheme.particle_count() as u32;
+        let (scheme, state) = (&*self.scheme, self.state);
+        let body = |a: &u32| scheme.body_of(state, *a as usize);
+        let particles: Vec<u32> = all.filter(|a| body(a).is_some()).collect();
+        let bodies = particles.iter().filter_map(body).collect();
+        // Those that were born have numbers behind all that there were at the start.
+        let id = |&a: &u32| match scheme.birth_of(state, a as usize) {
+            0 => scheme.ids()[a as usize],
+            birth => scheme.particle_count() as u32 + birth - 1,
+        };
+        let ids = particles.iter().map(id).collect();
         let fields = self.scheme.description().fields.iter();
         let fields = fields.filter(|field| names.contains(&field.name)).map(|field| {
             let mut values = Vec::new();
@@ -85,8 +108,8 @@ impl<'a> Observation<'a> {
             time: self.time,
             step,
             positions: self.values("position", &particles),
-            ids: self.scheme.ids().to_vec(),
-            bodies: self.scheme.bodies().to_vec(),
+            ids,
+            bodies,
             fields,
         }
     }

@@ -106,6 +106,22 @@ pub trait Scheme: Send + Sync {
     /// Number of each particle in the order of creation.
     fn ids(&self) -> &[u32];
 
+    /// Whether all particles are there all the time, as parts of the same bodies.
+    fn is_closed(&self) -> bool {
+        true
+    }
+
+    /// The body that a particle (index in memory) belongs to in `state`; nothing if it is not there.
+    fn body_of(&self, _state: &[f64], index: usize) -> Option<u32> {
+        Some(self.bodies()[index])
+    }
+
+    /// How many particles had been born when a particle (index in memory) of `state` was; 0 if it was there at
+    /// the start.
+    fn birth_of(&self, _state: &[f64], _index: usize) -> u32 {
+        0
+    }
+
     /// Mass in kg of a particle (index in memory), for 1 m in missing dimensions.
     fn mass(&self, index: usize) -> f64;
 
@@ -240,6 +256,8 @@ pub enum Behind {
     Surface,
     /// Those that were its neighbours at the start, of a solid in a fluid.
     Neighbors,
+    /// The plane of the open boundary of this name, where no particle is left to follow it.
+    Reserve(String),
 }
 
 /// Figures that tell whether a state is sound.

@@ -60,6 +60,10 @@ pub enum Failure {
         match &escape.behind {
             Behind::Wall(wall) => format!("has gone through the wall `{wall}`, and is"),
             Behind::Box => "has left the box around everything, and is".into(),
+            Behind::Reserve(name) => format!(
+                "cannot come in through the open boundary `{name}`, as no particle is left in the reserve to follow it, \
+                 and is"
+            ),
             Behind::Surface => "has gone through the surface that it touches, and is".into(),
             Behind::Neighbors => {
                 "is twice as far from a neighbour of the start as it was, or turned inside out with them, and is"

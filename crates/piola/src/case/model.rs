@@ -24,7 +24,7 @@ mod time;
 pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reduction, Trend, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use loads::{Boundary, Load, LoadKind, Roller, Turning};
-pub use materials::{Material, PlaneState, Stiffness, Wall};
+pub use materials::{Material, OpenFlow, Opening, PlaneState, Stiffness, Wall};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use schemes::{
     Correction, Dissipation, GradientKind, Interpolation, Preset, ReferenceWaveSpeed, Scheme,
@@ -262,6 +262,8 @@ impl Case {
         });
         let walls = self.bodies.iter().filter_map(|body| body.wall.as_ref());
         let sliding = walls.flat_map(|wall| wall.sliding.iter().flatten());
-        initial.chain(loads).chain(boundaries).chain(sliding)
+        let openings = self.bodies.iter().filter_map(|body| body.opening.as_ref());
+        let openings = openings.flat_map(|opening| opening.flow.expressions());
+        initial.chain(loads).chain(boundaries).chain(sliding).chain(openings)
     }
 }

@@ -35,12 +35,13 @@ pub enum Norm {
 impl Deviation {
     pub(super) fn record(&self, now: &mut Observation, scratch: &mut Vec<f64>) -> f64 {
         let time = now.time();
+        let particles = now.present(&self.particles);
         let weights = match self.norm {
-            Norm::Volume => now.values("volume", &self.particles),
-            _ => vec![1.0; self.particles.len()],
+            Norm::Volume => now.values("volume", &particles),
+            _ => vec![1.0; particles.len()],
         };
-        let positions = now.values("position", &self.particles);
-        let dimension = positions.len() / self.particles.len().max(1);
+        let positions = now.values("position", &particles);
+        let dimension = positions.len() / particles.len().max(1);
         let size = |value: f64| match self.norm {
             Norm::Absolute => value.abs(),
             _ => value * value,
@@ -54,7 +55,7 @@ impl Deviation {
             });
             let exact: Vec<f64> = exact.collect();
             scratch.clear();
-            now.read(&selector.field, &self.particles, scratch);
+            now.read(&selector.field, &particles, scratch);
             let components = selector.field.kind.components(dimension);
             let found = scratch.chunks_exact(components).map(|value| selector.value(value));
             let mean = |sum: f64| if self.without_mean { sum / exact.len() as f64 } else { 0.0 };

@@ -43,6 +43,9 @@ impl Gauge {
         let dimension = now.scheme().dimension();
         let particles: Vec<u32> = self.particles.iter().map(|(a, _)| *a).collect();
         let places = now.values("position", &particles);
+        let bodies = now.scheme().bodies();
+        let is_there =
+            |a: u32| now.scheme().body_of(now.state(), a as usize) == Some(bodies[a as usize]);
         let [start, end] = &self.ends;
         let along: Vec<f64> = start.iter().zip(end).map(|(start, end)| end - start).collect();
         let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -54,7 +57,11 @@ impl Gauge {
             let offset = way(&middle, x, &self.periods);
             let along: f64 = offset.clone().zip(&direction).map(|(x, e)| x * e).sum();
             let across = offset.map(|x| x * x).sum::<f64>() - along * along;
-            (across < reach * reach).then_some((along + 0.5 * length, across.max(0.0), own.1))
+            (across < reach * reach && is_there(own.0)).then_some((
+                along + 0.5 * length,
+                across.max(0.0),
+                own.1,
+            ))
         });
         let near: Vec<(f64, f64, f64)> = near.collect();
         let share = |at: f64| -> f64 {
@@ -103,9 +110,10 @@ pub struct Flux {
 impl Flux {
     pub(super) fn record(&self, now: &mut Observation) -> f64 {
         let dimension = now.scheme().dimension();
+        let particles = now.present(&self.particles);
         let counted = match &self.inside {
-            None => self.particles.clone(),
-            Some(corners) => within(corners, &self.particles, now),
+            None => particles.into_owned(),
+            Some(corners) => within(corners, &particles, now),
         };
         let places = now.values("position", &counted);
         let velocities = now.values("velocity", &counted);

@@ -53,10 +53,11 @@ impl Interpolated {
         rows: &mut Vec<f64>,
     ) {
         let dimension = now.scheme().dimension();
-        *scratch = now.values("position", &self.particles);
+        let particles = now.present(&self.particles);
+        *scratch = now.values("position", &particles);
         let mut around = Around::default();
         for place in &self.places {
-            self.look_around(place, scratch, &mut around);
+            self.look_around(place, (&particles, scratch), &mut around);
         }
         let width: usize = self.fields.iter().map(|field| field.kind.components(dimension)).sum();
         let start = rows.len();
@@ -80,11 +81,16 @@ impl Interpolated {
     }
 
     /// Adds the particles around `place`, with their coefficients.
-    fn look_around(&self, place: &[f64], positions: &[f64], around: &mut Around) {
+    fn look_around(
+        &self,
+        place: &[f64],
+        (particles, positions): (&[u32], &[f64]),
+        around: &mut Around,
+    ) {
         let dimension = place.len();
         let support = self.kernel.support_radius(self.smoothing_length);
         let (mut offsets, mut weights) = (Vec::new(), Vec::new());
-        for (&particle, position) in self.particles.iter().zip(positions.chunks_exact(dimension)) {
+        for (&particle, position) in particles.iter().zip(positions.chunks_exact(dimension)) {
             let offset = DVector::from_iterator(dimension, way(place, position, &self.periods));
             let distance = offset.norm();
             if distance < support {

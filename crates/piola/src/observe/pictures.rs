@@ -48,7 +48,7 @@ impl PictureWriter {
         let shot = moment.now.snapshot(moment.step, &[name]);
         let Some(found) = shot.field(name) else { return Ok(()) };
         let components = field.field.kind.components(shot.dimension);
-        let bodies = moment.now.scheme().bodies();
+        let bodies = &shot.bodies;
         let shown = || (0..bodies.len()).filter(|&a| !hidden.contains(&bodies[a]));
         let place = |a: usize| &shot.positions[a * shot.dimension..][..shot.dimension];
         let value = |a: usize| field.value(&found.values[a * components..][..components]);

@@ -183,9 +183,10 @@ impl Probe {
                 }
             }
             ProbeKind::Extremum { field, largest, particles, inside } => {
+                let particles = now.present(particles);
                 let counted = match inside {
-                    None => Cow::Borrowed(particles),
-                    Some(corners) => Cow::Owned(within(corners, particles, now)),
+                    None => particles,
+                    Some(corners) => Cow::Owned(within(corners, &particles, now)),
                 };
                 scratch.clear();
                 now.read(&field.field, &counted, scratch);
@@ -195,9 +196,12 @@ impl Probe {
                     if *largest { values.reduce(f64::max) } else { values.reduce(f64::min) };
                 row.push(extremum.unwrap_or(f64::NAN));
             }
-            ProbeKind::Sum { field, particles } => sum(field, particles, 1.0, now, scratch, row),
+            ProbeKind::Sum { field, particles } => {
+                sum(field, &now.present(particles), 1.0, now, scratch, row);
+            }
             ProbeKind::Mean { field, particles } => {
-                sum(field, particles, 1.0 / particles.len() as f64, now, scratch, row);
+                let particles = now.present(particles);
+                sum(field, &particles, 1.0 / particles.len() as f64, now, scratch, row);
             }
             ProbeKind::Force { field, about, particles } => {
                 sum(field, particles, 1.0, now, scratch, row);

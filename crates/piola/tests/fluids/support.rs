@@ -70,6 +70,7 @@ fn at_rest<const D: usize>(
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces: Vec::new(),
+        open: Default::default(),
     }
 }
 

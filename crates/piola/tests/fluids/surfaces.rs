@@ -49,6 +49,7 @@ fn under<const D: usize>(
         motion: Vec::new(),
         sliding: Vec::new(),
         body_forces,
+        open: Default::default(),
     };
     TransportVelocity::new(input, fluid).expect("the fluid can be built")
 }

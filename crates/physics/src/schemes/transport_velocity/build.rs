@@ -5,7 +5,9 @@ use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
 use super::walls::WallParticle;
-use super::{AtRest, Common, Continuum, DensityRule, Settings, Slip, TransportVelocity};
+use super::{
+    AtRest, Common, Continuum, DensityRule, OpenBoundaries, Settings, Slip, TransportVelocity,
+};
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity};
@@ -50,6 +52,8 @@ pub struct TransportVelocityInput<const D: usize> {
     pub sliding: Vec<PrescribedVelocity>,
     /// Body forces, which add up.
     pub body_forces: Vec<BodyForce<D>>,
+    /// Open boundaries; only fluids have any.
+    pub open: OpenBoundaries<D>,
 }
 
 /// Input that the formulation cannot work with.
@@ -171,7 +175,10 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         let mut common = Common::new(particles, support, settings, walls, matter_at_rest);
         (common.motion, common.sliding) = (motion, sliding);
         common.body_forces = felt_by_walls(input.body_forces, &input.walls);
-        let matter = M::bind(matter, &mut common)?;
+        let mut matter = M::bind(matter, &mut common)?;
+        if !input.open.all.is_empty() {
+            matter.open(input.open, &mut common);
+        }
         let (drift, accelerate) = (Stages::default(), Stages::default());
         let mut scheme = Self { common, matter, start: Vec::new(), drift, accelerate };
         scheme.plan()?;
@@ -187,7 +194,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     ) -> Result<(), TransportVelocityError> {
         let (common, ledger) = (&self.common, &M::DESCRIPTION.ledger);
         let columns = common.particles.len() * width(M::DESCRIPTION.fields, D);
-        let mut state = vec![0.0; columns + ledger.length(D) + 1];
+        let mut state = vec![0.0; columns + ledger.length(D) + 1 + self.matter.kept()];
         let (own, _) = common.parts(&mut state);
         for (number, density) in densities.iter().enumerate() {
             let position = common.particles.position[number];
@@ -212,6 +219,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         self.load(&state);
         self.common.note_evenness();
         self.accelerate(0.0, &mut state);
+        self.matter.settle(&self.common, &mut state);
         ledger.clear(D, self.tail(&mut state));
         self.start = state;
         Ok(())

@@ -5,9 +5,11 @@ use piola_formulas::pairs::Record;
 use piola_formulas::pairs::wall::{Around, Extrapolation, Ghost, Surroundings};
 
 use super::ledger::{ACCELERATIONS, Drift};
-use super::stages::Pass;
+use super::stages::{Instant, Pass};
 use super::walls::WallValues;
-use super::{AtRest, Columns, Common, Rates, Slip, TransportVelocity, TransportVelocityError};
+use super::{
+    AtRest, Columns, Common, OpenBoundaries, Rates, Slip, TransportVelocity, TransportVelocityError,
+};
 use crate::Vector;
 use crate::fields::FieldDescription;
 use crate::operators::{Among, NeighborBlock, Term, add_at};
@@ -54,7 +56,57 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     fn stage(pass: Self::Own) -> Stage;
 
     /// Runs a pass of its own.
-    fn run(&mut self, pass: Self::Own, common: &mut Common<D>);
+    fn run(
+        &mut self,
+        pass: Self::Own,
+        common: &mut Common<D>,
+        at: Instant,
+        state: &mut [f64],
+        totals: &mut Totals,
+    );
+
+    /// Gives it open boundaries.
+    fn open(&mut self, _open: OpenBoundaries<D>, _common: &mut Common<D>) {}
+
+    /// Takes from a state which particles take part, before it is loaded.
+    fn follow(&mut self, _common: &mut Common<D>, _state: &[f64]) {}
+
+    /// Numbers that a state keeps of it behind the ledger and those of all matter.
+    fn kept(&self) -> usize {
+        0
+    }
+
+    /// Moves its particles that do not move by themselves, for a step in s with the velocities half way.
+    fn lead(&self, _common: &Common<D>, _step: f64, _middle: f64, _state: &mut [f64]) {}
+
+    /// The body that a particle (number) belongs to in a state; nothing if it is not there.
+    fn body_of(&self, common: &Common<D>, number: usize, state: &[f64]) -> Option<u32> {
+        let is_removed = Common::<D>::is_removed(common.columns(state).density[number]);
+        (!is_removed).then(|| common.particles.body[number])
+    }
+
+    /// Keeps what the passes of the start have found.
+    fn settle(&self, _common: &Common<D>, _state: &mut [f64]) {}
+
+    /// How many particles have been born before a particle (number) and with it; 0 if it was there at the start.
+    fn birth_of(&self, _common: &Common<D>, _number: usize, _state: &[f64]) -> u32 {
+        0
+    }
+
+    /// Whether particles come in.
+    fn is_open(&self) -> bool {
+        false
+    }
+
+    /// How many of the particles that are not there have not escaped.
+    fn waiting(&self, _common: &Common<D>, _state: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// The first particle that could not come in, with the name of its boundary.
+    fn starved(&self, _common: &Common<D>, _state: &[f64]) -> Option<(usize, &str)> {
+        None
+    }
 
     /// Fills what neighbours see besides their sides, which have been loaded.
     fn load(&mut self, _common: &Common<D>, _state: &[f64]) {}
@@ -91,11 +143,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         _values: &mut WallValues<D>,
         block: &mut NeighborBlock<D>,
     ) -> Around<f64, D> {
-        let mut around = Surroundings::zero();
-        let source = common.sides.as_slice();
-        let sum = Term { law: Extrapolation::<D>, source, among: Among::Active };
-        add_at(&common.support, &sum, place, block, &mut around);
-        around
+        common.surroundings(place, block)
     }
 
     /// Changes the values of a wall particle with a normal, beside which the matter is a ghost.
@@ -162,5 +210,20 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         _device: Device,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         Err(DeviceRefusal::Solids)
+    }
+}
+
+impl<const D: usize> Common<D> {
+    /// The matter around the passive particle at `place`.
+    pub(super) fn surroundings(
+        &self,
+        place: usize,
+        block: &mut NeighborBlock<D>,
+    ) -> Around<f64, D> {
+        let mut around = Surroundings::zero();
+        let source = self.sides.as_slice();
+        let sum = Term { law: Extrapolation::<D>, source, among: Among::Active };
+        add_at(&self.support, &sum, place, block, &mut around);
+        around
     }
 }

@@ -35,7 +35,7 @@ impl<const D: usize> Common<D> {
         let Some(&first) = position.first().filter(|_| !self.walls.is_empty()) else { return };
         let low = position.iter().fold(first, |low, x| low.inf(x));
         let high = position.iter().fold(first, |high, x| high.sup(x));
-        if guard.removes {
+        if guard.removes && self.removed.is_empty() {
             self.removed = vec![false; position.len()];
         }
         self.guard = Some((guard, (high - low).max()));
@@ -165,7 +165,7 @@ impl<const D: usize> Common<D> {
     /// they were found and nothing feels them. Their energy and momentum leave by ways of their own.
     pub(super) fn remove_escaped(&mut self, state: &mut [f64]) -> Total {
         let mut total = Total::default();
-        if self.removed.is_empty() {
+        if !self.guard.as_ref().is_some_and(|(guard, _)| guard.removes) {
             return total;
         }
         self.load(state);

@@ -34,6 +34,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     ///
     /// All are scaled by the CFL number, which the paper has as 0.25.
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
+        self.matter.follow(&mut self.common, state);
         if self.common.guard.is_some() {
             self.common.load(state);
         }
@@ -45,6 +46,8 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         {
             health.first_escaped = common.escaped(state).first().copied();
         }
+        health.first_escaped =
+            health.first_escaped.or(self.matter.starved(common, state).map(|(number, _)| number));
         health
     }
 

@@ -200,6 +200,6 @@ impl<const D: usize> TransportVelocity<D> {
     pub(crate) fn restart(&mut self, state: &mut [f64]) {
         self.common.parts(state).0.deviation.fill(Vector::zeros());
         self.accelerate(0.0, state);
-        LEDGER.clear(D, self.common.parts(state).1);
+        LEDGER.clear(D, self.tail(state));
     }
 }

@@ -56,7 +56,7 @@ use crate::schemes::stages::Stages;
 
 pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
 pub use escape::Guard;
-pub use fluid::{DESCRIPTION as FLUIDS, WeaklyCompressible};
+pub use fluid::{DESCRIPTION as FLUIDS, Flow, OpenBoundaries, OpenBoundary, WeaklyCompressible};
 pub use forces::{Forces, Rates};
 pub(crate) use interface::Guide;
 pub use settings::{

@@ -83,7 +83,7 @@ impl<const D: usize> Common<D> {
                 values.extend_from_slice(normal.as_slice());
             }
             Made::wall => {
-                let is_wall = self.is_wall[number] && !Self::is_removed(at.density[number]);
+                let is_wall = self.is_wall[number] && self.wall_of(number as u32).is_some();
                 values.push(f64::from(is_wall));
             }
             Made::normal => {

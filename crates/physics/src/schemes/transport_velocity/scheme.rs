@@ -8,7 +8,7 @@ use crate::fields::FieldDescription;
 use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    DeviceRefusal, DeviceSteps, Escape, Health, Particle, Phase, Scheme, SchemeDescription,
+    Behind, DeviceRefusal, DeviceSteps, Escape, Health, Particle, Phase, Scheme, SchemeDescription,
     SplitScheme, StepLimit,
 };
 
@@ -51,13 +51,27 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
     }
 
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
-        self.common.escape_of(index, state)
+        match self.matter.starved(&self.common, state) {
+            Some((number, name)) if number == index => {
+                let at = self.common.columns(state);
+                Some(Escape {
+                    position: at.position[number].iter().copied().collect(),
+                    speed: at.velocity[number].norm(),
+                    behind: Behind::Reserve(name.into()),
+                    advice: "raise `scheme.reserve`",
+                })
+            }
+            _ => self.common.escape_of(index, state),
+        }
     }
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let tail = &state[self.particle_count() * self.width()..];
-        figures
-            .extend([M::DESCRIPTION.ledger.behind(D, tail)[0], self.common.removed_count(state)]);
+        let waiting = self.matter.waiting(&self.common, state);
+        figures.extend([
+            M::DESCRIPTION.ledger.behind(D, tail)[0],
+            self.common.removed_count(state) - waiting,
+        ]);
         self.matter.figures(&self.common, state, figures);
     }
 
@@ -110,6 +124,18 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
 
     fn ids(&self) -> &[u32] {
         &self.common.particles.id
+    }
+
+    fn is_closed(&self) -> bool {
+        self.common.removed.is_empty()
+    }
+
+    fn body_of(&self, state: &[f64], index: usize) -> Option<u32> {
+        self.matter.body_of(&self.common, index, state)
+    }
+
+    fn birth_of(&self, state: &[f64], index: usize) -> u32 {
+        self.matter.birth_of(&self.common, index, state)
     }
 
     fn mass(&self, index: usize) -> f64 {

@@ -136,8 +136,10 @@ pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> S
 
 /// The time of a pass and the step that it belongs to, in s.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Instant {
+pub struct Instant {
+    /// The time in s.
     pub time: f64,
+    /// The step in s.
     pub step: f64,
 }
 
@@ -184,6 +186,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
 
     /// Finds the neighbours at the positions of `state` and fills what they see of each other.
     pub(super) fn load(&mut self, state: &[f64]) {
+        self.matter.follow(&mut self.common, state);
         self.common.load(state);
         self.matter.load(&self.common, state);
     }
@@ -198,7 +201,10 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     ) {
         let Self { common, matter, .. } = self;
         match pass {
-            Pass::Remove => totals.book(M::REMOVED, &common.remove_escaped(state)),
+            Pass::Remove => {
+                matter.follow(common, state);
+                totals.book(M::REMOVED, &common.remove_escaped(state));
+            }
             Pass::Prescribe => totals.book(M::WALLS, &matter.prescribe(common, time, state)),
             Pass::Iterate => {
                 self.load(state);
@@ -213,6 +219,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
                 let sums = matter.advance(common, step, state);
                 M::DRIFTING.iter().zip(&sums).for_each(|(entry, sum)| totals.book(*entry, sum));
                 common.move_walls(step, time, state);
+                matter.lead(common, step, time, state);
             }
             Pass::Forces => matter.find_forces(common),
             Pass::BodyForces => common.add_body_forces(time),
@@ -221,7 +228,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             Pass::Reach => common.reach_surfaces(),
             Pass::Shift => common.shift(),
             Pass::Store => matter.store(common, state, totals),
-            Pass::Own(pass) => matter.run(pass, common),
+            Pass::Own(pass) => matter.run(pass, common, Instant { time, step }, state, totals),
         }
     }
 }

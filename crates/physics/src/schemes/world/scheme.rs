@@ -229,6 +229,18 @@ impl<const D: usize> Scheme for World<D> {
         &self.ids
     }
 
+    fn is_closed(&self) -> bool {
+        self.fluid.is_closed()
+    }
+
+    fn body_of(&self, state: &[f64], index: usize) -> Option<u32> {
+        let (k, own) = self.local(index);
+        let part = &state[self.parts[k].state.clone()];
+        let is_own = |body: u32| body == self.system(k).bodies()[own];
+        let body = self.system(k).body_of(part, own)?;
+        Some(if is_own(body) { self.bodies[index] } else { body })
+    }
+
     fn mass(&self, index: usize) -> f64 {
         let (k, own) = self.local(index);
         self.system(k).mass(own)

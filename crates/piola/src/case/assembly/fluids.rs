@@ -1,7 +1,9 @@
 //! Particles turned into a weakly compressible fluid between walls.
 
 use super::bodies::{self, BodyReport};
-use super::{Built, initial, kernel, loads, probes, row_sizes, row_statistics, selections, tanks};
+use super::{
+    Built, initial, kernel, loads, openings, probes, row_sizes, row_statistics, selections, tanks,
+};
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
@@ -86,6 +88,7 @@ fn prepare<const D: usize>(
     particles.reorder(&order.map_err(|error| {
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
+    let (open, mut warnings) = openings::open::<D>(case, settings, &mut particles, support)?;
     let (faces, shape) = faces(case, &particles, (first_twin, support))?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
@@ -99,7 +102,6 @@ fn prepare<const D: usize>(
         Some(_) => split(motion, &particles, &walls),
         None => (motion, Vec::new()),
     };
-    let mut warnings = Vec::new();
     let no_face = Faces::default();
     if faces
         .iter()
@@ -131,6 +133,7 @@ fn prepare<const D: usize>(
         motion,
         sliding,
         body_forces: loads::body_forces(case),
+        open,
         particles,
     };
     Ok(Prepared { input, held, probes, lines, reports, warnings })

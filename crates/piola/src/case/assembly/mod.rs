@@ -7,6 +7,7 @@ mod interpolation;
 mod joined;
 mod loads;
 mod mirrors;
+mod openings;
 mod printed;
 mod probes;
 mod selections;

@@ -28,6 +28,10 @@ impl Reader<'_, '_> {
             material: material?,
             initial: initial?,
             wall: record.record("wall").and_then(fluids::wall),
+            opening: match record.record("opening") {
+                Some(opening) => Some(self.opening(opening)?),
+                None => None,
+            },
             system: None,
         })
     }

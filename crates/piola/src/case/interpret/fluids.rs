@@ -3,7 +3,9 @@
 use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use super::*;
-use crate::case::model::{Body, Boundary, Material, Region, TransportVelocity, Wall};
+use crate::case::model::{
+    Body, Boundary, Material, OpenFlow, Opening, Region, TransportVelocity, Wall,
+};
 use crate::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
 };
@@ -85,7 +87,33 @@ impl Reader<'_, '_> {
             self_contact: record.number("self_contact"),
             corrected_gradients: record.boolean("corrected_gradients").unwrap_or(false),
             removes_escaped: record.text("escaped")?.as_str() == "remove",
+            reserve: record.whole::<u32>("reserve").map(|it| it.value),
         })
+    }
+}
+
+impl Reader<'_, '_> {
+    /// What makes a body the buffer of an open boundary.
+    pub(super) fn opening(&mut self, record: &Record) -> Option<Located<Opening>> {
+        const FLOWS: [&str; 3] = ["velocity", "flow_rate", "pressure"];
+        let given: Vec<&str> = FLOWS.into_iter().filter(|key| record.has(key)).collect();
+        if given.len() != 1 {
+            let message = match given.as_slice() {
+                [] => "an opening needs one of `velocity`, `flow_rate` and `pressure`".to_owned(),
+                [one, other, ..] => format!("`{one}` and `{other}` cannot both be prescribed"),
+                [_] => String::new(),
+            };
+            let label = if given.is_empty() { "nothing is prescribed" } else { "too much" };
+            return self.refuse(Problem::new(record.place, message, label));
+        }
+        let normal = self.unit(record, "normal")?;
+        let flow = match given[0] {
+            "velocity" => OpenFlow::Velocity(record.expressions("velocity")?),
+            "flow_rate" => OpenFlow::Rate(record.expression("flow_rate")?),
+            _ => OpenFlow::Pressure(record.expression("pressure")?),
+        };
+        let relaxation = record.number("relaxation").map(|time| time.value);
+        Some(Located::new(Opening { normal, flow, relaxation }, record.place))
     }
 }
 
@@ -165,6 +193,20 @@ impl Reader<'_, '_> {
                     format!("body `{}` starts with a pressure, which no strain makes", *body.name);
                 let problem = Problem::new(body.name.place, message, "no meaning in this scheme");
                 self.report(problem.help("remove `initial.pressure`"));
+            }
+            if let Some(opening) = &body.opening {
+                let is_of_fluid = is_fluid && !is_solid && system.is_none();
+                let message = match (is_of_fluid, &body.wall) {
+                    (true, None) => None,
+                    (true, Some(_)) => Some("a wall is no opening"),
+                    _ => {
+                        Some("only a fluid of the scheme `transport_velocity` has open boundaries")
+                    }
+                };
+                if let Some(message) = message {
+                    let problem = Problem::new(opening.place, message, "no meaning here");
+                    self.report(problem.help("remove `opening`"));
+                }
             }
             if let (Some(wall), false, None) = (&body.wall, is_fluid, system) {
                 let message = format!("the scheme `{scheme}` has no walls of ghost particles");

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Material, Wall};
+use super::{Material, Opening, Wall};
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::geometry::CloudSpec;
@@ -31,6 +31,8 @@ pub struct Body {
     pub initial: Initial,
     /// What makes it a wall, if it is one.
     pub wall: Option<Located<Wall>>,
+    /// What makes it the buffer of an open boundary, if it is one.
+    pub opening: Option<Located<Opening>>,
     /// Number of the system that it belongs to, if that is not the main one.
     pub system: Option<usize>,
 }

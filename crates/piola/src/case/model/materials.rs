@@ -141,6 +141,38 @@ impl PlaneState {
     }
 }
 
+/// What makes a body the buffer of an open boundary.
+#[derive(Clone, Debug)]
+pub struct Opening {
+    /// Unit normal into the fluid.
+    pub normal: Vec<f64>,
+    /// What is prescribed.
+    pub flow: OpenFlow,
+    /// The time in s within which mean pressures follow.
+    pub relaxation: Option<f64>,
+}
+
+/// What is prescribed at an open boundary.
+#[derive(Clone, Debug)]
+pub enum OpenFlow {
+    /// The velocity in m/s, by component.
+    Velocity(Vec<Expression>),
+    /// The volume that comes in, in m^D/s.
+    Rate(Expression),
+    /// The pressure in Pa.
+    Pressure(Expression),
+}
+
+impl OpenFlow {
+    /// All expressions.
+    pub fn expressions(&self) -> &[Expression] {
+        match self {
+            Self::Velocity(velocity) => velocity,
+            Self::Rate(one) | Self::Pressure(one) => std::slice::from_ref(one),
+        }
+    }
+}
+
 /// What makes a body a wall.
 #[derive(Clone, Debug)]
 pub struct Wall {

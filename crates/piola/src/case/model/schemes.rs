@@ -109,6 +109,8 @@ pub struct TransportVelocity {
     pub corrected_gradients: bool,
     /// Whether particles that escape are removed; otherwise the run ends.
     pub removes_escaped: bool,
+    /// How many particles may come in beyond those that go out.
+    pub reserve: Option<u32>,
 }
 
 /// Settings of a total Lagrangian solid.

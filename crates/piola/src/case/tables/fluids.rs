@@ -140,6 +140,13 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Default("\"stop\""),
             "what is done about a particle that goes through a wall or leaves the box around everything; no meaning for solids in a fluid",
         ),
+        key(
+            "reserve",
+            Kind::Integer(Interval::at_least(1.0)),
+            "",
+            Derived("a twentieth of the particles, and no less than two buffers"),
+            "how many particles more than at the start there may be, where open boundaries let them in",
+        ),
     ],
 };
 
@@ -192,6 +199,48 @@ pub(super) static WALL: TableSpec = TableSpec {
             "m/s",
             Optional,
             "velocity of its surface where it is, as of a belt, on top of its motion",
+        ),
+    ],
+};
+
+pub(super) static OPENING: TableSpec = TableSpec {
+    title: "opening",
+    meaning: "Makes a body the buffer of an open boundary, for fluids of the scheme `transport_velocity`: fluid comes in and goes out through its end towards the fluid. One of `velocity`, `flow_rate` and `pressure` is needed; sound passes through all of them.",
+    keys: &[
+        key(
+            "normal",
+            Kind::Numbers(Length::Dimension, Interval::ANY),
+            "1",
+            Required,
+            "normal of the boundary, from the buffer into the fluid, of any length",
+        ),
+        key(
+            "velocity",
+            Kind::Expressions(Variables::PositionAndTime),
+            "m/s",
+            Optional,
+            "velocity of the fluid there; the pressure is that of the fluid inside",
+        ),
+        key(
+            "flow_rate",
+            Kind::Expression(Variables::PositionAndTime),
+            "m^D/s",
+            Optional,
+            "volume that comes in, less than zero where it goes out, with the same velocity everywhere",
+        ),
+        key(
+            "pressure",
+            Kind::Expression(Variables::PositionAndTime),
+            "Pa",
+            Optional,
+            "mean pressure of the fluid there, where it goes out with the velocity that it has or comes in along the normal",
+        ),
+        key(
+            "relaxation",
+            Kind::Number(Interval::POSITIVE),
+            "s",
+            Derived("twenty times the time of sound through all bodies"),
+            "time within which mean pressures follow; faster changes pass as sound",
         ),
     ],
 };

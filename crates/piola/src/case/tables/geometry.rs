@@ -50,6 +50,13 @@ pub(super) static BODY: TableSpec = TableSpec {
         ),
         key("initial", Kind::Table(&INITIAL), "", Default("{}"), "its state at the start"),
         key("wall", Kind::Table(&fluids::WALL), "", Optional, "makes it a wall"),
+        key(
+            "opening",
+            Kind::Table(&fluids::OPENING),
+            "",
+            Optional,
+            "makes it the buffer of an open boundary, an inlet or an outlet",
+        ),
     ],
 };
 

@@ -3,7 +3,7 @@
 use piola_device::lists::Lists;
 use piola_device::{Device, Machine};
 
-use super::super::{AtSurface, DensityRule, Shifting, Slip, TransportVelocity};
+use super::super::{AtSurface, Continuum, DensityRule, Shifting, Slip, TransportVelocity};
 use super::passes::{FIGURES, FORCES, drift_terms, kick_terms, side_width};
 use super::{Named, OnDevice, Plan, walls};
 use crate::boundaries::BodyForce;
@@ -83,6 +83,9 @@ impl<const D: usize> TransportVelocity<D> {
         if common.settings.is_algebraic() {
             let instead = "use `scheme.pressure = \"edac\"`";
             return refuse("a pressure by the law of state", instead);
+        }
+        if self.matter.is_open() {
+            return refuse("an open boundary", "run it on processors");
         }
         if common.motion.iter().next().is_some() {
             return refuse("a wall that moves", "let it slide or rest");

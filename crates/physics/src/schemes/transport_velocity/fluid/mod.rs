@@ -4,6 +4,7 @@ mod barrier;
 mod density;
 mod drift;
 mod forces;
+mod open;
 mod rates;
 
 use piola_device::Device;
@@ -11,7 +12,7 @@ use piola_formulas::pairs::sums::Density;
 
 use super::fields::Made;
 use super::ledger::{ACCELERATIONS, Drift};
-use super::stages::{Pass, stage};
+use super::stages::{Instant, Pass, stage};
 use super::walls::WallValues;
 use super::{
     AtRest, Columns, Common, Continuum, DensityRule, Fluid, Rates, TransportVelocity,
@@ -25,9 +26,13 @@ use crate::schemes::{Accounts, Capability, DeviceRefusal, DeviceSteps, SchemeDes
 
 use barrier::Hold;
 pub(super) use barrier::TOUCH;
+use open::Open;
+pub use open::{Flow, OpenBoundaries, OpenBoundary};
 
 columns! {
-    enum Own;
+    pub(super) struct Stored, StoredMut, enum Own;
+    evolved opening: Scalar, "1", "open boundary in whose buffer the particle is, counted from 1; 0 in the fluid";
+    evolved birth: Scalar, "1", "how many particles had come in when this one did; 0 if it was there at the start";
     derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
     derived(1) pressure_force: Vector, "N", "of `force` on a wall, that of the pressure";
     derived(1) viscous_force: Vector, "N", "of `force` on a wall, that of viscosity";
@@ -47,7 +52,13 @@ pub const DESCRIPTION: SchemeDescription = SchemeDescription {
     fields: &FIELDS,
     energies: &["kinetic", "compression"],
     ledger: LEDGER,
-    figures: &[("shifting_passes", "1"), ("removed", "1"), ("behind", "1")],
+    figures: &[
+        ("shifting_passes", "1"),
+        ("removed", "1"),
+        ("behind", "1"),
+        ("entered", "kg"),
+        ("left", "kg"),
+    ],
 };
 
 /// The ledger of a fluid.
@@ -67,13 +78,15 @@ pub(super) const LEDGER: Accounts = Accounts {
         "body_force",
         "pressure_diffusion",
         "removed",
+        "openings",
     ],
-    impulses: &["walls", "body_force", "viscosity", "corrections", "removed"],
+    impulses: &["walls", "body_force", "viscosity", "corrections", "removed", "openings"],
     is_kicked: true,
 };
 const PRESSURE: Entry = LEDGER.entry("pressure");
 const TRANSPORT: Entry = LEDGER.entry_by("transport", "corrections");
 const WALLS: Entry = LEDGER.entry("walls");
+const OPENINGS: Entry = LEDGER.entry("openings");
 
 /// The mechanisms that accelerate.
 pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
@@ -97,6 +110,7 @@ pub struct WeaklyCompressible<const D: usize> {
     shear: Vec<Vector<D>>,
     /// What walls do to fluid that touches them; empty without walls.
     holds: Vec<Hold<D>>,
+    open: Open<D>,
 }
 
 /// Passes of fluids alone.
@@ -106,6 +120,12 @@ pub enum Barrier {
     HoldOff,
     /// What they get for it.
     Bear,
+    /// Particles go through open boundaries.
+    Exchange,
+    /// Values of the particles in their buffers.
+    Buffers,
+    /// What of the forces of walls is that of buffers.
+    Part,
 }
 
 impl<const D: usize> WeaklyCompressible<D> {
@@ -147,7 +167,58 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             rates: vec![Rates::default(); count],
             shear: vec![Vector::zeros(); touched],
             holds: vec![Hold::default(); touched],
+            open: Open::none(),
         })
+    }
+
+    fn begin(&self, common: &Common<D>, state: &mut [f64]) {
+        self.begin_open(common, state);
+    }
+
+    fn open(&mut self, open: OpenBoundaries<D>, common: &mut Common<D>) {
+        self.open_up(open, common);
+    }
+
+    fn follow(&mut self, common: &mut Common<D>, state: &[f64]) {
+        self.follow_roles(common, state);
+    }
+
+    fn kept(&self) -> usize {
+        self.open.kept()
+    }
+
+    fn lead(&self, common: &Common<D>, step: f64, middle: f64, state: &mut [f64]) {
+        self.move_buffers(common, step, middle, state);
+    }
+
+    fn settle(&self, common: &Common<D>, state: &mut [f64]) {
+        self.keep_means(common, state);
+    }
+
+    fn body_of(&self, common: &Common<D>, number: usize, state: &[f64]) -> Option<u32> {
+        let at = common.columns(state);
+        if Common::<D>::is_removed(at.density[number]) {
+            return None;
+        }
+        let stored = Stored::<D>::of(at.tail, common.particles.len());
+        Some(self.open.body(stored.opening[number]).unwrap_or(common.particles.body[number]))
+    }
+
+    fn birth_of(&self, common: &Common<D>, number: usize, state: &[f64]) -> u32 {
+        let tail = common.columns(state).tail;
+        Stored::<D>::of(tail, common.particles.len()).birth[number] as u32
+    }
+
+    fn is_open(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    fn waiting(&self, common: &Common<D>, state: &[f64]) -> f64 {
+        Self::waiting(self, common, state)
+    }
+
+    fn starved(&self, common: &Common<D>, state: &[f64]) -> Option<(usize, &str)> {
+        Self::starved(self, common, state)
     }
 
     fn passes(&self, common: &Common<D>) -> [Vec<Pass<Barrier>>; 2] {
@@ -159,10 +230,14 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             true => Vec::new(),
             false => vec![Pass::Own(Barrier::HoldOff), Pass::Own(Barrier::Bear)],
         };
-        let drift = [common.spread(), walls.clone(), rates, vec![Pass::Move]];
+        let only = |pass| if self.open.is_empty() { Vec::new() } else { vec![Pass::Own(pass)] };
+        let buffers = only(Barrier::Buffers);
+        let drift = [common.spread(), walls.clone(), buffers.clone(), rates, vec![Pass::Move]];
         let (found, stored) = (vec![Pass::Remove, Pass::Load, Pass::State], vec![Pass::Store]);
-        let forces = vec![Pass::Forces];
-        let accelerate = [found, walls, forces, body_forces, shift, barrier, stored];
+        let (forces, part) = (vec![Pass::Forces], only(Barrier::Part));
+        let exchange = only(Barrier::Exchange);
+        let accelerate =
+            [exchange, found, walls, buffers, forces, part, body_forces, shift, barrier, stored];
         [drift.concat(), accelerate.concat()]
     }
 
@@ -176,11 +251,33 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             Barrier::Bear => {
                 stage("bear", [&["forces", "barrier"], &["barrier"], &["forces"], &[]])
             }
+            Barrier::Exchange => {
+                let all = &["position", "velocity", "density", "pressure"];
+                stage("exchange", [all, &[], &[], all])
+            }
+            Barrier::Buffers => {
+                let shows = &["side.velocity", "side.density", "side.pressure"];
+                stage("buffers", [&["position"], shows, &["buffers"], shows])
+            }
+            Barrier::Part => {
+                let gathers = &["side.velocity", "side.density", "side.pressure"];
+                stage("part", [&["forces", "buffers"], gathers, &["openings"], &[]])
+            }
         }
     }
 
-    fn run(&mut self, pass: Barrier, common: &mut Common<D>) {
+    fn run(
+        &mut self,
+        pass: Barrier,
+        common: &mut Common<D>,
+        at: Instant,
+        state: &mut [f64],
+        totals: &mut Totals,
+    ) {
         match pass {
+            Barrier::Exchange => totals.book(OPENINGS, &self.exchange(common, at.time, state)),
+            Barrier::Buffers => self.fill_buffers(common, at.time),
+            Barrier::Part => self.part_forces(common),
             Barrier::HoldOff => self.hold_off(common),
             Barrier::Bear => self.bear(common),
         }
@@ -204,6 +301,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
 
     /// A pressure that follows from the density changes at once.
     fn store(&self, common: &Common<D>, state: &mut [f64], totals: &mut Totals) {
+        totals.part(WALLS, OPENINGS, &self.store_open(common, state));
         if !common.settings.is_algebraic() {
             return common.store::<Self>(state, totals);
         }
@@ -235,6 +333,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
 
     fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>) {
         figures.push(self.behind_count(common, state));
+        figures.extend(self.exchanged(common, state));
     }
 
     fn push_field(

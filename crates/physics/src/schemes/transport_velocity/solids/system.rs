@@ -14,11 +14,11 @@ use crate::boundaries::prescribed::PrescribedComponents;
 use crate::fields::{FieldDescription, columns};
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::input::{check_index, check_selected};
-use crate::schemes::ledger::{Entry, Total};
+use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::transport_velocity::fields::Made;
 use crate::schemes::transport_velocity::ledger::{ACCELERATIONS, Drift};
-use crate::schemes::transport_velocity::stages::{Pass, stage};
+use crate::schemes::transport_velocity::stages::{Instant, Pass, stage};
 use crate::schemes::transport_velocity::walls::WallValues;
 use crate::schemes::transport_velocity::{
     AtRest, Columns, Common, Continua, Continuum, NAME, Rates, Slip, TransportVelocityError,
@@ -181,7 +181,14 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
         }
     }
 
-    fn run(&mut self, pass: Stress, common: &mut Common<D>) {
+    fn run(
+        &mut self,
+        pass: Stress,
+        common: &mut Common<D>,
+        _at: Instant,
+        _state: &mut [f64],
+        _totals: &mut Totals,
+    ) {
         match pass {
             Stress::Correct => self.correct_gradients(common),
             Stress::Tension => self.tension_pass(common),

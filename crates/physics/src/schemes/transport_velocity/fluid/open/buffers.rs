@@ -1,0 +1,181 @@
+//! What particles of the buffers of open boundaries are to the fluid, and what they do to it.
+
+use piola_formulas::fluid;
+use piola_formulas::kernels::Needs;
+use piola_formulas::pairs::fluid::Wall;
+
+use super::{Common, Flow, Fluid, KEPT, Kept, Open, OpenBoundary, Seen, Side, WeaklyCompressible};
+use crate::operators::{Among, NeighborBlock, visit};
+use crate::schemes::ledger::Total;
+use crate::{Vector, parallel};
+
+impl<const D: usize> WeaklyCompressible<D> {
+    /// Completes the sides of buffers from those of the fluid around them, at a time in s, theory (86) to (88).
+    pub(in super::super) fn fill_buffers(&mut self, common: &mut Common<D>, time: f64) {
+        let Open { boundaries, roles, members, seen, means, .. } = &mut self.open;
+        let shear = &mut self.shear;
+        seen.clear();
+        seen.resize(members.len(), Seen { pressure: None, entering: None });
+        let all = &boundaries.all;
+        let boundary_of = |number: u32| &all[roles[number as usize] as usize - 1];
+        let places = common.support.list().places();
+        parallel::for_each_chunk(seen, |first, rows| {
+            let mut block = NeighborBlock::default();
+            for (offset, row) in rows.iter_mut().enumerate() {
+                let number = members[first + offset];
+                let place = places[number as usize] as usize;
+                *row = look_in(common, boundary_of(number), (number, place), time, &mut block);
+            }
+        });
+        let Fluid { density, wave_speed, .. } = self.fluid;
+        let impedance = density * wave_speed;
+        let positions = common.support.list().positions();
+        for (role, (mean, boundary)) in means.iter_mut().zip(all).enumerate() {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (&number, seen) in members.iter().zip(&*seen) {
+                let is_own = roles[number as usize] as usize == role + 1;
+                let Some(pressure) = seen.pressure.filter(|_| is_own) else { continue };
+                let place = places[number as usize] as usize;
+                sum += pressure - boundary.reference(&positions[place], time);
+                count += 1.0;
+            }
+            if count > 0.0 {
+                mean.above = sum / count;
+            }
+            // At the start there is no past.
+            if mean.slow.is_nan() {
+                mean.slow = mean.above;
+            }
+        }
+        for (&number, seen) in members.iter().zip(&*seen) {
+            let place = places[number as usize] as usize;
+            let (boundary, mean) =
+                (boundary_of(number), &means[roles[number as usize] as usize - 1]);
+            let pressure = match (&boundary.flow, seen.pressure) {
+                (Flow::Velocity(_), Some(pressure)) => pressure,
+                (Flow::Velocity(_), None) => mean.above,
+                (Flow::Pressure(_), Some(pressure)) => pressure - mean.slow,
+                (Flow::Pressure(_), None) => {
+                    boundary.reference(&positions[place], time) + mean.sound()
+                }
+            };
+            let sound = boundary.normal * (mean.sound() / impedance);
+            let side: &mut Side<D> = &mut common.sides[place];
+            side.velocity = seen.entering.unwrap_or(side.velocity) - sound;
+            side.deviation = Vector::zeros();
+            let mass = common.mass[number as usize];
+            side.set(mass, fluid::density(pressure, density, wave_speed), pressure);
+            shear[place] = side.velocity;
+        }
+    }
+
+    /// Moves buffers along their normals for a `step` in s with the velocities half way, and lets the slow pressures
+    /// follow.
+    pub(in super::super) fn move_buffers(
+        &self,
+        common: &Common<D>,
+        step: f64,
+        middle: f64,
+        state: &mut [f64],
+    ) {
+        let open = &self.open;
+        if open.is_empty() {
+            return;
+        }
+        let impedance = self.fluid.density * self.fluid.wave_speed;
+        let (own, _) = common.parts(state);
+        for (&number, seen) in open.members.iter().zip(&open.seen) {
+            let number = number as usize;
+            let Some((role, boundary)) = open.boundary_of(number) else { continue };
+            let velocity = boundary.velocity(&own.position[number], middle);
+            let velocity = velocity.or(seen.entering).unwrap_or(own.velocity[number]);
+            let along = velocity.dot(&boundary.normal) - open.means[role].sound() / impedance;
+            own.position[number] += boundary.normal * (step * along);
+        }
+        let (_, kept) = Kept::of(common, state);
+        for ((mean, boundary), kept) in
+            open.means.iter().zip(&open.boundaries.all).zip(kept.each.chunks_exact_mut(KEPT))
+        {
+            kept[0] = mean.slow + mean.sound() * -(-step / boundary.relaxation).exp_m1();
+        }
+    }
+
+    /// Finds what the buffers do to the fluid, of the forces of walls that have been found.
+    pub(in super::super) fn part_forces(&mut self, common: &Common<D>) {
+        let mut forces = std::mem::take(&mut self.open.forces);
+        let (list, roles) = (common.support.list(), &self.open.roles);
+        let (constants, _) = self.force_law(common);
+        let law = Wall::<D> { softening: constants.softening, viscosity: constants.viscosity };
+        let is_buffer = |place: u32| roles[list.numbers()[place as usize] as usize] > 0;
+        parallel::for_each_chunk(&mut forces, |first, rows| {
+            let mut block = NeighborBlock::default();
+            for (offset, row) in rows.iter_mut().enumerate() {
+                let place = first + offset;
+                *row = Vector::zeros();
+                let [_, passive] = common.support.places_of(place);
+                if list.is_passive(place) || !passive.iter().any(|&other| is_buffer(other)) {
+                    continue;
+                }
+                let me = &common.sides[place];
+                visit(
+                    &common.support,
+                    place,
+                    Among::Passive,
+                    Needs::Slope,
+                    &mut block,
+                    |other, pair| {
+                        if is_buffer(other as u32) {
+                            let jump = me.velocity - self.shear[other];
+                            law.push([me, &common.sides[other]], &jump, pair, row);
+                        }
+                    },
+                );
+            }
+        });
+        self.open.forces = forces;
+    }
+
+    /// The power of the buffers and their force, and what those that fluid enters through keep of its velocity.
+    pub(in super::super) fn store_open(&self, common: &Common<D>, state: &mut [f64]) -> Total {
+        let open = &self.open;
+        if open.is_empty() {
+            return Total::default();
+        }
+        let (own, _) = common.parts(state);
+        for (&number, seen) in open.members.iter().zip(&open.seen) {
+            if let Some(velocity) = seen.entering {
+                own.velocity[number as usize] = velocity;
+            }
+        }
+        let at = common.columns(state);
+        let places = common.support.list().places();
+        parallel::sums(places.len(), |number, sum: &mut Total| {
+            let place = places[number] as usize;
+            let (force, mass) = (open.forces[place], common.mass[number]);
+            if force != Vector::<D>::zeros() {
+                sum.push(&at.position[number], &at.velocity[number], &(force * mass));
+                sum.growth += mass * force.dot(&common.forces[place].total());
+            }
+        })
+    }
+}
+
+/// What the particle of a buffer takes from the fluid around it.
+fn look_in<const D: usize>(
+    common: &Common<D>,
+    boundary: &OpenBoundary<D>,
+    (number, place): (u32, usize),
+    time: f64,
+    block: &mut NeighborBlock<D>,
+) -> Seen<D> {
+    let around = common.surroundings(place, block);
+    if !(around.weight > 0.0) {
+        return Seen { pressure: None, entering: None };
+    }
+    let gravity = common.body_force_at(number as usize, place, time);
+    let pressure = (around.pressure + gravity.dot(&around.arm)) / around.weight;
+    let inwards = around.velocity.dot(&boundary.normal) / around.weight;
+    let enters = matches!(boundary.flow, Flow::Pressure(_)) && inwards > 0.0;
+    let entering = enters.then(|| boundary.normal * inwards);
+    Seen { pressure: Some(pressure), entering }
+}

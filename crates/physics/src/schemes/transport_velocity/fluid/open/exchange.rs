@@ -1,0 +1,178 @@
+//! Particles that go through open boundaries.
+
+use super::{Common, KEPT, Kept, WeaklyCompressible};
+use crate::schemes::ledger::Total;
+use crate::schemes::momentum::add_moments;
+use crate::{Vector, parallel};
+
+/// How far beyond a plane, in spacings, a particle may be before it changes sides. All that are beyond it
+/// then do, so that neighbour lists are made anew no more often than they are anyway.
+const OVERSHOOT: f64 = 0.25;
+
+/// What happens to a particle in an exchange, with the number of the boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Change {
+    ComeIn(usize),
+    GoOut(usize),
+    Leave,
+}
+
+impl<const D: usize> WeaklyCompressible<D> {
+    /// Sets the velocities of buffers at a time in s, and lets particles change sides that have gone through
+    /// a plane: fluid goes into a buffer with the velocity that it has, and a particle of a buffer becomes
+    /// fluid and is followed by another one at the buffer's end. What has come to the end of a buffer is taken out.
+    ///
+    /// The energy and the momentum that come in are those of particles that become fluid.
+    pub(in super::super) fn exchange(
+        &mut self,
+        common: &mut Common<D>,
+        time: f64,
+        state: &mut [f64],
+    ) -> Total {
+        let mut total = Total::default();
+        self.follow_roles(common, state);
+        let (own, _) = common.parts(state);
+        for &number in &self.open.members {
+            let number = number as usize;
+            if let Some((_, boundary)) = self.open.boundary_of(number)
+                && let Some(velocity) = boundary.velocity(&own.position[number], time)
+            {
+                own.velocity[number] = velocity;
+            }
+        }
+        let spacing = common.particles.spacing[0];
+        if self.overshoot(common, state) < OVERSHOOT * spacing {
+            return total;
+        }
+        let changes = self.changes(common, state);
+        let mut free = std::mem::take(&mut self.open.free);
+        free.clear();
+        let (own, _) = common.parts(state);
+        let vacant =
+            own.density.iter().enumerate().filter(|(_, rho)| Common::<D>::is_removed(**rho));
+        free.extend(vacant.map(|(number, _)| number as u32));
+        // Those that leave make room for those that come in.
+        for &(number, _) in changes.iter().filter(|(_, change)| *change == Change::Leave) {
+            let (own, _) = common.parts(state);
+            own.velocity[number] = Vector::zeros();
+            own.kick[number] = Vector::zeros();
+            (own.pressure[number], own.density[number]) = (0.0, 0.0);
+            let (stored, kept) = Kept::of(common, state);
+            stored.opening[number] = 0.0;
+            kept.counts[0] += 1.0;
+            free.push(number as u32);
+        }
+        free.sort_unstable_by(|a, b| b.cmp(a));
+        Kept::of(common, state).1.counts[1] = 0.0;
+        for (number, change) in changes {
+            match change {
+                Change::Leave => {}
+                Change::GoOut(role) => {
+                    self.carry_over(common, number, -1.0, state, &mut total);
+                    let (own, _) = common.parts(state);
+                    (own.deviation[number], own.kick[number]) = (Vector::zeros(), Vector::zeros());
+                    let (stored, kept) = Kept::of(common, state);
+                    stored.opening[number] = (role + 1) as f64;
+                    kept.each[KEPT * role + 2] += common.mass[number];
+                }
+                Change::ComeIn(role) => {
+                    let Some(next) = free.pop() else {
+                        Kept::of(common, state).1.counts[1] += 1.0;
+                        continue;
+                    };
+                    self.carry_over(common, number, 1.0, state, &mut total);
+                    self.bear_next(common, (number, next as usize), role, time, state);
+                }
+            }
+        }
+        self.open.free = free;
+        total
+    }
+
+    /// How far beyond a plane the furthest particle is that has not changed sides, in m.
+    fn overshoot(&self, common: &Common<D>, state: &[f64]) -> f64 {
+        let (open, at) = (&self.open, common.columns(state));
+        let spacing = common.particles.spacing[0];
+        parallel::maximum(open.roles.len(), 0.0, |number| {
+            let place = &at.position[number];
+            match open.boundary_of(number) {
+                Some((_, boundary)) => {
+                    let depth = boundary.plane - place.dot(&boundary.normal);
+                    (-depth).max(depth - boundary.length)
+                }
+                None if common.is_wall[number] => 0.0,
+                None => {
+                    let entered =
+                        open.boundaries.all.iter().filter_map(|it| it.entered(place, spacing));
+                    entered.fold(0.0, f64::max)
+                }
+            }
+        })
+    }
+
+    /// What changes in an exchange, in the order of numbers.
+    fn changes(&self, common: &Common<D>, state: &[f64]) -> Vec<(usize, Change)> {
+        let (open, at) = (&self.open, common.columns(state));
+        let spacing = common.particles.spacing[0];
+        let change = |number: usize| {
+            let place = &at.position[number];
+            match open.boundary_of(number) {
+                Some((role, boundary)) => {
+                    let depth = boundary.plane - place.dot(&boundary.normal);
+                    match depth {
+                        _ if depth < 0.0 => Some(Change::ComeIn(role)),
+                        _ if depth > boundary.length => Some(Change::Leave),
+                        _ => None,
+                    }
+                }
+                None if common.is_wall[number] => None,
+                None => {
+                    let all = &open.boundaries.all;
+                    let role = all.iter().position(|it| it.entered(place, spacing).is_some());
+                    role.map(Change::GoOut)
+                }
+            }
+        };
+        (0..open.roles.len()).filter_map(|number| Some((number, change(number)?))).collect()
+    }
+
+    /// Books what a particle brings into the fluid, or takes out of it.
+    fn carry_over(
+        &self,
+        common: &Common<D>,
+        number: usize,
+        sign: f64,
+        state: &[f64],
+        total: &mut Total,
+    ) {
+        let (at, mass) = (common.columns(state), sign * common.mass[number]);
+        let (velocity, pressure) = (&at.velocity[number], at.pressure[number]);
+        total.power +=
+            0.5 * mass * (velocity.norm_squared() + self.compliance() * pressure * pressure);
+        add_moments(&at.position[number], &(velocity * mass), &mut total.force);
+    }
+
+    /// Makes a particle of a buffer one of the fluid, and lets another one follow it at the end of the buffer.
+    fn bear_next(
+        &self,
+        common: &Common<D>,
+        (number, next): (usize, usize),
+        role: usize,
+        time: f64,
+        state: &mut [f64],
+    ) {
+        let boundary = &self.open.boundaries.all[role];
+        let (own, _) = common.parts(state);
+        let place = own.position[number] - boundary.normal * boundary.length;
+        own.position[next] = place;
+        own.velocity[next] = boundary.velocity(&place, time).unwrap_or(own.velocity[number]);
+        (own.deviation[next], own.kick[next]) = (Vector::zeros(), Vector::zeros());
+        (own.density[next], own.pressure[next]) = (own.density[number], own.pressure[number]);
+        let (stored, kept) = Kept::of(common, state);
+        kept.counts[0] -= 1.0;
+        kept.counts[2] += 1.0;
+        kept.each[KEPT * role + 1] += common.mass[number];
+        (stored.opening[number], stored.opening[next]) = (0.0, (role + 1) as f64);
+        stored.birth[next] = kept.counts[2];
+    }
+}

@@ -1,0 +1,306 @@
+//! Open boundaries, through which fluid comes in and goes out, theory (86) to (89).
+
+mod buffers;
+mod exchange;
+
+use std::sync::Arc;
+
+use super::{Columns, Common, Fluid, LEDGER, Stored, StoredMut, WeaklyCompressible};
+use crate::boundaries::{SpaceTime, padded};
+use crate::geometry::Shape;
+use crate::schemes::transport_velocity::Side;
+use crate::{Vector, parallel};
+
+/// What is prescribed of the fluid at an open boundary.
+#[derive(Clone)]
+pub enum Flow<const D: usize> {
+    /// Its velocity in m/s where it is; the pressure is that of the fluid inside.
+    Velocity([Arc<dyn SpaceTime>; D]),
+    /// Its pressure in Pa where it is; the velocity is that with which it goes out, or comes in along the
+    /// normal.
+    Pressure(Arc<dyn SpaceTime>),
+}
+
+/// A plane through which fluid comes in and goes out, with a buffer of particles behind it.
+#[derive(Clone)]
+pub struct OpenBoundary<const D: usize> {
+    /// Its name.
+    pub name: String,
+    /// The number of the body that particles count as while they are in the buffer.
+    pub body: u32,
+    /// The buffer.
+    pub shape: Shape<D>,
+    /// Unit normal of the plane, into the fluid.
+    pub normal: Vector<D>,
+    /// Where the plane is along the normal, in m.
+    pub plane: f64,
+    /// How far the buffer reaches behind it, in m.
+    pub length: f64,
+    /// What is prescribed.
+    pub flow: Flow<D>,
+    /// The time in s within which the mean pressure follows; faster changes are sound, which passes.
+    pub relaxation: f64,
+}
+
+impl<const D: usize> OpenBoundary<D> {
+    /// How far behind the plane a place is in m, if it is in front of or behind the opening and not beside it: by less than
+    /// half a spacing in m.
+    pub fn depth(&self, place: &Vector<D>, spacing: f64) -> Option<f64> {
+        let depth = self.plane - place.dot(&self.normal);
+        let middle = place + self.normal * (depth - 0.5 * self.length);
+        (self.shape.depth(&middle) > -0.5 * spacing).then_some(depth)
+    }
+
+    /// How far a particle of the fluid is in its buffer, in m; not at all in front of the plane.
+    fn entered(&self, place: &Vector<D>, spacing: f64) -> Option<f64> {
+        let depth = self.plane - place.dot(&self.normal);
+        if !(0.0..self.length).contains(&depth) {
+            return None;
+        }
+        self.depth(place, spacing)
+    }
+
+    /// The velocity in m/s that is prescribed at a place and a time in s.
+    pub fn velocity(&self, place: &Vector<D>, time: f64) -> Option<Vector<D>> {
+        match &self.flow {
+            Flow::Velocity(velocity) => {
+                let place = padded(place);
+                Some(Vector::from_fn(|axis, _| velocity[axis].value(place, time)))
+            }
+            Flow::Pressure(_) => None,
+        }
+    }
+
+    /// The pressure in Pa that pressures are told from: the prescribed one, or none.
+    fn reference(&self, place: &Vector<D>, time: f64) -> f64 {
+        match &self.flow {
+            Flow::Velocity(_) => 0.0,
+            Flow::Pressure(pressure) => pressure.value(padded(place), time),
+        }
+    }
+}
+
+/// The open boundaries of a fluid with the particles that they begin with.
+#[derive(Clone, Default)]
+pub struct OpenBoundaries<const D: usize> {
+    /// All of them.
+    pub all: Vec<OpenBoundary<D>>,
+    /// In whose buffer each particle is at the start, counted from 1; 0 for others.
+    pub buffers: Vec<u32>,
+    /// How many particles, the last ones, are not there at the start: they come in when they are needed.
+    pub reserve: usize,
+}
+
+/// What a buffer takes from the fluid in front of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    /// By how much the fluid's pressure is above the reference in the mean, in Pa.
+    above: f64,
+    /// The same, as it has been in the mean of the relaxation time.
+    slow: f64,
+}
+
+impl Mean {
+    /// What of the pressure is sound, in Pa.
+    fn sound(&self) -> f64 {
+        self.above - self.slow
+    }
+}
+
+/// What a particle of a buffer takes from the fluid around it.
+#[derive(Clone, Copy, Debug)]
+struct Seen<const D: usize> {
+    /// Pressure of the fluid there in Pa; nothing without fluid in reach.
+    pressure: Option<f64>,
+    /// Velocity in m/s with which fluid comes in, where the pressure is prescribed and it does.
+    entering: Option<Vector<D>>,
+}
+
+/// Numbers that a state keeps of all open boundaries: how many particles wait in the reserve, how many could
+/// not be born in the last exchange, and how many ever were.
+const COUNTS: usize = 3;
+/// Numbers that it keeps of each: the slow pressure, and the mass in kg that has come in and gone out.
+const KEPT: usize = 3;
+
+/// The open boundaries while a run goes.
+pub(super) struct Open<const D: usize> {
+    boundaries: OpenBoundaries<D>,
+    /// In whose buffer particles are, by number, as they were loaded.
+    roles: Vec<u32>,
+    /// The particles of all buffers, by number.
+    members: Vec<u32>,
+    seen: Vec<Seen<D>>,
+    means: Vec<Mean>,
+    /// What the buffers do to the fluid in m/s^2, by place.
+    forces: Vec<Vector<D>>,
+    /// Particles that wait.
+    free: Vec<u32>,
+}
+
+impl<const D: usize> Open<D> {
+    pub fn none() -> Self {
+        Self::new(OpenBoundaries::default(), 0)
+    }
+
+    pub fn new(boundaries: OpenBoundaries<D>, count: usize) -> Self {
+        let all = boundaries.all.len();
+        let count = if all > 0 { count } else { 0 };
+        Self {
+            boundaries,
+            roles: vec![0; count],
+            members: Vec::with_capacity(count),
+            seen: Vec::with_capacity(count),
+            means: vec![Mean::default(); all],
+            forces: vec![Vector::zeros(); count],
+            free: Vec::with_capacity(count),
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.boundaries.all.is_empty()
+    }
+
+    /// Numbers that a state keeps behind those of all matter.
+    pub fn kept(&self) -> usize {
+        if self.is_empty() { 0 } else { COUNTS + KEPT * self.boundaries.all.len() }
+    }
+
+    /// The body of a particle with a role, if it is in a buffer.
+    pub fn body(&self, role: f64) -> Option<u32> {
+        let boundary = self.boundaries.all.get((role as usize).checked_sub(1)?)?;
+        Some(boundary.body)
+    }
+
+    /// The boundary in whose buffer a particle (number) was when it was loaded.
+    fn boundary_of(&self, number: usize) -> Option<(usize, &OpenBoundary<D>)> {
+        let role = (*self.roles.get(number)? as usize).checked_sub(1)?;
+        Some((role, &self.boundaries.all[role]))
+    }
+}
+
+/// The numbers of open boundaries in a state.
+pub(super) struct Kept<'a> {
+    counts: &'a mut [f64],
+    each: &'a mut [f64],
+}
+
+impl<'a> Kept<'a> {
+    fn of<const D: usize>(common: &Common<D>, state: &'a mut [f64]) -> (StoredMut<'a, D>, Self) {
+        let count = common.particles.len();
+        let (stored, tail) = StoredMut::of(common.parts(state).1, count);
+        let (counts, each) = LEDGER.behind_mut(D, tail)[1..].split_at_mut(COUNTS);
+        (stored, Self { counts, each })
+    }
+}
+
+impl<const D: usize> WeaklyCompressible<D> {
+    /// Gives it open boundaries.
+    pub(super) fn open_up(&mut self, boundaries: OpenBoundaries<D>, common: &mut Common<D>) {
+        let count = common.particles.len();
+        self.open = Open::new(boundaries, count);
+        common.removed = vec![false; count];
+        self.shear = vec![Vector::zeros(); count];
+        // Those that are not there yet have to be as heavy as those that they follow.
+        for (number, mass) in common.mass.iter_mut().enumerate() {
+            *mass = self.fluid.density * common.particles.volume[number];
+        }
+    }
+
+    /// Puts particles of a state of the start into buffers and into the reserve.
+    pub(super) fn begin_open(&self, common: &Common<D>, state: &mut [f64]) {
+        let open = &self.open;
+        if open.is_empty() {
+            return;
+        }
+        let (count, reserve) = (common.particles.len(), open.boundaries.reserve);
+        let (own, _) = common.parts(state);
+        for number in count - reserve..count {
+            (own.density[number], own.pressure[number]) = (0.0, 0.0);
+            own.velocity[number] = Vector::zeros();
+        }
+        let (stored, kept) = Kept::of(common, state);
+        kept.counts[0] = reserve as f64;
+        kept.each.iter_mut().step_by(KEPT).for_each(|slow| *slow = f64::NAN);
+        for (role, buffer) in stored.opening.iter_mut().zip(&open.boundaries.buffers) {
+            *role = f64::from(*buffer);
+        }
+    }
+
+    /// Takes from a state which particles are in buffers, and which are not there.
+    pub(super) fn follow_roles(&mut self, common: &mut Common<D>, state: &[f64]) {
+        let open = &mut self.open;
+        if open.is_empty() {
+            return;
+        }
+        let at = common.columns(state);
+        let stored = Stored::<D>::of(at.tail, open.roles.len());
+        let each = LEDGER.behind(D, stored.tail)[1 + COUNTS..].chunks_exact(KEPT);
+        open.means.iter_mut().zip(each).for_each(|(mean, kept)| mean.slow = kept[0]);
+        let (roles, removed) = (&open.roles, &common.removed);
+        let differs = parallel::maximum(roles.len(), 0.0, |number| {
+            let is_removed = Common::<D>::is_removed(at.density[number]);
+            let is_same =
+                stored.opening[number] == f64::from(roles[number]) && is_removed == removed[number];
+            f64::from(u8::from(!is_same))
+        });
+        if differs == 0.0 {
+            return;
+        }
+        open.members.clear();
+        for (number, &role) in stored.opening.iter().enumerate() {
+            let is_removed = Common::<D>::is_removed(at.density[number]);
+            let was_wall =
+                common.is_wall[number] && open.roles[number] == 0 && !common.removed[number];
+            (open.roles[number], common.removed[number]) = (role as u32, is_removed);
+            common.is_wall[number] = was_wall || is_removed || role > 0.0;
+            if role > 0.0 {
+                open.members.push(number as u32);
+            }
+        }
+        common.support.exclude(common.is_wall.clone(), common.removed.clone());
+    }
+
+    /// Keeps the slow pressures of the start.
+    pub(super) fn keep_means(&self, common: &Common<D>, state: &mut [f64]) {
+        if self.open.is_empty() {
+            return;
+        }
+        let (_, kept) = Kept::of(common, state);
+        for (kept, mean) in kept.each.chunks_exact_mut(KEPT).zip(&self.open.means) {
+            if kept[0].is_nan() {
+                kept[0] = mean.slow;
+            }
+        }
+    }
+
+    /// How many of the particles that are not there in a state have not escaped: they wait.
+    pub(super) fn waiting(&self, common: &Common<D>, state: &[f64]) -> f64 {
+        self.counts(common, state).map_or(0.0, |counts| counts[0])
+    }
+
+    fn counts<'a>(&self, common: &Common<D>, state: &'a [f64]) -> Option<&'a [f64]> {
+        let at: Columns<'a, D> = common.columns(state);
+        let stored = Stored::<D>::of(at.tail, common.particles.len());
+        (!self.open.is_empty()).then(|| &LEDGER.behind(D, stored.tail)[1..])
+    }
+
+    /// The mass in kg that has come in and gone out through all open boundaries up to a state.
+    pub(super) fn exchanged(&self, common: &Common<D>, state: &[f64]) -> [f64; 2] {
+        let each = self.counts(common, state).map_or(&[][..], |counts| &counts[COUNTS..]);
+        let sum = |which: usize| each.iter().skip(which).step_by(KEPT).sum();
+        [sum(1), sum(2)]
+    }
+
+    /// The first particle that could not come in for want of others to follow it, and the name of its boundary.
+    pub(super) fn starved(&self, common: &Common<D>, state: &[f64]) -> Option<(usize, &str)> {
+        if !(self.counts(common, state)?[1] > 0.0) {
+            return None;
+        }
+        let at = common.columns(state);
+        self.open.members.iter().find_map(|&number| {
+            let (_, boundary) = self.open.boundary_of(number as usize)?;
+            let depth = boundary.plane - at.position[number as usize].dot(&boundary.normal);
+            (depth < 0.0).then_some((number as usize, boundary.name.as_str()))
+        })
+    }
+}

@@ -1,0 +1,231 @@
+//! Open boundaries: bodies that are buffers, and the particles that are to come in.
+
+use std::sync::Arc;
+
+use super::bodies::{self, vector};
+use super::selections::function;
+use crate::Vector;
+use crate::boundaries::{SpaceTime, padded};
+use crate::case::diagnostics::Problem;
+use crate::case::expression::Expression;
+use crate::case::model::{self, Body, Case, OpenFlow, Opening};
+use crate::case::source::Located;
+use crate::geometry::Particles;
+use crate::schemes::transport_velocity::{Flow, OpenBoundaries, OpenBoundary};
+
+/// Relaxation time of mean pressures, in ways of sound through all bodies.
+const WAYS: f64 = 20.0;
+
+/// Which part of the particles waits in the reserve, if no number is given.
+const RESERVE: f64 = 0.05;
+
+/// What of all inflow may be missing among the outflow where the fluid can go nowhere else.
+const UNBALANCED: f64 = 1e-6;
+
+/// A component of a velocity that is a flow rate over an area.
+struct Share {
+    rate: Arc<dyn SpaceTime>,
+    factor: f64,
+}
+
+impl SpaceTime for Share {
+    fn value(&self, x: [f64; 3], t: f64) -> f64 {
+        self.factor * self.rate.value(x, t)
+    }
+
+    fn rate(&self, x: [f64; 3], t: f64) -> f64 {
+        self.factor * self.rate.rate(x, t)
+    }
+
+    fn is_steady(&self) -> bool {
+        self.rate.is_steady()
+    }
+}
+
+/// The open boundaries of a case, whose particles become those of the first body of fluid, with particles in
+/// reserve behind all others; and warnings.
+pub(super) fn open<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    particles: &mut Particles<D>,
+    support: f64,
+) -> Result<(OpenBoundaries<D>, Vec<String>), Vec<Problem>> {
+    let buffers = || (0u32..).zip(&case.bodies).filter(|(_, body)| body.opening.is_some());
+    if buffers().next().is_none() {
+        return Ok((OpenBoundaries::default(), Vec::new()));
+    }
+    let is_fluid = |(_, body): &(u32, &Body)| body.wall.is_none() && body.opening.is_none();
+    let Some((fluid, _)) = (0u32..).zip(&case.bodies).find(is_fluid) else {
+        let place = case.scheme.place;
+        let message = "every body is a wall or the buffer of an opening";
+        return Err(vec![case.problem_at(place, message, "no fluid", None)]);
+    };
+    let mut open =
+        OpenBoundaries { all: Vec::new(), buffers: vec![0; particles.len()], reserve: 0 };
+    let (mut problems, mut rates) = (Vec::new(), Vec::new());
+    for (number, body) in buffers() {
+        let Some(opening) = &body.opening else { continue };
+        match boundary(case, particles, (number, body, opening), support) {
+            Ok((boundary, rate)) => {
+                open.all.push(boundary);
+                rates.push(rate);
+                let own = particles.body.iter_mut().zip(&mut open.buffers);
+                for (body, buffer) in own.filter(|(body, _)| **body == number) {
+                    (*body, *buffer) = (fluid, open.all.len() as u32);
+                }
+            }
+            Err(problem) => problems.push(problem),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let warnings = unbalanced(&rates, settings.settings.free_surface).into_iter().collect();
+    let in_buffers = open.buffers.iter().filter(|buffer| **buffer > 0).count();
+    let all = particles.body.iter().filter(|body| **body == fluid).count();
+    let most = (RESERVE * all as f64).ceil() as usize;
+    open.reserve = settings.reserve.map_or(most.max(2 * in_buffers), |reserve| reserve as usize);
+    let model = open.buffers.iter().position(|buffer| *buffer > 0);
+    let Some(model) = model else { return Ok((open, warnings)) };
+    for _ in 0..open.reserve {
+        particles.position.push(particles.position[model]);
+        particles.volume.push(particles.volume[model]);
+        particles.weight.push(particles.weight[model]);
+        particles.spacing.push(particles.spacing[model]);
+        particles.body.push(fluid);
+        particles.id.push(particles.id.len() as u32);
+        open.buffers.push(0);
+    }
+    Ok((open, warnings))
+}
+
+/// The boundary of one buffer, with the volume that comes in at the start in m^D/s, if it is prescribed.
+fn boundary<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    (number, body, opening): (u32, &Body, &Located<Opening>),
+    support: f64,
+) -> Result<(OpenBoundary<D>, Option<f64>), Problem> {
+    let refuse = |message: String, label: &str, help: &str| {
+        Err(case.problem_at(opening.place, message, label, Some(help.to_owned())))
+    };
+    let name = body.name.value.clone();
+    if body.shape.value.is_from_file() {
+        let message = format!("the buffer `{name}` is made of points from a file");
+        return refuse(message, "no shape", "describe it by shapes");
+    }
+    let shape = bodies::shape::<D>(case, body, &body.shape)?;
+    let normal: Vector<D> = vector(&opening.normal);
+    let own = || (0..particles.len()).filter(|&a| particles.body[a] == number);
+    let along = || own().map(|a| particles.position[a].dot(&normal));
+    let [low, high] =
+        [along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max)];
+    let spacing = own().map(|a| particles.spacing[a]).fold(0.0, f64::max);
+    let layers = ((high - low) / spacing).round();
+    // Of a lattice that fits the shape, to the bit.
+    let layer = if layers > 0.0 { (high - low) / layers } else { spacing };
+    let (plane, length) = (high + 0.5 * layer, high - low + layer);
+    if length < (1.0 - 1e-9) * support {
+        let message = format!(
+            "the buffer `{name}` is {length:.3e} m long along its normal, and the support of the kernel {support:.3e} m: \
+             the fluid would see its end"
+        );
+        return refuse(message, "too short", "make its shape at least as long as the support");
+    }
+    let volume: f64 = own().map(|a| particles.volume[a]).sum();
+    let flow = match &opening.flow {
+        OpenFlow::Velocity(velocity) => {
+            Flow::Velocity(std::array::from_fn(|axis| function(&velocity[axis])))
+        }
+        OpenFlow::Rate(rate) => {
+            let rate = function(rate);
+            let share =
+                |axis: usize| Share { rate: rate.clone(), factor: normal[axis] * length / volume };
+            Flow::Velocity(std::array::from_fn(|axis| -> Arc<dyn SpaceTime> {
+                Arc::new(share(axis))
+            }))
+        }
+        OpenFlow::Pressure(pressure) => Flow::Pressure(function(pressure)),
+    };
+    let expressions = opening.flow.expressions();
+    let is_finite = |a: usize| {
+        let value = |it: &Expression| it.eval(padded(&particles.position[a]), 0.0);
+        expressions.iter().all(|it| value(it).is_finite())
+    };
+    if let Some(a) = own().find(|&a| !is_finite(a)) {
+        let place = particles.position[a].as_slice();
+        let message =
+            format!("what is prescribed at the opening `{name}` is no number at {place:?} m");
+        return refuse(message, "not finite", "correct the expression");
+    }
+    let relaxation = opening.relaxation.unwrap_or_else(|| {
+        let ends = particles.position.iter().fold(None::<(Vector<D>, Vector<D>)>, |ends, x| {
+            Some(ends.map_or((*x, *x), |(low, high)| (low.inf(x), high.sup(x))))
+        });
+        let size = ends.map_or(length, |(low, high)| (high - low).norm());
+        let density = body.material.density();
+        WAYS * size / (body.material.bulk_modulus(case.dimension) / density).sqrt()
+    });
+    let boundary = OpenBoundary {
+        name: name.clone(),
+        body: number,
+        shape,
+        normal,
+        plane,
+        length,
+        flow,
+        relaxation,
+    };
+    let is_in_front = |a: usize| {
+        let body = &case.bodies[particles.body[a] as usize];
+        let is_fluid = body.wall.is_none() && body.opening.is_none();
+        let depth = boundary.depth(&particles.position[a], spacing);
+        is_fluid && depth.is_some_and(|depth| (-support..0.0).contains(&depth))
+    };
+    if !(0..particles.len()).any(is_in_front) {
+        let message = format!(
+            "no fluid is in front of the opening `{name}`: none is within {support:.3e} m of its end along its normal"
+        );
+        let help =
+            "put it beside the fluid, and let its normal point from the buffer into the fluid";
+        return refuse(message, "leads nowhere", help);
+    }
+    let is_in_way = |a: &usize| {
+        let depth = boundary.depth(&particles.position[*a], -spacing);
+        let is_wall = case.bodies[particles.body[*a] as usize].wall.is_some();
+        is_wall && depth.is_some_and(|depth| (-spacing..length).contains(&depth))
+    };
+    if let Some(a) = (0..particles.len()).find(is_in_way) {
+        let wall = &case.bodies[particles.body[a] as usize].name.value;
+        let message = format!(
+            "the wall `{wall}` is in the opening `{name}`, at {:?} m",
+            particles.position[a].as_slice()
+        );
+        return refuse(
+            message,
+            "a wall is in the way",
+            "cut the wall off there, or make the opening smaller",
+        );
+    }
+    let rate = matches!(boundary.flow, Flow::Velocity(_)).then(|| {
+        let inwards = own().map(|a| {
+            let velocity = boundary.velocity(&particles.position[a], 0.0);
+            velocity.map_or(0.0, |velocity| particles.volume[a] * velocity.dot(&normal))
+        });
+        inwards.sum::<f64>() / length
+    });
+    Ok((boundary, rate))
+}
+
+/// A warning of flow rates that do not balance where all are prescribed and the fluid has no surface to rise.
+fn unbalanced(rates: &[Option<f64>], has_surface: bool) -> Option<String> {
+    let all: Option<Vec<f64>> = rates.iter().copied().collect();
+    let all = all.filter(|_| !has_surface)?;
+    let (sum, size): (f64, f64) = (all.iter().sum(), all.iter().map(|rate| rate.abs()).sum());
+    (sum.abs() > UNBALANCED * size).then(|| {
+        format!(
+            "velocities or flow rates are prescribed at all openings, and {sum:.3e} m^D/s more come in than go out at the \
+             start: the pressure will rise or fall without end; prescribe the pressure at one of them"
+        )
+    })
+}
