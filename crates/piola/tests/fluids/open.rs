@@ -144,6 +144,12 @@ fn the_ledger_of_a_stream_that_comes_and_goes_balances() {
         let worst = values(&finished, name).into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         assert!(worst < 1e-12, "{name} {worst}");
     }
+    // There are no walls, and what buffers do is told apart from what walls do.
+    let most = |name: &str| {
+        values(&finished, name).into_iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+    };
+    assert!(most("energy.walls") < 1e-12 && most("momentum.walls.linear.x") < 1e-12);
+    assert!(most("energy.openings") > 0.1);
     // It comes in at both ends and goes out at both.
     let left = values(&finished, "step.left").pop().expect("a row");
     assert!(left > 2.0 * 0.4 * 0.2, "{left}");
@@ -192,6 +198,11 @@ fn openings_that_cannot_work_are_refused() {
         "`velocity` and `pressure` cannot both be prescribed",
     );
     refused(&["body.outlet.opening={ normal = [-1.0, 0.0] }"], "needs one of `velocity`");
+    refused(
+        &["body.inlet.opening={ normal = [1.0, 0.0], flow_rate = 'y' }"],
+        "depends on the time alone",
+    );
+    refused(&["body.inlet.opening.normal=[1.0, 0.1]"], "points along a periodic axis");
     refused(&["body.inlet.wall={}"], "a wall is no opening");
     let wall = "body+={ name = 'wall', shape = { kind = 'box', min = [-0.1, 0.1], max = [0.0, 0.2] }, spacing = 0.05, \
                 lattice = { on = 'cells' }, wall = {}, \

@@ -233,6 +233,11 @@ impl<const D: usize> Scheme for World<D> {
         self.fluid.is_closed()
     }
 
+    fn birth_of(&self, state: &[f64], index: usize) -> u32 {
+        let (k, own) = self.local(index);
+        self.system(k).birth_of(&state[self.parts[k].state.clone()], own)
+    }
+
     fn body_of(&self, state: &[f64], index: usize) -> Option<u32> {
         let (k, own) = self.local(index);
         let part = &state[self.parts[k].state.clone()];

@@ -69,9 +69,9 @@ pub(super) fn open<const D: usize>(
             Ok((boundary, rate)) => {
                 open.all.push(boundary);
                 rates.push(rate);
-                let own = particles.body.iter_mut().zip(&mut open.buffers);
-                for (body, buffer) in own.filter(|(body, _)| **body == number) {
-                    (*body, *buffer) = (fluid, open.all.len() as u32);
+                let own = particles.body.iter().zip(&mut open.buffers);
+                for (_, buffer) in own.filter(|(body, _)| **body == number) {
+                    *buffer = open.all.len() as u32;
                 }
             }
             Err(problem) => problems.push(problem),
@@ -80,6 +80,9 @@ pub(super) fn open<const D: usize>(
     if !problems.is_empty() {
         return Err(problems);
     }
+    let in_buffers =
+        particles.body.iter_mut().zip(&open.buffers).filter(|(_, buffer)| **buffer > 0);
+    in_buffers.for_each(|(body, _)| *body = fluid);
     let warnings = unbalanced(&rates, settings.settings.free_surface).into_iter().collect();
     let in_buffers = open.buffers.iter().filter(|buffer| **buffer > 0).count();
     let all = particles.body.iter().filter(|body| **body == fluid).count();
@@ -113,6 +116,14 @@ fn boundary<const D: usize>(
     if body.shape.value.is_from_file() {
         let message = format!("the buffer `{name}` is made of points from a file");
         return refuse(message, "no shape", "describe it by shapes");
+    }
+    let is_repeated =
+        |axis: usize| case.domain.periodic[axis].is_some() && opening.normal[axis] != 0.0;
+    if (0..D).any(is_repeated) {
+        let message = format!(
+            "the normal of the opening `{name}` points along a periodic axis, which has no end"
+        );
+        return refuse(message, "along a period", "make that axis open, or turn the normal");
     }
     let shape = bodies::shape::<D>(case, body, &body.shape)?;
     let normal: Vector<D> = vector(&opening.normal);

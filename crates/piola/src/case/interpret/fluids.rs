@@ -109,7 +109,17 @@ impl Reader<'_, '_> {
         let normal = self.unit(record, "normal")?;
         let flow = match given[0] {
             "velocity" => OpenFlow::Velocity(record.expressions("velocity")?),
-            "flow_rate" => OpenFlow::Rate(record.expression("flow_rate")?),
+            "flow_rate" => {
+                let rate = record.expression("flow_rate")?;
+                if rate.depends_on_position() {
+                    let message =
+                        "a flow rate is that of the whole opening and depends on the time alone";
+                    let place = record.key_place("flow_rate").unwrap_or(record.place);
+                    let problem = Problem::new(place, message, "depends on the place");
+                    return self.refuse(problem.help("prescribe `velocity` by place"));
+                }
+                OpenFlow::Rate(rate)
+            }
             _ => OpenFlow::Pressure(record.expression("pressure")?),
         };
         let relaxation = record.number("relaxation").map(|time| time.value);

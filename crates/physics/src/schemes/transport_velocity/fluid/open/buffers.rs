@@ -39,11 +39,11 @@ impl<const D: usize> WeaklyCompressible<D> {
                 sum += pressure - boundary.reference(&positions[place], time);
                 count += 1.0;
             }
-            if count > 0.0 {
-                mean.above = sum / count;
-            }
+            // Without fluid in reach there is no sound: a state has the slow part alone.
+            mean.above = if count > 0.0 { sum / count } else { mean.slow };
             // At the start there is no past.
             if mean.slow.is_nan() {
+                mean.above = if count > 0.0 { mean.above } else { 0.0 };
                 mean.slow = mean.above;
             }
         }
