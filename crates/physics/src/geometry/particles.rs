@@ -88,6 +88,16 @@ impl<const D: usize> Particles<D> {
         self.surface.renumber(|old| place[old as usize]);
     }
 
+    /// Appends a particle like one of these (index), as part of a body. Its number continues where those here end.
+    pub fn repeat(&mut self, index: usize, body: u32) {
+        self.id.push(self.len() as u32);
+        self.position.push(self.position[index]);
+        self.volume.push(self.volume[index]);
+        self.weight.push(self.weight[index]);
+        self.spacing.push(self.spacing[index]);
+        self.body.push(body);
+    }
+
     /// Appends the particles of another body as body `body`. Their ids continue where those here
     /// end, as if all had been created one after the other.
     ///

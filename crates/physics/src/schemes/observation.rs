@@ -91,9 +91,10 @@ impl<'a> Observation<'a> {
         let particles: Vec<u32> = all.filter(|a| body(a).is_some()).collect();
         let bodies = particles.iter().filter_map(body).collect();
         // Those that were born have numbers behind all that there were at the start.
+        let last = scheme.ids().iter().copied().max().unwrap_or_default();
         let id = |&a: &u32| match scheme.birth_of(state, a as usize) {
             0 => scheme.ids()[a as usize],
-            birth => scheme.particle_count() as u32 + birth - 1,
+            birth => last.saturating_add(birth),
         };
         let ids = particles.iter().map(id).collect();
         let fields = self.scheme.description().fields.iter();

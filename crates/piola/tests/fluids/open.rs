@@ -203,6 +203,7 @@ fn openings_that_cannot_work_are_refused() {
         "depends on the time alone",
     );
     refused(&["body.inlet.opening.normal=[1.0, 0.1]"], "points along a periodic axis");
+    refused(&["body.inlet.initial={ pressure = '1' }"], "in the buffer of an opening");
     refused(&["body.inlet.wall={}"], "a wall is no opening");
     let wall = "body+={ name = 'wall', shape = { kind = 'box', min = [-0.1, 0.1], max = [0.0, 0.2] }, spacing = 0.05, \
                 lattice = { on = 'cells' }, wall = {}, \

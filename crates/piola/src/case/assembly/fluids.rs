@@ -354,14 +354,7 @@ fn double_thin<const D: usize>(
         let own = (0..first).filter(|&a| particles.body[a] == number);
         let is_thin = |a: &usize| shape.sides(&particles.position[*a], support, &bounds).is_some();
         let thin: Vec<usize> = own.filter(is_thin).collect();
-        for a in thin {
-            particles.position.push(particles.position[a]);
-            particles.volume.push(particles.volume[a]);
-            particles.weight.push(particles.weight[a]);
-            particles.spacing.push(particles.spacing[a]);
-            particles.body.push(number);
-            particles.id.push(particles.id.len() as u32);
-        }
+        thin.into_iter().for_each(|a| particles.repeat(a, number));
     }
     Ok(first as u32)
 }

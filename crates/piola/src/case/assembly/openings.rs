@@ -91,12 +91,7 @@ pub(super) fn open<const D: usize>(
     let model = open.buffers.iter().position(|buffer| *buffer > 0);
     let Some(model) = model else { return Ok((open, warnings)) };
     for _ in 0..open.reserve {
-        particles.position.push(particles.position[model]);
-        particles.volume.push(particles.volume[model]);
-        particles.weight.push(particles.weight[model]);
-        particles.spacing.push(particles.spacing[model]);
-        particles.body.push(fluid);
-        particles.id.push(particles.id.len() as u32);
+        particles.repeat(model, fluid);
         open.buffers.push(0);
     }
     Ok((open, warnings))

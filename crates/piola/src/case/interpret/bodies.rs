@@ -29,7 +29,14 @@ impl Reader<'_, '_> {
             initial: initial?,
             wall: record.record("wall").and_then(fluids::wall),
             opening: match record.record("opening") {
-                Some(opening) => Some(self.opening(opening)?),
+                Some(opening) => {
+                    self.meaningless(
+                        record,
+                        "initial",
+                        "in the buffer of an opening, which begins as the fluid",
+                    );
+                    Some(self.opening(opening)?)
+                }
                 None => None,
             },
             system: None,

@@ -144,7 +144,9 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "reserve",
             Kind::Integer(Interval::at_least(1.0)),
             "",
-            Derived("a twentieth of the particles, and no less than two buffers"),
+            Derived(
+                "a twentieth of the particles of the fluid and its buffers, and no less than two buffers",
+            ),
             "how many particles more than at the start there may be, where open boundaries let them in",
         ),
     ],
@@ -205,7 +207,7 @@ pub(super) static WALL: TableSpec = TableSpec {
 
 pub(super) static OPENING: TableSpec = TableSpec {
     title: "opening",
-    meaning: "Makes a body the buffer of an open boundary, for fluids of the scheme `transport_velocity`: fluid comes in and goes out through its end towards the fluid. One of `velocity`, `flow_rate` and `pressure` is needed; sound passes through all of them.",
+    meaning: "Makes a body the buffer of an open boundary, for fluids of the scheme `transport_velocity`: fluid comes in and goes out through its end towards the fluid. One of `velocity`, `flow_rate` and `pressure` is needed; sound passes through all of them. At the start it is as the first body of fluid is.",
     keys: &[
         key(
             "normal",
