@@ -43,6 +43,42 @@ impl History {
     }
 }
 
+/// A value times a factor by the distance from a point within a plane: a profile over the height of a channel, or
+/// over the radius of a pipe.
+pub struct Profiled {
+    /// The value.
+    pub value: Arc<dyn SpaceTime>,
+    /// The factor, against the distance in m in place of the time.
+    pub profile: Arc<History>,
+    /// The point in m.
+    pub from: [f64; 3],
+    /// Unit normal of the plane.
+    pub normal: [f64; 3],
+}
+
+impl Profiled {
+    fn factor(&self, x: [f64; 3]) -> f64 {
+        let way: [f64; 3] = std::array::from_fn(|axis| x[axis] - self.from[axis]);
+        let along: f64 = way.iter().zip(&self.normal).map(|(x, n)| x * n).sum();
+        let within = way.iter().zip(&self.normal).map(|(x, n)| x - along * n);
+        self.profile.at(within.map(|x| x * x).sum::<f64>().sqrt())
+    }
+}
+
+impl SpaceTime for Profiled {
+    fn value(&self, x: [f64; 3], t: f64) -> f64 {
+        self.value.value(x, t) * self.factor(x)
+    }
+
+    fn rate(&self, x: [f64; 3], t: f64) -> f64 {
+        self.value.rate(x, t) * self.factor(x)
+    }
+
+    fn is_steady(&self) -> bool {
+        self.value.is_steady()
+    }
+}
+
 /// A value times a factor over time.
 pub struct Scaled {
     /// The value.

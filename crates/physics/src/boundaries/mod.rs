@@ -12,7 +12,7 @@ pub(crate) mod traction;
 pub use body_force::BodyForce;
 pub use function::{SpaceTime, padded};
 pub use held::{PrescribedDisplacement, PrescribedFaces, Tie};
-pub use history::{History, Scaled};
+pub use history::{History, Profiled, Scaled};
 pub use prescribed::PrescribedVelocity;
 pub use pressure::FollowerPressure;
 pub use spring::Spring;

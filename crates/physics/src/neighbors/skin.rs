@@ -51,7 +51,8 @@ impl<const D: usize> SkinList<D> {
         domain: Domain<D>,
     ) -> Result<Self, NeighborError> {
         let numbers: Vec<u32> = (0..positions.len() as u32).collect();
-        let (ranks, active) = rank(&passive);
+        let mut ranks = Vec::new();
+        let active = rank(&passive, &mut ranks);
         let mut list = Self {
             domain,
             support,
@@ -101,9 +102,13 @@ impl<const D: usize> SkinList<D> {
 
     /// Sets which particles are passive, and which neither see nor are seen, by number, from the
     /// next update on.
-    pub fn exclude(&mut self, passive: Vec<bool>, excluded: Vec<bool>) {
-        (self.ranks, self.active) = rank(&passive);
-        (self.passive, self.excluded, self.stale) = (passive, excluded, true);
+    pub fn exclude(&mut self, passive: &[bool], excluded: &[bool]) {
+        self.active = rank(passive, &mut self.ranks);
+        self.passive.clear();
+        self.passive.extend_from_slice(passive);
+        self.excluded.clear();
+        self.excluded.extend_from_slice(excluded);
+        self.stale = true;
     }
 
     /// Takes positions, and returns the square in m^2 of the longest way from where the list was
@@ -246,8 +251,8 @@ impl<const D: usize> SkinList<D> {
     }
 }
 
-/// Place of each number in the order of rows, and how many are not passive.
-fn rank(passive: &[bool]) -> (Vec<u32>, u32) {
+/// Finds the place of each number in the order of rows, and returns how many are not passive.
+fn rank(passive: &[bool], ranks: &mut Vec<u32>) -> u32 {
     let active = passive.iter().filter(|&&is_passive| !is_passive).count() as u32;
     let mut next = [0, active];
     let rank = |&is_passive: &bool| {
@@ -255,5 +260,7 @@ fn rank(passive: &[bool]) -> (Vec<u32>, u32) {
         *next += 1;
         *next - 1
     };
-    (passive.iter().map(rank).collect(), active)
+    ranks.clear();
+    ranks.extend(passive.iter().map(rank));
+    active
 }

@@ -131,7 +131,7 @@ impl<const D: usize> MovingSupport<D> {
 
     /// Sets which particles are passive, and which have no neighbours and are none, by number, from
     /// the next update on.
-    pub fn exclude(&mut self, passive: Vec<bool>, excluded: Vec<bool>) {
+    pub fn exclude(&mut self, passive: &[bool], excluded: &[bool]) {
         self.list.exclude(passive, excluded);
     }
 

@@ -74,6 +74,11 @@ pub trait Scheme: Send + Sync {
     /// Appends the values of its own [`figures`](SchemeDescription::figures) at `state`.
     fn figures(&self, _state: &[f64], _figures: &mut Vec<f64>) {}
 
+    /// The mass in kg that has come in and gone out through the open boundary with the number of a body, if it is one.
+    fn passed(&self, _state: &[f64], _body: u32) -> Option<[f64; 2]> {
+        None
+    }
+
     /// The energies of `state` in J, in the order of its description.
     fn energies(&self, state: &[f64], energies: &mut [f64]);
 

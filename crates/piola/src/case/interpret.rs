@@ -132,7 +132,7 @@ pub(super) fn case(
         reader.tangents_exist(probes, time);
     }
     if let (Some(probes), Some(bodies)) = (&probes, &bodies) {
-        reader.forces_act(probes, bodies);
+        reader.probes_suit(probes, bodies);
     }
     let output = reader.output(record, end);
     let pictures: Vec<_> =

@@ -24,7 +24,7 @@ mod time;
 pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reduction, Trend, When};
 pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
 pub use loads::{Boundary, Load, LoadKind, Roller, Turning};
-pub use materials::{Material, OpenFlow, Opening, PlaneState, Stiffness, Wall};
+pub use materials::{Material, OpenFlow, Opening, PlaneState, Profile, Stiffness, Wall};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use schemes::{
     Correction, Dissipation, GradientKind, Interpolation, Preset, ReferenceWaveSpeed, Scheme,

@@ -74,6 +74,8 @@ pub enum ProbeKind {
     Gauge(Gauge),
     /// What goes through a plane.
     Flux(Flux),
+    /// What has come in and gone out through the open boundary with the number of a body.
+    Opening(u32),
     /// Whole fields interpolated at one fixed point of space.
     Point(Interpolated),
     /// How far a field is from a function of place and time.
@@ -132,6 +134,9 @@ impl Probe {
             ProbeKind::Sensor(_) => vec![Column::new(format!("{}.pressure", self.name), "Pa")],
             ProbeKind::Gauge(_) => vec![Column::new(format!("{}.elevation", self.name), "m")],
             ProbeKind::Flux(_) => vec![Column::new(format!("{}.flux", self.name), "kg/s")],
+            ProbeKind::Opening(_) => ["entered", "left"]
+                .map(|column| Column::new(format!("{}.{column}", self.name), "kg"))
+                .to_vec(),
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS
                 .iter()
                 .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), *unit))
@@ -163,7 +168,7 @@ impl Probe {
             ProbeKind::Point(point) => point.renumber(index),
             ProbeKind::Sensor(sensor) => sensor.renumber(index),
             ProbeKind::Gauge(gauge) => gauge.renumber(index),
-            ProbeKind::Tangent { .. } => (),
+            ProbeKind::Opening(_) | ProbeKind::Tangent { .. } => (),
         }
     }
 
@@ -221,6 +226,10 @@ impl Probe {
             ProbeKind::Sensor(sensor) => row.push(sensor.record(now)),
             ProbeKind::Gauge(gauge) => row.push(gauge.record(now)),
             ProbeKind::Flux(flux) => row.push(flux.record(now)),
+            ProbeKind::Opening(body) => {
+                let passed = now.scheme().passed(now.state(), *body);
+                row.extend(passed.unwrap_or([f64::NAN; 2]));
+            }
             ProbeKind::Point(point) => point.record(now, scratch, row),
             ProbeKind::Error(error) => row.push(error.record(now, scratch)),
             ProbeKind::Tangent { rule, step } => {

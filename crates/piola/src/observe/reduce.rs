@@ -38,26 +38,36 @@ pub enum Reduction<Reference = Curve> {
     Mean,
     /// Largest minus smallest value.
     Range,
+    /// Half of the range.
+    Amplitude,
     /// The period of the oscillation about the mid-range in s.
     Period,
+    /// One over the period, in 1/s.
+    Frequency,
+    /// The mean over whole periods.
+    CycleMean,
     /// The value at the local extremum of this number, counted from 1.
     Extremum(usize),
     /// The time in s of the local extremum of this number, counted from 1.
     ExtremumTime(usize),
     /// The time in s of the change of sign of this number, counted from 1.
     ZeroTime(usize),
+    /// The place along a line in m of the change of sign of this number, counted from 1.
+    ZeroPlace(usize),
     /// The largest increase from one row to the next.
     LargestRise,
     /// Last value over first value, minus 1.
     Growth,
-    /// The integral over time between two times in s.
-    Integral([f64; 2]),
-    /// The time in s about which the integral between two times is balanced.
-    Centroid([f64; 2]),
+    /// The integral over time.
+    Integral,
+    /// The time in s about which the integral is balanced.
+    Centroid,
     /// The largest absolute difference to a reference curve.
     Curve(Reference),
     /// The root mean square over time of the difference to a reference curve.
     CurveRms(Reference),
+    /// Another reduction of the history between two times in s.
+    Within([f64; 2], Box<Self>),
 }
 
 /// What a reduction needs besides the history.
@@ -69,8 +79,6 @@ pub enum Argument {
     Time,
     /// A number counted from 1: the key `number`.
     Number,
-    /// Two times in s: the key `window`.
-    Window,
     /// A reference curve: the key `reference`.
     Reference,
 }
@@ -100,6 +108,7 @@ macro_rules! registry {
             pub fn name(&self) -> &'static str {
                 match self {
                     $($pattern => $name,)*
+                    Self::Within(_, inner) => inner.name(),
                 }
             }
         }
@@ -114,20 +123,26 @@ registry! {
     "at", Time, Self::At(_), "the value at a time, or at a distance along a line, interpolated between rows";
     "mean", None, Self::Mean, "the mean over time";
     "range", None, Self::Range, "largest minus smallest value";
+    "amplitude", None, Self::Amplitude, "half of the difference between largest and smallest value";
     "period", None, Self::Period,
         "the period in s of the oscillation about the middle between largest and smallest value";
+    "frequency", None, Self::Frequency, "one over that period, in 1/s";
+    "cycle_mean", None, Self::CycleMean,
+        "the mean over whole periods, from the first to the last rise through that middle";
     "extremum", Number, Self::Extremum(_),
         "the value at the local extremum of this number; wiggles below 5 % of the range are ignored";
     "extremum_time", Number, Self::ExtremumTime(_), "the time of that extremum in s";
     "zero_time", Number, Self::ZeroTime(_),
         "the time in s of the change of sign of this number; wiggles are ignored";
+    "zero_place", Number, Self::ZeroPlace(_),
+        "the distance from the start of a line of the change of sign of this number; wiggles are ignored";
     "largest_rise", None, Self::LargestRise,
         "the largest increase from one row to the next, negative if all rows fall";
     "growth", None, Self::Growth, "last value over first value, minus 1";
-    "integral", Window, Self::Integral(_),
-        "the integral over the time between those of `window`: of a pulse in stress over that of another the coefficient of reflection or transmission";
-    "centroid", Window, Self::Centroid(_),
-        "the mean of the times in `window`, weighted by the value: when a pulse passes";
+    "integral", None, Self::Integral,
+        "the integral over time: of a pulse in stress over that of another the coefficient of reflection or transmission";
+    "centroid", None, Self::Centroid,
+        "the mean of the times, weighted by the value: when a pulse passes";
     "curve", Reference, Self::Curve(_), "the largest absolute difference to a reference curve";
     "curve_rms", Reference, Self::CurveRms(_),
         "the root mean square over time, or along a line, of the difference to a reference curve";
@@ -150,9 +165,14 @@ impl<Reference> Reduction<Reference> {
             Self::Initial,
             Self::Mean,
             Self::Range,
+            Self::Amplitude,
             Self::Period,
+            Self::Frequency,
+            Self::CycleMean,
             Self::LargestRise,
             Self::Growth,
+            Self::Integral,
+            Self::Centroid,
         ];
         all.into_iter().find(|reduction| reduction.name() == name)
     }
@@ -161,12 +181,13 @@ impl<Reference> Reduction<Reference> {
     pub fn label(&self) -> String {
         match self {
             Self::At(time) => format!("{} {time} s", self.name()),
-            Self::Integral([first, last]) | Self::Centroid([first, last]) => {
-                format!("{} from {first} to {last} s", self.name())
+            Self::Within([first, last], inner) => {
+                format!("{} from {first} to {last} s", inner.label())
             }
-            Self::Extremum(number) | Self::ExtremumTime(number) | Self::ZeroTime(number) => {
-                format!("{} {number}", self.name())
-            }
+            Self::Extremum(number)
+            | Self::ExtremumTime(number)
+            | Self::ZeroTime(number)
+            | Self::ZeroPlace(number) => format!("{} {number}", self.name()),
             _ => self.name().to_owned(),
         }
     }
@@ -174,11 +195,12 @@ impl<Reference> Reduction<Reference> {
     /// The unit of the result for a quantity in `unit`.
     pub fn unit(&self, unit: &str) -> String {
         match self {
-            Self::Period | Self::ExtremumTime(_) | Self::ZeroTime(_) | Self::Centroid(_) => {
-                "s".into()
-            }
-            Self::Integral(_) if unit == "1" => "s".into(),
-            Self::Integral(_) => format!("{unit} s"),
+            Self::Period | Self::ExtremumTime(_) | Self::ZeroTime(_) | Self::Centroid => "s".into(),
+            Self::ZeroPlace(_) => "m".into(),
+            Self::Frequency => "1/s".into(),
+            Self::Integral if unit == "1" => "s".into(),
+            Self::Integral => format!("{unit} s"),
+            Self::Within(_, inner) => inner.unit(unit),
             Self::Growth => "1".into(),
             _ => unit.into(),
         }
@@ -188,6 +210,7 @@ impl<Reference> Reduction<Reference> {
     pub fn reference(&self) -> Option<&Reference> {
         match self {
             Self::Curve(reference) | Self::CurveRms(reference) => Some(reference),
+            Self::Within(_, inner) => inner.reference(),
             _ => None,
         }
     }
@@ -209,16 +232,23 @@ impl<Reference> Reduction<Reference> {
             Self::At(time) => Reduction::At(*time),
             Self::Mean => Reduction::Mean,
             Self::Range => Reduction::Range,
+            Self::Amplitude => Reduction::Amplitude,
             Self::Period => Reduction::Period,
+            Self::Frequency => Reduction::Frequency,
+            Self::CycleMean => Reduction::CycleMean,
             Self::Extremum(number) => Reduction::Extremum(*number),
             Self::ExtremumTime(number) => Reduction::ExtremumTime(*number),
             Self::ZeroTime(number) => Reduction::ZeroTime(*number),
+            Self::ZeroPlace(number) => Reduction::ZeroPlace(*number),
             Self::LargestRise => Reduction::LargestRise,
             Self::Growth => Reduction::Growth,
-            Self::Integral(window) => Reduction::Integral(*window),
-            Self::Centroid(window) => Reduction::Centroid(*window),
+            Self::Integral => Reduction::Integral,
+            Self::Centroid => Reduction::Centroid,
             Self::Curve(reference) => Reduction::Curve(change(reference)?),
             Self::CurveRms(reference) => Reduction::CurveRms(change(reference)?),
+            Self::Within(window, inner) => {
+                Reduction::Within(*window, Box::new(inner.try_map(change)?))
+            }
         })
     }
 }
@@ -230,14 +260,16 @@ impl Reduction {
     /// - `period` is the slope of a straight line fitted to the times of the crossings of the
     ///   mid-range against their number, one line for the upward and one for the downward ones
     ///   with a common slope. So neither an asymmetric shape nor an offset matters.
+    /// - `cycle_mean` is the mean from the first to the last upward one of these crossings.
     /// - `extremum` counts rows from which the value moves away by [`WIGGLE`] of the range on
     ///   both sides, so the first and the last row never count, and refines each by the parabola
     ///   through it and its two neighbours.
-    /// - `zero_time` counts changes of sign that go beyond half of [`WIGGLE`] of the range on
+    /// - `zero_time` and `zero_place` count changes of sign that go beyond half of [`WIGGLE`] of the range on
     ///   both sides; of rows at zero the first counts. Where noise crosses more than once, the
     ///   middle between the first and the last crossing is taken; the same holds for `period`.
     /// - `curve` and `curve_rms` compare the straight lines between rows with those between the
     ///   points of the reference, over the time that both cover, without error of sampling.
+    /// - A window leaves the rows between its times, and interpolated ones at them.
     ///
     /// # Errors
     /// A history with values that are not finite, times that do not grow, or not enough rows; and
@@ -252,19 +284,34 @@ impl Reduction {
             Self::At(time) => history.at(*time),
             Self::Mean => Ok(history.needs(2)?.mean()),
             Self::Range => history.needs(2).map(|history| history.range()[1] - history.range()[0]),
+            Self::Amplitude => {
+                history.needs(2).map(|history| 0.5 * (history.range()[1] - history.range()[0]))
+            }
             Self::Period => history.needs(3)?.period(),
+            Self::Frequency => Ok(1.0 / history.needs(3)?.period()?),
+            Self::CycleMean => {
+                let window = history.needs(3)?.cycles()?;
+                let (time, values) = history.between(window)?;
+                Ok(History::new(&time, &values)?.mean())
+            }
             Self::Extremum(number) => Ok(history.needs(3)?.extremum(*number)?.value),
             Self::ExtremumTime(number) => Ok(history.needs(3)?.extremum(*number)?.time),
-            Self::ZeroTime(number) => history.needs(2)?.zero_time(*number),
+            Self::ZeroTime(number) | Self::ZeroPlace(number) => {
+                history.needs(2)?.zero_time(*number)
+            }
             Self::LargestRise => Ok(history.needs(2)?.largest_rise()),
             Self::Growth => history.needs(2)?.growth(),
-            Self::Integral(window) => Ok(history.needs(2)?.moments(*window)?[0]),
-            Self::Centroid(window) => {
-                let [integral, moment] = history.needs(2)?.moments(*window)?;
+            Self::Integral => Ok(history.needs(2)?.moments()[0]),
+            Self::Centroid => {
+                let [integral, moment] = history.needs(2)?.moments();
                 if integral == 0.0 { Err(ReduceError::NoPulse) } else { Ok(moment / integral) }
             }
             Self::Curve(curve) => history.largest_difference(curve),
             Self::CurveRms(curve) => history.rms_difference(curve),
+            Self::Within(window, inner) => {
+                let (time, values) = history.between(*window)?;
+                inner.apply(&time, &values)
+            }
         }
     }
 }

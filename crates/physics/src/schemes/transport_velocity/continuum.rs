@@ -188,6 +188,11 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// Appends its own figures.
     fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>);
 
+    /// The mass in kg that has come in and gone out through the open boundary with the number of a body, if it is one.
+    fn passed(&self, _common: &Common<D>, _state: &[f64], _body: u32) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Appends a field of its own table, numbered there, of a particle (number).
     fn push_field(
         &self,

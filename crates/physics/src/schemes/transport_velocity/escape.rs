@@ -60,7 +60,7 @@ impl<const D: usize> Common<D> {
                 (self.removed[number], self.is_wall[number]) = (is_removed, is_removed);
             }
         }
-        self.support.exclude(self.is_wall.clone(), self.removed.clone());
+        self.support.exclude(&self.is_wall, &self.removed);
     }
 
     /// The particles that have escaped in `state`, which has been loaded, by number.

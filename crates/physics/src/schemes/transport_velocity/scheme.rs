@@ -75,6 +75,10 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         self.matter.figures(&self.common, state, figures);
     }
 
+    fn passed(&self, state: &[f64], body: u32) -> Option<[f64; 2]> {
+        self.matter.passed(&self.common, state, body)
+    }
+
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         energies[0] = self.common.kinetic_energy(state);
         self.matter.energies(&self.common, state, &mut energies[1..]);

@@ -154,6 +154,11 @@ impl<const D: usize> Scheme for World<D> {
         }
     }
 
+    fn passed(&self, state: &[f64], body: u32) -> Option<[f64; 2]> {
+        let part = &self.parts[0];
+        self.system(0).passed(&state[part.state.clone()], body)
+    }
+
     fn energies(&self, state: &[f64], mut energies: &mut [f64]) {
         for (k, part) in self.parts.iter().enumerate() {
             let system = self.system(k);

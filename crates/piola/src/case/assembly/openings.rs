@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::bodies::{self, vector};
-use super::selections::function;
+use super::selections::over_time;
 use crate::Vector;
-use crate::boundaries::{SpaceTime, padded};
+use crate::boundaries::{Profiled, SpaceTime, padded};
 use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
 use crate::case::model::{self, Body, Case, OpenFlow, Opening};
@@ -138,20 +138,47 @@ fn boundary<const D: usize>(
         );
         return refuse(message, "too short", "make its shape at least as long as the support");
     }
+    let leaves = |a: &usize| {
+        let place = particles.position[*a];
+        let ends = [0.5 * layer, length - 0.5 * layer];
+        let depth = plane - place.dot(&normal);
+        ends.iter().any(|end| shape.depth(&(place + normal * (depth - end))) < -0.5 * spacing)
+    };
+    if let Some(a) = own().find(leaves) {
+        let place = particles.position[a].as_slice();
+        let message = format!(
+            "the buffer `{name}` does not go straight through along its normal, for one at {place:?} m"
+        );
+        let help = "make it a box, or a `turned` one, whose sides are along the normal";
+        return refuse(message, "not straight", help);
+    }
     let volume: f64 = own().map(|a| particles.volume[a]).sum();
+    let prescribed = |expression: &Expression| -> Arc<dyn SpaceTime> {
+        let value = over_time(expression, opening.history.as_ref());
+        let factor = opening.profile.as_ref().and_then(|it| Some((it, it.factor.clone()?)));
+        match factor {
+            Some((profile, factor)) => Arc::new(Profiled {
+                value,
+                profile: factor,
+                from: padded(&vector::<D>(&profile.from)),
+                normal: padded(&normal),
+            }),
+            None => value,
+        }
+    };
     let flow = match &opening.flow {
         OpenFlow::Velocity(velocity) => {
-            Flow::Velocity(std::array::from_fn(|axis| function(&velocity[axis])))
+            Flow::Velocity(std::array::from_fn(|axis| prescribed(&velocity[axis])))
         }
         OpenFlow::Rate(rate) => {
-            let rate = function(rate);
+            let rate = prescribed(rate);
             let share =
                 |axis: usize| Share { rate: rate.clone(), factor: normal[axis] * length / volume };
             Flow::Velocity(std::array::from_fn(|axis| -> Arc<dyn SpaceTime> {
                 Arc::new(share(axis))
             }))
         }
-        OpenFlow::Pressure(pressure) => Flow::Pressure(function(pressure)),
+        OpenFlow::Pressure(pressure) => Flow::Pressure(prescribed(pressure)),
     };
     let expressions = opening.flow.expressions();
     let is_finite = |a: usize| {

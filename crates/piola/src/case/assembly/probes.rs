@@ -76,6 +76,9 @@ pub(super) fn probes<const D: usize>(
                 inside: inside.clone(),
                 particles: of_body(particles, body).collect(),
             }),
+            model::ProbeKind::Opening => {
+                ProbeKind::Opening(body.map_or(0, |body| body.value as u32))
+            }
             model::ProbeKind::Point { at, fields } => {
                 let places = vec![at.value.clone()];
                 ProbeKind::Point(interpolated(case, particles, body, places, fields))

@@ -22,7 +22,7 @@ const WAYS: [&[&str]; 7] = [
 /// Those of them that say how the members of a sweep follow each other.
 const TRENDS: [&str; 3] = ["order", "monotone", "ratio"];
 /// The reductions that a profile has.
-const ALONG_LINES: [&str; 10] = [
+const ALONG_LINES: [&str; 11] = [
     "maximum",
     "minimum",
     "final",
@@ -31,6 +31,7 @@ const ALONG_LINES: [&str; 10] = [
     "mean",
     "range",
     "extremum",
+    "zero_place",
     "curve",
     "curve_rms",
 ];
@@ -91,7 +92,7 @@ impl Reader<'_, '_> {
         let line = line.and_then(|(quantity, probes)| line_of(quantity, probes));
         let reduce = match line {
             Some(line) => self.along_line(record, line),
-            None => self.reduction(record, end),
+            None => self.over_time(record, end),
         };
         let is_outcome = quantity.as_deref() == Some(&Quantity::Run("outcome".to_owned()));
         let expectation = self.expectation(record, is_outcome);
@@ -137,9 +138,8 @@ impl Reader<'_, '_> {
         let only_for = |names: &[&str]| !names.contains(&name.as_str());
         for (key, names) in [
             ("at", &["at"][..]),
-            ("number", &["extremum", "extremum_time", "zero_time"]),
+            ("number", &["extremum", "extremum_time", "zero_time", "zero_place"]),
             ("reference", &["curve", "curve_rms"]),
-            ("window", &["integral", "centroid"]),
         ] {
             if only_for(names) {
                 self.meaningless(record, key, &format!("with the reduction `{}`", name.value));
@@ -149,33 +149,42 @@ impl Reader<'_, '_> {
             }
         }
         let number = record.whole("number")?.value;
-        Some(match name.as_str() {
-            "maximum" => Reduction::Maximum,
-            "minimum" => Reduction::Minimum,
-            "initial" => Reduction::Initial,
+        let reduction = match name.as_str() {
             "at" => Reduction::At(self.at(record.number("at")?, end)?),
-            "mean" => Reduction::Mean,
-            "range" => Reduction::Range,
-            "period" => Reduction::Period,
             "extremum" => Reduction::Extremum(number),
             "extremum_time" => Reduction::ExtremumTime(number),
             "zero_time" => Reduction::ZeroTime(number),
-            "largest_rise" => Reduction::LargestRise,
-            "growth" => Reduction::Growth,
-            "integral" => Reduction::Integral(self.window(record, end)?),
-            "centroid" => Reduction::Centroid(self.window(record, end)?),
+            "zero_place" => Reduction::ZeroPlace(number),
             "curve" => Reduction::Curve(self.file(record, "reference")?),
             "curve_rms" => Reduction::CurveRms(self.file(record, "reference")?),
-            "final" => Reduction::Final,
-            _ => return None,
-        })
+            plain => Reduction::plain(plain)?,
+        };
+        match record.has("window") {
+            true => Some(Reduction::Within(self.window(record, end)?, Box::new(reduction))),
+            false => Some(reduction),
+        }
+    }
+
+    /// A reduction of a history against time.
+    fn over_time(&mut self, record: &Record, end: Option<f64>) -> Option<Reduction> {
+        let name = record.text("reduce")?;
+        if name.as_str() == "zero_place" {
+            let message = "the reduction `zero_place` is of a line, and this is a history";
+            let problem = Problem::new(name.place, message, "no place here");
+            return self.refuse(problem.help("against time it is `zero_time`"));
+        }
+        self.reduction(record, end)
     }
 
     /// A reduction of a profile: one that has a meaning for values at places.
     fn along_line(&mut self, record: &Record, line: &Probe) -> Option<Reduction> {
         let name = record.text("reduce")?;
+        self.meaningless(record, "window", &format!("along the line `{}`", *line.name));
         if ALONG_LINES.contains(&name.as_str()) {
-            let reduction = self.reduction(record, None)?;
+            let reduction = match self.reduction(record, None)? {
+                Reduction::Within(_, reduction) => *reduction,
+                reduction => reduction,
+            };
             let length = line.kind.length().unwrap_or_default();
             if let Reduction::At(place) = reduction
                 && !(place <= length)

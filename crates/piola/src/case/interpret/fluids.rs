@@ -4,7 +4,7 @@ use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use super::*;
 use crate::case::model::{
-    Body, Boundary, Material, OpenFlow, Opening, Region, TransportVelocity, Wall,
+    Body, Boundary, Material, OpenFlow, Opening, Profile, Region, TransportVelocity, Wall,
 };
 use crate::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
@@ -122,8 +122,19 @@ impl Reader<'_, '_> {
             }
             _ => OpenFlow::Pressure(record.expression("pressure")?),
         };
+        if given[0] == "flow_rate" {
+            self.meaningless(record, "profile", "with a flow rate, which is that of the whole");
+        }
+        let profile = match record.record("profile") {
+            Some(of) => {
+                Some(Profile { factor: self.factor(of, "file")?, from: of.numbers("from")?.value })
+            }
+            None => None,
+        };
+        let history = self.history(record)?;
         let relaxation = record.number("relaxation").map(|time| time.value);
-        Some(Located::new(Opening { normal, flow, relaxation }, record.place))
+        let opening = Opening { normal, flow, profile, history, relaxation };
+        Some(Located::new(opening, record.place))
     }
 }
 

@@ -67,6 +67,10 @@ impl Reader<'_, '_> {
                 let inside = self.box_of(record);
                 ProbeKind::Flux { point, normal: normal?, inside: inside? }
             }
+            "opening" => {
+                self.is_of_one_body(record);
+                ProbeKind::Opening
+            }
             "tangent" => ProbeKind::Tangent { step: record.number("step")?.value },
             "error" => {
                 let parts = self.deviations(record);
@@ -154,19 +158,25 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reports probes of forces that look at no wall and no solid, and sensors that are in no wall.
-    pub(super) fn forces_act(&mut self, probes: &[Probe], bodies: &[Body]) {
+    /// Reports probes of forces that look at no wall and no solid, sensors that are in no wall, and probes of what
+    /// goes through openings that are of other bodies.
+    pub(super) fn probes_suit(&mut self, probes: &[Probe], bodies: &[Body]) {
         for probe in probes {
             let is_sensor = matches!(probe.kind, ProbeKind::Sensor { .. });
+            let is_of_one = is_sensor || matches!(probe.kind, ProbeKind::Opening);
             // Where there is one body only it is that one; where there are several it has to be named.
             let (its, place) = match &probe.body {
                 Some(body) => (bodies.get(body.value), body.place),
-                None if is_sensor && bodies.len() == 1 => (bodies.first(), probe.name.place),
+                None if is_of_one && bodies.len() == 1 => (bodies.first(), probe.name.place),
                 None => continue,
             };
             let is_wall = its.is_none_or(|body| body.wall.is_some());
             let is_solid = its.is_some_and(|body| body.system.is_some());
+            let is_open = its.is_none_or(|body| body.opening.is_some());
             let (what, help) = match probe.kind {
+                ProbeKind::Opening if !is_open => {
+                    ("is of no opening", "name a body that has the key `opening`")
+                }
                 ProbeKind::Force { .. } if !is_wall && !is_solid => (
                     "looks at no wall and no solid",
                     "name a wall or the body of a system, or use the kind `sum`",
@@ -180,6 +190,7 @@ impl Reader<'_, '_> {
             let label = match () {
                 () if is_solid => "a solid",
                 () if is_sensor => "no wall",
+                () if is_of_one => "no opening",
                 () => "the fluid itself",
             };
             self.report(Problem::new(place, message, label).help(help));
@@ -244,6 +255,7 @@ impl Reader<'_, '_> {
             let what = match record.kind {
                 "force" => "a wall or a solid",
                 "sensor" => "a wall",
+                "opening" => "an opening",
                 _ => "the fluid",
             };
             self.report(problem.help(format!("name {what}, one of {}", one_of(names))));

@@ -87,12 +87,17 @@ impl Reader<'_, '_> {
         Some(Load { name: record.text("name"), body, history, kind })
     }
 
-    /// The factor over time that the file `history` of a load or boundary gives, if there is one.
-    fn history(&mut self, record: &Record) -> Option<Option<Arc<History>>> {
-        if !record.has("history") {
-            return Some(None);
+    /// The factor over time that the file `history` of a load, a boundary or an opening gives, if there is one.
+    pub(super) fn history(&mut self, record: &Record) -> Option<Option<Arc<History>>> {
+        match record.has("history") {
+            true => self.factor(record, "history"),
+            false => Some(None),
         }
-        let file = self.file(record, "history")?;
+    }
+
+    /// The factor that a file gives.
+    pub(super) fn factor(&mut self, record: &Record, key: &str) -> Option<Option<Arc<History>>> {
+        let file = self.file(record, key)?;
         // Where the text of a case is from elsewhere, files are not looked for.
         let Some(_) = self.setting.folder else { return Some(None) };
         let refuse = |message: String| Problem::new(file.place, message, "this file");
@@ -102,7 +107,7 @@ impl Reader<'_, '_> {
         };
         match History::new(curve.abscissa, curve.ordinate) {
             Some(history) => Some(Some(Arc::new(history))),
-            None => self.refuse(refuse("the file gives no factor over time".to_owned())),
+            None => self.refuse(refuse("the file gives no factor".to_owned())),
         }
     }
 

@@ -1,8 +1,11 @@
 //! What bodies are made of.
 
+use std::sync::Arc;
+
 use piola_formulas::hyperelastic::HyperelasticLaw;
 use piola_formulas::volumetric::{self, StressState};
 
+use crate::boundaries::History;
 use crate::case::expression::Expression;
 use crate::schemes::transport_velocity;
 
@@ -148,8 +151,21 @@ pub struct Opening {
     pub normal: Vec<f64>,
     /// What is prescribed.
     pub flow: OpenFlow,
+    /// Factor by the distance from a point within the plane.
+    pub profile: Option<Profile>,
+    /// Factor over time.
+    pub history: Option<Arc<History>>,
     /// The time in s within which mean pressures follow.
     pub relaxation: Option<f64>,
+}
+
+/// A factor by the distance from a point within a plane.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// The factor against the distance in m; none where the text of a case is from elsewhere than from a file.
+    pub factor: Option<Arc<History>>,
+    /// The point in m.
+    pub from: Vec<f64>,
 }
 
 /// What is prescribed at an open boundary.

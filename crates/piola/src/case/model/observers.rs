@@ -88,6 +88,8 @@ pub enum ProbeKind {
         /// Corners in m of a box outside of which nothing counts.
         inside: Option<[Vec<f64>; 2]>,
     },
+    /// What has come in and gone out through the open boundary that the body is the buffer of.
+    Opening,
     /// Fields interpolated at a fixed point.
     Point {
         /// The point in m.

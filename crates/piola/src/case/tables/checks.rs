@@ -105,15 +105,15 @@ pub(super) static CHECK: TableSpec = TableSpec {
             "window",
             Kind::Numbers(Length::Any, Interval::NOT_NEGATIVE),
             "s",
-            Optional,
-            "two times, for the reductions `integral` and `centroid`",
+            Derived("all of it"),
+            "two times: only the history between them counts",
         ),
         key(
             "number",
             Kind::Integer(Interval::at_least(1.0)),
             "1",
             Default("1"),
-            "which one, counted from 1, for `extremum`, `extremum_time` and `zero_time`",
+            "which one, counted from 1, for `extremum`, `extremum_time`, `zero_time` and `zero_place`",
         ),
         key(
             "reference",

@@ -142,7 +142,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
         ),
         key(
             "reserve",
-            Kind::Integer(Interval::at_least(1.0)),
+            Kind::Integer(Interval::between(1.0, 1e8)),
             "",
             Derived(
                 "a twentieth of the particles of the fluid and its buffers, and no less than two buffers",
@@ -238,6 +238,14 @@ pub(super) static OPENING: TableSpec = TableSpec {
             "mean pressure of the fluid there, where it goes out with the velocity that it has or comes in along the normal",
         ),
         key(
+            "profile",
+            Kind::Table(&PROFILE),
+            "",
+            Optional,
+            "a factor of `velocity` or `pressure` by the place within the opening",
+        ),
+        super::loads::HISTORY,
+        key(
             "relaxation",
             Kind::Number(Interval::POSITIVE),
             "s",
@@ -249,3 +257,25 @@ pub(super) static OPENING: TableSpec = TableSpec {
 
 pub(super) const SLIPS: Choices =
     choices(&[choice("no", "the fluid sticks to it"), choice("free", "the fluid slides along it")]);
+
+/// A factor from a file by the place within an opening.
+static PROFILE: TableSpec = TableSpec {
+    title: "profile",
+    meaning: "A factor by the distance from a point within the plane of an opening, as measured or computed elsewhere: over the height of a channel, or over the radius of a pipe.",
+    keys: &[
+        key(
+            "file",
+            Kind::File,
+            "",
+            Required,
+            "CSV file of two columns, distance in m and factor: straight lines between its rows, the first and the last value beyond them",
+        ),
+        key(
+            "from",
+            Kind::Numbers(Length::Dimension, Interval::ANY),
+            "m",
+            Required,
+            "the point: a wall of a channel, or the axis of a pipe",
+        ),
+    ],
+};

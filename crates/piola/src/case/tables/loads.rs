@@ -2,7 +2,8 @@
 
 use super::*;
 
-const HISTORY: KeySpec = key(
+/// A factor over time.
+pub(super) const HISTORY: KeySpec = key(
     "history",
     Kind::File,
     "",

@@ -200,6 +200,12 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
             ],
         },
         KindSpec {
+            name: "opening",
+            meaning: "the mass of a fluid that has come in and gone out through an open boundary, which `body` names: columns `NAME.entered` and `NAME.left`",
+            dimensions: &[1, 2, 3],
+            keys: &[],
+        },
+        KindSpec {
             name: "point",
             meaning: "fields interpolated at a fixed point of space",
             dimensions: &[1, 2, 3],

@@ -88,22 +88,22 @@ impl<'a> History<'a> {
         rows.map(|(t, v)| (0.5 * v[0] + 0.5 * v[1]) * ((t[1] - t[0]) / (last - first))).sum()
     }
 
-    /// Integrals between two times of the value, and of the value times the time.
-    pub fn moments(&self, [first, last]: [f64; 2]) -> Result<[f64; 2], ReduceError> {
+    /// Times and values between two times, with interpolated rows at them.
+    pub fn between(&self, [first, last]: [f64; 2]) -> Result<(Vec<f64>, Vec<f64>), ReduceError> {
         let ends = [(first, self.at(first)?), (last, self.at(last)?)];
         let rows = self.time.iter().copied().zip(self.values.iter().copied());
         let inside = rows.filter(|(time, _)| *time > first && *time < last);
-        let mut sums = [0.0; 2];
-        let mut before = ends[0];
-        for row in inside.chain([ends[1]]) {
-            let ((t, v), (s, w)) = (before, row);
-            let width = s - t;
-            sums[0] += 0.5 * width * (v + w);
-            // Exact for straight lines.
-            sums[1] += width * (v * (2.0 * t + s) + w * (t + 2.0 * s)) / 6.0;
-            before = row;
-        }
-        Ok(sums)
+        Ok([ends[0]].into_iter().chain(inside).chain([ends[1]]).unzip())
+    }
+
+    /// Integrals of the value, and of the value times the time: exact for straight lines.
+    pub fn moments(&self) -> [f64; 2] {
+        let rows = self.time.windows(2).zip(self.values.windows(2));
+        rows.fold([0.0; 2], |[value, moment], (t, v)| {
+            let width = t[1] - t[0];
+            let balance = v[0] * (2.0 * t[0] + t[1]) + v[1] * (t[0] + 2.0 * t[1]);
+            [value + 0.5 * width * (v[0] + v[1]), moment + width * balance / 6.0]
+        })
     }
 
     pub fn largest_rise(&self) -> f64 {

@@ -68,10 +68,29 @@ impl History<'_> {
         }
     }
 
+    /// Where the history passes the middle between smallest and largest value.
+    fn middle_crossings(&self) -> Vec<Crossing> {
+        let [low, high] = self.range();
+        self.crossings(0.5 * low + 0.5 * high)
+    }
+
+    /// The first and the last time at which it rises through that middle, one period or more apart.
+    pub fn cycles(&self) -> Result<[f64; 2], ReduceError> {
+        let crossings = self.middle_crossings();
+        let rises: Vec<f64> = crossings
+            .iter()
+            .filter(|crossing| crossing.upward)
+            .map(|crossing| crossing.time)
+            .collect();
+        match rises[..] {
+            [first, .., last] => Ok([first, last]),
+            _ => Err(ReduceError::NoPeriod { crossings: crossings.len() }),
+        }
+    }
+
     /// The period of the oscillation about the middle between smallest and largest value.
     pub fn period(&self) -> Result<f64, ReduceError> {
-        let [low, high] = self.range();
-        let crossings = self.crossings(0.5 * low + 0.5 * high);
+        let crossings = self.middle_crossings();
         // Least squares of time against number, with one slope and two offsets.
         let (mut covariance, mut variance) = (0.0, 0.0);
         for upward in [true, false] {

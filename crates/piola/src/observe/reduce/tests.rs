@@ -49,14 +49,18 @@ fn all() -> Vec<Reduction> {
         Reduction::At(0.5),
         Reduction::Mean,
         Reduction::Range,
+        Reduction::Amplitude,
         Reduction::Period,
+        Reduction::Frequency,
+        Reduction::CycleMean,
         Reduction::Extremum(1),
         Reduction::ExtremumTime(1),
         Reduction::ZeroTime(1),
+        Reduction::ZeroPlace(1),
         Reduction::LargestRise,
         Reduction::Growth,
-        Reduction::Integral([0.25, 2.0]),
-        Reduction::Centroid([0.25, 2.0]),
+        Reduction::Integral,
+        Reduction::Centroid,
         Reduction::Curve(curve.clone()),
         Reduction::CurveRms(curve),
     ]
@@ -82,14 +86,36 @@ fn every_registered_name_belongs_to_one_reduction() {
 fn a_pulse_has_an_integral_and_a_time_at_which_it_passes() {
     // A triangle of height 3 and width 2 about 1.5, in a window that cuts rows.
     let (time, values) = ([0.0, 0.5, 1.5, 2.5, 4.0], [0.0, 0.0, 3.0, 0.0, 0.0]);
-    let of = |reduction: Reduction| reduction.apply(&time, &values);
-    assert_eq!(of(Reduction::Integral([0.25, 3.0])), Ok(3.0));
-    assert_eq!(of(Reduction::Centroid([0.25, 3.0])), Ok(1.5));
-    assert_eq!(of(Reduction::Integral([1.5, 2.5])), Ok(1.5));
-    assert_eq!(of(Reduction::Centroid([3.0, 4.0])), Err(ReduceError::NoPulse));
+    let of = |window, reduction: Reduction| {
+        Reduction::Within(window, Box::new(reduction)).apply(&time, &values)
+    };
+    assert_eq!(of([0.25, 3.0], Reduction::Integral), Ok(3.0));
+    assert_eq!(of([0.25, 3.0], Reduction::Centroid), Ok(1.5));
+    assert_eq!(of([1.5, 2.5], Reduction::Integral), Ok(1.5));
+    assert_eq!(of([3.0, 4.0], Reduction::Centroid), Err(ReduceError::NoPulse));
     let outside = ReduceError::TimeOutside { time: 5.0, first: 0.0, last: 4.0 };
-    assert_eq!(of(Reduction::Integral([1.0, 5.0])), Err(outside));
-    assert_eq!(Reduction::<Curve>::Integral([0.0, 1.0]).unit("Pa"), "Pa s");
+    assert_eq!(of([1.0, 5.0], Reduction::Integral), Err(outside));
+    let within = Reduction::<Curve>::Within([0.0, 1.0], Box::new(Reduction::Integral));
+    assert_eq!((within.unit("Pa"), within.name()), ("Pa s".into(), "integral"));
+    assert_eq!(within.label(), "integral from 0 to 1 s");
+}
+
+#[test]
+fn an_oscillation_that_sets_in_is_judged_in_a_window() {
+    // 2 + 3 sin at 1.6 per second, after a start that is far from it.
+    let value = |t: f64| if t < 2.0 { 40.0 * (2.0 - t) } else { 2.0 + 3.0 * (TAU * 1.6 * t).sin() };
+    let history = sampled(0.0, 10.0, 20_001, value);
+    // Of 4.65 periods four are whole, and nearly three quarters of one are left over.
+    let of = |reduction| {
+        reduce(Reduction::Within([3.0, 3.0 + 4.65 / 1.6], Box::new(reduction)), &history)
+    };
+    assert_near(of(Reduction::Frequency), 1.6, 1e-5);
+    assert_near(of(Reduction::Amplitude), 3.0, 1e-5);
+    assert_near(of(Reduction::CycleMean), 2.0, 1e-5);
+    assert!((of(Reduction::Mean) - 2.0).abs() > 0.01);
+    assert!((reduce(Reduction::Amplitude, &history) - 3.0).abs() > 30.0);
+    let short = Reduction::Within([3.0, 3.5], Box::new(Reduction::CycleMean));
+    assert!(matches!(refused(short, &history), ReduceError::NoPeriod { .. }));
 }
 
 #[test]
@@ -101,6 +127,8 @@ fn plain_figures_of_a_few_rows() {
         (Reduction::Final, 4.0),
         (Reduction::Initial, 2.0),
         (Reduction::Range, 6.0),
+        (Reduction::Amplitude, 3.0),
+        (Reduction::Integral, 9.0),
         (Reduction::LargestRise, 6.0),
         (Reduction::Growth, 1.0),
         (Reduction::At(0.0), 2.0),

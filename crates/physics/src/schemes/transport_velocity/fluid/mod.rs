@@ -331,6 +331,10 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         energies[0] = self.compression_energy(common, state);
     }
 
+    fn passed(&self, common: &Common<D>, state: &[f64], body: u32) -> Option<[f64; 2]> {
+        self.passed_through(common, state, body)
+    }
+
     fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>) {
         figures.push(self.behind_count(common, state));
         figures.extend(self.exchanged(common, state));

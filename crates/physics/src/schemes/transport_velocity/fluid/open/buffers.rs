@@ -15,7 +15,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let Open { boundaries, roles, members, seen, means, .. } = &mut self.open;
         let shear = &mut self.shear;
         seen.clear();
-        seen.resize(members.len(), Seen { pressure: None, entering: None });
+        seen.resize(members.len(), Seen { pressure: None, inwards: 0.0, entering: None });
         let all = &boundaries.all;
         let boundary_of = |number: u32| &all[roles[number as usize] as usize - 1];
         let places = common.support.list().places();
@@ -31,23 +31,27 @@ impl<const D: usize> WeaklyCompressible<D> {
         let impedance = density * wave_speed;
         let positions = common.support.list().positions();
         for (role, (mean, boundary)) in means.iter_mut().zip(all).enumerate() {
-            let (mut sum, mut count) = (0.0, 0.0);
+            let (mut sum, mut inwards, mut count) = (0.0, 0.0, 0.0);
             for (&number, seen) in members.iter().zip(&*seen) {
                 let is_own = roles[number as usize] as usize == role + 1;
                 let Some(pressure) = seen.pressure.filter(|_| is_own) else { continue };
                 let place = places[number as usize] as usize;
                 sum += pressure - boundary.reference(&positions[place], time);
+                inwards += seen.inwards;
                 count += 1.0;
             }
+            mean.inwards = if count > 0.0 { inwards / count } else { mean.stream };
             // Without fluid in reach there is no sound: a state has the slow part alone.
             mean.above = if count > 0.0 { sum / count } else { mean.slow };
             // At the start there is no past.
             if mean.slow.is_nan() {
                 mean.above = if count > 0.0 { mean.above } else { 0.0 };
                 mean.slow = mean.above;
+                mean.inwards = if count > 0.0 { mean.inwards } else { 0.0 };
+                mean.stream = mean.inwards;
             }
         }
-        for (&number, seen) in members.iter().zip(&*seen) {
+        for (&number, seen) in members.iter().zip(seen) {
             let place = places[number as usize] as usize;
             let (boundary, mean) =
                 (boundary_of(number), &means[roles[number as usize] as usize - 1]);
@@ -59,8 +63,12 @@ impl<const D: usize> WeaklyCompressible<D> {
                     boundary.reference(&positions[place], time) + mean.sound()
                 }
             };
-            let sound = boundary.normal * (mean.sound() / impedance);
             let side: &mut Side<D> = &mut common.sides[place];
+            if matches!(boundary.flow, Flow::Pressure(_)) && seen.inwards > 0.0 {
+                let along = seen.inwards - mean.inwards + mean.stream;
+                seen.entering = Some(boundary.normal * along);
+            }
+            let sound = boundary.normal * (mean.sound() / impedance);
             side.velocity = seen.entering.unwrap_or(side.velocity) - sound;
             side.deviation = Vector::zeros();
             let mass = common.mass[number as usize];
@@ -87,16 +95,22 @@ impl<const D: usize> WeaklyCompressible<D> {
         for (&number, seen) in open.members.iter().zip(&open.seen) {
             let number = number as usize;
             let Some((role, boundary)) = open.boundary_of(number) else { continue };
+            let mean = &open.means[role];
             let velocity = boundary.velocity(&own.position[number], middle);
             let velocity = velocity.or(seen.entering).unwrap_or(own.velocity[number]);
-            let along = velocity.dot(&boundary.normal) - open.means[role].sound() / impedance;
+            let along = velocity.dot(&boundary.normal) - mean.sound() / impedance;
             own.position[number] += boundary.normal * (step * along);
+            if matches!(boundary.flow, Flow::Pressure(_)) {
+                own.velocity[number] += boundary.normal * (mean.gain() * follows(step, boundary));
+            }
         }
         let (_, kept) = Kept::of(common, state);
         for ((mean, boundary), kept) in
             open.means.iter().zip(&open.boundaries.all).zip(kept.each.chunks_exact_mut(KEPT))
         {
-            kept[0] = mean.slow + mean.sound() * -(-step / boundary.relaxation).exp_m1();
+            let share = follows(step, boundary);
+            kept[0] = mean.slow + mean.sound() * share;
+            kept[3] = mean.stream + mean.gain() * share;
         }
     }
 
@@ -107,13 +121,22 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (constants, _) = self.force_law(common);
         let law = Wall::<D> { softening: constants.softening, viscosity: constants.viscosity };
         let is_buffer = |place: u32| roles[list.numbers()[place as usize] as usize] > 0;
+        let (all, reach) = (&self.open.boundaries.all, list.support());
+        // Most of the fluid is far from all planes, and need not look at its neighbours.
+        let near_opening = |place: usize| {
+            let at = &list.positions()[place];
+            all.iter().any(|it| (it.plane - at.dot(&it.normal)).abs() < reach + it.length)
+        };
         parallel::for_each_chunk(&mut forces, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 *row = Vector::zeros();
+                if list.is_passive(place) || !near_opening(place) {
+                    continue;
+                }
                 let [_, passive] = common.support.places_of(place);
-                if list.is_passive(place) || !passive.iter().any(|&other| is_buffer(other)) {
+                if !passive.iter().any(|&other| is_buffer(other)) {
                     continue;
                 }
                 let me = &common.sides[place];
@@ -160,6 +183,11 @@ impl<const D: usize> WeaklyCompressible<D> {
     }
 }
 
+/// What share of their change slow means follow within a step in s.
+fn follows<const D: usize>(step: f64, boundary: &OpenBoundary<D>) -> f64 {
+    -(-step / boundary.relaxation).exp_m1()
+}
+
 /// What the particle of a buffer takes from the fluid around it.
 fn look_in<const D: usize>(
     common: &Common<D>,
@@ -170,12 +198,10 @@ fn look_in<const D: usize>(
 ) -> Seen<D> {
     let around = common.surroundings(place, block);
     if !(around.weight > 0.0) {
-        return Seen { pressure: None, entering: None };
+        return Seen { pressure: None, inwards: 0.0, entering: None };
     }
     let gravity = common.body_force_at(number as usize, place, time);
     let pressure = (around.pressure + gravity.dot(&around.arm)) / around.weight;
     let inwards = around.velocity.dot(&boundary.normal) / around.weight;
-    let enters = matches!(boundary.flow, Flow::Pressure(_)) && inwards > 0.0;
-    let entering = enters.then(|| boundary.normal * inwards);
-    Seen { pressure: Some(pressure), entering }
+    Seen { pressure: Some(pressure), inwards, entering: None }
 }

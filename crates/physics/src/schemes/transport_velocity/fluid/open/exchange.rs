@@ -11,7 +11,7 @@ const OVERSHOOT: f64 = 0.25;
 
 /// What happens to a particle in an exchange, with the number of the boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Change {
+pub(super) enum Change {
     ComeIn(usize),
     GoOut(usize),
     Leave,
@@ -31,20 +31,13 @@ impl<const D: usize> WeaklyCompressible<D> {
     ) -> Total {
         let mut total = Total::default();
         self.follow_roles(common, state);
-        let (own, _) = common.parts(state);
-        for &number in &self.open.members {
-            let number = number as usize;
-            if let Some((_, boundary)) = self.open.boundary_of(number)
-                && let Some(velocity) = boundary.velocity(&own.position[number], time)
-            {
-                own.velocity[number] = velocity;
-            }
-        }
+        self.prescribe(common, time, state);
         let spacing = common.particles.spacing[0];
         if self.overshoot(common, state) < OVERSHOOT * spacing {
             return total;
         }
-        let changes = self.changes(common, state);
+        let mut changes = std::mem::take(&mut self.open.changes);
+        self.find_changes(common, state, &mut changes);
         let mut free = std::mem::take(&mut self.open.free);
         free.clear();
         let (own, _) = common.parts(state);
@@ -53,18 +46,12 @@ impl<const D: usize> WeaklyCompressible<D> {
         free.extend(vacant.map(|(number, _)| number as u32));
         // Those that leave make room for those that come in.
         for &(number, _) in changes.iter().filter(|(_, change)| *change == Change::Leave) {
-            let (own, _) = common.parts(state);
-            own.velocity[number] = Vector::zeros();
-            own.kick[number] = Vector::zeros();
-            (own.pressure[number], own.density[number]) = (0.0, 0.0);
-            let (stored, kept) = Kept::of(common, state);
-            stored.opening[number] = 0.0;
-            kept.counts[0] += 1.0;
+            self.take_out(common, number, state);
             free.push(number as u32);
         }
         free.sort_unstable_by(|a, b| b.cmp(a));
         Kept::of(common, state).1.counts[1] = 0.0;
-        for (number, change) in changes {
+        for &(number, change) in &changes {
             match change {
                 Change::Leave => {}
                 Change::GoOut(role) => {
@@ -81,12 +68,34 @@ impl<const D: usize> WeaklyCompressible<D> {
                         continue;
                     };
                     self.carry_over(common, number, 1.0, state, &mut total);
-                    self.bear_next(common, (number, next as usize), role, time, state);
+                    let boundary = &self.open.boundaries.all[role];
+                    let (own, _) = common.parts(state);
+                    let end = own.position[number] - boundary.normal * boundary.length;
+                    self.let_in(common, number, next as usize, (role, end), state);
+                    let (stored, kept) = Kept::of(common, state);
+                    stored.opening[number] = 0.0;
+                    kept.each[KEPT * role + 1] += common.mass[number];
                 }
             }
         }
-        self.open.free = free;
+        self.even_out(common, state, &mut free);
+        self.follow_roles(common, state);
+        self.prescribe(common, time, state);
+        (self.open.free, self.open.changes) = (free, changes);
         total
+    }
+
+    /// Sets the velocities of buffers to what is prescribed at a time in s.
+    fn prescribe(&self, common: &Common<D>, time: f64, state: &mut [f64]) {
+        let (own, _) = common.parts(state);
+        for &number in &self.open.members {
+            let number = number as usize;
+            if let Some((_, boundary)) = self.open.boundary_of(number)
+                && let Some(velocity) = boundary.velocity(&own.position[number], time)
+            {
+                own.velocity[number] = velocity;
+            }
+        }
     }
 
     /// How far beyond a plane the furthest particle is that has not changed sides, in m.
@@ -111,7 +120,7 @@ impl<const D: usize> WeaklyCompressible<D> {
     }
 
     /// What changes in an exchange, in the order of numbers.
-    fn changes(&self, common: &Common<D>, state: &[f64]) -> Vec<(usize, Change)> {
+    fn find_changes(&self, common: &Common<D>, state: &[f64], changes: &mut Vec<(usize, Change)>) {
         let (open, at) = (&self.open, common.columns(state));
         let spacing = common.particles.spacing[0];
         let change = |number: usize| {
@@ -133,7 +142,9 @@ impl<const D: usize> WeaklyCompressible<D> {
                 }
             }
         };
-        (0..open.roles.len()).filter_map(|number| Some((number, change(number)?))).collect()
+        changes.clear();
+        let all = 0..open.roles.len();
+        changes.extend(all.filter_map(|number| Some((number, change(number)?))));
     }
 
     /// Books what a particle brings into the fluid, or takes out of it.
@@ -152,27 +163,34 @@ impl<const D: usize> WeaklyCompressible<D> {
         add_moments(&at.position[number], &(velocity * mass), &mut total.force);
     }
 
-    /// Makes a particle of a buffer one of the fluid, and lets another one follow it at the end of the buffer.
-    fn bear_next(
+    /// Takes a particle of a buffer out: it waits.
+    pub(super) fn take_out(&self, common: &Common<D>, number: usize, state: &mut [f64]) {
+        let (own, _) = common.parts(state);
+        (own.velocity[number], own.kick[number]) = (Vector::zeros(), Vector::zeros());
+        (own.pressure[number], own.density[number]) = (0.0, 0.0);
+        let (stored, kept) = Kept::of(common, state);
+        stored.opening[number] = 0.0;
+        kept.counts[0] += 1.0;
+    }
+
+    /// Lets the particle `next` into the buffer of a boundary at a place, as another one is.
+    pub(super) fn let_in(
         &self,
         common: &Common<D>,
-        (number, next): (usize, usize),
-        role: usize,
-        time: f64,
+        like: usize,
+        next: usize,
+        (role, place): (usize, Vector<D>),
         state: &mut [f64],
     ) {
-        let boundary = &self.open.boundaries.all[role];
         let (own, _) = common.parts(state);
-        let place = own.position[number] - boundary.normal * boundary.length;
         own.position[next] = place;
-        own.velocity[next] = boundary.velocity(&place, time).unwrap_or(own.velocity[number]);
+        own.velocity[next] = own.velocity[like];
         (own.deviation[next], own.kick[next]) = (Vector::zeros(), Vector::zeros());
-        (own.density[next], own.pressure[next]) = (own.density[number], own.pressure[number]);
+        (own.density[next], own.pressure[next]) = (own.density[like], own.pressure[like]);
         let (stored, kept) = Kept::of(common, state);
         kept.counts[0] -= 1.0;
         kept.counts[2] += 1.0;
-        kept.each[KEPT * role + 1] += common.mass[number];
-        (stored.opening[number], stored.opening[next]) = (0.0, (role + 1) as f64);
+        stored.opening[next] = (role + 1) as f64;
         stored.birth[next] = kept.counts[2];
     }
 }

@@ -1,9 +1,12 @@
 //! Open boundaries, through which fluid comes in and goes out, theory (86) to (89).
 
 mod buffers;
+mod even;
 mod exchange;
 
 use std::sync::Arc;
+
+use exchange::Change;
 
 use super::{Columns, Common, Fluid, LEDGER, Stored, StoredMut, WeaklyCompressible};
 use crate::boundaries::{SpaceTime, padded};
@@ -98,12 +101,21 @@ struct Mean {
     above: f64,
     /// The same, as it has been in the mean of the relaxation time.
     slow: f64,
+    /// The fluid's velocity along the normal in the mean, in m/s.
+    inwards: f64,
+    /// The same, as it has been in the mean of the relaxation time.
+    stream: f64,
 }
 
 impl Mean {
     /// What of the pressure is sound, in Pa.
     fn sound(&self) -> f64 {
         self.above - self.slow
+    }
+
+    /// By how much the stream has grown faster than it is followed, in m/s.
+    fn gain(&self) -> f64 {
+        self.inwards - self.stream
     }
 }
 
@@ -112,6 +124,8 @@ impl Mean {
 struct Seen<const D: usize> {
     /// Pressure of the fluid there in Pa; nothing without fluid in reach.
     pressure: Option<f64>,
+    /// Its velocity along the normal in m/s, with it.
+    inwards: f64,
     /// Velocity in m/s with which fluid comes in, where the pressure is prescribed and it does.
     entering: Option<Vector<D>>,
 }
@@ -119,14 +133,17 @@ struct Seen<const D: usize> {
 /// Numbers that a state keeps of all open boundaries: how many particles wait in the reserve, how many could
 /// not be born in the last exchange, and how many ever were.
 const COUNTS: usize = 3;
-/// Numbers that it keeps of each: the slow pressure, and the mass in kg that has come in and gone out.
-const KEPT: usize = 3;
+/// Numbers that it keeps of each: the slow pressure, the mass in kg that has come in and gone out, and the slow velocity
+/// along the normal in m/s.
+const KEPT: usize = 4;
 
 /// The open boundaries while a run goes.
 pub(super) struct Open<const D: usize> {
     boundaries: OpenBoundaries<D>,
     /// In whose buffer particles are, by number, as they were loaded.
     roles: Vec<u32>,
+    /// Where the particles of each buffer are at the start.
+    sites: Vec<Vec<Vector<D>>>,
     /// The particles of all buffers, by number.
     members: Vec<u32>,
     seen: Vec<Seen<D>>,
@@ -135,17 +152,25 @@ pub(super) struct Open<const D: usize> {
     forces: Vec<Vector<D>>,
     /// Particles that wait.
     free: Vec<u32>,
+    /// What changes in an exchange.
+    changes: Vec<(usize, Change)>,
 }
 
 impl<const D: usize> Open<D> {
     pub fn none() -> Self {
-        Self::new(OpenBoundaries::default(), 0)
+        Self::new(OpenBoundaries::default(), &[])
     }
 
-    pub fn new(boundaries: OpenBoundaries<D>, count: usize) -> Self {
+    /// Those of particles that are at `places` at the start.
+    pub fn new(boundaries: OpenBoundaries<D>, places: &[Vector<D>]) -> Self {
         let all = boundaries.all.len();
-        let count = if all > 0 { count } else { 0 };
+        let count = if all > 0 { places.len() } else { 0 };
+        let in_buffer = |role: usize| {
+            let both = boundaries.buffers.iter().zip(places);
+            both.filter(move |(buffer, _)| **buffer as usize == role + 1).map(|(_, place)| *place)
+        };
         Self {
+            sites: (0..all).map(|role| in_buffer(role).collect()).collect(),
             boundaries,
             roles: vec![0; count],
             members: Vec::with_capacity(count),
@@ -153,6 +178,7 @@ impl<const D: usize> Open<D> {
             means: vec![Mean::default(); all],
             forces: vec![Vector::zeros(); count],
             free: Vec::with_capacity(count),
+            changes: Vec::new(),
         }
     }
 
@@ -197,7 +223,7 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// Gives it open boundaries.
     pub(super) fn open_up(&mut self, boundaries: OpenBoundaries<D>, common: &mut Common<D>) {
         let count = common.particles.len();
-        self.open = Open::new(boundaries, count);
+        self.open = Open::new(boundaries, &common.particles.position);
         common.removed = vec![false; count];
         self.shear = vec![Vector::zeros(); count];
         // Those that are not there yet have to be as heavy as those that they follow.
@@ -220,7 +246,9 @@ impl<const D: usize> WeaklyCompressible<D> {
         }
         let (stored, kept) = Kept::of(common, state);
         kept.counts[0] = reserve as f64;
-        kept.each.iter_mut().step_by(KEPT).for_each(|slow| *slow = f64::NAN);
+        for kept in kept.each.chunks_exact_mut(KEPT) {
+            (kept[0], kept[3]) = (f64::NAN, f64::NAN);
+        }
         for (role, buffer) in stored.opening.iter_mut().zip(&open.boundaries.buffers) {
             *role = f64::from(*buffer);
         }
@@ -235,7 +263,8 @@ impl<const D: usize> WeaklyCompressible<D> {
         let at = common.columns(state);
         let stored = Stored::<D>::of(at.tail, open.roles.len());
         let each = LEDGER.behind(D, stored.tail)[1 + COUNTS..].chunks_exact(KEPT);
-        open.means.iter_mut().zip(each).for_each(|(mean, kept)| mean.slow = kept[0]);
+        let both = open.means.iter_mut().zip(each);
+        both.for_each(|(mean, kept)| (mean.slow, mean.stream) = (kept[0], kept[3]));
         let (roles, removed) = (&open.roles, &common.removed);
         let differs = parallel::maximum(roles.len(), 0.0, |number| {
             let is_removed = Common::<D>::is_removed(at.density[number]);
@@ -257,7 +286,7 @@ impl<const D: usize> WeaklyCompressible<D> {
                 open.members.push(number as u32);
             }
         }
-        common.support.exclude(common.is_wall.clone(), common.removed.clone());
+        common.support.exclude(&common.is_wall, &common.removed);
     }
 
     /// Keeps the slow pressures of the start.
@@ -268,7 +297,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (_, kept) = Kept::of(common, state);
         for (kept, mean) in kept.each.chunks_exact_mut(KEPT).zip(&self.open.means) {
             if kept[0].is_nan() {
-                kept[0] = mean.slow;
+                (kept[0], kept[3]) = (mean.slow, mean.stream);
             }
         }
     }
@@ -289,6 +318,18 @@ impl<const D: usize> WeaklyCompressible<D> {
         let each = self.counts(common, state).map_or(&[][..], |counts| &counts[COUNTS..]);
         let sum = |which: usize| each.iter().skip(which).step_by(KEPT).sum();
         [sum(1), sum(2)]
+    }
+
+    /// The same of the one that has the number of a body.
+    pub(super) fn passed_through(
+        &self,
+        common: &Common<D>,
+        state: &[f64],
+        body: u32,
+    ) -> Option<[f64; 2]> {
+        let role = self.open.boundaries.all.iter().position(|it| it.body == body)?;
+        let each = &self.counts(common, state)?[COUNTS + KEPT * role..];
+        Some([each[1], each[2]])
     }
 
     /// The first particle that could not come in for want of others to follow it, and the name of its boundary.
