@@ -88,12 +88,13 @@ fn a_stream_dies_out_at_the_rate_of_its_damping() {
     assert!(last(&finished, "energy.body_force").abs() < 1e-12);
 }
 
-/// Where it dies out only on one side, the ledger balances all the same, and the other side goes on.
+/// Where it dies out on one side only, the ledger balances all the same.
 #[test]
 fn damping_is_that_of_the_place() {
     let finished = run(STREAM, &["scheme.damping='4 * step(y - 0.25)'"]);
     let taken = last(&finished, "energy.damping");
-    assert!(taken < -0.05 && taken > -0.125, "{taken}");
+    // The stream goes through both sides: more than nothing is gone, and less than damping everywhere would take.
+    assert!(taken < -0.05 && taken > 0.25 * (-4.0_f64).exp_m1(), "{taken}");
     for name in ["energy.balance", "momentum.balance.linear.x", "momentum.balance.linear.y"] {
         assert!(last(&finished, name).abs() < 1e-12, "{name}");
     }
