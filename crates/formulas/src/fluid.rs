@@ -44,6 +44,18 @@ pub fn diffusion<T: Number>(diffusivity: f64, square: T, slope: T, scale: T) -> 
     square * slope * scale * (4.0 * diffusivity)
 }
 
+/// Viscous stress between two particles in D dimensions, for `approach = u_ab . r_ab` and [`exchange_scale`]: times `m_b r_ab`
+/// it is the acceleration of a, theory (90), of Monaghan and Cleary.
+#[inline(always)]
+pub fn viscous_push<T: Number, const D: usize>(
+    viscosity: f64,
+    approach: T,
+    slope: T,
+    scale: T,
+) -> T {
+    approach * slope * scale * (4.0 * (D as f64 + 2.0) * viscosity)
+}
+
 /// Artificial viscosity `Pi_ab` of particles that approach each other, CTVF (28) with (29), theory (24), for
 /// `approach = u_ab . r_ab` and [`exchange_scale`]; zero for those that part.
 ///

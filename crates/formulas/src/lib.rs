@@ -17,6 +17,7 @@ mod power;
 pub mod riemann;
 pub mod tensor;
 pub mod volumetric;
+pub mod waves;
 
 pub use lanes::{Lanes, Lanes4, Mask4, WIDTH};
 pub use number::{Number, Scalar};

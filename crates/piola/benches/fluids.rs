@@ -21,7 +21,7 @@ use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
     AtSurface, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting,
-    TransportVelocity, TransportVelocityInput,
+    TransportVelocity, TransportVelocityInput, Viscous,
 };
 use piola_formulas::kernels::Kernel;
 
@@ -49,6 +49,7 @@ fn vortices<const D: usize>(
             pressure: PressureRule::Edac { alpha: 0.5 },
             corrections,
             shifting: Shifting::Sun { factor: 1.0 },
+            viscous: Viscous::Laplacian,
             artificial_viscosity: 0.0,
             free_surface: false,
             at_surface: AtSurface::Held,
@@ -59,6 +60,7 @@ fn vortices<const D: usize>(
         sliding: Vec::new(),
         body_forces: Vec::new(),
         open: Default::default(),
+        damping: None,
         particles,
     };
     let fluid = Fluid { density: 1.0, wave_speed: 10.0, viscosity: 0.01 };

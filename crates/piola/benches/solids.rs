@@ -19,7 +19,7 @@ use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Heat, Hypoelastic, PressureRule, Settings,
-    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput,
+    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput, Viscous,
 };
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 use piola_formulas::kernels::Kernel;
@@ -83,6 +83,7 @@ fn block<const D: usize>(
             pressure: PressureRule::StateEquation,
             corrections: setting.corrections,
             shifting: Shifting::Sun { factor: 1.0 },
+            viscous: Viscous::Laplacian,
             artificial_viscosity: 1.0,
             free_surface: true,
             at_surface: AtSurface::Along,
@@ -93,6 +94,7 @@ fn block<const D: usize>(
         sliding: Vec::new(),
         body_forces: Vec::new(),
         open: Default::default(),
+        damping: None,
         particles,
     };
     let solids = SolidsInput {

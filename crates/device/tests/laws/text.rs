@@ -5,7 +5,7 @@ use piola_device::{
 };
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::One;
-use piola_formulas::pairs::fluid::{FULL, ForceConstants, ForceSum, Forces};
+use piola_formulas::pairs::fluid::{FULL, ForceConstants, ForceSum, Forces, Viscous};
 use piola_formulas::pairs::sums::Density;
 
 /// Compares with a stored text; `PIOLA_RENEW=1` stores it.
@@ -45,6 +45,7 @@ fn gathers(language: Language) -> [Pass; 2] {
     let law = Forces::<2, FULL, false, true>(ForceConstants {
         softening: 1e-4,
         viscosity: 1e-2,
+        viscous: Viscous::Laplacian,
         artificial: 0.0,
         stress: 1.0,
         dilatation: 1.0,

@@ -42,6 +42,46 @@ impl<T: Number, const D: usize> Side<T, D> {
     }
 }
 
+/// The form of viscous forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Viscous {
+    /// Along the difference of velocities, `nu lap u`, theory (23): on a free surface the gradient of the velocity
+    /// across it is zero.
+    Laplacian,
+    /// Along the line between particles, `div(nu (grad u + grad u^T))`, theory (90): on a free surface there is no stress, and
+    /// angular momentum is kept.
+    Stress,
+}
+
+impl Viscous {
+    /// How many times the viscosity a compression along one direction meets.
+    pub fn along(self) -> f64 {
+        match self {
+            Self::Laplacian => 1.0,
+            Self::Stress => 3.0,
+        }
+    }
+
+    /// The direction and the factor of the force between two particles where velocities differ by a `jump` in m/s,
+    /// with the `slope` of the kernel and an [`exchange_scale`](fluid::exchange_scale).
+    #[inline(always)]
+    fn force<T: Number, const D: usize>(
+        self,
+        viscosity: f64,
+        jump: &Of<Components<D>, T>,
+        pair: &Of<MovingPair<D>, T>,
+        [slope, scale]: [T; 2],
+    ) -> (Of<Components<D>, T>, T) {
+        match self {
+            Self::Laplacian => (*jump, fluid::diffusion(viscosity, pair.square, slope, scale)),
+            Self::Stress => {
+                let approach = dot(jump, &pair.separation);
+                (pair.separation, fluid::viscous_push::<T, D>(viscosity, approach, slope, scale))
+            }
+        }
+    }
+}
+
 /// Which corrections of the momentum equation a law is made for: none of them,
 pub const NONE: u8 = 0;
 /// the stress with the dilatation of the deviation,
@@ -56,6 +96,8 @@ pub struct ForceConstants {
     pub softening: f64,
     /// Kinematic viscosity in m^2/s.
     pub viscosity: f64,
+    /// Which form viscous forces have.
+    pub viscous: Viscous,
     /// `alpha h c` of CTVF (28) in m^2/s.
     pub artificial: f64,
     /// 1 where the correction of the stress is on, 0 otherwise.
@@ -166,11 +208,12 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
         let jump = difference(&me.velocity, &other.velocity);
         let scale =
             fluid::exchange_scale(me.density + other.density, pair.square, self.0.softening);
-        let exchange = fluid::diffusion(self.0.viscosity, pair.square, slope, scale);
+        let ForceConstants { viscous, viscosity, .. } = self.0;
+        let (way, exchange) = viscous.force(viscosity, &jump, pair, [slope, scale]);
         let pressure = slope * (me.load + other.load);
         for i in 0..D {
             sums.pressure[i] -= pair.separation[i] * pressure;
-            sums.viscosity[i] += jump[i] * exchange;
+            sums.viscosity[i] += way[i] * exchange;
         }
         if ARTIFICIAL {
             let approach = dot(&jump, &pair.separation);
@@ -206,8 +249,7 @@ impl<const D: usize, const CORRECTS: u8, const ARTIFICIAL: bool, const CROWDING:
         pair: &Of<MovingPair<D>, T>,
         sums: &mut ForceSums<T, D>,
     ) {
-        let ForceConstants { softening, viscosity, .. } = self.0.0;
-        let wall = Wall { softening, viscosity };
+        let wall = Wall::of(&self.0.0);
         let jump = difference(&me.velocity, shear);
         wall.push([me, other], &jump, pair, &mut sums.walls);
         self.0.carry(me, other, pair, sums);
@@ -222,9 +264,16 @@ pub struct Wall<const D: usize> {
     pub softening: f64,
     /// Kinematic viscosity in m^2/s.
     pub viscosity: f64,
+    /// Which form viscous forces have.
+    pub viscous: Viscous,
 }
 
 impl<const D: usize> Wall<D> {
+    /// That of a fluid with these constants.
+    pub fn of(&ForceConstants { softening, viscosity, viscous, .. }: &ForceConstants) -> Self {
+        Self { softening, viscosity, viscous }
+    }
+
     /// Adds the force of another particle, one of the two of a wall, where velocities differ by a `jump` in m/s.
     #[inline(always)]
     pub fn push<T: Number>(
@@ -235,11 +284,11 @@ impl<const D: usize> Wall<D> {
         sum: &mut Of<Components<D>, T>,
     ) {
         let scale = fluid::exchange_scale(me.density + other.density, pair.square, self.softening);
-        let exchange = fluid::diffusion(self.viscosity, pair.square, pair.slope, scale);
         let pressure = pair.slope * (me.load + other.load);
         let mass = other.mass();
+        let (way, exchange) = self.viscous.force(self.viscosity, jump, pair, [pair.slope, scale]);
         for i in 0..D {
-            sum[i] += (jump[i] * exchange - pair.separation[i] * pressure) * mass;
+            sum[i] += (way[i] * exchange - pair.separation[i] * pressure) * mass;
         }
     }
 }

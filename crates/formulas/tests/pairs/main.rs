@@ -100,12 +100,16 @@ fn check_frozen_padding<R: Record, L: PairLaw<Pair = Frozen<R>>>(name: &str, law
 const FLUID: fluid::ForceConstants = fluid::ForceConstants {
     softening: 0.01,
     viscosity: 0.3,
+    viscous: fluid::Viscous::Laplacian,
     artificial: 0.2,
     stress: 1.0,
     dilatation: 0.0,
     transport: 1.0,
     crowding: 0.7,
 };
+
+const STRESSED: fluid::ForceConstants =
+    fluid::ForceConstants { viscous: fluid::Viscous::Stress, ..FLUID };
 
 const SOLID: solid::ForceConstants = solid::ForceConstants {
     softening: 0.01,
@@ -129,7 +133,9 @@ macro_rules! each_law {
         $check("forces", fluid::Forces::<2, MIXED, true, false>(FLUID));
         $check("forces", fluid::Forces::<1, NONE, false, true>(FLUID));
         $check("wall forces", fluid::WallForces(fluid::Forces::<2, FULL, true, true>(FLUID)));
-        $check("wall", fluid::Wall::<2> { softening: 0.01, viscosity: 0.3 });
+        $check("wall", fluid::Wall::<2>::of(&FLUID));
+        $check("stresses", fluid::Forces::<3, NONE, false, false>(STRESSED));
+        $check("wall stresses", fluid::Wall::<2>::of(&STRESSED));
         $check("rates", fluid::Rates::<2, true, true, true>(rates));
         $check("rates", fluid::Rates::<3, false, false, false>(rates));
         $check("solid forces", solid::Forces::<2, true, ONE>(SOLID));
@@ -251,7 +257,7 @@ fn forces_between_two_particles_of_a_fluid_are_opposite() {
         assert_eq!(back.artificial_viscosity.norm(), 0.0);
     }
     // What a wall gets is what the fluid gets from it.
-    let wall = fluid::Wall::<2> { softening: FLUID.softening, viscosity: FLUID.viscosity };
+    let wall = fluid::Wall::<2>::of(&FLUID);
     let shear = two.velocity;
     let given = sums_of(&fluid::WallForces(law), [&(one, shear), &(two, shear)], &pair).walls;
     let taken = sums_of(&wall, [&(two, shear), &(one, shear)], &turned(&pair));

@@ -8,6 +8,7 @@ pub(crate) mod prescribed;
 pub(crate) mod pressure;
 mod spring;
 pub(crate) mod traction;
+mod wave_maker;
 
 pub use body_force::BodyForce;
 pub use function::{SpaceTime, padded};
@@ -17,3 +18,4 @@ pub use prescribed::PrescribedVelocity;
 pub use pressure::FollowerPressure;
 pub use spring::Spring;
 pub use traction::Traction;
+pub use wave_maker::{Harmonic, Push, Sea, Water, WaveMaker};

@@ -46,7 +46,7 @@ pub(super) fn jitter<const D: usize>(
 
 /// Uniform in [0, 1): the upper 53 bits of the next number, so that the sequence depends on the
 /// generator alone.
-fn uniform(source: &mut Pcg64) -> f64 {
+pub(crate) fn uniform(source: &mut Pcg64) -> f64 {
     (source.next_u64() >> 11) as f64 * 0.5f64.powi(53)
 }
 

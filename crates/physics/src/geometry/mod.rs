@@ -25,6 +25,7 @@ pub use error::GeometryError;
 pub use faces::Faces;
 pub(crate) use faces::turned_normal;
 pub use fill::{FillReport, fill, turns};
+pub(crate) use jitter::uniform;
 pub use lattice::{LatticeKind, LatticeSpec, Placement};
 pub use mesh::{Cell, CellKind, Mesh, MeshError, MeshFault, MeshSet};
 pub use particles::Particles;

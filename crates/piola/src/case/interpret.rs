@@ -29,6 +29,7 @@ mod solids;
 mod sweeps;
 mod systems;
 mod time;
+mod waves;
 
 /// Which of the settings of a case file is read.
 #[derive(Clone, Copy, Debug)]

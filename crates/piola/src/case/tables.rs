@@ -16,6 +16,7 @@ mod observers;
 mod plastic;
 mod solids;
 mod time;
+mod waves;
 
 /// The case file as a whole.
 pub static CASE: TableSpec = TableSpec {

@@ -25,3 +25,4 @@ mod surfaces;
 mod taylor_green;
 mod touching;
 mod walls;
+mod waves;

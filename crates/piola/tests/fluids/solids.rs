@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use piola::geometry::Particles;
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Forces, Heat, PressureRule, Rates, Settings,
-    Shifting, Solid, SolidRates, SolidsInput, TransportVelocityInput,
+    Shifting, Solid, SolidRates, SolidsInput, TransportVelocityInput, Viscous,
 };
 use piola::schemes::{Observation, Scheme};
 use piola::{Tensor, Vector};
@@ -20,6 +20,7 @@ pub const SETTINGS: Settings = Settings {
     pressure: PressureRule::StateEquation,
     corrections: Corrections::FULL,
     shifting: Shifting::Sun { factor: 1.0 },
+    viscous: Viscous::Laplacian,
     artificial_viscosity: 0.0,
     free_surface: false,
     at_surface: AtSurface::Held,

@@ -5,7 +5,7 @@ use piola::geometry::{Faces, LatticeSpec, Particles, Placement, Shape, fill};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
     AtSurface, Contact, Corrections, DensityRule, Fluid, Hypoelastic, PressureRule, Settings,
-    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput,
+    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput, Viscous,
 };
 use piola::schemes::{Initial, Scheme};
 use piola_formulas::kernels::Kernel;
@@ -16,6 +16,7 @@ pub const SETTINGS: Settings = Settings {
     pressure: PressureRule::Edac { alpha: 0.5 },
     corrections: Corrections::FULL,
     shifting: Shifting::Sun { factor: 1.0 },
+    viscous: Viscous::Laplacian,
     artificial_viscosity: 0.0,
     free_surface: false,
     at_surface: AtSurface::Held,
@@ -71,6 +72,7 @@ fn at_rest<const D: usize>(
         sliding: Vec::new(),
         body_forces: Vec::new(),
         open: Default::default(),
+        damping: None,
     }
 }
 

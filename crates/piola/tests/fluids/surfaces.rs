@@ -50,6 +50,7 @@ fn under<const D: usize>(
         sliding: Vec::new(),
         body_forces,
         open: Default::default(),
+        damping: None,
     };
     TransportVelocity::new(input, fluid).expect("the fluid can be built")
 }

@@ -1,5 +1,7 @@
 //! From particles and settings to a scheme that is ready to run.
 
+use std::sync::Arc;
+
 use piola_formulas::fluid;
 use piola_formulas::kernels::Kernel;
 use thiserror::Error;
@@ -10,7 +12,7 @@ use super::{
 };
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::boundaries::{BodyForce, PrescribedVelocity};
+use crate::boundaries::{BodyForce, PrescribedVelocity, SpaceTime, padded};
 use crate::fields::width;
 use crate::geometry::{Faces, Particles};
 use crate::neighbors::{Domain, NeighborError};
@@ -54,6 +56,8 @@ pub struct TransportVelocityInput<const D: usize> {
     pub body_forces: Vec<BodyForce<D>>,
     /// Open boundaries; only fluids have any.
     pub open: OpenBoundaries<D>,
+    /// Rate in 1/s at which motion dies out, as a function of the current place; only that of fluids does.
+    pub damping: Option<Arc<dyn SpaceTime>>,
 }
 
 /// Input that the formulation cannot work with.
@@ -115,6 +119,18 @@ pub enum TransportVelocityError {
         name: String,
         /// Index of the particle in memory.
         particle: u32,
+    },
+    /// Damping that feeds motion, or is no number.
+    #[error(
+        "`damping` is {got} 1/s at particle {id} at {position:?}, expected a number that is not negative"
+    )]
+    Damping {
+        /// Number of the particle in the order of creation.
+        id: u32,
+        /// Its position in m.
+        position: Vec<f64>,
+        /// The rate there in 1/s.
+        got: f64,
     },
     /// A start that is no number, or has no density.
     #[error("the initial velocity or pressure of particle {id} at {position:?} is not usable")]
@@ -179,6 +195,10 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         if !input.open.all.is_empty() {
             matter.open(input.open, &mut common);
         }
+        if let Some(rate) = input.damping {
+            check_damping(&common, &*rate)?;
+            matter.damp_by(rate, &common);
+        }
         let (drift, accelerate) = (Stages::default(), Stages::default());
         let mut scheme = Self { common, matter, start: Vec::new(), drift, accelerate };
         scheme.plan()?;
@@ -224,6 +244,22 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         self.start = state;
         Ok(())
     }
+}
+
+/// The rate of damping must have a meaning where the fluid is at the start.
+fn check_damping<const D: usize>(
+    common: &Common<D>,
+    rate: &dyn SpaceTime,
+) -> Result<(), TransportVelocityError> {
+    let Particles { position, id, .. } = &common.particles;
+    for number in (0..position.len()).filter(|number| !common.is_wall[*number]) {
+        let got = rate.value(padded(&position[number]), 0.0);
+        if !(got >= 0.0 && got.is_finite()) {
+            let position = position[number].iter().copied().collect();
+            return Err(TransportVelocityError::Damping { id: id[number], position, got });
+        }
+    }
+    Ok(())
 }
 
 /// The density that the law of state gives for a pressure, or rho0 where sums over masses follow.

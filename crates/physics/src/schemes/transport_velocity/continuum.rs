@@ -1,5 +1,7 @@
 //! What a kind of matter brings to the particles that all kinds share.
 
+use std::sync::Arc;
+
 use piola_device::Device;
 use piola_formulas::pairs::Record;
 use piola_formulas::pairs::wall::{Around, Extrapolation, Ghost, Surroundings};
@@ -11,6 +13,7 @@ use super::{
     AtRest, Columns, Common, OpenBoundaries, Rates, Slip, TransportVelocity, TransportVelocityError,
 };
 use crate::Vector;
+use crate::boundaries::SpaceTime;
 use crate::fields::FieldDescription;
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::ledger::{Entry, Total, Totals};
@@ -67,6 +70,14 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
 
     /// Gives it open boundaries.
     fn open(&mut self, _open: OpenBoundaries<D>, _common: &mut Common<D>) {}
+
+    /// Gives it a rate in 1/s at which its motion dies out, as a function of place.
+    fn damp_by(&mut self, _rate: Arc<dyn SpaceTime>, _common: &Common<D>) {}
+
+    /// That rate at a place; no number if it is less than zero.
+    fn damping_at(&self, _place: &Vector<D>) -> f64 {
+        0.0
+    }
 
     /// Takes from a state which particles take part, before it is loaded.
     fn follow(&mut self, _common: &mut Common<D>, _state: &[f64]) {}

@@ -4,7 +4,7 @@ use super::{Continuum, TransportVelocity};
 use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, StepLimit};
 
-/// The bounds on a step for a smoothing length in m and a kinematic viscosity in m^2/s, by the speed of
+/// The bounds on a step for a smoothing length in m and the largest viscosity of a compression in m^2/s, by the speed of
 /// signals and the largest speed in m/s, and the squared acceleration.
 pub(super) fn step_limits(
     h: f64,
@@ -28,9 +28,10 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     ///
     /// - `acoustic`: `h / (c + |u|)` of the largest speed; of solids with the speed of longitudinal waves,
     ///   where the paper has that of bulk waves;
-    /// - `viscous`: `h^2 / nu`;
+    /// - `viscous`: `h^2 / nu`, with `viscous_force = "stress"` a third of it, as a compression meets 3 nu;
     /// - `acceleration`: `sqrt(h / |du/dt|)` of the largest acceleration, where the paper has
-    ///   that of gravity.
+    ///   that of gravity;
+    /// - `damping`: the inverse of the largest rate of damping.
     ///
     /// All are scaled by the CFL number, which the paper has as 0.25.
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
@@ -54,8 +55,8 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     /// The same, without a look for particles that have escaped.
     fn bound_step(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let common = &self.common;
-        let (mut health, [signal, acceleration]) =
-            look(common.particles.len(), [0.0; 2], |number| self.look_at(number, state));
+        let (mut health, [signal, acceleration, damping]) =
+            look(common.particles.len(), [0.0; 3], |number| self.look_at(number, state));
         let fastest = Most { value: health.largest_speed, particle: health.largest_speed_particle };
         let signal = match self.matter.wave_speed() {
             None => signal,
@@ -65,14 +66,18 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             }
         };
         let h = common.support.smoothing_length();
-        step_limits(h, self.matter.viscosity(), [signal, fastest, acceleration], limits);
+        let viscosity = self.matter.viscosity() * common.settings.viscous.along();
+        step_limits(h, viscosity, [signal, fastest, acceleration], limits);
+        if damping.value > 0.0 {
+            limits.push(StepLimit::scaled("damping", damping.value.recip(), damping.particle));
+        }
         health
     }
 
-    /// What a particle contributes: the speed of signals, waves and what carries them, in m/s, and its
-    /// squared acceleration.
+    /// What a particle contributes: the speed of signals, waves and what carries them, in m/s, its
+    /// squared acceleration, and the rate of its damping in 1/s.
     #[inline]
-    fn look_at(&self, number: usize, state: &[f64]) -> Option<Seen<D, 2>> {
+    fn look_at(&self, number: usize, state: &[f64]) -> Option<Seen<D, 3>> {
         let common = &self.common;
         let at = common.columns(state);
         let vectors = [&at.position, &at.velocity, &at.deviation, &at.kick];
@@ -89,13 +94,14 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             wave_speed: 0.0,
             ratio: f64::INFINITY,
             mismatch: 0.0,
-            figures: [0.0; 2],
+            figures: [0.0; 3],
         };
         if !common.is_wall[number] {
             // The inverse has the sign of the density, and is the volume ratio.
             seen.ratio = common.at_rest(number).density / at.density[number];
             seen.wave_speed = wave_speed;
-            seen.figures = [wave_speed + velocity.norm(), at.kick[number].norm_squared()];
+            let damping = self.matter.damping_at(&at.position[number]);
+            seen.figures = [wave_speed + velocity.norm(), at.kick[number].norm_squared(), damping];
         }
         Some(seen)
     }

@@ -61,7 +61,7 @@ pub use forces::{Forces, Rates};
 pub(crate) use interface::Guide;
 pub use settings::{
     AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,
-    Shifting, Slip,
+    Shifting, Slip, Viscous,
 };
 pub use solids::{
     Contact, DESCRIPTION as SOLIDS, Heat, Hypoelastic, Solid, SolidRates, SolidsInput,

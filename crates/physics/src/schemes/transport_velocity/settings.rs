@@ -1,6 +1,7 @@
 //! The choices of the transport-velocity formulation.
 
 use piola_formulas::fluid;
+pub use piola_formulas::pairs::fluid::Viscous;
 
 /// How the density is found, theory (20) and (26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,6 +152,8 @@ pub struct Settings {
     pub corrections: Corrections,
     /// How particles are kept evenly spread.
     pub shifting: Shifting,
+    /// The form of the viscous forces of fluids.
+    pub viscous: Viscous,
     /// The factor alpha of the artificial viscosity, CTVF (28).
     pub artificial_viscosity: f64,
     /// Whether free surfaces are looked for, CTVF (42) to (45).

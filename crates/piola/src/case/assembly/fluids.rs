@@ -134,6 +134,7 @@ fn prepare<const D: usize>(
         sliding,
         body_forces: loads::body_forces(case),
         open,
+        damping: settings.damping.as_ref().map(|rate| selections::function(rate)),
         particles,
     };
     Ok(Prepared { input, held, probes, lines, reports, warnings })
@@ -156,6 +157,9 @@ impl<const D: usize> Prepared<D> {
             let (place, label) = match &error {
                 TransportVelocityError::Start { .. } => {
                     (case.bodies[0].name.place, "initial values of a body")
+                }
+                TransportVelocityError::Damping { .. } => {
+                    (settings.damping.as_ref().map_or(place, |it| it.place), "this rate")
                 }
                 TransportVelocityError::SelfContact { .. } => {
                     (settings.self_contact.as_ref().map_or(place, |it| it.place), "make it larger")

@@ -6,7 +6,8 @@ use super::bodies::vector;
 use super::joined::Joined;
 use crate::Vector;
 use crate::boundaries::{
-    History, PrescribedDisplacement, PrescribedFaces, PrescribedVelocity, Scaled, SpaceTime, Tie,
+    History, PrescribedDisplacement, PrescribedFaces, PrescribedVelocity, Push, Scaled, SpaceTime,
+    Tie,
 };
 use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
@@ -165,7 +166,11 @@ pub(super) fn over_time(
     expression: &Expression,
     history: Option<&Arc<History>>,
 ) -> Arc<dyn SpaceTime> {
-    let value = function(expression);
+    scaled(function(expression), history)
+}
+
+/// A value times what a table gives over time.
+fn scaled(value: Arc<dyn SpaceTime>, history: Option<&Arc<History>>) -> Arc<dyn SpaceTime> {
     match history {
         Some(history) => Arc::new(Scaled { value, history: history.clone() }),
         None => value,
@@ -184,14 +189,24 @@ pub(super) fn prescribed<const D: usize>(
     };
     for boundary in case.boundaries.iter().filter(|boundary| !moves_rigid(boundary)) {
         let selected = select(case, particles, &boundary.region, boundary.body.as_ref(), problems);
+        let history = boundary.history.as_ref();
+        let mut prescribe = |component: usize, value: Arc<dyn SpaceTime>| {
+            conditions.push(PrescribedVelocity {
+                name: boundary.name.value.clone(),
+                particles: selected.clone(),
+                component,
+                value,
+            });
+        };
         for (component, value) in boundary.velocity.iter().enumerate() {
             if let Some(value) = value {
-                conditions.push(PrescribedVelocity {
-                    name: boundary.name.value.clone(),
-                    particles: selected.clone(),
-                    component,
-                    value: over_time(value, boundary.history.as_ref()),
-                });
+                prescribe(component, over_time(value, history));
+            }
+        }
+        if let Some((maker, direction)) = boundary.wave_maker.as_ref().map(|maker| &maker.value) {
+            for (component, &share) in direction.iter().enumerate().filter(|(_, it)| **it != 0.0) {
+                let push = Push { maker: maker.clone(), share };
+                prescribe(component, scaled(Arc::new(push), history));
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::case::model::{
     Body, Boundary, Material, OpenFlow, Opening, Profile, Region, TransportVelocity, Wall,
 };
 use crate::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip,
+    AtSurface, Contact, Corrections, DensityRule, PressureRule, Settings, Shifting, Slip, Viscous,
 };
 
 /// Factor of the diffusivity of the pressure, CTVF (24), of fluids and of solids, unless the case has
@@ -24,6 +24,10 @@ impl Reader<'_, '_> {
         let is_solid = self.names.current.is_solid;
         for key in OF_SOLIDS.iter().filter(|_| !is_solid) {
             self.meaningless(record, key, "for fluids");
+        }
+        if is_solid {
+            self.meaningless(record, "viscous_force", "for solids");
+            self.meaningless(record, "damping", "for solids");
         }
         let alpha = record.number("pressure_diffusion").map(|it| it.value);
         let alpha = alpha.unwrap_or(DIFFUSION[usize::from(is_solid)]);
@@ -75,6 +79,10 @@ impl Reader<'_, '_> {
                 },
                 corrections: Corrections::from_name(&record.text("corrections")?.value)?,
                 shifting,
+                viscous: match record.text("viscous_force").as_ref().map(|it| it.as_str()) {
+                    Some("stress") => Viscous::Stress,
+                    _ => Viscous::Laplacian,
+                },
                 artificial_viscosity: record.number("artificial_viscosity")?.value,
                 free_surface: record.boolean("free_surface").unwrap_or(is_solid),
                 at_surface: match record.text("surface_shifting").as_ref().map(|it| it.as_str()) {
@@ -86,6 +94,9 @@ impl Reader<'_, '_> {
             contact,
             self_contact: record.number("self_contact"),
             corrected_gradients: record.boolean("corrected_gradients").unwrap_or(false),
+            damping: record.expression("damping").map(|rate| {
+                Located::new(rate, record.key_place("damping").unwrap_or(record.place))
+            }),
             removes_escaped: record.text("escaped")?.as_str() == "remove",
             reserve: record.whole::<u32>("reserve").map(|it| it.value),
         })
@@ -239,6 +250,18 @@ impl Reader<'_, '_> {
         }
         if system.is_none() {
             self.fits_rigid(bodies, boundaries);
+        }
+        for boundary in boundaries {
+            let of = boundary.body.as_ref().and_then(|body| bodies.get(body.value));
+            let pushes_fluid = is_fluid
+                && !self.names.current.is_solid
+                && of.is_some_and(|body| body.system.is_none());
+            if let (Some(maker), false, None) = (&boundary.wave_maker, pushes_fluid, system) {
+                let message =
+                    "only a wall of a fluid of the scheme `transport_velocity` makes waves";
+                let problem = Problem::new(maker.place, message, "no wall of a fluid");
+                self.report(problem.help("use `velocity`"));
+            }
         }
         let is_of = |boundary: &&Boundary| {
             let body = boundary.body.as_ref().and_then(|body| bodies.get(body.value));

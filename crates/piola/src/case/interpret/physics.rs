@@ -149,7 +149,11 @@ impl Reader<'_, '_> {
                 self.meaningless(record, key, "without the integrator `static`");
             }
         }
-        let keys = ["velocity", "angular_velocity", "displacement", "roller", "tied"];
+        let wave_maker = record.record("wave_maker").map(|maker| self.wave_maker(maker));
+        if record.has("velocity") && wave_maker.is_some() {
+            self.meaningless(record, "velocity", "beside `wave_maker`");
+        }
+        let keys = ["velocity", "wave_maker", "angular_velocity", "displacement", "roller", "tied"];
         if !keys.iter().any(|key| record.has(key)) {
             let (known, others) = match self.names.is_static {
                 true => ("displacement", ", or `roller`, or `tied`"),
@@ -179,6 +183,10 @@ impl Reader<'_, '_> {
             region: region?,
             history: self.history(record)?,
             velocity: expressions_per_axis(record, "velocity"),
+            wave_maker: match wave_maker {
+                Some(maker) => Some(maker?),
+                None => None,
+            },
             turning: self.turning(record),
             mirror: mirror.filter(|mirror| mirror.value),
             displacement: expressions_per_axis(record, "displacement"),

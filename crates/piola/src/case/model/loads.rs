@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Region;
-use crate::boundaries::History;
+use crate::boundaries::{History, WaveMaker};
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 
@@ -83,6 +83,8 @@ pub struct Boundary {
     /// Per component, the velocity in m/s as an expression of the reference position and time, or
     /// `None` where the particle is free.
     pub velocity: Vec<Option<Expression>>,
+    /// The waves that it makes, with the unit vector along which it pushes.
+    pub wave_maker: Option<Located<(Arc<WaveMaker>, Vec<f64>)>>,
     /// Of a rigid body, what is prescribed of its turning.
     pub turning: Option<Located<Turning>>,
     /// Whether the body is continued by mirror images beyond the plane of the region.

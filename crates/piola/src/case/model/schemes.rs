@@ -107,6 +107,8 @@ pub struct TransportVelocity {
     pub self_contact: Option<Located<f64>>,
     /// Whether velocity gradients of solids are corrected.
     pub corrected_gradients: bool,
+    /// Rate at which the motion of a fluid dies out in 1/s, as an expression of the current place.
+    pub damping: Option<Located<Expression>>,
     /// Whether particles that escape are removed; otherwise the run ends.
     pub removes_escaped: bool,
     /// How many particles may come in beyond those that go out.

@@ -85,11 +85,25 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             "largest background pressure of `background` in units of rho_0 c^2",
         ),
         key(
+            "viscous_force",
+            Kind::Name(VISCOUS),
+            "",
+            Derived("`laplacian`; no meaning for solids"),
+            "what viscous forces are made of, which is the same but at free surfaces",
+        ),
+        key(
             "artificial_viscosity",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Default("0.0"),
             "factor alpha of the artificial viscosity, CTVF (28)",
+        ),
+        key(
+            "damping",
+            Kind::Expression(Variables::Position),
+            "1/s",
+            Derived("none; no meaning for solids"),
+            "rate at which motion dies out, as an expression of the current position: a beach that absorbs waves, theory (92)",
         ),
         key(
             "free_surface",
@@ -159,6 +173,13 @@ const DENSITIES: Choices = choices(&[
 const PRESSURES: Choices = choices(&[
     choice("edac", "by integration with diffusion, CTVF (26) corrected"),
     choice("state_equation", "from the density, CTVF (8)"),
+]);
+const VISCOUS: Choices = choices(&[
+    choice(
+        "laplacian",
+        "the Laplacian of the velocity, theory (23): at a free surface half of the dissipation of waves is missing",
+    ),
+    choice("stress", "the viscous stress, theory (90), which a free surface does not bear"),
 ]);
 const CORRECTIONS: Choices = choices(&[
     choice("full", "all terms of CTVF (12), (19), (23)"),

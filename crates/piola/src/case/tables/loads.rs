@@ -147,6 +147,13 @@ pub(super) static BOUNDARY: TableSpec = TableSpec {
             "the components that are prescribed, as expressions of the reference position and time",
         ),
         key(
+            "wave_maker",
+            Kind::Tagged(&waves::WAVE_MAKER),
+            "",
+            Optional,
+            "of a wall of a fluid, instead of `velocity`: a piston that makes waves",
+        ),
+        key(
             "angular_velocity",
             Kind::Table(&TURN),
             "rad/s",

@@ -87,6 +87,9 @@ impl<const D: usize> TransportVelocity<D> {
         if self.matter.is_open() {
             return refuse("an open boundary", "run it on processors");
         }
+        if self.matter.is_damped() {
+            return refuse("damping", "run it on processors");
+        }
         if common.motion.iter().next().is_some() {
             return refuse("a wall that moves", "let it slide or rest");
         }

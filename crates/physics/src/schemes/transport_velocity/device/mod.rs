@@ -286,7 +286,8 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         let fastest = Most { value: speed.0.sqrt(), particle: speed.1 };
         let signal = Most { value: fluid.wave_speed + fastest.value, ..fastest };
         let figures = [signal, fastest, most(acceleration)];
-        step_limits(self.plan.smoothing_length, fluid.viscosity, figures, limits);
+        let viscosity = fluid.viscosity * self.plan.force_constants.viscous.along();
+        step_limits(self.plan.smoothing_length, viscosity, figures, limits);
         Ok(Health {
             largest_speed: speed.0.sqrt(),
             largest_speed_particle: speed.1,

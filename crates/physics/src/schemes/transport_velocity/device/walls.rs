@@ -152,7 +152,7 @@ impl<const D: usize> Plan<D> {
     /// What the fluid does to wall particles.
     fn reactions(&self, language: Language, space: &Space<D>) -> Pass {
         let constants = self.force_constants;
-        let law = Wall::<D> { softening: constants.softening, viscosity: constants.viscosity };
+        let law = Wall::<D>::of(&constants);
         let columns = [own("side", side_width(D)), own("shear", D)];
         let writes = [own("force", FORCES * D)];
         Gather::<Components<D>, D>::new(language, "reactions", space, Among::Passive, Order::Lanes)

@@ -53,6 +53,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let constants = ForceConstants {
             softening: fluid::softening(h),
             viscosity: self.fluid.viscosity,
+            viscous: common.settings.viscous,
             artificial: common.settings.artificial_viscosity * h * self.fluid.wave_speed,
             stress: one_if(corrections.stress),
             dilatation: one_if(corrections.dilatation == Dilatation::Deviation),
@@ -87,23 +88,22 @@ impl<const D: usize> WeaklyCompressible<D> {
             return [Vector::zeros(); 2];
         }
         let place = common.support.list().places()[number] as usize;
-        let (ForceConstants { softening, viscosity, .. }, _) = self.force_law(common);
+        let wall = Wall::<D>::of(&self.force_law(common).0);
         let of = |viscosity: f64| {
             let source = (common.sides.as_slice(), self.shear.as_slice());
-            let law = Wall::<D> { softening, viscosity };
+            let law = Wall { viscosity, ..wall };
             let (term, mut sum) = (Term { law, source, among: Among::Active }, Vector::zeros());
             add_at(&common.support, &term, place, &mut NeighborBlock::default(), &mut sum);
             sum
         };
         let pressure = of(0.0);
-        [pressure, of(viscosity) - pressure]
+        [pressure, of(wall.viscosity) - pressure]
     }
 
     /// The forces of the fluid on wall particles, over their mass: what they do to the fluid, turned
     /// round.
     fn react(&self, common: &Common<D>, constants: &ForceConstants, forces: &mut [Forces<D>]) {
-        let ForceConstants { softening, viscosity, .. } = *constants;
-        let law = Wall::<D> { softening, viscosity };
+        let law = Wall::<D>::of(constants);
         let source = (common.sides.as_slice(), self.shear.as_slice());
         let sum = Term { law, source, among: Among::Active };
         let close = |_: usize, walls: &Vector<D>, row: &mut _| {

@@ -1,11 +1,14 @@
 //! A weakly compressible fluid in the transport-velocity formulation, CTVF section 2.
 
 mod barrier;
+mod damping;
 mod density;
 mod drift;
 mod forces;
 mod open;
 mod rates;
+
+use std::sync::Arc;
 
 use piola_device::Device;
 use piola_formulas::pairs::sums::Density;
@@ -19,6 +22,7 @@ use super::{
     TransportVelocityError,
 };
 use crate::Vector;
+use crate::boundaries::SpaceTime;
 use crate::fields::{FieldDescription, columns};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
@@ -26,6 +30,7 @@ use crate::schemes::{Accounts, Capability, DeviceRefusal, DeviceSteps, SchemeDes
 
 use barrier::Hold;
 pub(super) use barrier::TOUCH;
+use damping::Damping;
 use open::Open;
 pub use open::{Flow, OpenBoundaries, OpenBoundary};
 
@@ -79,14 +84,25 @@ pub(super) const LEDGER: Accounts = Accounts {
         "pressure_diffusion",
         "removed",
         "openings",
+        "damping",
     ],
-    impulses: &["walls", "body_force", "viscosity", "corrections", "removed", "openings"],
+    impulses: &[
+        "walls",
+        "body_force",
+        "viscosity",
+        "corrections",
+        "removed",
+        "openings",
+        "damping",
+    ],
     is_kicked: true,
 };
 const PRESSURE: Entry = LEDGER.entry("pressure");
 const TRANSPORT: Entry = LEDGER.entry_by("transport", "corrections");
 const WALLS: Entry = LEDGER.entry("walls");
 const OPENINGS: Entry = LEDGER.entry("openings");
+const DAMPING: Entry = LEDGER.entry("damping");
+const BODY_FORCE: Entry = LEDGER.entry("body_force");
 
 /// The mechanisms that accelerate.
 pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
@@ -95,7 +111,7 @@ pub(super) const ACCELERATING: [Entry; ACCELERATIONS] = [
     LEDGER.entry("artificial_viscosity"),
     TRANSPORT,
     WALLS,
-    LEDGER.entry("body_force"),
+    BODY_FORCE,
 ];
 
 /// The mechanisms of a drift.
@@ -111,6 +127,7 @@ pub struct WeaklyCompressible<const D: usize> {
     /// What walls do to fluid that touches them; empty without walls.
     holds: Vec<Hold<D>>,
     open: Open<D>,
+    damping: Damping<D>,
 }
 
 /// Passes of fluids alone.
@@ -126,12 +143,19 @@ pub enum Barrier {
     Buffers,
     /// What of the forces of walls is that of buffers.
     Part,
+    /// Motion dies out.
+    Damp,
 }
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// What it is made of.
     pub(super) fn fluid(&self) -> &Fluid {
         &self.fluid
+    }
+
+    /// Whether its motion dies out somewhere.
+    pub(super) fn is_damped(&self) -> bool {
+        !self.damping.is_empty()
     }
 
     /// `1 / (rho0 c)^2`.
@@ -168,6 +192,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             shear: vec![Vector::zeros(); touched],
             holds: vec![Hold::default(); touched],
             open: Open::none(),
+            damping: Damping::default(),
         })
     }
 
@@ -177,6 +202,14 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
 
     fn open(&mut self, open: OpenBoundaries<D>, common: &mut Common<D>) {
         self.open_up(open, common);
+    }
+
+    fn damp_by(&mut self, rate: Arc<dyn SpaceTime>, common: &Common<D>) {
+        self.damping = Damping::new(rate, common.particles.len());
+    }
+
+    fn damping_at(&self, place: &Vector<D>) -> f64 {
+        self.damping.rate(place)
     }
 
     fn follow(&mut self, common: &mut Common<D>, state: &[f64]) {
@@ -236,8 +269,12 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         let (found, stored) = (vec![Pass::Remove, Pass::Load, Pass::State], vec![Pass::Store]);
         let (forces, part) = (vec![Pass::Forces], only(Barrier::Part));
         let exchange = only(Barrier::Exchange);
-        let accelerate =
-            [exchange, found, walls, buffers, forces, part, body_forces, shift, barrier, stored];
+        let damp = match self.damping.is_empty() {
+            true => Vec::new(),
+            false => vec![Pass::Own(Barrier::Damp)],
+        };
+        let pushed = [forces, part, body_forces, damp].concat();
+        let accelerate = [exchange, found, walls, buffers, pushed, shift, barrier, stored];
         [drift.concat(), accelerate.concat()]
     }
 
@@ -259,6 +296,10 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
                 let shows = &["side.velocity", "side.density", "side.pressure"];
                 stage("buffers", [&["position"], shows, &["buffers"], shows])
             }
+            Barrier::Damp => {
+                let reads = &["position", "side.velocity", "forces"];
+                stage("damp", [reads, &[], &["forces", "damping"], &[]])
+            }
             Barrier::Part => {
                 let gathers = &["side.velocity", "side.density", "side.pressure"];
                 stage("part", [&["forces", "buffers"], gathers, &["openings"], &[]])
@@ -278,6 +319,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             Barrier::Exchange => totals.book(OPENINGS, &self.exchange(common, at.time, state)),
             Barrier::Buffers => self.fill_buffers(common, at.time),
             Barrier::Part => self.part_forces(common),
+            Barrier::Damp => self.damp(common),
             Barrier::HoldOff => self.hold_off(common),
             Barrier::Bear => self.bear(common),
         }
@@ -302,6 +344,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     /// A pressure that follows from the density changes at once.
     fn store(&self, common: &Common<D>, state: &mut [f64], totals: &mut Totals) {
         totals.part(WALLS, OPENINGS, &self.store_open(common, state));
+        totals.part(BODY_FORCE, DAMPING, &self.store_damping(common, state));
         if !common.settings.is_algebraic() {
             return common.store::<Self>(state, totals);
         }

@@ -119,7 +119,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let mut forces = std::mem::take(&mut self.open.forces);
         let (list, roles) = (common.support.list(), &self.open.roles);
         let (constants, _) = self.force_law(common);
-        let law = Wall::<D> { softening: constants.softening, viscosity: constants.viscosity };
+        let law = Wall::<D>::of(&constants);
         let is_buffer = |place: u32| roles[list.numbers()[place as usize] as usize] > 0;
         let (all, reach) = (&self.open.boundaries.all, list.support());
         // Most of the fluid is far from all planes, and need not look at its neighbours.
