@@ -123,8 +123,8 @@ impl WaveMaker {
         Self::Harmonics { all: sea.surface().into_iter().map(stroke).collect(), ramp }
     }
 
-    /// A solitary wave, whose piston begins when it would have gone all but half of a thousandth of the way: where theta is
-    /// `-(3.8 + H/d)`, as Goring has it.
+    /// A solitary wave of a height in m. The piston begins where theta is `-(3.8 + H/d)`, as Goring has it: the less than 0.05 % of
+    /// the stroke that lie before are left away.
     pub fn solitary(height: f64, water: Water) -> Self {
         let wave = Solitary { height, depth: water.depth, gravity: water.gravity };
         let crest = (3.8 + height / water.depth) / (wave.narrowness() * wave.speed());
