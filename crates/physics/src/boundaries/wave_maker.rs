@@ -57,7 +57,7 @@ pub struct Water {
 
 impl Water {
     /// `k d` for an angular frequency in 1/s.
-    fn kd(&self, frequency: f64) -> f64 {
+    pub fn kd(&self, frequency: f64) -> f64 {
         wave_number(frequency, self.depth, self.gravity) * self.depth
     }
 }
@@ -99,6 +99,16 @@ impl Sea {
 }
 
 impl WaveMaker {
+    /// Whether its motion can be computed.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Self::Harmonics { all, .. } => {
+                all.iter().all(|it| it.amplitude.is_finite() && it.frequency.is_finite())
+            }
+            Self::Solitary { crest, .. } => crest.is_finite(),
+        }
+    }
+
     /// Regular waves of a height in m and a period in s that begin within a ramp in s: of second order, without free second
     /// harmonics.
     pub fn regular(height: f64, period: f64, water: Water, ramp: f64) -> Self {
@@ -123,7 +133,7 @@ impl WaveMaker {
         Self::Harmonics { all: sea.surface().into_iter().map(stroke).collect(), ramp }
     }
 
-    /// A solitary wave of a height in m. The piston begins where theta is `-(3.8 + H/d)`, as Goring has it: the less than 0.05 % of
+    /// A solitary wave of a height in m. The piston begins where kappa c t is `-(3.8 + H/d)`, as Goring has it: the about 0.05 % of
     /// the stroke that lie before are left away.
     pub fn solitary(height: f64, water: Water) -> Self {
         let wave = Solitary { height, depth: water.depth, gravity: water.gravity };

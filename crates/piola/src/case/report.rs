@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::model::{Case, Check, ProbeKind, Reduction};
+use super::model::{Case, Check, ProbeKind};
 use super::recorded;
 use super::verify::{CheckRow, Ending, RunResults, VariantRun, verify};
 use crate::observe::{Series, Tables};
@@ -110,9 +110,7 @@ fn profiles(case: &Case, folder: &ResultsFolder) -> Vec<Table> {
 /// Turns the names of reference curves into the paths of their copies.
 fn find_references(case: &mut Case, folder: &ResultsFolder, record: &RunRecord) {
     for check in &mut case.checks {
-        let (Reduction::Curve(file) | Reduction::CurveRms(file)) = &mut check.reduce else {
-            continue;
-        };
+        let Some(file) = check.reduce.reference_mut() else { continue };
         let name = file.to_string_lossy();
         let copy = record.references.iter().find(|reference| reference.path == name);
         let copy = copy.and_then(|reference| folder.inside(&reference.file));

@@ -4,7 +4,7 @@
 //! line; local extrema are refined by a parabola.
 //!
 //! Extrema and crossings ignore wiggles: a movement of less than [`WIGGLE`] times the range of
-//! the whole history (largest minus smallest value) is not seen.
+//! the history, or of what a window leaves of it (largest minus smallest value), is not seen.
 
 use thiserror::Error;
 
@@ -211,6 +211,15 @@ impl<Reference> Reduction<Reference> {
         match self {
             Self::Curve(reference) | Self::CurveRms(reference) => Some(reference),
             Self::Within(_, inner) => inner.reference(),
+            _ => None,
+        }
+    }
+
+    /// The reference curve, to be changed.
+    pub fn reference_mut(&mut self) -> Option<&mut Reference> {
+        match self {
+            Self::Curve(reference) | Self::CurveRms(reference) => Some(reference),
+            Self::Within(_, inner) => inner.reference_mut(),
             _ => None,
         }
     }

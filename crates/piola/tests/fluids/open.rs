@@ -320,29 +320,31 @@ fn flow_rates_that_do_not_balance_are_told() {
     assert!(warnings.iter().any(|it| it.contains("2.000e-1 m^D/s more come in")), "{warnings:?}");
 }
 
+/// A stream that swings, under pressure.
+const SWING: [&str; 7] = [
+    "body.inlet.opening.velocity=['cos(4 * t)', '0']",
+    "body.inlet.opening.relaxation=0.015",
+    "body.outlet.opening.relaxation=0.015",
+    "body.outlet.opening.pressure='20'",
+    "body.water.initial.pressure='20'",
+    "time.end=2.0",
+    "probe+={ name = 'mean', kind = 'mean', body = 'water', field = 'velocity' }",
+];
+
 /// A stream that slows down, turns back and comes again is the same all along, and comes out of buffers without gaps: nowhere
 /// is a particle missing, which would leave a place a whole spacing from all others, and nowhere are two in one place. It
 /// is under pressure, as particles in tension clump. The mean velocity lags by the relaxation time, 0.06 m/s at most, and
 /// layers come in at once.
 #[test]
 fn a_stream_that_turns_back_has_no_gaps() {
-    let swing = [
-        "body.inlet.opening.velocity=['cos(4 * t)', '0']",
-        "body.inlet.opening.relaxation=0.015",
-        "body.outlet.opening.relaxation=0.015",
-        "body.outlet.opening.pressure='20'",
-        "body.water.initial.pressure='20'",
-        "time.end=2.0",
-        "probe+={ name = 'mean', kind = 'mean', body = 'water', field = 'velocity' }",
-    ];
-    let finished = run(&stream(2), &swing);
+    let finished = run(&stream(2), &SWING);
     let times = finished.tables.probes.values("time").expect("times").to_vec();
     let both = times.into_iter().zip(values(&finished, "mean.velocity.x"));
     for (time, speed) in both {
         assert!((speed - f64::cos(4.0 * time)).abs() < 0.15, "{speed} m/s at {time} s");
     }
     for end in [PI / 4.0, PI / 2.0] {
-        let mut session = session(&stream(2), &swing).expect("it is built");
+        let mut session = session(&stream(2), &SWING).expect("it is built");
         session.run_until(end).expect("it runs");
         let [density, x] =
             ["density", "position"].map(|name| session.column(name).expect("it is there").values);
@@ -372,4 +374,24 @@ fn a_stream_that_turns_back_has_no_gaps() {
             assert!(distance > 0.5, "{distance} spacings at {:?} at the end of {end}", there[a]);
         }
     }
+}
+
+/// What buffers keep of the stream is in the state: a run that goes on from a checkpoint while they are filled up and thinned out
+/// has the bits of one that was not interrupted.
+#[test]
+fn a_stream_that_turns_back_resumes_to_the_bit() {
+    let started = || session(&stream(2), &SWING).expect("it is built");
+    let bits = |session: &mut Session| -> Vec<u64> {
+        let columns = ["position", "velocity", "density", "pressure", "opening", "birth"];
+        let all = columns.map(|name| session.column(name).expect("it is there").values);
+        all.concat().iter().map(|value| value.to_bits()).collect()
+    };
+    let mut whole = started();
+    whole.run_until(PI / 4.0).expect("it runs");
+    let kept = whole.checkpoint();
+    whole.run_until(1.3).expect("it runs");
+    let mut resumed = started();
+    resumed.resume(kept).expect("it is its own");
+    resumed.run_until(1.3).expect("it runs");
+    assert!(bits(&mut whole) == bits(&mut resumed));
 }

@@ -113,6 +113,24 @@ fn damping_that_feeds_motion_is_refused() {
     assert!(told.summary.outcome.summary() != "completed");
 }
 
+#[test]
+fn waves_that_there_are_none_of_are_refused() {
+    let regular = |rest: &str| {
+        format!(
+            "boundary.waves.wave_maker={{ kind = 'regular', depth = 0.4, gravity = 9.81, {rest} }}"
+        )
+    };
+    for (rest, what) in [
+        ("height = 0.2, period = 20", "too long for waves of second order"),
+        ("height = 0.2, period = 0.4", "so steep that they break"),
+        ("height = 0.4, period = 1", "break on 0.4 m of water"),
+        ("height = 1e-300, period = 1e-200", "no number"),
+    ] {
+        let told = refusal(TANK, &[&regular(rest)]);
+        assert!(told.contains(what), "{told}");
+    }
+}
+
 /// The paddle is where the first quarter of its motion, a sine that grows, has brought it.
 #[test]
 fn a_paddle_moves_as_the_waves_ask_for() {

@@ -56,7 +56,7 @@ const STATE: [&str; 7] = [
 ];
 
 /// What a drift changes of them.
-const MOVED: [&str; 4] = ["position", "density", "pressure", "material_state"];
+const MOVED: [&str; 5] = ["position", "velocity", "density", "pressure", "material_state"];
 
 /// What neighbours see of a particle after [`Pass::Load`].
 const SIDE: [&str; 5] =

@@ -104,8 +104,8 @@ fn expected(case: &Case, page: &SettingRuns, name: &str) -> Option<Series> {
 /// Points through which the curve of `name` of the case itself should go.
 fn references(case: &Case, name: &str, found: &observe::Series) -> Vec<[f64; 2]> {
     let observe::Series::Curve { abscissa, values, .. } = found else { return Vec::new() };
-    let extremum = |sign: f64| {
-        let rows = abscissa.iter().zip(values);
+    let extremum = |sign: f64, [first, last]: [f64; 2]| {
+        let rows = abscissa.iter().zip(values).filter(|(x, _)| (first..=last).contains(*x));
         rows.max_by(|one, other| (sign * one.1).total_cmp(&(sign * other.1))).map(|row| *row.0)
     };
     let mut points = Vec::new();
@@ -119,12 +119,17 @@ fn references(case: &Case, name: &str, found: &observe::Series) -> Vec<[f64; 2]>
             points.extend(all.step_by(every).map(|(x, y)| [*x, *y]));
         }
         let Expectation::Value { expected, .. } = check.expectation else { continue };
-        let time = match check.reduce {
-            Reduction::At(time) => Some(time),
-            Reduction::Initial => abscissa.first().copied(),
-            Reduction::Final => abscissa.last().copied(),
-            Reduction::Maximum => extremum(1.0),
-            Reduction::Minimum => extremum(-1.0),
+        let ends = [abscissa.first(), abscissa.last()].map(|x| x.copied().unwrap_or_default());
+        let (window, reduce) = match &check.reduce {
+            Reduction::Within(window, reduce) => (*window, &**reduce),
+            reduce => (ends, reduce),
+        };
+        let time = match reduce {
+            Reduction::At(time) => Some(*time),
+            Reduction::Initial => Some(window[0]),
+            Reduction::Final => Some(window[1]),
+            Reduction::Maximum => extremum(1.0, window),
+            Reduction::Minimum => extremum(-1.0, window),
             _ => None,
         };
         points.extend(time.map(|time| [time, expected]));

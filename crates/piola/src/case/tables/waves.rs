@@ -72,7 +72,7 @@ pub(super) static WAVE_MAKER: TaggedSpec = TaggedSpec {
                 ),
                 key(
                     "gamma",
-                    Kind::Number(Interval::at_least(1.0)),
+                    Kind::Number(Interval::between(1.0, 20.0)),
                     "1",
                     Default("3.3"),
                     "by how much the peak is raised; 1 is the spectrum of Pierson and Moskowitz",
