@@ -223,7 +223,7 @@ fn profiles_and_histories_come_from_files() {
             "with a flow rate",
         ),
     ] {
-        let error = load(&[set]).err().expect("it is refused");
+        let error = load(&[set]).expect_err("it is refused");
         assert!(error.contains(text), "{error}");
     }
 }
@@ -369,9 +369,9 @@ fn a_stream_that_turns_back_has_no_gaps() {
             let gap = nearest(&place, None);
             assert!(gap < 1.0, "{gap} spacings about {place:?} at the end of {end}");
         }
-        for a in 0..there.len() {
-            let distance = nearest(&there[a], Some(a));
-            assert!(distance > 0.5, "{distance} spacings at {:?} at the end of {end}", there[a]);
+        for (a, place) in there.iter().enumerate() {
+            let distance = nearest(place, Some(a));
+            assert!(distance > 0.5, "{distance} spacings at {place:?} at the end of {end}");
         }
     }
 }
