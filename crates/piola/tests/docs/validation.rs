@@ -68,11 +68,15 @@ fn numbers(cell: &str) -> Vec<f64> {
 fn is_of(row: &Row, planned: &CheckRow) -> bool {
     let is_comparison = ["less than", "more than"];
     let is_comparison = is_comparison.iter().any(|words| planned.expected.starts_with(words));
+    let name = |quantity: &str| -> String {
+        let end = if row.was_run() { None } else { quantity.find(" from ") };
+        quantity[..end.unwrap_or(quantity.len())].to_owned()
+    };
     row.check == planned.check
-        && (&row.run, &row.quantity) == (&planned.run, &planned.quantity)
+        && (&row.run, name(&row.quantity)) == (&planned.run, name(&planned.quantity))
         && (row.against, &row.source, &row.bound)
             == (planned.against, &planned.source, &planned.bound)
-        // Of what was not run the bound is that of the case itself.
+        // Of what was not run the window and the bound are those of the case itself.
         && (is_comparison || !row.was_run() || numbers(&row.expected) == numbers(&planned.expected))
         && numbers(&row.tolerance) == numbers(&planned.tolerance)
 }
