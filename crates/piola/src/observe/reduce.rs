@@ -38,6 +38,8 @@ pub enum Reduction<Reference = Curve> {
     Mean,
     /// Largest minus smallest value.
     Range,
+    /// Half way between largest and smallest value.
+    Middle,
     /// Half of the range.
     Amplitude,
     /// The period of the oscillation about the mid-range in s.
@@ -123,6 +125,7 @@ registry! {
     "at", Time, Self::At(_), "the value at a time, or at a distance along a line, interpolated between rows";
     "mean", None, Self::Mean, "the mean over time";
     "range", None, Self::Range, "largest minus smallest value";
+    "middle", None, Self::Middle, "half way between largest and smallest value";
     "amplitude", None, Self::Amplitude, "half of the difference between largest and smallest value";
     "period", None, Self::Period,
         "the period in s of the oscillation about the middle between largest and smallest value";
@@ -165,6 +168,7 @@ impl<Reference> Reduction<Reference> {
             Self::Initial,
             Self::Mean,
             Self::Range,
+            Self::Middle,
             Self::Amplitude,
             Self::Period,
             Self::Frequency,
@@ -241,6 +245,7 @@ impl<Reference> Reduction<Reference> {
             Self::At(time) => Reduction::At(*time),
             Self::Mean => Reduction::Mean,
             Self::Range => Reduction::Range,
+            Self::Middle => Reduction::Middle,
             Self::Amplitude => Reduction::Amplitude,
             Self::Period => Reduction::Period,
             Self::Frequency => Reduction::Frequency,
@@ -293,6 +298,10 @@ impl Reduction {
             Self::At(time) => history.at(*time),
             Self::Mean => Ok(history.needs(2)?.mean()),
             Self::Range => history.needs(2).map(|history| history.range()[1] - history.range()[0]),
+            Self::Middle => {
+                let [low, high] = history.range();
+                Ok(0.5 * low + 0.5 * high)
+            }
             Self::Amplitude => {
                 history.needs(2).map(|history| 0.5 * (history.range()[1] - history.range()[0]))
             }
@@ -331,7 +340,7 @@ impl Reduction {
 pub enum ReduceError {
     /// The history is too short.
     #[error(
-        "the table has {got} rows where at least {needed} are needed; lower output.table_every, or give \
+        "the table, or its window, has {got} rows where at least {needed} are needed; lower output.table_every, or give \
          a line more points"
     )]
     TooFewRows {

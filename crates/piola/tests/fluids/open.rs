@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
-use piola::case::{self, Finished, LoadOptions, Session};
+use piola::case::{self, LoadOptions, Session};
 use piola::time::Outcome;
+
+use super::support::{run, session, values};
 
 /// A stream of 1 m/s without walls: it repeats itself across.
 fn stream(dimension: usize) -> String {
@@ -56,30 +58,6 @@ fn stream(dimension: usize) -> String {
          field = \"velocity.x\"\nexact = \"speed\"\n[output]\nevery = 1.0\ntable_every = 0.05\n",
         bodies.concat()
     )
-}
-
-fn session(text: &str, set: &[&str]) -> Result<Session, String> {
-    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
-    let options = LoadOptions { overrides, ..LoadOptions::default() };
-    let case = case::parse(text, "case.toml", &options).map_err(|error| error.to_string())?;
-    Session::new(&case).map_err(|error| error.to_string())
-}
-
-fn run(text: &str, set: &[&str]) -> Finished {
-    let session = session(text, set).unwrap_or_else(|error| panic!("{error}"));
-    session.run(&AtomicBool::new(false), &mut |_| {}).expect("it runs")
-}
-
-fn values(finished: &Finished, name: &str) -> Vec<f64> {
-    let tables = &finished.tables;
-    let (table, column) = name.split_once('.').expect("a table and a column");
-    let values = match table {
-        "step" => tables.steps.values(column),
-        "energy" => tables.energy.values(column),
-        "momentum" => tables.momentum.values(column),
-        _ => tables.probes.values(name),
-    };
-    values.unwrap_or_else(|| panic!("no `{name}`")).to_vec()
 }
 
 /// A stream of 1 m/s that is let in and out stays what it is: a lattice that goes on without end moves as one. In the
@@ -305,6 +283,8 @@ fn openings_that_cannot_work_are_refused() {
     );
     refused(&["body.inlet.initial={ pressure = '1' }"], "in the buffer of an opening");
     refused(&["body.inlet.wall={}"], "a wall is no opening");
+    let closed = ["body.inlet.opening=", "body.outlet.opening=", "scheme.reserve=4"];
+    refused(&closed, "where no body has the key `opening`");
     let wall = "body+={ name = 'wall', shape = { kind = 'box', min = [-0.1, 0.1], max = [0.0, 0.2] }, spacing = 0.05, \
                 lattice = { on = 'cells' }, wall = {}, \
                 material = { kind = 'weakly_compressible', density = 2.0, wave_speed = 20.0 } }";

@@ -1,6 +1,9 @@
 //! Fluids that several tests build.
 
+use std::sync::atomic::AtomicBool;
+
 use piola::Vector;
+use piola::case::{self, Finished, LoadOptions, Session};
 use piola::geometry::{Faces, LatticeSpec, Particles, Placement, Shape, fill};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
@@ -148,4 +151,31 @@ pub fn change_matter(scheme: &dyn Scheme, state: &mut [f64], how: impl FnMut(usi
 pub fn deviations<const D: usize>(scheme: &dyn Scheme, state: &[f64]) -> Vec<Vector<D>> {
     let of = |row: &Vec<f64>| Vector::from_column_slice(&row[3 * D + 2..]);
     rows(scheme, state).iter().map(of).collect()
+}
+
+/// A session of the text of a case with overrides, or what is wrong with it.
+pub fn session(text: &str, set: &[&str]) -> Result<Session, String> {
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, ..LoadOptions::default() };
+    let case = case::parse(text, "case.toml", &options).map_err(|error| error.to_string())?;
+    Session::new(&case).map_err(|error| error.to_string())
+}
+
+/// The finished run of the text of a case.
+pub fn run(text: &str, set: &[&str]) -> Finished {
+    let session = session(text, set).unwrap_or_else(|error| panic!("{error}"));
+    session.run(&AtomicBool::new(false), &mut |_| {}).expect("it runs")
+}
+
+/// All values of a column of the tables, `energy.NAME`, `momentum.NAME`, `step.NAME` or of a probe.
+pub fn values(finished: &Finished, name: &str) -> Vec<f64> {
+    let tables = &finished.tables;
+    let (table, column) = name.split_once('.').expect("a table and a column");
+    let values = match table {
+        "step" => tables.steps.values(column),
+        "energy" => tables.energy.values(column),
+        "momentum" => tables.momentum.values(column),
+        _ => tables.probes.values(name),
+    };
+    values.unwrap_or_else(|| panic!("no `{name}`")).to_vec()
 }

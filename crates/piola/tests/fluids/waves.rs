@@ -1,8 +1,8 @@
 //! Fluid whose motion dies out, and walls that make waves.
 
-use std::sync::atomic::AtomicBool;
+use piola::case::Finished;
 
-use piola::case::{self, Finished, LoadOptions, Session};
+use super::support::{run, session, values};
 
 /// A uniform stream in a periodic box.
 const STREAM: &str = "version = 1\ntitle = \"A stream\"\ndimension = 2\n\
@@ -40,31 +40,12 @@ const TANK: &str = "version = 1\ntitle = \"A tank\"\ndimension = 2\n\
     [[probe]]\nname = \"paddle\"\nkind = \"particle\"\nbody = \"paddle\"\nat = [0.0, 0.2]\n\
     fields = [\"position\"]\n[output]\nevery = 0.4\ntable_every = 0.1\n";
 
-fn session(text: &str, set: &[&str]) -> Result<Session, String> {
-    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
-    let options = LoadOptions { overrides, ..LoadOptions::default() };
-    let case = case::parse(text, "case.toml", &options).map_err(|error| error.to_string())?;
-    Session::new(&case).map_err(|error| error.to_string())
-}
-
-fn run(text: &str, set: &[&str]) -> Finished {
-    let session = session(text, set).unwrap_or_else(|error| panic!("{error}"));
-    session.run(&AtomicBool::new(false), &mut |_| {}).expect("it runs")
-}
-
 fn refusal(text: &str, set: &[&str]) -> String {
     session(text, set).err().expect("it is refused")
 }
 
 fn last(finished: &Finished, name: &str) -> f64 {
-    let tables = &finished.tables;
-    let (table, column) = name.split_once('.').expect("a table and a column");
-    let values = match table {
-        "energy" => tables.energy.values(column),
-        "momentum" => tables.momentum.values(column),
-        _ => tables.probes.values(name),
-    };
-    *values.unwrap_or_else(|| panic!("no `{name}`")).last().expect("a row")
+    *values(finished, name).last().expect("a row")
 }
 
 /// The velocity half a step back is damped: kicks of a half step at both ends, of whole ones between them. Energy and

@@ -52,6 +52,11 @@ pub(super) fn open<const D: usize>(
 ) -> Result<(OpenBoundaries<D>, Vec<String>), Vec<Problem>> {
     let buffers = || (0u32..).zip(&case.bodies).filter(|(_, body)| body.opening.is_some());
     if buffers().next().is_none() {
+        if settings.reserve.is_some() {
+            let message = "`reserve` has no meaning where no body has the key `opening`";
+            let help = Some("remove it".to_owned());
+            return Err(vec![case.problem_at(case.scheme.place, message, "no meaning here", help)]);
+        }
         return Ok((OpenBoundaries::default(), Vec::new()));
     }
     let is_fluid = |(_, body): &(u32, &Body)| body.wall.is_none() && body.opening.is_none();

@@ -287,6 +287,13 @@ impl Reader<'_, '_> {
         for boundary in boundaries {
             let number = boundary.body.as_ref().map(|body| body.value);
             let of = number.and_then(|number| bodies.get(number));
+            if let (Some(maker), true) = (&boundary.wave_maker, of.is_some_and(is_rigid)) {
+                let message = "a rigid body is no wall that makes waves";
+                let problem = Problem::new(maker.place, message, "of a rigid body");
+                self.report(
+                    problem.help("make it a wall of the fluid, or prescribe its `velocity`"),
+                );
+            }
             let problem = match (of, number, &boundary.turning) {
                 (Some(body), _, _) if is_rigid(body) && boundary.region.value != Region::All => {
                     let message = format!(
