@@ -5,6 +5,7 @@
 //! one neighbour. It is generic over [`Number`], so that the same body sums plain numbers, four at once
 //! ([`Lanes4`](crate::Lanes4)), derivatives, or text for a device. The loops over neighbours are not here.
 
+pub mod fit;
 pub mod fluid;
 mod record;
 pub mod solid;

@@ -154,6 +154,8 @@ pub struct Snapshot {
     pub ids: Vec<u32>,
     /// Number of the body of each particle.
     pub bodies: Vec<u32>,
+    /// Width of each particle over the spacing of its body.
+    pub widths: Vec<f64>,
     /// The fields, without positions.
     pub fields: Vec<FieldValues>,
 }

@@ -54,6 +54,25 @@ impl<const D: usize> Particles<D> {
         self.gather(order, &place);
     }
 
+    /// Keeps the particles `order` (indices), none of them of a mesh, in this order.
+    pub fn keep(&mut self, order: &[u32]) {
+        self.gather(order, &[]);
+    }
+
+    /// Appends some of the particles (indices) of others, none of them of a mesh, as parts of the same bodies. Their
+    /// numbers continue where those here end.
+    pub fn extend(&mut self, others: &Self, which: &[u32]) {
+        let first = self.id.iter().max().map_or(0, |last| last + 1);
+        for a in which.iter().map(|&a| a as usize) {
+            self.position.push(others.position[a]);
+            self.volume.push(others.volume[a]);
+            self.weight.push(others.weight[a]);
+            self.spacing.push(others.spacing[a]);
+            self.body.push(others.body[a]);
+            self.id.push(first + others.id[a]);
+        }
+    }
+
     /// Makes one particle of each pair of two: the first stays where it is, with the volumes of both.
     /// What belonged to the second one on the surface of a mesh belongs to the first. Returns the old
     /// index of each particle that is left.

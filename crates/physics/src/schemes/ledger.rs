@@ -135,15 +135,17 @@ impl Totals {
     }
 
     /// Fills in what one mechanism has in what is another's.
-    pub fn part(&mut self, whole: Entry, part: Entry, total: &Total) {
+    pub fn part(&mut self, wholes: &[(Entry, Total)], part: Entry) {
         self.filled.fill(part.mechanism);
-        fill(&mut self.rates, part, total);
-        let rest = Total {
-            power: -total.power,
-            growth: -total.growth,
-            force: total.force.map(|force| -force),
-        };
-        fill(&mut self.rates, whole, &rest);
+        for (whole, total) in wholes {
+            fill(&mut self.rates, part, total);
+            let rest = Total {
+                power: -total.power,
+                growth: -total.growth,
+                force: total.force.map(|force| -force),
+            };
+            fill(&mut self.rates, *whole, &rest);
+        }
     }
 
     /// Adds those of another stage.

@@ -13,6 +13,7 @@ pub mod momentum;
 mod newmark;
 mod observation;
 mod outside;
+mod parts;
 mod rule;
 mod scheme;
 mod split;

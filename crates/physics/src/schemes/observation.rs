@@ -97,6 +97,7 @@ impl<'a> Observation<'a> {
             birth => last.saturating_add(birth),
         };
         let ids = particles.iter().map(id).collect();
+        let widths = particles.iter().map(|&a| scheme.width_of(a as usize)).collect();
         let fields = self.scheme.description().fields.iter();
         let fields = fields.filter(|field| names.contains(&field.name)).map(|field| {
             let mut values = Vec::new();
@@ -111,6 +112,7 @@ impl<'a> Observation<'a> {
             positions: self.values("position", &particles),
             ids,
             bodies,
+            widths,
             fields,
         }
     }

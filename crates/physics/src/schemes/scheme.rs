@@ -130,6 +130,11 @@ pub trait Scheme: Send + Sync {
     /// Mass in kg of a particle (index in memory), for 1 m in missing dimensions.
     fn mass(&self, index: usize) -> f64;
 
+    /// How wide a particle (index in memory) is in units of the spacing of its body.
+    fn width_of(&self, _index: usize) -> f64 {
+        1.0
+    }
+
     /// Reference position in m and number in the order of creation of each particle.
     fn particle(&self, index: usize) -> Particle;
 
@@ -263,6 +268,8 @@ pub enum Behind {
     Neighbors,
     /// The plane of the open boundary of this name, where no particle is left to follow it.
     Reserve(String),
+    /// The band of a finer level of resolution, where no particle is left to be born.
+    Level,
 }
 
 /// Figures that tell whether a state is sound.

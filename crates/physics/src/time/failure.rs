@@ -64,6 +64,9 @@ pub enum Failure {
                 "cannot come in through the open boundary `{name}`, as no particle is left in the reserve to follow it, \
                  and is"
             ),
+            Behind::Level => "is of a finer region, into whose band too much flows: no particle is left in the reserve to \
+                be born there; one of that band is"
+                .into(),
             Behind::Surface => "has gone through the surface that it touches, and is".into(),
             Behind::Neighbors => {
                 "is twice as far from a neighbour of the start as it was, or turned inside out with them, and is"

@@ -22,8 +22,8 @@ pub struct Interpolated {
     pub fields: Vec<FieldDescription>,
     /// The kernel.
     pub kernel: Kernel,
-    /// Its smoothing length in m.
-    pub smoothing_length: f64,
+    /// Its smoothing length in m at each place.
+    pub smoothing_lengths: Vec<f64>,
     /// Periods of space in m by axis, infinite where it is open.
     pub periods: Vec<f64>,
     /// Indices in memory of the particles that count.
@@ -56,8 +56,8 @@ impl Interpolated {
         let particles = now.present(&self.particles);
         *scratch = now.values("position", &particles);
         let mut around = Around::default();
-        for place in &self.places {
-            self.look_around(place, (&particles, scratch), &mut around);
+        for at in self.places.iter().zip(&self.smoothing_lengths) {
+            self.look_around(at, (&particles, scratch), &mut around);
         }
         let width: usize = self.fields.iter().map(|field| field.kind.components(dimension)).sum();
         let start = rows.len();
@@ -83,18 +83,18 @@ impl Interpolated {
     /// Adds the particles around `place`, with their coefficients.
     fn look_around(
         &self,
-        place: &[f64],
+        (place, &smoothing_length): (&Vec<f64>, &f64),
         (particles, positions): (&[u32], &[f64]),
         around: &mut Around,
     ) {
         let dimension = place.len();
-        let support = self.kernel.support_radius(self.smoothing_length);
+        let support = self.kernel.support_radius(smoothing_length);
         let (mut offsets, mut weights) = (Vec::new(), Vec::new());
         for (&particle, position) in particles.iter().zip(positions.chunks_exact(dimension)) {
             let offset = DVector::from_iterator(dimension, way(place, position, &self.periods));
             let distance = offset.norm();
             if distance < support {
-                let weight: f64 = self.kernel.value(dimension, distance, self.smoothing_length);
+                let weight: f64 = self.kernel.value(dimension, distance, smoothing_length);
                 around.particles.push(particle);
                 offsets.push(offset);
                 weights.push(weight);

@@ -54,6 +54,7 @@ impl PictureWriter {
         let value = |a: usize| field.value(&found.values[a * components..][..components]);
         let positions: Vec<f64> = shown().flat_map(place).copied().collect();
         let values: Vec<f64> = shown().map(value).collect();
+        let widths: Vec<f64> = shown().map(|a| shot.widths[a]).collect();
         let label = field.name(shot.dimension);
         let when = match moment.now.is_static() {
             true => When::LoadFactor(moment.now.time()),
@@ -70,6 +71,7 @@ impl PictureWriter {
             values: &values,
             range: *range,
             spacing: *spacing,
+            widths: &widths,
             bounds: None,
         }
         .write_png(&path)?;

@@ -284,7 +284,7 @@ fn openings_that_cannot_work_are_refused() {
     refused(&["body.inlet.initial={ pressure = '1' }"], "in the buffer of an opening");
     refused(&["body.inlet.wall={}"], "a wall is no opening");
     let closed = ["body.inlet.opening=", "body.outlet.opening=", "scheme.reserve=4"];
-    refused(&closed, "where no body has the key `opening`");
+    refused(&closed, "where no body has the key `opening` and nothing is refined");
     let wall = "body+={ name = 'wall', shape = { kind = 'box', min = [-0.1, 0.1], max = [0.0, 0.2] }, spacing = 0.05, \
                 lattice = { on = 'cells' }, wall = {}, \
                 material = { kind = 'weakly_compressible', density = 2.0, wave_speed = 20.0 } }";

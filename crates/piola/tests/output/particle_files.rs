@@ -38,6 +38,7 @@ fn snapshot(dimension: usize, count: usize, seed: u64) -> Snapshot {
         positions: numbers(dimension, 0),
         ids: (0..count as u32).rev().collect(),
         bodies: (0..count as u32).map(|i| i % 3).collect(),
+        widths: vec![1.0; count],
         fields: fields
             .map(|(description, salt)| FieldValues {
                 description,

@@ -30,6 +30,7 @@ fn snapshot(dimension: usize, count: usize) -> Snapshot {
         positions: numbers(dimension, 0.0),
         ids: (0..count as u32).rev().collect(),
         bodies: (0..count as u32).map(|i| i % 3).collect(),
+        widths: vec![1.0; count],
         fields: fields.collect(),
     }
 }

@@ -22,6 +22,7 @@ const PLAIN: Picture = Picture {
     positions: &[0.0, 0.0, 2.0, 0.0, 0.0, 1.4],
     values: &[0.0, 1e5, 5e4],
     spacing: 0.2,
+    widths: &[],
     range: None,
     bounds: None,
 };
@@ -131,6 +132,7 @@ fn the_nearer_particle_hides_the_farther() {
             positions: &positions,
             values: &values,
             spacing: 0.3,
+            widths: &[],
             range: Some([0.0, 1.0]),
             ..PLAIN
         };
@@ -211,6 +213,7 @@ proptest! {
         draw(&Picture {
             title: &title,
             when: Some(When::Time(spacing)),
+            widths: &[],
             label: &title,
             unit: "kg/m^3",
             dimension,

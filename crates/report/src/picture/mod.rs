@@ -40,6 +40,8 @@ pub struct Picture<'a> {
     pub values: &'a [f64],
     /// Spacing of the particles in m: the diameter of a dot.
     pub spacing: f64,
+    /// The diameter of each dot in spacings; empty where all are one.
+    pub widths: &'a [f64],
     /// Numbers of the first and the last colour; by default those of the smallest and the largest
     /// finite value. A range as wide below 0 as above is drawn from blue over grey to red.
     pub range: Option<[f64; 2]>,
@@ -122,6 +124,14 @@ impl Picture<'_> {
     fn particles(&self) -> impl Iterator<Item = (&[f64], f64)> {
         let positions = self.positions.chunks_exact(self.dimension);
         positions.zip(self.values.iter().copied()).filter(|(at, _)| drawable(at))
+    }
+
+    /// The same with the diameter of their dots in spacings.
+    fn dots(&self) -> impl Iterator<Item = (&[f64], f64, f64)> {
+        let positions = self.positions.chunks_exact(self.dimension);
+        let widths = self.widths.iter().copied().chain(std::iter::repeat(1.0));
+        let all = positions.zip(self.values.iter().copied()).zip(widths);
+        all.map(|((at, value), width)| (at, value, width)).filter(|(at, ..)| drawable(at))
     }
 
     /// Numbers of the first and the last colour.

@@ -51,10 +51,10 @@ pub fn draw(picture: &Picture) -> Canvas {
 
     let mut canvas = Canvas::new(total_width, top + height + bottom);
     head.draw(&mut canvas, total_width);
-    let radius = dot_radius((spacing * scale) as f32);
     // Magenta last, so that none hides.
     for finite in [true, false] {
-        for (at, value) in picture.particles().filter(|(_, value)| value.is_finite() == finite) {
+        for (at, value, width) in picture.dots().filter(|it| it.1.is_finite() == finite) {
+            let radius = dot_radius((spacing * width * scale) as f32);
             let point = frame.at(at[0], at[1]);
             canvas.dot(point, radius, colour(&bar, value), 0.0, frame.area);
         }

@@ -225,19 +225,19 @@ fn draw_spheres(
     spacing: f64,
     inside: impl Fn(&[f64]) -> bool,
 ) {
-    let mut spheres: Vec<(f64, (f32, f32), f64)> = picture
-        .particles()
-        .filter(|(at, _)| inside(at))
-        .map(|(at, value)| {
+    let mut spheres: Vec<(f64, (f32, f32), f64, f64)> = picture
+        .dots()
+        .filter(|(at, ..)| inside(at))
+        .map(|(at, value, width)| {
             let at = [at[0], at[1], at[2]];
-            (dot(view.near, at), view.at(at), value)
+            (dot(view.near, at), view.at(at), value, width)
         })
         .collect();
     // A stable sort: particles at one depth keep their order.
     spheres.sort_by(|one, two| one.0.total_cmp(&two.0));
-    let radius = dot_radius((spacing * view.scale) as f32);
-    let shade = SHADE[0] + (SHADE[1] - SHADE[0]) * ((radius - 3.0) / 5.0).clamp(0.0, 1.0);
-    for (_, at, value) in spheres {
+    for (_, at, value, width) in spheres {
+        let radius = dot_radius((spacing * width * view.scale) as f32);
+        let shade = SHADE[0] + (SHADE[1] - SHADE[0]) * ((radius - 3.0) / 5.0).clamp(0.0, 1.0);
         canvas.dot(at, radius, colour(bar, value), shade, Area::ALL);
     }
 }

@@ -192,7 +192,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         (common.motion, common.sliding) = (motion, sliding);
         common.body_forces = felt_by_walls(input.body_forces, &input.walls);
         let mut matter = M::bind(matter, &mut common)?;
-        if !input.open.all.is_empty() {
+        if !input.open.is_empty() {
             matter.open(input.open, &mut common);
         }
         if let Some(rate) = input.damping {

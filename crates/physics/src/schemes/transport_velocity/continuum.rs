@@ -114,8 +114,8 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         0.0
     }
 
-    /// The first particle that could not come in, with the name of its boundary.
-    fn starved(&self, _common: &Common<D>, _state: &[f64]) -> Option<(usize, &str)> {
+    /// The first particle that could not come in, with the name of its boundary if there is one.
+    fn starved(&self, _common: &Common<D>, _state: &[f64]) -> Option<(usize, Option<&str>)> {
         None
     }
 

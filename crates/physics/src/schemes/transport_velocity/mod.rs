@@ -41,6 +41,7 @@ mod forces;
 mod inspect;
 mod interface;
 mod ledger;
+mod levels;
 mod sample;
 mod scheme;
 mod settings;
@@ -56,9 +57,12 @@ use crate::schemes::stages::Stages;
 
 pub use build::{TransportVelocityError, TransportVelocityInput, Wall};
 pub use escape::Guard;
-pub use fluid::{DESCRIPTION as FLUIDS, Flow, OpenBoundaries, OpenBoundary, WeaklyCompressible};
+pub use fluid::{
+    DESCRIPTION as FLUIDS, Flow, Nesting, OpenBoundaries, OpenBoundary, Refined, WeaklyCompressible,
+};
 pub use forces::{Forces, Rates};
 pub(crate) use interface::Guide;
+pub use levels::Levels;
 pub use settings::{
     AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,
     Shifting, Slip, Viscous,

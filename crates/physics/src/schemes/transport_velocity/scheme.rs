@@ -57,7 +57,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
                 Some(Escape {
                     position: at.position[number].iter().copied().collect(),
                     speed: at.velocity[number].norm(),
-                    behind: Behind::Reserve(name.into()),
+                    behind: name.map_or(Behind::Level, |name| Behind::Reserve(name.into())),
                     advice: "raise `scheme.reserve`",
                 })
             }

@@ -5,9 +5,10 @@ use std::ops::Range;
 use super::contact::Origin;
 use super::description::SHARED;
 use super::flow::{most_steps, shortest, steps_within};
-use super::{MOST_STEPS, Part, Solid, World};
+use super::{MOST_STEPS, Solid, World};
 use crate::geometry::turned_normal;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
+use crate::schemes::parts::Part;
 use crate::schemes::transport_velocity::Guide;
 use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme};
 use crate::{Vector, parallel};
@@ -23,7 +24,7 @@ impl<const D: usize> Solid<D> {
 impl<const D: usize> World<D> {
     /// The solids with their parts of a state.
     fn with_parts(&self) -> impl Iterator<Item = (&Solid<D>, &Part)> {
-        self.solids.iter().zip(&self.parts[1..])
+        self.solids.iter().zip(&self.parts.all[1..])
     }
 
     /// Puts the walls of the fluid where the solids are, with their velocities.
@@ -38,7 +39,7 @@ impl<const D: usize> World<D> {
             });
             rest = others;
         }
-        let fluid = &mut state[self.parts[0].state.clone()];
+        let fluid = &mut state[self.parts.all[0].state.clone()];
         let numbers = self.solids.iter().flat_map(|solid| solid.interface.walls());
         for (&number, [place, velocity]) in numbers.zip(&carried) {
             self.fluid.place_wall(fluid, number, place, velocity);
@@ -51,7 +52,7 @@ impl<const D: usize> World<D> {
         let (solids, parts) = (&self.solids, &self.parts);
         self.fluid.guide(|wall| {
             let number = solids.partition_point(|solid| solid.first <= wall) - 1;
-            let (solid, own) = (&solids[number], &state[parts[number + 1].state.clone()]);
+            let (solid, own) = (&solids[number], &state[parts.all[number + 1].state.clone()]);
             let row = wall - solid.first;
             let velocity = solid.interface.carried(row, |b| solid.velocity(own, b));
             let deformation = solid.deformation(own, row);
@@ -90,15 +91,15 @@ impl<const D: usize> World<D> {
     /// Finds where surfaces touch in a state, for which walls have been turned.
     pub(super) fn meet(&mut self, state: &[f64]) {
         self.known.clear();
-        for places in self.solids.iter().zip(&self.parts[1..]).map(|it| places_in(state, it)) {
+        for places in self.solids.iter().zip(&self.parts.all[1..]).map(|it| places_in(state, it)) {
             self.known.extend_from_slice(places);
         }
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
         let (domain, spacing) = (fluid.domain(), fluid.spacing());
-        let of = |solid: usize| (&solids[solid], &state[parts[solid + 1].state.clone()]);
+        let of = |solid: usize| (&solids[solid], &state[parts.all[solid + 1].state.clone()]);
         let place = |origin: &Origin, offset: &Vector<D>| match *origin {
             Origin::Wall { number, .. } => {
-                fluid.place_of(&state[parts[0].state.clone()], number) + offset
+                fluid.place_of(&state[parts.all[0].state.clone()], number) + offset
             }
             Origin::Solid { solid, row, .. } => {
                 let (solid, own) = of(solid);
@@ -126,10 +127,10 @@ impl<const D: usize> World<D> {
         let touches = &mut self.touches;
         let velocity = |origin: &Origin, offset: &Vector<D>| match *origin {
             Origin::Wall { number, .. } => {
-                fluid.surface_velocity(time, &state[parts[0].state.clone()], number)
+                fluid.surface_velocity(time, &state[parts.all[0].state.clone()], number)
             }
             Origin::Solid { solid, row, .. } => {
-                let (solid, own) = (&solids[solid], &state[parts[solid + 1].state.clone()]);
+                let (solid, own) = (&solids[solid], &state[parts.all[solid + 1].state.clone()]);
                 solid.interface.carried_at(row, offset, |b| solid.velocity(own, b))
             }
         };
@@ -151,9 +152,9 @@ impl<const D: usize> World<D> {
         let (states, tail) = state.split_at_mut(self.ledger_at());
         for number in 0..self.solids.len() {
             let [mechanism, way] = self.entries(number);
-            let (solid, part) = (&self.solids[number], &self.parts[number + 1].state);
+            let (solid, part) = (&self.solids[number], &self.parts.all[number + 1].state);
             let (front, rest) = states.split_at_mut(part.start);
-            let (fluid, own) = (&front[self.parts[0].state.clone()], &mut rest[..part.len()]);
+            let (fluid, own) = (&front[self.parts.all[0].state.clone()], &mut rest[..part.len()]);
             self.forces.clear();
             self.forces.resize(solid.mass.len(), Vector::zeros());
             for (row, &wall) in solid.interface.walls().iter().enumerate() {
@@ -205,7 +206,7 @@ impl<const D: usize> CoupledScheme for World<D> {
     }
 
     fn solid(&mut self, number: usize) -> (&mut dyn Scheme, Range<usize>) {
-        (self.solids[number].scheme.as_mut(), self.parts[number + 1].state.clone())
+        (self.solids[number].scheme.as_mut(), self.parts.all[number + 1].state.clone())
     }
 
     fn fluid_steps(&self, step: f64) -> u64 {
@@ -229,14 +230,14 @@ impl<const D: usize> CoupledScheme for World<D> {
         self.meet(state);
         self.push_on(time, duration, state);
         self.carry_walls(state);
-        let fluid = &state[self.parts[0].state.clone()];
+        let fluid = &state[self.parts.all[0].state.clone()];
         let power = self.ways.iter().map(|way| self.fluid.power_on(fluid, way.number)).sum::<f64>();
         let entry = self.interface_at();
         state[entry] -= duration / count as f64 * power;
     }
 
     fn settle(&mut self, time: f64, state: &mut [f64]) {
-        for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
+        for (solid, part) in self.solids.iter_mut().zip(&self.parts.all[1..]) {
             // What implicit steps keep is of their own making.
             if let (Some(solid), Some(_)) = (solid.scheme.split(), solid.cfl) {
                 solid.settle(time, &mut state[part.state.clone()]);
@@ -261,7 +262,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         let (works, impulses) = tail.split_at_mut(self.description.ledger.mechanisms.len());
         let components = momentum_components(D).len();
         let [mut work, mut impulse] = [0; 2];
-        for (k, part) in self.parts.iter().enumerate() {
+        for (k, part) in self.parts.all.iter().enumerate() {
             let ledger = Ledger::of(self.system(k), &states[part.state.clone()]);
             works[work..][..ledger.work.len()].copy_from_slice(ledger.work);
             if k == 0 {
@@ -279,6 +280,6 @@ impl<const D: usize> CoupledScheme for World<D> {
         self.carry_walls(state);
         self.guide(state);
         self.known.clear();
-        self.fluid.accelerate(time, &mut state[self.parts[0].state.clone()]);
+        self.fluid.accelerate(time, &mut state[self.parts.all[0].state.clone()]);
     }
 }

@@ -119,7 +119,7 @@ impl<const D: usize> World<D> {
         let all = self.solids.iter().map(|solid| solid.interface.walls().len()).sum();
         self.ways.resize(all, Way::NOWHERE);
         let mut rest = self.ways.as_mut_slice();
-        for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
+        for (solid, part) in self.solids.iter().zip(&self.parts.all[1..]) {
             let states = [old, new].map(|state| &state[part.state.clone()]);
             let (own, others) = rest.split_at_mut(solid.interface.walls().len());
             parallel::for_each_chunk(own, |first, ways| {
@@ -134,7 +134,7 @@ impl<const D: usize> World<D> {
     /// Takes the fluid in `state`, for which walls have been turned, through a step in `count` parts, and finds with which
     /// forces the solids would get in half of the step what is left of the impulse.
     pub(super) fn flow_along(&mut self, time: f64, step: f64, count: u64, state: &mut [f64]) {
-        let (fluid, own) = (self.parts[0].state.clone(), step / count as f64);
+        let (fluid, own) = (self.parts.all[0].state.clone(), step / count as f64);
         self.rest.clear();
         if count > 1 {
             let ways = self.ways.iter();

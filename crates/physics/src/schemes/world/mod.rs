@@ -43,8 +43,9 @@ pub use self::flow::MOST_FLUID_STEPS;
 use self::flow::{Way, shortest};
 use self::interface::Interface;
 pub use self::interface::{InterfaceError, MOST_RATIO};
-use crate::fields::{FieldDescription, FieldKind};
+use crate::fields::FieldKind;
 use crate::neighbors::Domain;
+use crate::schemes::parts::Parts;
 use crate::schemes::transport_velocity::TransportVelocity;
 use crate::schemes::{Particle, Scheme, SchemeDescription, StepLimit};
 use crate::{Tensor, Vector};
@@ -130,17 +131,6 @@ struct Solid<const D: usize> {
     limits: Vec<StepLimit>,
 }
 
-/// Where a system stands in the state and among the particles of all.
-struct Part {
-    /// Its part of a state.
-    state: Range<usize>,
-    /// Its particles that are shown, by index in its memory, and the index of the first of them in the run.
-    shown: Vec<u32>,
-    first: usize,
-    /// The index in the run of each of its particles; of one that is not shown that of who carries it.
-    index: Vec<u32>,
-}
-
 /// A fluid with solids in it.
 pub struct World<const D: usize> {
     description: &'static SchemeDescription,
@@ -152,9 +142,7 @@ pub struct World<const D: usize> {
     /// Where the work of all walls stands among those of the fluid.
     walls: usize,
     /// Those of the fluid, then of each solid.
-    parts: Vec<Part>,
-    bodies: Vec<u32>,
-    ids: Vec<u32>,
+    parts: Parts,
     start: Vec<f64>,
     // Scratch: forces on the particles of a solid, their velocities before, how walls go through a step, which forces
     // are left to give by wall.
@@ -207,9 +195,7 @@ impl<const D: usize> World<D> {
         let mut world = Self {
             description,
             walls: fluid.description().ledger.place_of(WALLS),
-            parts: Vec::new(),
-            bodies: Vec::new(),
-            ids: Vec::new(),
+            parts: Parts::default(),
             start: Vec::new(),
             forces: Vec::new(),
             before: Vec::new(),
@@ -227,7 +213,7 @@ impl<const D: usize> World<D> {
         };
         let mut start = world.line_up(&guided);
         // Behind the ledger stands how many steps of each system were the last one of the run, and all of it.
-        let counts = 2 * world.parts.len();
+        let counts = 2 * world.parts.all.len();
         start.resize(start.len() + description.ledger.integrals(D) + counts, 0.0);
         world.begin(&mut start);
         world.start = start;
@@ -239,33 +225,21 @@ impl<const D: usize> World<D> {
     fn line_up(&mut self, hidden: &[u32]) -> Vec<f64> {
         let mut is_hidden = vec![false; self.fluid.particle_count()];
         hidden.iter().for_each(|&number| is_hidden[number as usize] = true);
-        let mut start = Vec::new();
+        let (mut start, mut parts) = (Vec::new(), std::mem::take(&mut self.parts));
         for number in 0..=self.solids.len() {
             let system = self.system(number);
             let count = system.particle_count() as u32;
-            let shown: Vec<u32> =
-                (0..count).filter(|&a| number > 0 || !is_hidden[a as usize]).collect();
-            let first = self.bodies.len();
-            let mut index = vec![0; count as usize];
-            (first as u32..).zip(&shown).for_each(|(own, &a)| index[a as usize] = own);
-            let body = |&a: &u32| {
-                let own = system.bodies()[a as usize];
-                let solid = number.checked_sub(1).map(|solid| &self.solids[solid]);
-                solid.map_or(own, |solid| solid.numbers[own as usize])
-            };
-            let bodies: Vec<u32> = shown.iter().map(body).collect();
-            let before = self.ids.iter().max().map_or(0, |last| last + 1);
-            let ids: Vec<u32> = shown.iter().map(|&a| before + system.ids()[a as usize]).collect();
-            let from = start.len();
-            start.extend(system.initial_state());
-            self.bodies.extend(bodies);
-            self.ids.extend(ids);
-            self.parts.push(Part { state: from..start.len(), shown, first, index });
+            let shown = (0..count).filter(|&a| number > 0 || !is_hidden[a as usize]).collect();
+            let solid = number.checked_sub(1).map(|solid| &self.solids[solid]);
+            let body = |own: u32| solid.map_or(own, |solid| solid.numbers[own as usize]);
+            parts.push(system, shown, body, &mut start);
         }
+        self.parts = parts;
         for (number, solid) in self.solids.iter().enumerate() {
             for (row, &wall) in solid.interface.walls().iter().enumerate() {
                 let carrier = solid.interface.carrier(row) as usize;
-                self.parts[0].index[wall as usize] = self.parts[number + 1].index[carrier];
+                let index = self.parts.all[number + 1].index[carrier];
+                self.parts.all[0].index[wall as usize] = index;
             }
         }
         start
@@ -273,27 +247,24 @@ impl<const D: usize> World<D> {
 
     /// Gives the fluid the motion of the solids at the start, which its accelerations follow.
     fn begin(&mut self, state: &mut [f64]) {
-        for (solid, part) in self.solids.iter().zip(&self.parts[1..]) {
+        for (solid, part) in self.solids.iter().zip(&self.parts.all[1..]) {
             solid.scheme.constrain(0.0, &mut state[part.state.clone()]);
         }
         self.carry_walls(state);
         self.guide(state);
-        let own = &mut state[self.parts[0].state.clone()];
+        let own = &mut state[self.parts.all[0].state.clone()];
         self.fluid.restart(own);
     }
 
     /// The index in the run of a particle of a system: 0 is the fluid, the solids follow. Particles that
     /// stand for a solid in the fluid have none.
     pub fn index_of(&self, system: usize, particle: u32) -> Option<u32> {
-        let part = self.parts.get(system)?;
-        part.shown.binary_search(&particle).ok().map(|number| (part.first + number) as u32)
+        self.parts.index_of(system, particle)
     }
 
     /// The system of a particle (index in the run), and its index there.
     fn local(&self, index: usize) -> (usize, usize) {
-        let system = self.parts.partition_point(|part| part.first <= index) - 1;
-        let part = &self.parts[system];
-        (system, part.shown[index - part.first] as usize)
+        self.parts.local(index)
     }
 
     /// A system: 0 is the fluid.
@@ -316,7 +287,7 @@ impl<const D: usize> World<D> {
 
     /// Where the ledger of all begins in a state.
     fn ledger_at(&self) -> usize {
-        self.parts.last().map_or(0, |part| part.state.end)
+        self.parts.end()
     }
 }
 
@@ -441,9 +412,4 @@ impl<const D: usize> Solid<D> {
         let column: &[Vector<D>] = bytemuck::cast_slice(&own[self.velocities.clone()]);
         column[a]
     }
-}
-
-/// The field of one system that a field of all stands for.
-fn own_field(system: &dyn Scheme, field: &FieldDescription) -> Option<FieldDescription> {
-    system.description().field(field.name).filter(|own| own.kind == field.kind).copied()
 }

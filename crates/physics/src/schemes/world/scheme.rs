@@ -2,10 +2,11 @@
 
 use super::description::CONTACT;
 use super::flow::Way;
-use super::{MOST_STEPS, World, own_field};
+use super::{MOST_STEPS, World};
 use crate::Vector;
 use crate::fields::{ABSENT, FieldDescription};
 use crate::schemes::momentum::MOST_COMPONENTS;
+use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
     Behind, CoupledScheme, Escape, Health, Particle, Phase, Scheme, SchemeDescription, StepLimit,
 };
@@ -30,7 +31,7 @@ impl<const D: usize> World<D> {
         let mut borne = vec![Vector::zeros(); solid.mass.len()];
         let (walls, mut forces) = (solid.interface.walls(), Vec::new());
         if let Some(field) = own_field(&self.fluid, field) {
-            self.fluid.derive(&state[self.parts[0].state.clone()], &field, walls, &mut forces);
+            self.fluid.derive(&state[self.parts.all[0].state.clone()], &field, walls, &mut forces);
         }
         for (row, force) in forces.chunks_exact(D).enumerate() {
             solid.interface.bear(row, &Vector::from_column_slice(force), &mut borne);
@@ -49,7 +50,7 @@ impl<const D: usize> Scheme for World<D> {
     }
 
     fn particle_count(&self) -> usize {
-        self.bodies.len()
+        self.parts.bodies.len()
     }
 
     /// The fields are columns of its systems, and of no state of all.
@@ -72,16 +73,16 @@ impl<const D: usize> Scheme for World<D> {
     /// The rates of each system alone.
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         rate.fill(0.0);
-        let own = |k: usize| self.parts[k].state.clone();
+        let own = |k: usize| self.parts.all[k].state.clone();
         self.fluid.rates(time, &state[own(0)], &mut rate[own(0)]);
         for (k, solid) in (1..).zip(&mut self.solids) {
-            let own = self.parts[k].state.clone();
+            let own = self.parts.all[k].state.clone();
             solid.scheme.rates(time, &state[own.clone()], &mut rate[own]);
         }
     }
 
     fn constrain(&self, time: f64, state: &mut [f64]) {
-        for (k, part) in self.parts.iter().enumerate() {
+        for (k, part) in self.parts.all.iter().enumerate() {
             self.system(k).constrain(time, &mut state[part.state.clone()]);
         }
     }
@@ -91,15 +92,16 @@ impl<const D: usize> Scheme for World<D> {
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         // After a retry the last pass was of a state that has failed.
         self.follow(state);
-        let mut all = self.fluid.inspect(&state[self.parts[0].state.clone()], limits);
-        let named = |of: usize, particle: usize| self.parts[of].index[particle] as usize;
+        let mut all = self.fluid.inspect(&state[self.parts.all[0].state.clone()], limits);
+        let parts = &self.parts;
+        let named = |of: usize, particle: usize| parts.named(of, particle);
         all = rename(all, &|particle| named(0, particle));
         limits.iter_mut().for_each(|limit| limit.particle = named(0, limit.particle));
         let of_fluid = limits.len();
         self.limits.clone_from(limits);
         for (k, solid) in (1..).zip(&mut self.solids) {
             let mut own = std::mem::take(&mut solid.limits);
-            let health = solid.scheme.inspect(&state[self.parts[k].state.clone()], &mut own);
+            let health = solid.scheme.inspect(&state[self.parts.all[k].state.clone()], &mut own);
             all = all.worse(rename(health, &|particle| named(k, particle)));
             // What moves as one has no waves.
             let bounds = own.iter().filter(|it| solid.cfl.is_some() && it.step < f64::INFINITY);
@@ -119,7 +121,7 @@ impl<const D: usize> Scheme for World<D> {
             all.first_escaped = all.first_escaped.or(Some(named(solid + 1, carrier)));
         }
         for (k, solid) in (1..).zip(&self.solids) {
-            let torn = solid.torn(&state[self.parts[k].state.clone()]);
+            let torn = solid.torn(&state[self.parts.all[k].state.clone()]);
             all.first_escaped = all.first_escaped.or(torn.map(|particle| named(k, particle)));
         }
         let count = self.fluid_steps_of(&limits[..of_fluid]);
@@ -128,12 +130,12 @@ impl<const D: usize> Scheme for World<D> {
     }
 
     fn warning(&self) -> Option<String> {
-        (0..self.parts.len()).find_map(|k| self.system(k).warning())
+        (0..self.parts.all.len()).find_map(|k| self.system(k).warning())
     }
 
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
         let (k, own) = self.local(index);
-        let part = &state[self.parts[k].state.clone()];
+        let part = &state[self.parts.all[k].state.clone()];
         let Some(solid) = k.checked_sub(1).map(|solid| &self.solids[solid]) else {
             return self.fluid.escape(own, part);
         };
@@ -148,19 +150,19 @@ impl<const D: usize> Scheme for World<D> {
 
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let counts = state[self.counts_at()..].chunks_exact(2);
-        for ((k, part), count) in self.parts.iter().enumerate().zip(counts) {
+        for ((k, part), count) in self.parts.all.iter().enumerate().zip(counts) {
             self.system(k).figures(&state[part.state.clone()], figures);
             figures.push(count[0]);
         }
     }
 
     fn passed(&self, state: &[f64], body: u32) -> Option<[f64; 2]> {
-        let part = &self.parts[0];
+        let part = &self.parts.all[0];
         self.system(0).passed(&state[part.state.clone()], body)
     }
 
     fn energies(&self, state: &[f64], mut energies: &mut [f64]) {
-        for (k, part) in self.parts.iter().enumerate() {
+        for (k, part) in self.parts.all.iter().enumerate() {
             let system = self.system(k);
             let (own, rest) = energies.split_at_mut(system.description().energies.len());
             system.energies(&state[part.state.clone()], own);
@@ -170,7 +172,7 @@ impl<const D: usize> Scheme for World<D> {
 
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
         momentum.fill(0.0);
-        for (k, part) in self.parts.iter().enumerate() {
+        for (k, part) in self.parts.all.iter().enumerate() {
             let mut own = [0.0; MOST_COMPONENTS];
             let own = &mut own[..momentum.len()];
             self.system(k).momentum(&state[part.state.clone()], own);
@@ -182,8 +184,8 @@ impl<const D: usize> Scheme for World<D> {
         self.guide(state);
         self.meet(state);
         self.touch(time, state);
-        self.fluid.observe(stage, time, &state[self.parts[0].state.clone()]);
-        for (solid, part) in self.solids.iter_mut().zip(&self.parts[1..]) {
+        self.fluid.observe(stage, time, &state[self.parts.all[0].state.clone()]);
+        for (solid, part) in self.solids.iter_mut().zip(&self.parts.all[1..]) {
             solid.scheme.observe(stage, time, &state[part.state.clone()]);
         }
     }
@@ -197,11 +199,11 @@ impl<const D: usize> Scheme for World<D> {
         values: &mut Vec<f64>,
     ) {
         let own: Vec<Option<FieldDescription>> =
-            (0..self.parts.len()).map(|k| own_field(self.system(k), field)).collect();
-        let mut borne: Vec<Option<Vec<Vector<D>>>> = vec![None; self.parts.len()];
+            (0..self.parts.all.len()).map(|k| own_field(self.system(k), field)).collect();
+        let mut borne: Vec<Option<Vec<Vector<D>>>> = vec![None; self.parts.all.len()];
         for &particle in particles {
             let (k, local) = self.local(particle as usize);
-            let (system, part) = (self.system(k), &state[self.parts[k].state.clone()]);
+            let (system, part) = (self.system(k), &state[self.parts.all[k].state.clone()]);
             match &own[k] {
                 _ if k > 0 && BORNE.contains(&field.name) => {
                     let all = borne[k].get_or_insert_with(|| self.borne(k - 1, field, state));
@@ -223,15 +225,15 @@ impl<const D: usize> Scheme for World<D> {
     }
 
     fn phases(&self) -> Vec<&Phase> {
-        (0..self.parts.len()).flat_map(|k| self.system(k).phases()).collect()
+        (0..self.parts.all.len()).flat_map(|k| self.system(k).phases()).collect()
     }
 
     fn bodies(&self) -> &[u32] {
-        &self.bodies
+        &self.parts.bodies
     }
 
     fn ids(&self) -> &[u32] {
-        &self.ids
+        &self.parts.ids
     }
 
     fn is_closed(&self) -> bool {
@@ -240,15 +242,15 @@ impl<const D: usize> Scheme for World<D> {
 
     fn birth_of(&self, state: &[f64], index: usize) -> u32 {
         let (k, own) = self.local(index);
-        self.system(k).birth_of(&state[self.parts[k].state.clone()], own)
+        self.system(k).birth_of(&state[self.parts.all[k].state.clone()], own)
     }
 
     fn body_of(&self, state: &[f64], index: usize) -> Option<u32> {
         let (k, own) = self.local(index);
-        let part = &state[self.parts[k].state.clone()];
+        let part = &state[self.parts.all[k].state.clone()];
         let is_own = |body: u32| body == self.system(k).bodies()[own];
         let body = self.system(k).body_of(part, own)?;
-        Some(if is_own(body) { self.bodies[index] } else { body })
+        Some(if is_own(body) { self.parts.bodies[index] } else { body })
     }
 
     fn mass(&self, index: usize) -> f64 {
@@ -258,13 +260,13 @@ impl<const D: usize> Scheme for World<D> {
 
     fn particle(&self, index: usize) -> Particle {
         let (k, own) = self.local(index);
-        Particle { id: self.ids[index], ..self.system(k).particle(own) }
+        Particle { id: self.parts.ids[index], ..self.system(k).particle(own) }
     }
 
     fn neighborhood(&self, index: usize) -> Vec<u32> {
         let (k, own) = self.local(index);
         let near = self.system(k).neighborhood(own);
-        near.into_iter().map(|particle| self.parts[k].index[particle as usize]).collect()
+        near.into_iter().map(|particle| self.parts.all[k].index[particle as usize]).collect()
     }
 
     fn stability_advice(&self) -> &'static str {
@@ -277,7 +279,7 @@ impl<const D: usize> Scheme for World<D> {
     }
 
     fn memory(&self) -> usize {
-        let systems: usize = (0..self.parts.len()).map(|k| self.system(k).memory()).sum();
+        let systems: usize = (0..self.parts.all.len()).map(|k| self.system(k).memory()).sum();
         let interfaces: usize = self.solids.iter().map(|solid| solid.interface.memory()).sum();
         // Ways and forces are found in the first step.
         let a_wall = size_of::<Way<D>>() + size_of::<[Vector<D>; 3]>();
@@ -305,16 +307,5 @@ impl<const D: usize> Scheme for World<D> {
 
     fn coupled(&mut self) -> Option<&mut dyn CoupledScheme> {
         Some(self)
-    }
-}
-
-/// Health of a system by the index of particles in the run.
-fn rename(health: Health, index: &dyn Fn(usize) -> usize) -> Health {
-    Health {
-        largest_speed_particle: index(health.largest_speed_particle),
-        smallest_ratio_particle: index(health.smallest_ratio_particle),
-        first_not_finite: health.first_not_finite.map(index),
-        first_escaped: health.first_escaped.map(index),
-        ..health
     }
 }

@@ -2,7 +2,8 @@
 
 use super::bodies::{self, BodyReport};
 use super::{
-    Built, initial, kernel, loads, openings, probes, row_sizes, row_statistics, selections, tanks,
+    Built, initial, kernel, levels, loads, openings, probes, row_sizes, row_statistics, selections,
+    tanks,
 };
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
@@ -13,8 +14,8 @@ use crate::geometry::{Faces, Particles, Shape, ball_volume};
 use crate::neighbors::{Domain, spatial_order};
 use crate::observe::{Line, Probe};
 use crate::schemes::transport_velocity::{
-    Continuum, Fluid, Guard, Hypoelastic, Solid, SolidsInput, TransportVelocity,
-    TransportVelocityError, TransportVelocityInput, Wall, WeaklyCompressible,
+    Continuum, Fluid, Guard, Hypoelastic, Nesting, OpenBoundaries, Solid, SolidsInput,
+    TransportVelocity, TransportVelocityError, TransportVelocityInput, Wall, WeaklyCompressible,
 };
 use crate::schemes::{Initial, Scheme};
 
@@ -26,7 +27,10 @@ pub(super) fn build<const D: usize>(
     reports: Vec<BodyReport>,
     domain: Domain<D>,
 ) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
-    let prepared = prepare(case, settings, particles, reports, domain)?;
+    if !settings.refine.is_empty() {
+        return levels::build(case, settings, particles, reports, domain);
+    }
+    let prepared = prepare(case, settings, particles, reports, domain, Nesting::default())?;
     if let Some(materials) = materials(case) {
         let spacing = prepared.input.particles.spacing.first().copied().unwrap_or_default();
         let solids = SolidsInput {
@@ -51,7 +55,9 @@ pub(super) fn build_fluid<const D: usize>(
     reports: Vec<BodyReport>,
     domain: Domain<D>,
 ) -> Result<(TransportVelocity<D>, Built), Vec<Problem>> {
-    prepare(case, settings, particles, reports, domain)?.finish(case, settings, fluid(case)?)
+    let nesting = Nesting::default();
+    let prepared = prepare(case, settings, particles, reports, domain, nesting)?;
+    prepared.finish(case, settings, fluid(case)?)
 }
 
 /// What part of the largest spacing others may be below it: lattices fit their shapes, and their spacings become a
@@ -59,7 +65,7 @@ pub(super) fn build_fluid<const D: usize>(
 const ALIKE: f64 = 0.05;
 
 /// All but the matter, with what is known of the rest.
-struct Prepared<const D: usize> {
+pub(super) struct Prepared<const D: usize> {
     input: TransportVelocityInput<D>,
     held: Vec<PrescribedVelocity>,
     probes: Vec<Probe>,
@@ -68,12 +74,14 @@ struct Prepared<const D: usize> {
     warnings: Vec<String>,
 }
 
-fn prepare<const D: usize>(
+/// All but the matter of a fluid or of solids, of a fluid at several resolutions as it is nested among the others.
+pub(super) fn prepare<const D: usize>(
     case: &Case,
     settings: &model::TransportVelocity,
     mut particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
+    nesting: Nesting<D>,
 ) -> Result<Prepared<D>, Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
@@ -88,7 +96,9 @@ fn prepare<const D: usize>(
     particles.reorder(&order.map_err(|error| {
         vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
     })?);
-    let (open, mut warnings) = openings::open::<D>(case, settings, &mut particles, support)?;
+    let (mut open, mut warnings) = openings::open::<D>(case, settings, &mut particles, support)?;
+    let counts = nesting.clone();
+    nest((case, settings), nesting, &mut open, &mut particles);
     let (faces, shape) = faces(case, &particles, (first_twin, support))?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
@@ -115,7 +125,8 @@ fn prepare<const D: usize>(
         );
     }
     if let Some(shape) = &shape {
-        warnings.extend(tanks::warnings(case, shape, &particles, &faces, support));
+        let counts = |place: &Vector<D>| counts.counts(place);
+        warnings.extend(tanks::warnings(case, shape, &particles, (&faces, counts), support));
     }
     let initial = initial(case, &particles);
     if materials(case).is_none() {
@@ -140,9 +151,36 @@ fn prepare<const D: usize>(
     Ok(Prepared { input, held, probes, lines, reports, warnings })
 }
 
+/// Nests a fluid among others of another resolution, with particles in reserve behind all others.
+fn nest<const D: usize>(
+    (case, settings): (&Case, &model::TransportVelocity),
+    nesting: Nesting<D>,
+    open: &mut OpenBoundaries<D>,
+    particles: &mut Particles<D>,
+) {
+    if nesting == Nesting::default() {
+        return;
+    }
+    let is_fluid = |&a: &usize| {
+        let body = &case.bodies[particles.body[a] as usize];
+        body.wall.is_none() && body.opening.is_none()
+    };
+    if let Some(model) = (0..particles.len()).find(is_fluid) {
+        let (more, body) = (levels::reserve(settings, &nesting, particles), particles.body[model]);
+        (0..more).for_each(|_| particles.repeat(model, body));
+        open.reserve += more;
+    }
+    open.nesting = Some(nesting);
+}
+
 impl<const D: usize> Prepared<D> {
+    /// The particles.
+    pub fn particles(&self) -> &Particles<D> {
+        &self.input.particles
+    }
+
     /// Binds it to matter.
-    fn finish<M: Continuum<D>>(
+    pub fn finish<M: Continuum<D>>(
         self,
         case: &Case,
         settings: &model::TransportVelocity,
@@ -153,6 +191,8 @@ impl<const D: usize> Prepared<D> {
         let support = input.kernel.support_radius(input.smoothing_length);
         let full =
             ball_volume(D, support / input.particles.spacing.first().copied().unwrap_or(1.0));
+        // The band of a finer region ends where no particle is.
+        let is_band = input.open.nesting.as_ref().is_some_and(|it| it.own.is_some());
         let refuse = |error: TransportVelocityError| {
             let (place, label) = match &error {
                 TransportVelocityError::Start { .. } => {
@@ -178,7 +218,11 @@ impl<const D: usize> Prepared<D> {
         let of_fluid = row_sizes(&scheme).filter(|(a, _)| !scheme.is_wall(*a));
         let (neighbors, poorly_supported) = row_statistics(D, of_fluid);
         // Walls that are too thin have a warning of their own.
-        if materials(case).is_none() && !settings.settings.free_surface && warnings.is_empty() {
+        if materials(case).is_none()
+            && !settings.settings.free_surface
+            && !is_band
+            && warnings.is_empty()
+        {
             warnings.extend(open_end(&scheme, full));
         }
         Ok((scheme, Built { probes, lines, bodies, neighbors, poorly_supported, warnings }))
@@ -226,7 +270,7 @@ fn compression<const D: usize>(fluid: &Fluid, initial: &Initial<D>) -> Option<St
 }
 
 /// The one fluid of the case: its bodies and walls must agree on it.
-fn fluid(case: &Case) -> Result<Fluid, Vec<Problem>> {
+pub(super) fn fluid(case: &Case) -> Result<Fluid, Vec<Problem>> {
     let mut found: Option<Fluid> = None;
     for body in &case.bodies {
         let model::Material::WeaklyCompressible { density, viscosity, .. } = body.material.value

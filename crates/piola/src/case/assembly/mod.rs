@@ -5,6 +5,7 @@ mod fluids;
 mod functions;
 mod interpolation;
 mod joined;
+mod levels;
 mod loads;
 mod mirrors;
 mod openings;

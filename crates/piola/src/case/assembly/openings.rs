@@ -52,8 +52,8 @@ pub(super) fn open<const D: usize>(
 ) -> Result<(OpenBoundaries<D>, Vec<String>), Vec<Problem>> {
     let buffers = || (0u32..).zip(&case.bodies).filter(|(_, body)| body.opening.is_some());
     if buffers().next().is_none() {
-        if settings.reserve.is_some() {
-            let message = "`reserve` has no meaning where no body has the key `opening`";
+        if settings.reserve.is_some() && settings.refine.is_empty() {
+            let message = "`reserve` has no meaning where no body has the key `opening` and nothing is refined";
             let help = Some("remove it".to_owned());
             return Err(vec![case.problem_at(case.scheme.place, message, "no meaning here", help)]);
         }
@@ -66,7 +66,7 @@ pub(super) fn open<const D: usize>(
         return Err(vec![case.problem_at(place, message, "no fluid", None)]);
     };
     let mut open =
-        OpenBoundaries { all: Vec::new(), buffers: vec![0; particles.len()], reserve: 0 };
+        OpenBoundaries { buffers: vec![0; particles.len()], ..OpenBoundaries::default() };
     let (mut problems, mut rates) = (Vec::new(), Vec::new());
     for (number, body) in buffers() {
         let Some(opening) = &body.opening else { continue };

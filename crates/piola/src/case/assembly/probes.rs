@@ -239,11 +239,14 @@ fn interpolated<const D: usize>(
     fields: &[Located<FieldDescription>],
 ) -> Interpolated {
     let (kernel, ratio) = kernel_of(case);
+    let widest = largest_spacing(particles);
+    let smoothing_length =
+        |place: &Vec<f64>| ratio * super::levels::spacing_at(case, place, widest);
     Interpolated {
+        smoothing_lengths: places.iter().map(smoothing_length).collect(),
         places,
         fields: fields.iter().map(|field| field.value).collect(),
         kernel,
-        smoothing_length: ratio * largest_spacing(particles),
         periods: periods(case),
         particles: of_body(particles, body).collect(),
     }

@@ -8,17 +8,17 @@ use crate::geometry::{Faces, Particles, Shape};
 const STEPS: f64 = 4.0;
 
 /// What the user should know of the walls that `walls` is the union of, with the faces that
-/// particles are behind and the support radius in m.
+/// particles are behind, whether they count at their spacing and the support radius in m.
 pub(super) fn warnings<const D: usize>(
     case: &Case,
     walls: &Shape<D>,
     particles: &Particles<D>,
-    faces: &[Faces<D>],
+    (faces, counts): (&[Faces<D>], impl Fn(&Vector<D>) -> bool),
     support: f64,
 ) -> Vec<String> {
     let is_wall = |a: &usize| {
         let body = &case.bodies[particles.body[*a] as usize];
-        body.wall.is_some() && body.system.is_none()
+        body.wall.is_some() && body.system.is_none() && counts(&particles.position[*a])
     };
     let all: Vec<usize> = (0..particles.len()).filter(is_wall).collect();
     let thin = first(&all, particles, |a| {

@@ -17,6 +17,11 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
         // The reader of cases has refused others.
         return Err(vec![case.problem_at(case.scheme.place, "no fluid", "needs one", None)]);
     };
+    if let Some(region) = settings.refine.first() {
+        let message = "a fluid with solids in it has one spacing";
+        let help = Some("remove `refine`".to_owned());
+        return Err(vec![case.problem_at(region.place, message, "no meaning here", help)]);
+    }
     let (fluid, built) = fluids::build_fluid(&main, settings, particles, reports, domain)?;
     let mut all = vec![Built { warnings: [built.warnings, far].concat(), ..built }];
     let (mut solids, mut integrators) = (Vec::new(), Vec::<Box<dyn Integrator>>::new());

@@ -162,7 +162,7 @@ impl Reader<'_, '_> {
         Some(Located::new(shape, record.place))
     }
 
-    fn shapes(&mut self, record: &Record, key: &str) -> Option<Vec<Located<Shape>>> {
+    pub(super) fn shapes(&mut self, record: &Record, key: &str) -> Option<Vec<Located<Shape>>> {
         let shapes: Vec<_> = record.records(key).map(|shape| self.shape(shape)).collect();
         shapes.into_iter().collect()
     }

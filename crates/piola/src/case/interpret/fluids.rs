@@ -28,6 +28,7 @@ impl Reader<'_, '_> {
         if is_solid {
             self.meaningless(record, "viscous_force", "for solids");
             self.meaningless(record, "damping", "for solids");
+            self.meaningless(record, "refine", "for solids");
         }
         let alpha = record.number("pressure_diffusion").map(|it| it.value);
         let alpha = alpha.unwrap_or(DIFFUSION[usize::from(is_solid)]);
@@ -99,6 +100,7 @@ impl Reader<'_, '_> {
             }),
             removes_escaped: record.text("escaped")?.as_str() == "remove",
             reserve: record.whole::<u32>("reserve").map(|it| it.value),
+            refine: self.shapes(record, "refine")?,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Formulations with their settings.
 
+use super::Shape;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
 use crate::operators::GradientForm;
@@ -113,6 +114,8 @@ pub struct TransportVelocity {
     pub removes_escaped: bool,
     /// How many particles may come in beyond those that go out.
     pub reserve: Option<u32>,
+    /// The regions of a fluid in which spacings are half of those before.
+    pub refine: Vec<Located<Shape>>,
 }
 
 /// Settings of a total Lagrangian solid.

@@ -161,7 +161,14 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Derived(
                 "a twentieth of the particles of the fluid and its buffers, and no less than two buffers",
             ),
-            "how many particles more than at the start there may be, where open boundaries let them in",
+            "how many particles more than at the start there may be, where open boundaries let them in, and in each finer region of `refine`, there a quarter of its own unless it is given",
+        ),
+        key(
+            "refine",
+            Kind::List(&super::geometry::ANY_SHAPE),
+            "",
+            Optional,
+            "regions in which the spacing of fluids and walls is half of that around them, theory (95): the first within the fluid, each other one within the one before; no meaning for solids",
         ),
     ],
 };

@@ -106,6 +106,9 @@ const ORIGINS: Choices = choices(&[
     choice("cells", "particles half a spacing inside of them"),
 ]);
 
+/// A shape, as an entry of a list.
+pub(super) static ANY_SHAPE: Kind = Kind::Tagged(&SHAPE);
+
 static SHAPE: TaggedSpec = TaggedSpec {
     title: "shape",
     meaning: "A region that particles fill.",

@@ -23,6 +23,7 @@ fn files(folder: &TempDir, instants: usize, count: usize) -> Vec<PathBuf> {
             positions: (0..count).flat_map(|i| [i as f64, -(i as f64)]).collect(),
             ids: (0..count as u32).collect(),
             bodies: vec![0; count],
+            widths: vec![1.0; count],
             fields: vec![FieldValues {
                 description: PRESSURE,
                 values: (0..count).map(|i| (i + 1000 * instant) as f64).collect(),

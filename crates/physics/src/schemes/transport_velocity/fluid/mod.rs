@@ -32,12 +32,13 @@ use barrier::Hold;
 pub(super) use barrier::TOUCH;
 use damping::Damping;
 use open::Open;
-pub use open::{Flow, OpenBoundaries, OpenBoundary};
+pub use open::{Flow, Nesting, OpenBoundaries, OpenBoundary, Refined};
 
 columns! {
     pub(super) struct Stored, StoredMut, enum Own;
     evolved opening: Scalar, "1", "open boundary in whose buffer the particle is, counted from 1; 0 in the fluid";
     evolved birth: Scalar, "1", "how many particles had come in when this one did; 0 if it was there at the start";
+    evolved nesting: Scalar, "1", "part of the particle among levels of resolution: 2 where it follows those of another one, 1 where finer ones stand beside it";
     derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
     derived(1) pressure_force: Vector, "N", "of `force` on a wall, that of the pressure";
     derived(1) viscous_force: Vector, "N", "of `force` on a wall, that of viscosity";
@@ -234,6 +235,9 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             return None;
         }
         let stored = Stored::<D>::of(at.tail, common.particles.len());
+        if self.open.hides(stored.nesting[number]) {
+            return None;
+        }
         Some(self.open.body(stored.opening[number]).unwrap_or(common.particles.body[number]))
     }
 
@@ -250,7 +254,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         Self::waiting(self, common, state)
     }
 
-    fn starved(&self, common: &Common<D>, state: &[f64]) -> Option<(usize, &str)> {
+    fn starved(&self, common: &Common<D>, state: &[f64]) -> Option<(usize, Option<&str>)> {
         Self::starved(self, common, state)
     }
 
@@ -343,8 +347,9 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
 
     /// A pressure that follows from the density changes at once.
     fn store(&self, common: &Common<D>, state: &mut [f64], totals: &mut Totals) {
-        totals.part(WALLS, OPENINGS, &self.store_open(common, state));
-        totals.part(BODY_FORCE, DAMPING, &self.store_damping(common, state));
+        let [of_walls, of_fluid] = self.store_open(common, state);
+        totals.part(&[(WALLS, of_walls), (PRESSURE, of_fluid)], OPENINGS);
+        totals.part(&[(BODY_FORCE, self.store_damping(common, state))], DAMPING);
         if !common.settings.is_algebraic() {
             return common.store::<Self>(state, totals);
         }

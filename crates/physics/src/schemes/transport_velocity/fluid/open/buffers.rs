@@ -90,6 +90,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         if open.is_empty() {
             return;
         }
+        self.move_followers(common, step, state);
         let impedance = self.fluid.density * self.fluid.wave_speed;
         let (own, _) = common.parts(state);
         for (&number, seen) in open.members.iter().zip(&open.seen) {
@@ -114,56 +115,39 @@ impl<const D: usize> WeaklyCompressible<D> {
         }
     }
 
-    /// Finds what the buffers do to the fluid, of the forces of walls that have been found.
+    /// Finds what the buffers do to the fluid, of the forces of walls that have been found, and the pressure of those that
+    /// follow other levels, of the forces among the fluid.
     pub(in super::super) fn part_forces(&mut self, common: &Common<D>) {
         let mut forces = std::mem::take(&mut self.open.forces);
+        let mut pulls = std::mem::take(&mut self.open.pulls);
         let (list, roles) = (common.support.list(), &self.open.roles);
         let (constants, _) = self.force_law(common);
         let law = Wall::<D>::of(&constants);
-        let is_buffer = |place: u32| roles[list.numbers()[place as usize] as usize] > 0;
+        let number = |place: usize| list.numbers()[place];
         let (all, reach) = (&self.open.boundaries.all, list.support());
         // Most of the fluid is far from all planes, and need not look at its neighbours.
-        let near_opening = |place: usize| {
-            let at = &list.positions()[place];
+        let near_opening = |at: &Vector<D>| {
             all.iter().any(|it| (it.plane - at.dot(&it.normal)).abs() < reach + it.length)
         };
-        parallel::for_each_chunk(&mut forces, |first, rows| {
-            let mut block = NeighborBlock::default();
-            for (offset, row) in rows.iter_mut().enumerate() {
-                let place = first + offset;
-                *row = Vector::zeros();
-                if list.is_passive(place) || !near_opening(place) {
-                    continue;
-                }
-                let [_, passive] = common.support.places_of(place);
-                if !passive.iter().any(|&other| is_buffer(other)) {
-                    continue;
-                }
-                let me = &common.sides[place];
-                visit(
-                    &common.support,
-                    place,
-                    Among::Passive,
-                    Needs::Slope,
-                    &mut block,
-                    |other, pair| {
-                        if is_buffer(other as u32) {
-                            let jump = me.velocity - self.shear[other];
-                            law.push([me, &common.sides[other]], &jump, pair, row);
-                        }
-                    },
-                );
-            }
-        });
-        self.open.forces = forces;
+        let of_buffers =
+            |other: usize| (roles[number(other) as usize] > 0).then(|| self.shear[other]);
+        part(common, law, Among::Passive, near_opening, of_buffers, &mut forces);
+        let near_level = |at: &Vector<D>| self.meets_followers(at, reach);
+        let of_followers =
+            |other: usize| self.is_follower(number(other)).then(|| common.sides[other].velocity);
+        let law = Wall { viscosity: 0.0, ..law };
+        part(common, law, Among::Active, near_level, of_followers, &mut pulls);
+        (self.open.forces, self.open.pulls) = (forces, pulls);
     }
 
-    /// The power of the buffers and their force, and what those that fluid enters through keep of its velocity.
-    pub(in super::super) fn store_open(&self, common: &Common<D>, state: &mut [f64]) -> Total {
+    /// The power of the buffers and their force, and those of what follows other levels; and what those that fluid enters
+    /// through keep of its velocity.
+    pub(in super::super) fn store_open(&self, common: &Common<D>, state: &mut [f64]) -> [Total; 2] {
         let open = &self.open;
         if open.is_empty() {
-            return Total::default();
+            return [Total::default(); 2];
         }
+        self.keep_followers(common, state);
         let (own, _) = common.parts(state);
         for (&number, seen) in open.members.iter().zip(&open.seen) {
             if let Some(velocity) = seen.entering {
@@ -172,15 +156,55 @@ impl<const D: usize> WeaklyCompressible<D> {
         }
         let at = common.columns(state);
         let places = common.support.list().places();
-        parallel::sums(places.len(), |number, sum: &mut Total| {
-            let place = places[number] as usize;
-            let (force, mass) = (open.forces[place], common.mass[number]);
-            if force != Vector::<D>::zeros() {
-                sum.push(&at.position[number], &at.velocity[number], &(force * mass));
-                sum.growth += mass * force.dot(&common.forces[place].total());
-            }
+        [&open.forces, &open.pulls].map(|forces| {
+            parallel::sums(forces.len(), |number, sum: &mut Total| {
+                let place = places[number] as usize;
+                let (force, mass) = (forces[place], common.mass[number]);
+                if force != Vector::<D>::zeros() {
+                    sum.push(&at.position[number], &at.velocity[number], &(force * mass));
+                    sum.growth += mass * force.dot(&common.forces[place].total());
+                }
+            })
         })
     }
+}
+
+/// Fills `forces` by place with those of some neighbours on fluid in some places: `theirs` is the velocity that
+/// viscous forces see of a neighbour that counts.
+fn part<const D: usize>(
+    common: &Common<D>,
+    law: Wall<D>,
+    among: Among,
+    is_near: impl Fn(&Vector<D>) -> bool + Sync,
+    theirs: impl Fn(usize) -> Option<Vector<D>> + Sync,
+    forces: &mut [Vector<D>],
+) {
+    let list = common.support.list();
+    let kind = usize::from(among == Among::Passive);
+    parallel::for_each_chunk(forces, |first, rows| {
+        let mut block = NeighborBlock::default();
+        for (offset, row) in rows.iter_mut().enumerate() {
+            let place = first + offset;
+            *row = Vector::zeros();
+            if list.is_passive(place)
+                || common.is_wall[list.numbers()[place] as usize]
+                || !is_near(&list.positions()[place])
+            {
+                continue;
+            }
+            let neighbors = common.support.places_of(place)[kind];
+            if !neighbors.iter().any(|&other| theirs(other as usize).is_some()) {
+                continue;
+            }
+            let me = &common.sides[place];
+            visit(&common.support, place, among, Needs::Slope, &mut block, |other, pair| {
+                if let Some(velocity) = theirs(other) {
+                    let jump = me.velocity - velocity;
+                    law.push([me, &common.sides[other]], &jump, pair, row);
+                }
+            });
+        }
+    });
 }
 
 /// What share of their change slow means follow within a step in s.

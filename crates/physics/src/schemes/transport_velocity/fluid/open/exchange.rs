@@ -38,12 +38,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         }
         let mut changes = std::mem::take(&mut self.open.changes);
         self.find_changes(common, state, &mut changes);
-        let mut free = std::mem::take(&mut self.open.free);
-        free.clear();
-        let (own, _) = common.parts(state);
-        let vacant =
-            own.density.iter().enumerate().filter(|(_, rho)| Common::<D>::is_removed(**rho));
-        free.extend(vacant.map(|(number, _)| number as u32));
+        let mut free = self.vacant(common, state);
         // Those that leave make room for those that come in.
         for &(number, _) in changes.iter().filter(|(_, change)| *change == Change::Leave) {
             self.take_out(common, number, state);
@@ -83,6 +78,16 @@ impl<const D: usize> WeaklyCompressible<D> {
         self.prescribe(common, time, state);
         (self.open.free, self.open.changes) = (free, changes);
         total
+    }
+
+    /// The particles that wait, the last numbers first.
+    pub(super) fn vacant(&mut self, common: &Common<D>, state: &[f64]) -> Vec<u32> {
+        let mut free = std::mem::take(&mut self.open.free);
+        free.clear();
+        let density = common.columns(state).density.iter().enumerate().rev();
+        let vacant = density.filter(|(_, rho)| Common::<D>::is_removed(**rho));
+        free.extend(vacant.map(|(number, _)| number as u32));
+        free
     }
 
     /// Sets the velocities of buffers to what is prescribed at a time in s.
@@ -148,7 +153,7 @@ impl<const D: usize> WeaklyCompressible<D> {
     }
 
     /// Books what a particle brings into the fluid, or takes out of it.
-    fn carry_over(
+    pub(super) fn carry_over(
         &self,
         common: &Common<D>,
         number: usize,

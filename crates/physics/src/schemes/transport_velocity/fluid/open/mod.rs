@@ -3,10 +3,13 @@
 mod buffers;
 mod even;
 mod exchange;
+mod nested;
 
 use std::sync::Arc;
 
 use exchange::Change;
+use nested::FOLLOWS;
+pub use nested::{Nesting, Refined};
 
 use super::{Columns, Common, Fluid, LEDGER, Stored, StoredMut, WeaklyCompressible};
 use crate::boundaries::{SpaceTime, padded};
@@ -92,6 +95,15 @@ pub struct OpenBoundaries<const D: usize> {
     pub buffers: Vec<u32>,
     /// How many particles, the last ones, are not there at the start: they come in when they are needed.
     pub reserve: usize,
+    /// How the fluid is nested among others of another resolution, if there are some.
+    pub nesting: Option<Nesting<D>>,
+}
+
+impl<const D: usize> OpenBoundaries<D> {
+    /// Whether no particle ever comes in.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty() && self.nesting.is_none()
+    }
 }
 
 /// What a buffer takes from the fluid in front of it.
@@ -148,8 +160,14 @@ pub(super) struct Open<const D: usize> {
     members: Vec<u32>,
     seen: Vec<Seen<D>>,
     means: Vec<Mean>,
-    /// What the buffers do to the fluid in m/s^2, by place.
+    /// What the buffers do to the fluid in m/s^2, by place, and the pressure of those that follow other levels.
     forces: Vec<Vector<D>>,
+    pulls: Vec<Vector<D>>,
+    /// Which part particles have among levels, by number, as they were loaded, and who follows.
+    nested: Vec<f64>,
+    followers: Vec<u32>,
+    /// Who is passive, by number.
+    passive: Vec<bool>,
     /// Particles that wait.
     free: Vec<u32>,
     /// What changes in an exchange.
@@ -164,7 +182,8 @@ impl<const D: usize> Open<D> {
     /// Those of particles that are at `places` at the start.
     pub fn new(boundaries: OpenBoundaries<D>, places: &[Vector<D>]) -> Self {
         let all = boundaries.all.len();
-        let count = if all > 0 { places.len() } else { 0 };
+        let count = if boundaries.is_empty() { 0 } else { places.len() };
+        let pulls = if boundaries.nesting.is_some() { count } else { 0 };
         let in_buffer = |role: usize| {
             let both = boundaries.buffers.iter().zip(places);
             both.filter(move |(buffer, _)| **buffer as usize == role + 1).map(|(_, place)| *place)
@@ -177,18 +196,27 @@ impl<const D: usize> Open<D> {
             seen: Vec::with_capacity(count),
             means: vec![Mean::default(); all],
             forces: vec![Vector::zeros(); count],
+            pulls: vec![Vector::zeros(); pulls],
+            nested: vec![0.0; count],
+            followers: Vec::with_capacity(pulls),
+            passive: Vec::with_capacity(count),
             free: Vec::with_capacity(count),
             changes: Vec::new(),
         }
     }
 
     pub fn is_empty(&self) -> bool {
-        self.boundaries.all.is_empty()
+        self.boundaries.is_empty()
     }
 
     /// Numbers that a state keeps behind those of all matter.
     pub fn kept(&self) -> usize {
         if self.is_empty() { 0 } else { COUNTS + KEPT * self.boundaries.all.len() }
+    }
+
+    /// Whether a particle with a part among levels is another level's.
+    pub fn hides(&self, nesting: f64) -> bool {
+        nesting == FOLLOWS
     }
 
     /// The body of a particle with a role, if it is in a buffer.
@@ -252,6 +280,12 @@ impl<const D: usize> WeaklyCompressible<D> {
         for (role, buffer) in stored.opening.iter_mut().zip(&open.boundaries.buffers) {
             *role = f64::from(*buffer);
         }
+        if let Some(nesting) = &open.boundaries.nesting {
+            let (places, fluid) = (&common.particles.position, 0..count - reserve);
+            for number in fluid.filter(|&number| !common.is_wall[number]) {
+                stored.nesting[number] = nesting.start(&places[number]);
+            }
+        }
     }
 
     /// Takes from a state which particles are in buffers, and which are not there.
@@ -265,28 +299,43 @@ impl<const D: usize> WeaklyCompressible<D> {
         let each = LEDGER.behind(D, stored.tail)[1 + COUNTS..].chunks_exact(KEPT);
         let both = open.means.iter_mut().zip(each);
         both.for_each(|(mean, kept)| (mean.slow, mean.stream) = (kept[0], kept[3]));
-        let (roles, removed) = (&open.roles, &common.removed);
+        let (roles, nested, removed) = (&open.roles, &open.nested, &common.removed);
         let differs = parallel::maximum(roles.len(), 0.0, |number| {
             let is_removed = Common::<D>::is_removed(at.density[number]);
-            let is_same =
-                stored.opening[number] == f64::from(roles[number]) && is_removed == removed[number];
+            let is_same = stored.opening[number] == f64::from(roles[number])
+                && stored.nesting[number] == nested[number]
+                && is_removed == removed[number];
             f64::from(u8::from(!is_same))
         });
         if differs == 0.0 {
             return;
         }
         open.members.clear();
+        open.followers.clear();
+        let mut is_relisted = open.passive.is_empty();
+        open.passive.clear();
         for (number, &role) in stored.opening.iter().enumerate() {
             let is_removed = Common::<D>::is_removed(at.density[number]);
-            let was_wall =
-                common.is_wall[number] && open.roles[number] == 0 && !common.removed[number];
+            let was_removed = common.removed[number];
+            let takes_no_part = open.roles[number] > 0 || open.nested[number] == FOLLOWS;
+            let was_wall = common.is_wall[number] && !takes_no_part && !was_removed;
+            let is_passive = was_wall || is_removed || role > 0.0;
+            is_relisted |= was_removed != is_removed || (open.roles[number] > 0) != (role > 0.0);
+            let follows = stored.nesting[number] == FOLLOWS;
             (open.roles[number], common.removed[number]) = (role as u32, is_removed);
-            common.is_wall[number] = was_wall || is_removed || role > 0.0;
+            open.nested[number] = stored.nesting[number];
+            common.is_wall[number] = is_passive || follows;
+            open.passive.push(is_passive);
             if role > 0.0 {
                 open.members.push(number as u32);
             }
+            if follows {
+                open.followers.push(number as u32);
+            }
         }
-        common.support.exclude(&common.is_wall, &common.removed);
+        if is_relisted {
+            common.support.exclude(&open.passive, &common.removed);
+        }
     }
 
     /// Keeps the slow pressures of the start.
@@ -332,16 +381,24 @@ impl<const D: usize> WeaklyCompressible<D> {
         Some([each[1], each[2]])
     }
 
-    /// The first particle that could not come in for want of others to follow it, and the name of its boundary.
-    pub(super) fn starved(&self, common: &Common<D>, state: &[f64]) -> Option<(usize, &str)> {
+    /// The first particle that could not come in for want of others to follow it, and the name of its boundary; of a finer
+    /// level, in which those of the coarser one could not be split, the first of its band.
+    pub(super) fn starved(
+        &self,
+        common: &Common<D>,
+        state: &[f64],
+    ) -> Option<(usize, Option<&str>)> {
         if !(self.counts(common, state)?[1] > 0.0) {
             return None;
+        }
+        if self.nesting().is_some_and(|nesting| nesting.own.is_some()) {
+            return Some((*self.open.followers.first()? as usize, None));
         }
         let at = common.columns(state);
         self.open.members.iter().find_map(|&number| {
             let (_, boundary) = self.open.boundary_of(number as usize)?;
             let depth = boundary.plane - at.position[number as usize].dot(&boundary.normal);
-            (depth < 0.0).then_some((number as usize, boundary.name.as_str()))
+            (depth < 0.0).then_some((number as usize, Some(boundary.name.as_str())))
         })
     }
 }

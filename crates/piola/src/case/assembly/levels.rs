@@ -1,0 +1,287 @@
+//! A fluid at several resolutions: one fluid for each, nested in each other.
+
+use std::collections::BTreeSet;
+
+use super::bodies::{self, BodyReport};
+use super::fluids::{self, Prepared};
+use super::{Built, kernel, probes};
+use crate::case::diagnostics::Problem;
+use crate::case::model::{self, Case};
+use crate::case::source::Located;
+use crate::geometry::{Particles, Shape};
+use crate::neighbors::Domain;
+use crate::schemes::Scheme;
+use crate::schemes::transport_velocity::{
+    DensityRule, Levels, Nesting, Refined, TransportVelocity, WeaklyCompressible,
+};
+
+/// How far beyond the support of the finer level, in spacings of the coarser one, particles of that are split, and how far
+/// the finer ones go, so that one that is split twice is further out than the last one that is needed.
+const BAND: [f64; 2] = [1.5, 3.0];
+
+/// Which part of the particles of a finer level waits, beyond those of the start.
+const RESERVE: f64 = 0.25;
+
+/// Builds a fluid with regions of finer spacing out of the particles at the spacing of its bodies.
+pub(super) fn build<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    particles: Particles<D>,
+    reports: Vec<BodyReport>,
+    domain: Domain<D>,
+) -> Result<(Box<dyn Scheme>, Built), Vec<Problem>> {
+    check(case, settings)?;
+    let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
+    let regions = regions(case, settings, spacing)?;
+    clear_of_openings(case, &particles, (settings, spacing), &regions[0])?;
+    let (mut levels, mut all) = (Vec::new(), Vec::new());
+    let mut coarsest = Some((particles, reports));
+    let mut built: Option<Built> = None;
+    for level in 0..=regions.len() {
+        let own = level.checked_sub(1).map(|before| &regions[before]);
+        let nesting = Nesting { own: own.cloned(), finer: regions.get(level).cloned() };
+        let of_level = at(case, level);
+        let (particles, reports) = match coarsest.take() {
+            Some(coarsest) => coarsest,
+            None => of_region(&of_level, settings, &domain, &nesting)?,
+        };
+        if let (Some(own), Some(before)) = (own, level.checked_sub(2)) {
+            within(case, settings, (&particles, own), &regions[before], level)?;
+        }
+        let prepared = fluids::prepare(&of_level, settings, particles, reports, domain, nesting)?;
+        all.push(prepared.particles().clone());
+        let (fluid, of_fluid) = finish(prepared, &of_level, settings)?;
+        levels.push(fluid);
+        match &mut built {
+            None => built = Some(of_fluid),
+            Some(built) => built.warnings.extend(of_fluid.warnings),
+        }
+    }
+    let levels = Levels::new(levels).map_err(|error| {
+        let place = settings.smoothing_length.place;
+        vec![case.problem_at(place, error.to_string(), "with this smoothing length", None)]
+    })?;
+    let mut built = built.expect("there is a coarsest level");
+    let mut told = BTreeSet::new();
+    built.warnings.retain(|warning| told.insert(warning.clone()));
+    let mut shown = Particles::default();
+    for (level, particles) in all.iter().enumerate() {
+        let own = (0..particles.len() as u32).filter(|&a| levels.index_of(level, a).is_some());
+        shown.extend(particles, &own.collect::<Vec<_>>());
+    }
+    for report in &mut built.bodies {
+        (report.particles, report.volume) = (0, 0.0);
+    }
+    let start = levels.initial_state();
+    for (a, volume) in shown.volume.iter().enumerate() {
+        if let Some(body) = levels.body_of(&start, a) {
+            let report = &mut built.bodies[body as usize];
+            (report.particles, report.volume) = (report.particles + 1, report.volume + volume);
+        }
+    }
+    let mut problems = Vec::new();
+    let probes = probes::probes(case, &shown, &mut problems);
+    let lines = probes::lines(case, &shown);
+    let index = |a: u32| levels.index_of(0, a);
+    let poorly_supported = built.poorly_supported.into_iter().filter_map(index).collect();
+    match problems.is_empty() {
+        true => Ok((Box::new(levels), Built { probes, lines, poorly_supported, ..built })),
+        false => Err(problems),
+    }
+}
+
+/// What no fluid at several resolutions can have.
+fn check(case: &Case, settings: &model::TransportVelocity) -> Result<(), Vec<Problem>> {
+    let place = settings.refine[0].place;
+    let refuse = |message: &str, help: &str| {
+        Err(vec![case.problem_at(place, message, "no meaning here", Some(help.to_owned()))])
+    };
+    if settings.settings.free_surface {
+        return refuse(
+            "a fluid with free surfaces has one spacing",
+            "remove `refine` or `free_surface`",
+        );
+    }
+    if settings.settings.density == DensityRule::Summation {
+        return refuse(
+            "where spacings meet no level sees all masses, so that the density is no sum of them",
+            "use `density = \"continuity\"`",
+        );
+    }
+    if let Some(body) = case.bodies.iter().find(|body| body.shape.value.is_from_file()) {
+        let message =
+            format!("points from a file, as of the body `{}`, have one spacing", *body.name);
+        return refuse(&message, "describe the body by shapes, or remove `refine`");
+    }
+    Ok(())
+}
+
+/// The regions with how far their particles go, for the spacing of the coarsest level in m.
+fn regions<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    spacing: f64,
+) -> Result<Vec<Refined<D>>, Vec<Problem>> {
+    let kernel = kernel(case, &settings.kernel)?;
+    let mut regions = Vec::new();
+    let mut coarse = spacing;
+    for region in &settings.refine {
+        let shape = bodies::shape::<D>(case, &case.bodies[0], region).map_err(|it| vec![it])?;
+        let support = kernel.support_radius(0.5 * coarse * *settings.smoothing_length);
+        let reach = BAND.map(|band| support + band * coarse);
+        let (low, high) = shape.bounding_box();
+        for (axis, ends) in case.domain.periodic.iter().enumerate().take(D) {
+            let Some([begin, end]) = ends.as_ref().map(|ends| ends.value) else { continue };
+            let is_across = low[axis] <= begin - reach[1] && high[axis] >= end + reach[1];
+            let is_inside = low[axis] >= begin + reach[1] && high[axis] <= end - reach[1];
+            if !is_across && !is_inside {
+                let message = format!(
+                    "the region ends within {:.3e} m of a bound of a periodic axis, where its finer particles would go round",
+                    reach[1]
+                );
+                let help =
+                    "end it further inside, or let it go beyond both bounds by more than that";
+                return Err(vec![case.problem_at(
+                    region.place,
+                    message,
+                    "too near",
+                    Some(help.into()),
+                )]);
+            }
+        }
+        regions.push(Refined { shape, reach });
+        coarse *= 0.5;
+    }
+    Ok(regions)
+}
+
+/// Refuses a region that the buffer of an opening is in or too near to.
+fn clear_of_openings<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    (settings, spacing): (&model::TransportVelocity, f64),
+    region: &Refined<D>,
+) -> Result<(), Vec<Problem>> {
+    let kernel = kernel(case, &settings.kernel)?;
+    let distance = region.reach[1] + kernel.support_radius(spacing * *settings.smoothing_length);
+    let both = particles.position.iter().zip(&particles.body);
+    let near = both.filter(|(x, body)| {
+        case.bodies[**body as usize].opening.is_some() && region.shape.depth(x) > -distance
+    });
+    match near.map(|(_, body)| &case.bodies[*body as usize].name).next() {
+        None => Ok(()),
+        Some(name) => {
+            let message = format!(
+                "the region is less than {distance:.3e} m away from the opening `{}`, whose particles have the spacing of its body",
+                **name
+            );
+            let help = Some("end the region further inside".to_owned());
+            Err(vec![case.problem_at(settings.refine[0].place, message, "too near", help)])
+        }
+    }
+}
+
+/// Refuses a region whose finer particles go out of the region before, or so near to its bounds that spacings would be
+/// divided by four within a support.
+fn within<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    (particles, own): (&Particles<D>, &Refined<D>),
+    before: &Refined<D>,
+    level: usize,
+) -> Result<(), Vec<Problem>> {
+    let needed = before.reach[1];
+    let is_fluid = |a: &usize| case.bodies[particles.body[*a] as usize].wall.is_none();
+    let all = (0..particles.len()).filter(is_fluid);
+    let Some(out) = all.into_iter().find(|&a| before.shape.depth(&particles.position[a]) < needed)
+    else {
+        return Ok(());
+    };
+    let message = format!(
+        "the spacing would be divided by four near {:?} m: the particles of this region, which go {:.3e} m beyond it, have to stay {needed:.3e} m inside of the region before",
+        particles.position[out].as_slice(),
+        own.reach[1],
+    );
+    let help = Some("make this region smaller, or the one before larger".to_owned());
+    Err(vec![case.problem_at(settings.refine[level - 1].place, message, "too near", help)])
+}
+
+/// The case at the spacings of a level, without what looks at all of them.
+fn at(case: &Case, level: usize) -> Case {
+    let mut own = case.clone();
+    own.probes.clear();
+    for body in own.bodies.iter_mut().filter(|_| level > 0) {
+        body.opening = None;
+        body.spacing.value.iter_mut().for_each(|spacing| *spacing *= 0.5_f64.powi(level as i32));
+    }
+    own
+}
+
+/// The particles of a finer level: its fluid within reach of its region, with the walls that this sees.
+fn of_region<const D: usize>(
+    case: &Case,
+    settings: &model::TransportVelocity,
+    domain: &Domain<D>,
+    nesting: &Nesting<D>,
+) -> Result<(Particles<D>, Vec<BodyReport>), Vec<Problem>> {
+    let (mut particles, reports) = bodies::particles::<D>(case, domain)?;
+    let Some(Refined { shape, reach: [begin, end] }) = &nesting.own else {
+        return Ok((particles, reports));
+    };
+    let kernel = kernel(case, &settings.kernel)?;
+    let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
+    let seen = end + kernel.support_radius(*settings.smoothing_length * spacing) + spacing;
+    let is_kept = |&a: &u32| {
+        let a = a as usize;
+        let is_wall = case.bodies[particles.body[a] as usize].wall.is_some();
+        shape.depth(&particles.position[a]) > if is_wall { -seen } else { -begin }
+    };
+    let kept: Vec<u32> = (0..particles.len() as u32).filter(is_kept).collect();
+    let is_fluid = |a: &&u32| case.bodies[particles.body[**a as usize] as usize].wall.is_none();
+    if !kept.iter().any(|a| is_fluid(&a)) {
+        let place = settings.refine.last().map_or(case.scheme.place, |it| it.place);
+        return Err(vec![case.problem_at(place, "no fluid is in this region", "empty", None)]);
+    }
+    particles.keep(&kept);
+    Ok((particles, reports))
+}
+
+/// Binds a level to its fluid.
+fn finish<const D: usize>(
+    prepared: Prepared<D>,
+    case: &Case,
+    settings: &model::TransportVelocity,
+) -> Result<(TransportVelocity<D>, Built), Vec<Problem>> {
+    prepared.finish::<WeaklyCompressible<D>>(case, settings, fluids::fluid(case)?)
+}
+
+/// Which part of the particles of a level waits at the start: of the coarsest none does but for openings.
+pub(super) fn reserve<const D: usize>(
+    settings: &model::TransportVelocity,
+    nesting: &Nesting<D>,
+    particles: &Particles<D>,
+) -> usize {
+    let usual = (RESERVE * particles.len() as f64).ceil() as usize;
+    match nesting.own {
+        Some(_) => settings.reserve.map_or(usual, |reserve| reserve as usize),
+        None => 0,
+    }
+}
+
+/// The spacing in m of the finest level at a place, for that of the coarsest.
+pub(super) fn spacing_at(case: &Case, place: &[f64], coarsest: f64) -> f64 {
+    let model::Scheme::TransportVelocity(settings) = &case.scheme.value else { return coarsest };
+    let depth = |region: &Located<model::Shape>| match case.dimension {
+        1 => depth_of::<1>(case, region, place),
+        2 => depth_of::<2>(case, region, place),
+        _ => depth_of::<3>(case, region, place),
+    };
+    let levels = settings.refine.iter().take_while(|region| depth(region) > 0.0).count();
+    coarsest * 0.5_f64.powi(levels as i32)
+}
+
+/// How deep a place is in a shape in m.
+fn depth_of<const D: usize>(case: &Case, region: &Located<model::Shape>, place: &[f64]) -> f64 {
+    let shape: Result<Shape<D>, _> = bodies::shape(case, &case.bodies[0], region);
+    shape.map_or(f64::NEG_INFINITY, |shape| shape.depth(&bodies::vector(place)))
+}
