@@ -44,7 +44,7 @@ fn a_stream_goes_through_finer_regions() {
         .replace("y = [0.0, \"length\"]", "y = [0.0, 0.6]")
         .replace("max = [\"length\", \"length\"]", "max = [\"length\", 0.6]");
     let probe = "[[probe]]\nname = \"error\"\nkind = \"error\"\nbody = \"water\"\nfield = \"velocity\"\ncomponents = { x = \"1\", y = \"0\" }\n";
-    let finished = run(&format!("{text}{probe}"), &["parameters.length=3.0", "parameters.end=0.5"]);
+    let finished = run(&format!("{text}{probe}"), &["parameters.length=3.0", "parameters.end=0.3"]);
     assert_eq!(finished.summary.outcome.summary(), "completed");
     let worst = values(&finished, "error.error").into_iter().fold(0.0, f64::max);
     // Finer particles are born in the cells of a lattice that goes on without end, and a uniform stream is met exactly.
@@ -173,7 +173,7 @@ fn levels_resume_and_run_on_threads_to_the_bit() {
 fn a_stream_goes_through_a_finer_cube() {
     let text = fluid(3, &cube(3, 0.3, 0.7), "velocity = [\"1\", \"0.5\", \"0\"]");
     let probe = "[[probe]]\nname = \"error\"\nkind = \"error\"\nbody = \"water\"\nfield = \"velocity\"\ncomponents = { x = \"1\", y = \"0.5\", z = \"0\" }\n";
-    let set = ["parameters.dx=0.05", "parameters.length=1.0", "parameters.end=0.1"];
+    let set = ["parameters.end=0.05"];
     let finished = run(&format!("{text}{probe}"), &set);
     assert_eq!(finished.summary.outcome.summary(), "completed");
     let worst = values(&finished, "error.error").into_iter().fold(0.0, f64::max);

@@ -250,6 +250,41 @@ fn a_reserve_that_is_used_up_is_named() {
     assert!(told.contains("raise `scheme.reserve`"), "{told}");
 }
 
+/// A river half a metre deep over a smooth bed, let in with 1 m/s and out at the pressure of its depth, is a uniform stream of
+/// that depth, of a Froude number of 0.45. Its level is known to half a spacing, and what goes out in two ways through it is what
+/// comes in, to a layer of particles.
+#[test]
+fn a_river_keeps_its_level() {
+    let body = |name: &str, [low, high]: [[f64; 2]; 2], rest: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ kind = \"box\", min = {low:?}, max = {high:?} }}\nspacing = 0.05\n\
+             lattice = {{ on = \"cells\" }}\n\
+             material = {{ kind = \"weakly_compressible\", density = 2.0, wave_speed = 25.0 }}\n{rest}\n"
+        )
+    };
+    let depth = "\"2 * 9.81 * (0.5 - y)\"";
+    let text = [
+        "version = 1\ntitle = \"A river\"\ndimension = 2\n".to_owned(),
+        body("water", [[0.0, 0.0], [1.0, 0.5]], &format!("initial = {{ velocity = [\"1\", \"0\"], pressure = {depth} }}")),
+        body("source", [[-0.2, 0.0], [0.0, 0.5]], "opening = { normal = [1.0, 0.0], velocity = [\"1\", \"0\"] }"),
+        body("mouth", [[1.0, 0.0], [1.2, 0.5]], &format!("opening = {{ normal = [-1.0, 0.0], pressure = {depth} }}")),
+        body("bed", [[-0.2, -0.2], [1.2, 0.0]], "wall = { slip = \"free\" }"),
+        "[[load]]\nkind = \"body_force\"\nacceleration = [\"0\", \"-9.81\"]\n".to_owned(),
+        "[scheme]\nkind = \"transport_velocity\"\nfree_surface = true\n[time]\nend = 2.0\n".to_owned(),
+        "[[probe]]\nname = \"level\"\nkind = \"gauge\"\nbody = \"water\"\nfrom = [0.5, 0.0]\nto = [0.5, 1.0]\n".to_owned(),
+        "[output]\nevery = 1.0\ntable_every = 0.1\n".to_owned(),
+    ];
+    let finished = run(&text.concat(), &[]);
+    assert_eq!(finished.summary.outcome.summary(), "completed");
+    for level in values(&finished, "level.elevation") {
+        assert!((level - 0.5).abs() < 0.025, "{level}");
+    }
+    for name in ["step.entered", "step.left"] {
+        let mass = values(&finished, name).pop().expect("a row");
+        assert!((mass - 2.0 * 2.0 * 0.5).abs() < 2.0 * 0.5 * 0.05 * 1.25, "{name} {mass}");
+    }
+}
+
 #[test]
 fn openings_that_cannot_work_are_refused() {
     let refused = |set: &[&str], what: &str| {

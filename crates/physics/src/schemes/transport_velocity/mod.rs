@@ -62,7 +62,7 @@ pub use fluid::{
 };
 pub use forces::{Forces, Rates};
 pub(crate) use interface::Guide;
-pub use levels::Levels;
+pub use levels::{Levels, refined};
 pub use settings::{
     AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,
     Shifting, Slip, Viscous,

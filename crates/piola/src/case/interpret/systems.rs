@@ -22,6 +22,8 @@ pub(super) struct Known {
     pub without: Option<Without>,
     /// Whether fields are those of all systems.
     pub is_of_all: bool,
+    /// Whether it has regions of finer spacing.
+    is_refined: bool,
 }
 
 /// What a scheme offers with other settings than those it has.
@@ -42,6 +44,9 @@ impl Known {
 
     /// The formulation, with its matter.
     pub fn described(&self) -> Option<&'static SchemeDescription> {
+        if self.is_refined {
+            return Some(transport_velocity::refined());
+        }
         SchemeDescription::of(self.scheme, if self.is_solid { "solids" } else { "fluids" })
     }
 
@@ -69,7 +74,12 @@ impl Known {
             }),
             _ => None,
         };
-        Self { name: name.to_owned(), scheme, is_solid, without, is_of_all: false }
+        let is_refined = match settings.map(|settings| &settings.value) {
+            Some(Scheme::TransportVelocity(settings)) => !settings.refine.is_empty(),
+            _ => false,
+        };
+        let name = name.to_owned();
+        Self { name, scheme, is_solid, without, is_of_all: false, is_refined }
     }
 }
 

@@ -5,7 +5,7 @@
 //! fills the whole fluid. A finer one fills its region and a band around it.
 //!
 //! Where a finer level has its region, the particles of the coarser one follow it, and in the band those of the finer
-//! one follow the coarser: their velocity and pressure are those of the linear function that fits the other level, (95),
+//! one follow the coarser: their velocity and pressure are those of the function that fits the other level, (95),
 //! and they move with them and are shifted as all others. A particle is counted where its level is the finest there is.
 //!
 //! The coarsest level loses and gains no particle where levels meet, so that its mass is exact. A particle that comes
@@ -51,6 +51,15 @@ static DESCRIPTION: LazyLock<SchemeDescription> = LazyLock::new(|| {
     }
 });
 
+/// What a fluid at several resolutions is called and what it shows.
+pub fn refined() -> &'static SchemeDescription {
+    &DESCRIPTION
+}
+
+/// How far away in spacings particles of another level are followed: as near as there are enough of them, with walls on one
+/// side, to tell slopes and a curvature.
+const REACH: f64 = 2.5;
+
 /// A fluid at several resolutions.
 pub struct Levels<const D: usize> {
     /// From the coarsest to the finest.
@@ -86,7 +95,8 @@ impl<const D: usize> Levels<D> {
             let [all, finer] = [coarse, fine].map(|it| it.particles.position.as_slice());
             let domain: Domain<D> = *coarse.support.list().domain();
             let kernel = coarse.support.kernel();
-            let h = [fine, coarse].map(|it| it.support.smoothing_length());
+            let h =
+                [fine, coarse].map(|it| REACH * it.particles.spacing[0] / kernel.support_over_h());
             transfers.push([
                 Transfer::new([finer, all], kernel, h[0], domain)?,
                 Transfer::new([all, finer], kernel, h[1], domain)?,

@@ -1,6 +1,6 @@
 //! A fluid at several resolutions as integrators, clock and output see it.
 
-use super::{DESCRIPTION, Levels};
+use super::{Levels, refined};
 use crate::fields::FieldDescription;
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
@@ -10,7 +10,7 @@ use crate::schemes::{
 
 impl<const D: usize> Scheme for Levels<D> {
     fn description(&self) -> &'static SchemeDescription {
-        &DESCRIPTION
+        refined()
     }
 
     fn dimension(&self) -> usize {

@@ -2,7 +2,7 @@
 
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::Record;
-use piola_formulas::pairs::fit::{Flow, FlowSide, LinearFit};
+use piola_formulas::pairs::fit::{Fit, Flow, FlowSide};
 
 use crate::Vector;
 use crate::neighbors::{Domain, NeighborError};
@@ -91,8 +91,7 @@ impl<const D: usize> Transfer<D> {
             let number = list.numbers()[place] as usize;
             (number >= givers && !is_out[number]).then_some(place)
         };
-        let sum =
-            Term { law: LinearFit::<D>, source: self.given.as_slice(), among: Among::Passive };
+        let sum = Term { law: Fit::<D>, source: self.given.as_slice(), among: Among::Passive };
         gather(&self.support, &sum, &mut self.found, takes, |_, sums, row| {
             *row = sums.at_centre();
         });

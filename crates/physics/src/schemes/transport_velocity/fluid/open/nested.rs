@@ -207,10 +207,12 @@ impl<const D: usize> WeaklyCompressible<D> {
         state: &[f64],
     ) -> [f64; 2] {
         let at = common.columns(state);
-        let nesting = Stored::<D>::of(at.tail, common.particles.len()).nesting;
+        let Stored { nesting, opening, .. } = Stored::<D>::of(at.tail, common.particles.len());
         let counted = (0..common.particles.len() as u32).filter(|&number| {
             let a = number as usize;
-            let is_there = nesting[a] != FOLLOWS && !Common::<D>::is_removed(at.density[a]);
+            let is_there = nesting[a] != FOLLOWS
+                && opening[a] == 0.0
+                && !Common::<D>::is_removed(at.density[a]);
             is_there && common.wall_of(number).is_none()
         });
         counted.fold([0.0; 2], |[mass, count], a| [mass + common.mass[a as usize], count + 1.0])
