@@ -113,7 +113,8 @@ impl<const D: usize> Common<D> {
     /// has left the bounds.
     fn escape_at(&self, place: usize, bounds: &(Vector<D>, Vector<D>)) -> Option<Option<u32>> {
         let list = self.support.list();
-        if list.is_passive(place) {
+        // Of those that follow another level that one sees whether they are where they must not be.
+        if list.is_passive(place) || self.is_wall[list.numbers()[place] as usize] {
             return None;
         }
         let position = &list.positions()[place];

@@ -62,7 +62,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         parallel::sums(places.len(), |number, sum: &mut Total| {
             let place = places[number] as usize;
             let (row, mass) = (self.damping.accelerations[place], common.mass[number]);
-            if row != Vector::<D>::zeros() {
+            if row != Vector::<D>::zeros() && !common.is_wall[number] {
                 sum.push(&at.position[number], &at.velocity[number], &(row * mass));
                 sum.growth += mass * row.dot(&common.forces[place].total());
             }

@@ -1,11 +1,14 @@
 //! A fluid at several resolutions as integrators, clock and output see it.
 
+use piola_device::Device;
+
 use super::{Levels, refined};
 use crate::fields::FieldDescription;
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
-    Escape, Health, Particle, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
+    DeviceRefusal, DeviceSteps, Escape, Health, Particle, Phase, Scheme, SchemeDescription,
+    SplitScheme, StepLimit,
 };
 
 impl<const D: usize> Scheme for Levels<D> {
@@ -214,6 +217,12 @@ impl<const D: usize> Scheme for Levels<D> {
 
     fn keeps_neighbors(&self) -> bool {
         false
+    }
+
+    fn on_device(&self, _device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        let (what, instead) =
+            ("a fluid with regions of finer spacing", "leave out `scheme.refine`");
+        Err(DeviceRefusal::Stage { what: what.into(), instead })
     }
 
     fn settable(&self) -> &'static [&'static str] {
