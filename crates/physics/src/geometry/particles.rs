@@ -54,9 +54,10 @@ impl<const D: usize> Particles<D> {
         self.gather(order, &place);
     }
 
-    /// Keeps the particles `order` (indices), none of them of a mesh, in this order.
+    /// Keeps the particles `order` (indices), none of them of a mesh, in this order, and numbers them anew.
     pub fn keep(&mut self, order: &[u32]) {
         self.gather(order, &[]);
+        self.id = (0..order.len() as u32).collect();
     }
 
     /// Appends some of the particles (indices) of others, none of them of a mesh, as parts of the same bodies. Their

@@ -12,7 +12,8 @@ pub(super) struct Part {
     /// Its particles that are shown, by index in its memory, and the index of the first of them in the run.
     pub shown: Vec<u32>,
     pub first: usize,
-    /// The index in the run of each of its particles; of one that is not shown that of who stands for it.
+    /// The index in the run of each of its particles; of one that is not shown that of the first one of its system, or
+    /// of who stands for it.
     pub index: Vec<u32>,
 }
 
@@ -37,7 +38,7 @@ impl Parts {
         start: &mut Vec<f64>,
     ) {
         let first = self.bodies.len();
-        let mut index = vec![0; system.particle_count()];
+        let mut index = vec![first as u32; system.particle_count()];
         (first as u32..).zip(&shown).for_each(|(own, &a)| index[a as usize] = own);
         self.bodies.extend(shown.iter().map(|&a| body(system.bodies()[a as usize])));
         let before = self.ids.iter().max().map_or(0, |last| last + 1);

@@ -64,8 +64,7 @@ pub enum Failure {
                 "cannot come in through the open boundary `{name}`, as no particle is left in the reserve to follow it, \
                  and is"
             ),
-            Behind::Level => "is of a finer region, into whose band too much flows: no particle is left in the reserve to \
-                be born there; one of that band is"
+            Behind::Level => "stands for a finer region whose reserve is used up, so that no particle can be born there, and is"
                 .into(),
             Behind::Surface => "has gone through the surface that it touches, and is".into(),
             Behind::Neighbors => {

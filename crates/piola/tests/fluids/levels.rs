@@ -205,5 +205,9 @@ fn regions_that_cannot_work_are_refused() {
     let finished = run(&fluid(2, &good, "velocity = [\"1\", \"0\"]"), &few);
     let Outcome::Failed(failure) = &finished.summary.outcome else { panic!("it goes on") };
     let told = failure.to_string();
-    assert!(told.contains("raise `scheme.reserve`") && told.contains("finer region"), "{told}");
+    assert!(
+        told.contains("raise `scheme.reserve`")
+            && told.contains("finer region whose reserve is used up"),
+        "{told}"
+    );
 }

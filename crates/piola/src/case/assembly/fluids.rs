@@ -30,7 +30,8 @@ pub(super) fn build<const D: usize>(
     if !settings.refine.is_empty() {
         return levels::build(case, settings, particles, reports, domain);
     }
-    let prepared = prepare(case, settings, particles, reports, domain, Nesting::default())?;
+    let alone = (Nesting::default(), 0);
+    let prepared = prepare(case, settings, particles, reports, domain, alone)?;
     if let Some(materials) = materials(case) {
         let spacing = prepared.input.particles.spacing.first().copied().unwrap_or_default();
         let solids = SolidsInput {
@@ -55,8 +56,8 @@ pub(super) fn build_fluid<const D: usize>(
     reports: Vec<BodyReport>,
     domain: Domain<D>,
 ) -> Result<(TransportVelocity<D>, Built), Vec<Problem>> {
-    let nesting = Nesting::default();
-    let prepared = prepare(case, settings, particles, reports, domain, nesting)?;
+    let alone = (Nesting::default(), 0);
+    let prepared = prepare(case, settings, particles, reports, domain, alone)?;
     prepared.finish(case, settings, fluid(case)?)
 }
 
@@ -74,14 +75,15 @@ pub(super) struct Prepared<const D: usize> {
     warnings: Vec<String>,
 }
 
-/// All but the matter of a fluid or of solids, of a fluid at several resolutions as it is nested among the others.
+/// All but the matter of a fluid or of solids, of a fluid at several resolutions as it is nested among the others, with how
+/// many particles wait in it.
 pub(super) fn prepare<const D: usize>(
     case: &Case,
     settings: &model::TransportVelocity,
     mut particles: Particles<D>,
     reports: Vec<BodyReport>,
     domain: Domain<D>,
-    nesting: Nesting<D>,
+    (nesting, reserve): (Nesting<D>, usize),
 ) -> Result<Prepared<D>, Vec<Problem>> {
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
@@ -98,12 +100,16 @@ pub(super) fn prepare<const D: usize>(
     })?);
     let (mut open, mut warnings) = openings::open::<D>(case, settings, &mut particles, support)?;
     let counts = nesting.clone();
-    nest((case, settings), nesting, &mut open, &mut particles);
+    nest(case, (nesting, reserve), &mut open, &mut particles);
     let (faces, shape) = faces(case, &particles, (first_twin, support))?;
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);
     let lines = probes::lines(case, &particles);
-    let motion = selections::prescribed(case, &particles, &mut problems);
+    let motion = match counts.own {
+        // What moves is none of the finer levels, and what selects nothing has been told of the coarsest.
+        Some(_) => Vec::new(),
+        None => selections::prescribed(case, &particles, &mut problems),
+    };
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -151,10 +157,10 @@ pub(super) fn prepare<const D: usize>(
     Ok(Prepared { input, held, probes, lines, reports, warnings })
 }
 
-/// Nests a fluid among others of another resolution, with particles in reserve behind all others.
+/// Nests a fluid among others of another resolution, with particles in reserve behind all others, each of a whole cell.
 fn nest<const D: usize>(
-    (case, settings): (&Case, &model::TransportVelocity),
-    nesting: Nesting<D>,
+    case: &Case,
+    (nesting, more): (Nesting<D>, usize),
     open: &mut OpenBoundaries<D>,
     particles: &mut Particles<D>,
 ) {
@@ -166,8 +172,10 @@ fn nest<const D: usize>(
         body.wall.is_none() && body.opening.is_none()
     };
     if let Some(model) = (0..particles.len()).find(is_fluid) {
-        let (more, body) = (levels::reserve(settings, &nesting, particles), particles.body[model]);
+        let (first, body) = (particles.len(), particles.body[model]);
         (0..more).for_each(|_| particles.repeat(model, body));
+        let whole = particles.weight[model];
+        particles.volume[first..].fill(whole);
         open.reserve += more;
     }
     open.nesting = Some(nesting);

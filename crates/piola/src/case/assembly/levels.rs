@@ -12,15 +12,18 @@ use crate::geometry::{Particles, Shape};
 use crate::neighbors::Domain;
 use crate::schemes::Scheme;
 use crate::schemes::transport_velocity::{
-    DensityRule, Levels, Nesting, Refined, TransportVelocity, WeaklyCompressible,
+    DensityRule, Levels, Nesting, Refined, Shifting, TransportVelocity, WeaklyCompressible,
 };
 
 /// How far beyond the support of the finer level, in spacings of the coarser one, particles of that are split, and how far
 /// the finer ones go, so that one that is split twice is further out than the last one that is needed.
 const BAND: [f64; 2] = [1.5, 3.0];
 
-/// Which part of the particles of a finer level waits, beyond those of the start.
-const RESERVE: f64 = 0.25;
+/// Which part of the particles of a finer level waits, beyond those of the start and those that its band has room for.
+const RESERVE: f64 = 0.1;
+
+/// What of the volume of the fluid may be told twice or not at all where levels meet without a warning.
+const VOLUME: f64 = 1e-3;
 
 /// Builds a fluid with regions of finer spacing out of the particles at the spacing of its bodies.
 pub(super) fn build<const D: usize>(
@@ -36,19 +39,25 @@ pub(super) fn build<const D: usize>(
     clear_of_openings(case, &particles, (settings, spacing), &regions[0])?;
     let (mut levels, mut all) = (Vec::new(), Vec::new());
     let mut coarsest = Some((particles, reports));
-    let mut built: Option<Built> = None;
+    let (mut built, mut spacings) = (None::<Built>, None::<Vec<Vec<f64>>>);
     for level in 0..=regions.len() {
         let own = level.checked_sub(1).map(|before| &regions[before]);
         let nesting = Nesting { own: own.cloned(), finer: regions.get(level).cloned() };
         let of_level = at(case, level);
-        let (particles, reports) = match coarsest.take() {
-            Some(coarsest) => coarsest,
+        let (particles, reports, room) = match coarsest.take() {
+            Some((particles, reports)) => (particles, reports, 0),
             None => of_region(&of_level, settings, &domain, &nesting)?,
         };
+        match &spacings {
+            None => spacings = Some(reports.iter().map(|it| it.spacing.clone()).collect()),
+            Some(coarsest) => halved(case, coarsest, &reports, level)?,
+        }
         if let (Some(own), Some(before)) = (own, level.checked_sub(2)) {
             within(case, settings, (&particles, own), &regions[before], level)?;
         }
-        let prepared = fluids::prepare(&of_level, settings, particles, reports, domain, nesting)?;
+        let reserve = reserve(settings, &nesting, &particles, room);
+        let nested = (nesting, reserve);
+        let prepared = fluids::prepare(&of_level, settings, particles, reports, domain, nested)?;
         all.push(prepared.particles().clone());
         let (fluid, of_fluid) = finish(prepared, &of_level, settings)?;
         levels.push(fluid);
@@ -69,6 +78,7 @@ pub(super) fn build<const D: usize>(
         let own = (0..particles.len() as u32).filter(|&a| levels.index_of(level, a).is_some());
         shown.extend(particles, &own.collect::<Vec<_>>());
     }
+    let alone: f64 = fluid_volume(case, &built.bodies);
     for report in &mut built.bodies {
         (report.particles, report.volume) = (0, 0.0);
     }
@@ -78,6 +88,14 @@ pub(super) fn build<const D: usize>(
             let report = &mut built.bodies[body as usize];
             (report.particles, report.volume) = (report.particles + 1, report.volume + volume);
         }
+    }
+    let off = fluid_volume(case, &built.bodies) - alone;
+    if off.abs() > VOLUME * alone {
+        built.warnings.push(format!(
+            "what counts is {:+.2} % off the volume of the fluid, as regions of `refine` cut particles of the coarser \
+             spacing: let their bounds lie half way between those, on cells of the lattice before",
+            100.0 * off / alone
+        ));
     }
     let mut problems = Vec::new();
     let probes = probes::probes(case, &shown, &mut problems);
@@ -107,6 +125,37 @@ fn check(case: &Case, settings: &model::TransportVelocity) -> Result<(), Vec<Pro
             "where spacings meet no level sees all masses, so that the density is no sum of them",
             "use `density = \"continuity\"`",
         );
+    }
+    if !matches!(settings.settings.shifting, Shifting::Sun { .. } | Shifting::None) {
+        return refuse(
+            "a fluid with regions of finer spacing is shifted by `spst`, or not at all",
+            "remove `shifting`",
+        );
+    }
+    let moves = |it: &&model::Boundary| {
+        it.wave_maker.is_some() || it.velocity.iter().any(|component| component.is_some())
+    };
+    if let Some(boundary) = case.boundaries.iter().find(moves) {
+        let message = format!(
+            "walls stand still in a fluid with regions of finer spacing, and `{}` moves some",
+            *boundary.name
+        );
+        return refuse(
+            &message,
+            "let the surface run by `sliding` of the wall, or remove `refine`",
+        );
+    }
+    let follows = |probe: &&model::Probe| {
+        let is_wall = |body: &Located<usize>| case.bodies[body.value].wall.is_some();
+        matches!(probe.kind, model::ProbeKind::Particle { .. })
+            && !probe.body.as_ref().is_some_and(is_wall)
+    };
+    if let Some(probe) = case.probes.iter().find(follows) {
+        let message = format!(
+            "the probe `{}` follows a particle of the fluid, which others take the place of in finer regions",
+            *probe.name
+        );
+        return refuse(&message, "use the kind `point`, or name the wall that it is of as `body`");
     }
     if let Some(body) = case.bodies.iter().find(|body| body.shape.value.is_from_file()) {
         let message =
@@ -217,16 +266,50 @@ fn at(case: &Case, level: usize) -> Case {
     own
 }
 
-/// The particles of a finer level: its fluid within reach of its region, with the walls that this sees.
+/// The volume of the fluid in m^D, with that in buffers.
+fn fluid_volume(case: &Case, bodies: &[BodyReport]) -> f64 {
+    let both = case.bodies.iter().zip(bodies).filter(|(body, _)| body.wall.is_none());
+    both.map(|(_, report)| report.volume).sum()
+}
+
+/// Refuses a level whose lattices are not those of the coarsest one with so many times smaller cells.
+fn halved(
+    case: &Case,
+    coarsest: &[Vec<f64>],
+    reports: &[BodyReport],
+    level: usize,
+) -> Result<(), Vec<Problem>> {
+    let share = 0.5_f64.powi(level as i32);
+    let fits = |(own, all): (&Vec<f64>, &Vec<f64>)| {
+        own.iter().zip(all).all(|(own, all)| (own - all * share).abs() < 1e-6 * own)
+    };
+    let bodies = case.bodies.iter().zip(reports.iter().zip(coarsest));
+    let misfit = bodies.filter(|(body, _)| body.opening.is_none());
+    match misfit.into_iter().find(|(_, (own, all))| !fits((&own.spacing, all))) {
+        None => Ok(()),
+        Some((body, (own, all))) => {
+            let message = format!(
+                "the lattice of the body `{}` fits its shape with spacings of {all:?} m, and that of the finer level {level} \
+                 with {:?} m, which is not 2^{level} times finer",
+                *body.name, own.spacing
+            );
+            let help = Some("make the sides of the shape whole numbers of spacings".to_owned());
+            Err(vec![case.problem_at(body.spacing.place, message, "does not halve", help)])
+        }
+    }
+}
+
+/// The particles of a finer level: its fluid within reach of its region, with the walls that this sees; and for how many
+/// more its band has room.
 fn of_region<const D: usize>(
     case: &Case,
     settings: &model::TransportVelocity,
     domain: &Domain<D>,
     nesting: &Nesting<D>,
-) -> Result<(Particles<D>, Vec<BodyReport>), Vec<Problem>> {
+) -> Result<(Particles<D>, Vec<BodyReport>, usize), Vec<Problem>> {
     let (mut particles, reports) = bodies::particles::<D>(case, domain)?;
     let Some(Refined { shape, reach: [begin, end] }) = &nesting.own else {
-        return Ok((particles, reports));
+        return Ok((particles, reports, 0));
     };
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
@@ -242,8 +325,14 @@ fn of_region<const D: usize>(
         let place = settings.refine.last().map_or(case.scheme.place, |it| it.place);
         return Err(vec![case.problem_at(place, "no fluid is in this region", "empty", None)]);
     }
+    // They are taken out a little late.
+    let has_room = |a: &u32| {
+        let depth = shape.depth(&particles.position[*a as usize]);
+        depth <= -begin && depth > -end - spacing
+    };
+    let room = (0..particles.len() as u32).filter(|a| is_fluid(&a) && has_room(a)).count();
     particles.keep(&kept);
-    Ok((particles, reports))
+    Ok((particles, reports, room))
 }
 
 /// Binds a level to its fluid.
@@ -255,13 +344,14 @@ fn finish<const D: usize>(
     prepared.finish::<WeaklyCompressible<D>>(case, settings, fluids::fluid(case)?)
 }
 
-/// Which part of the particles of a level waits at the start: of the coarsest none does but for openings.
-pub(super) fn reserve<const D: usize>(
+/// How many particles of a level wait at the start: of the coarsest none do but for openings.
+fn reserve<const D: usize>(
     settings: &model::TransportVelocity,
     nesting: &Nesting<D>,
     particles: &Particles<D>,
+    room: usize,
 ) -> usize {
-    let usual = (RESERVE * particles.len() as f64).ceil() as usize;
+    let usual = room + (RESERVE * particles.len() as f64).ceil() as usize;
     match nesting.own {
         Some(_) => settings.reserve.map_or(usual, |reserve| reserve as usize),
         None => 0,

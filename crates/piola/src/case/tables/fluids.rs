@@ -161,7 +161,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Derived(
                 "a twentieth of the particles of the fluid and its buffers, and no less than two buffers",
             ),
-            "how many particles more than at the start there may be, where open boundaries let them in, and in each finer region of `refine`, there a quarter of its own unless it is given",
+            "how many particles more than at the start there may be, where open boundaries let them in, and in each finer region of `refine`, there as many as its band has room for and a tenth of its own unless it is given",
         ),
         key(
             "refine",

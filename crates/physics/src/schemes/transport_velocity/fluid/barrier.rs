@@ -105,7 +105,11 @@ impl<const D: usize> WeaklyCompressible<D> {
         visit(pairs, place, Among::Passive, needs, block, |wall, pair| {
             self.hold_by(common, wall, &pair.separation, place, &load, &mut hold);
         });
-        hold
+        // What follows another level is not shifted into walls, but its forces are that level's.
+        match common.is_wall[common.support.list().numbers()[place] as usize] {
+            true => Hold { deviation: hold.deviation, ..Hold::default() },
+            false => hold,
+        }
     }
 
     /// Adds what the wall particle at `wall` does to the particle at `place`, which stands at a
@@ -147,7 +151,8 @@ impl<const D: usize> WeaklyCompressible<D> {
         }
         let list = common.support.list();
         parallel::sum(list.numbers().len(), |place| {
-            f64::from(u8::from(!list.is_passive(place) && is_behind(common, place, state)))
+            let counts = !common.is_wall[list.numbers()[place] as usize];
+            f64::from(u8::from(counts && is_behind(common, place, state)))
         })
     }
 }
