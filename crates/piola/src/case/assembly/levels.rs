@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::bodies::{self, BodyReport};
-use super::fluids::{self, Prepared};
+use super::fluids;
 use super::{Built, kernel, probes};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
@@ -12,7 +12,7 @@ use crate::geometry::{Particles, Shape};
 use crate::neighbors::Domain;
 use crate::schemes::Scheme;
 use crate::schemes::transport_velocity::{
-    DensityRule, Levels, Nesting, Refined, Shifting, TransportVelocity, WeaklyCompressible,
+    DensityRule, Levels, Nesting, Refined, Shifting, WeaklyCompressible,
 };
 
 /// How far beyond the support of the finer level, in spacings of the coarser one, particles of that are split, and how far
@@ -38,15 +38,14 @@ pub(super) fn build<const D: usize>(
     let regions = regions(case, settings, spacing)?;
     clear_of_openings(case, &particles, (settings, spacing), &regions[0])?;
     let (mut levels, mut all) = (Vec::new(), Vec::new());
-    let mut coarsest = Some((particles, reports));
     let (mut built, mut spacings) = (None::<Built>, None::<Vec<Vec<f64>>>);
     for level in 0..=regions.len() {
         let own = level.checked_sub(1).map(|before| &regions[before]);
-        let nesting = Nesting { own: own.cloned(), finer: regions.get(level).cloned() };
         let of_level = at(case, level);
-        let (particles, reports, room) = match coarsest.take() {
-            Some((particles, reports)) => (particles, reports, 0),
-            None => of_region(&of_level, settings, &domain, &nesting)?,
+        // Of the coarsest none wait but for openings.
+        let (particles, reports, reserve) = match own {
+            None => (particles.clone(), reports.clone(), 0),
+            Some(own) => of_region(&of_level, (settings, level), &domain, own)?,
         };
         match &spacings {
             None => spacings = Some(reports.iter().map(|it| it.spacing.clone()).collect()),
@@ -55,11 +54,13 @@ pub(super) fn build<const D: usize>(
         if let (Some(own), Some(before)) = (own, level.checked_sub(2)) {
             within(case, settings, (&particles, own), &regions[before], level)?;
         }
-        let reserve = reserve(settings, &nesting, &particles, room);
+        let nesting = Nesting { own: own.cloned(), finer: regions.get(level).cloned() };
         let nested = (nesting, reserve);
         let prepared = fluids::prepare(&of_level, settings, particles, reports, domain, nested)?;
         all.push(prepared.particles().clone());
-        let (fluid, of_fluid) = finish(prepared, &of_level, settings)?;
+        let material = fluids::fluid(case)?;
+        let (fluid, of_fluid) =
+            prepared.finish::<WeaklyCompressible<D>>(&of_level, settings, material)?;
         levels.push(fluid);
         match &mut built {
             None => built = Some(of_fluid),
@@ -299,18 +300,15 @@ fn halved(
     }
 }
 
-/// The particles of a finer level: its fluid within reach of its region, with the walls that this sees; and for how many
-/// more its band has room.
+/// The particles of a finer level: its fluid within reach of its region, with the walls that this sees; and how many more
+/// wait to be born in it.
 fn of_region<const D: usize>(
     case: &Case,
-    settings: &model::TransportVelocity,
+    (settings, level): (&model::TransportVelocity, usize),
     domain: &Domain<D>,
-    nesting: &Nesting<D>,
+    Refined { shape, reach: [begin, end] }: &Refined<D>,
 ) -> Result<(Particles<D>, Vec<BodyReport>, usize), Vec<Problem>> {
     let (mut particles, reports) = bodies::particles::<D>(case, domain)?;
-    let Some(Refined { shape, reach: [begin, end] }) = &nesting.own else {
-        return Ok((particles, reports, 0));
-    };
     let kernel = kernel(case, &settings.kernel)?;
     let spacing = particles.spacing.iter().copied().fold(0.0, f64::max);
     let seen = end + kernel.support_radius(*settings.smoothing_length * spacing) + spacing;
@@ -322,7 +320,7 @@ fn of_region<const D: usize>(
     let kept: Vec<u32> = (0..particles.len() as u32).filter(is_kept).collect();
     let is_fluid = |a: &&u32| case.bodies[particles.body[**a as usize] as usize].wall.is_none();
     if !kept.iter().any(|a| is_fluid(&a)) {
-        let place = settings.refine.last().map_or(case.scheme.place, |it| it.place);
+        let place = settings.refine[level - 1].place;
         return Err(vec![case.problem_at(place, "no fluid is in this region", "empty", None)]);
     }
     // They are taken out a little late.
@@ -332,30 +330,9 @@ fn of_region<const D: usize>(
     };
     let room = (0..particles.len() as u32).filter(|a| is_fluid(&a) && has_room(a)).count();
     particles.keep(&kept);
-    Ok((particles, reports, room))
-}
-
-/// Binds a level to its fluid.
-fn finish<const D: usize>(
-    prepared: Prepared<D>,
-    case: &Case,
-    settings: &model::TransportVelocity,
-) -> Result<(TransportVelocity<D>, Built), Vec<Problem>> {
-    prepared.finish::<WeaklyCompressible<D>>(case, settings, fluids::fluid(case)?)
-}
-
-/// How many particles of a level wait at the start: of the coarsest none do but for openings.
-fn reserve<const D: usize>(
-    settings: &model::TransportVelocity,
-    nesting: &Nesting<D>,
-    particles: &Particles<D>,
-    room: usize,
-) -> usize {
     let usual = room + (RESERVE * particles.len() as f64).ceil() as usize;
-    match nesting.own {
-        Some(_) => settings.reserve.map_or(usual, |reserve| reserve as usize),
-        None => 0,
-    }
+    let reserve = settings.reserve.map_or(usual, |reserve| reserve as usize);
+    Ok((particles, reports, reserve))
 }
 
 /// The spacing in m of the finest level at a place, for that of the coarsest.

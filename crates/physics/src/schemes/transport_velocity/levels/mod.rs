@@ -64,7 +64,6 @@ const REACH: f64 = 2.5;
 pub struct Levels<const D: usize> {
     /// From the coarsest to the finest.
     levels: Vec<TransportVelocity<D>>,
-    nesting: Vec<Nesting<D>>,
     /// Between each level and the next: what the coarser one takes, and the finer one.
     transfers: Vec<[Transfer<D>; 2]>,
     parts: Parts,
@@ -77,14 +76,13 @@ impl<const D: usize> Levels<D> {
     /// # Errors
     /// When neighbours of one level in another cannot be found.
     pub fn new(levels: Vec<TransportVelocity<D>>) -> Result<Self, TransportVelocityError> {
-        let nesting = levels.iter().map(|it| it.matter.nesting().cloned().unwrap_or_default());
-        let nesting: Vec<Nesting<D>> = nesting.collect();
         let (mut parts, mut start) = (Parts::default(), Vec::new());
-        for (level, nesting) in levels.iter().zip(&nesting) {
+        for level in &levels {
             // Walls stay where their level is counted; what flows shows where it is.
             let is_shown = |&a: &u32| {
                 let place = &level.common.particles.position[a as usize];
-                level.common.wall_of(a).is_none() || nesting.counts(place)
+                let counts = level.matter.nesting().is_none_or(|nesting| nesting.counts(place));
+                level.common.wall_of(a).is_none() || counts
             };
             let shown = (0..level.particle_count() as u32).filter(is_shown).collect();
             parts.push(level, shown, |own| own, &mut start);
@@ -102,7 +100,7 @@ impl<const D: usize> Levels<D> {
                 Transfer::new([all, finer], kernel, h[1], domain)?,
             ]);
         }
-        let mut all = Self { levels, nesting, transfers, parts, start: Vec::new() };
+        let mut all = Self { levels, transfers, parts, start: Vec::new() };
         start.resize(start.len() + LEDGER.integrals(D), 0.0);
         all.exchange(&mut start);
         for k in 0..all.levels.len() {
@@ -162,12 +160,14 @@ impl<const D: usize> Levels<D> {
     fn transfer(&mut self, k: usize, up: bool, state: &mut [f64]) {
         let [giving, taking] = if up { [k + 1, k] } else { [k, k + 1] };
         let transfer = &mut self.transfers[k][usize::from(!up)];
-        let (levels, parts, nesting) = (&self.levels, &self.parts.all, &self.nesting[taking]);
+        let (levels, parts) = (&self.levels, &self.parts.all);
         let [give, take] = [giving, taking].map(|level| &levels[level]);
         let [from, to] = [giving, taking].map(|level| parts[level].state.clone());
         let places = take.common.columns(&state[to.clone()]).position;
-        let takes =
-            |a: usize| take.matter.is_follower(a as u32) && nesting.follows_finer(&places[a]) == up;
+        let is_up = |a: usize| {
+            take.matter.nesting().is_some_and(|nesting| nesting.follows_finer(&places[a]) == up)
+        };
+        let takes = |a: usize| take.matter.is_follower(a as u32) && is_up(a);
         transfer.choose(|a| give.gives(a), takes);
         transfer.find(|gives, a| match gives {
             true => give.taken(&state[from.clone()], a),
