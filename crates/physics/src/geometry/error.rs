@@ -88,12 +88,25 @@ pub enum GeometryError {
         /// The components.
         value: Vec<f64>,
     },
-    /// A hexagonal lattice has one spacing.
-    #[error("a hexagonal lattice has the spacings {value:?} m, expected the same along each axis")]
-    UnevenHexagonal {
+    /// Other arrangements than a square lattice have one spacing.
+    #[error("{what} the spacings {value:?} m, expected the same along each axis")]
+    Uneven {
+        /// What has them.
+        what: &'static str,
         /// The spacings.
         value: Vec<f64>,
     },
+    /// Concentric layers in what has no centre and no axis.
+    #[error(
+        "concentric layers fill a ball, a disc, an annulus or a cylinder, as the whole of a body; lay out the rest as \
+         another body"
+    )]
+    NotRound,
+    /// Concentric layers do not go on beyond a body.
+    #[error(
+        "ghosts continue a lattice, and concentric layers are none: expected `square` or `hexagonal`"
+    )]
+    NoSurroundings,
     /// Particles moved by half a spacing can meet.
     #[error("the jitter is {value} spacings, expected at least 0 and below 0.5")]
     Jitter {

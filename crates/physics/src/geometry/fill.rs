@@ -1,5 +1,6 @@
 //! Shapes filled with the particles of a lattice.
 
+use super::concentric::concentric;
 use super::cut::cut;
 use super::jitter::jitter;
 use super::lattice::Lattice;
@@ -23,7 +24,7 @@ pub struct FillReport<const D: usize> {
     /// Volume of the shape in m^D, where it is known.
     pub exact_volume: Option<f64>,
     /// Edges of a particle's cell in m: the spacing along each axis of a square lattice; of a
-    /// hexagonal one the distances within a row, of rows and of layers.
+    /// hexagonal one the distances within a row, of rows and of layers; the thickness of concentric layers.
     pub actual_spacing: [f64; D],
     /// How the lattice is turned: rows are along its columns.
     pub rotation: Tensor<D>,
@@ -39,13 +40,16 @@ pub struct FillReport<const D: usize> {
 /// nearest particle of the cells around. Parts are measured with midpoints of a fixed subdivision
 /// of the cell; the error of their sum falls with the power 3/2 of the spacing or faster.
 ///
+/// Concentric layers keep as near to the spacing as a whole number of them between the radii allows; an even share of its
+/// layer is a particle's, so that the sum is exact.
+///
 /// With jitter, particles move at random by up to `jitter` spacings along each axis, but not off
 /// the faces of the bounding box, nor out of the shape. The same seed gives the same particles.
 ///
 /// The lattice of a shape that is turned as a whole is turned with it, about the same point.
 ///
 /// # Errors
-/// An impossible specification, too many sites, a shape without particles, and a turned one that reaches across
+/// An impossible specification, too many sites, a shape without particles, concentric layers in one that is not round, and a turned one that reaches across
 /// a periodic axis which is turned.
 pub fn fill<const D: usize>(
     shape: &Shape<D>,
@@ -60,17 +64,27 @@ pub fn fill<const D: usize>(
     let (min, max) = shape.bounding_box();
     let lattice = Lattice::new(spec, min, max)?;
     let square = spec.kind == LatticeKind::Square || D == 1;
-    let (position, volume) = match shape.corners() {
-        Some(_) if square => fill_box(&lattice, spec),
-        _ => cut(shape, &lattice, spec.placement),
+    let mut edges = lattice.edges.into();
+    let (position, volume, weight, spacing) = if spec.kind == LatticeKind::Concentric {
+        let round = shape.as_round().ok_or(GeometryError::NotRound)?;
+        let made = concentric(&round, spec.spacing[0], spec.placement);
+        edges = [made.spacing; D];
+        (made.position, made.volume, made.weight, made.spacing)
+    } else {
+        let (position, volume) = match shape.corners() {
+            Some(_) if square => fill_box(&lattice, spec),
+            _ => cut(shape, &lattice, spec.placement),
+        };
+        let weight = vec![lattice.cell_volume(); position.len()];
+        (position, volume, weight, lattice.spacing)
     };
     if position.is_empty() {
         return Err(GeometryError::NoParticles);
     }
     let count = position.len();
     let mut particles = Particles {
-        weight: vec![lattice.cell_volume(); count],
-        spacing: vec![lattice.spacing; count],
+        weight,
+        spacing: vec![spacing; count],
         body: vec![0; count],
         id: (0..count as u32).collect(),
         position,
@@ -83,7 +97,7 @@ pub fn fill<const D: usize>(
     Ok(FillReport {
         total_volume: sum(count, |a| particles.volume[a]),
         exact_volume: shape.exact_volume(),
-        actual_spacing: lattice.edges.into(),
+        actual_spacing: edges,
         rotation: Tensor::identity(),
         particles,
     })

@@ -12,6 +12,9 @@ pub enum LatticeKind {
     Square,
     /// Densest arrangement: triangles in 2D, hexagonal close packing in 3D; in 1D even.
     Hexagonal,
+    /// In layers around the centre of a ball, or the axis of a cylinder, so that the outermost one follows the face: no
+    /// lattice, and only for a shape that is one of these.
+    Concentric,
 }
 
 /// Where the outermost particles lie.
@@ -205,7 +208,12 @@ fn check<const D: usize>(
     }
     let even = spec.spacing.iter().all(|spacing| *spacing == spec.spacing[0]);
     if spec.kind == LatticeKind::Hexagonal && !even {
-        return Err(GeometryError::UnevenHexagonal { value: spec.spacing.to_vec() });
+        let (what, value) = ("a hexagonal lattice has", spec.spacing.to_vec());
+        return Err(GeometryError::Uneven { what, value });
+    }
+    if spec.kind == LatticeKind::Concentric && !even {
+        let (what, value) = ("concentric layers have", spec.spacing.to_vec());
+        return Err(GeometryError::Uneven { what, value });
     }
     if spec.kind == LatticeKind::Hexagonal && D > 1 && spec.periodic.contains(&true) {
         let (what, expected) = ("a hexagonal lattice around a periodic domain", "a square one");

@@ -1,6 +1,7 @@
 //! Shapes, lattices and files turned into particles, and regions that select some of them.
 
 mod cloud;
+mod concentric;
 mod cut;
 mod error;
 mod faces;

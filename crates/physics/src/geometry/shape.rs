@@ -322,6 +322,20 @@ impl<const D: usize> Shape<D> {
         }
     }
 
+    /// Its centre, radii and axis, where the shape is one ball, annulus or cylinder.
+    pub(super) fn as_round(&self) -> Option<Round<D>> {
+        match self.0 {
+            Kind::Ball { center, inner, outer } => {
+                Some(Round { center, radii: [inner, outer], axis: None })
+            }
+            Kind::Cylinder { start, direction, length, radius } => {
+                let axis = Some((direction, length));
+                Some(Round { center: start, radii: [0.0, radius], axis })
+            }
+            _ => None,
+        }
+    }
+
     /// The corners, where the shape is one box.
     pub(super) fn corners(&self) -> Option<(Vector<D>, Vector<D>)> {
         match self.0 {
@@ -329,6 +343,16 @@ impl<const D: usize> Shape<D> {
             _ => None,
         }
     }
+}
+
+/// What is round: a ball with a hole or none, or a cylinder.
+pub(super) struct Round<const D: usize> {
+    /// Its centre; of a cylinder that of the end where it starts.
+    pub center: Vector<D>,
+    /// Radii of the hole and of the outside in m.
+    pub radii: [f64; 2],
+    /// Unit vector along the axis of a cylinder, and its length in m.
+    pub axis: Option<(Vector<D>, f64)>,
 }
 
 type Bounds<const D: usize> = (Vector<D>, Vector<D>);

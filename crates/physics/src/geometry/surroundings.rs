@@ -11,7 +11,7 @@ use crate::parallel::for_each_chunk;
 /// shape spans. All have whole cells. There is no jitter.
 ///
 /// # Errors
-/// An impossible specification, and too many sites.
+/// An impossible specification, too many sites, and concentric layers, which end at their face.
 pub fn surroundings<const D: usize>(
     shape: &Shape<D>,
     spec: &LatticeSpec<D>,
@@ -32,6 +32,7 @@ pub fn surroundings<const D: usize>(
     let spacing = match spec.kind {
         LatticeKind::Square => edges.into(),
         LatticeKind::Hexagonal => spec.spacing,
+        LatticeKind::Concentric => return Err(GeometryError::NoSurroundings),
     };
     let lattice = Lattice::new(&LatticeSpec { spacing, ..*spec }, min - margin, max + margin)?;
     let tolerance = ON_BOUNDARY * edges.min();

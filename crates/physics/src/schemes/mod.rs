@@ -35,7 +35,7 @@ pub use momentum::{MomentumComponent, momentum_components};
 pub use newmark::{Newmark, NewmarkScheme, UnstableWeights};
 pub use observation::Observation;
 pub use rule::ImplicitRule;
-pub use scheme::{Behind, Escape, Health, Particle, Scheme, StepLimit};
+pub use scheme::{Behind, Escape, Health, Particle, Passage, Scheme, StepLimit};
 pub use split::{PartitionedScheme, SplitScheme};
 pub use stages::{Phase, Stage, StageFault, Watch};
 pub use theta::{Theta, ThetaScheme, UnstableTheta};

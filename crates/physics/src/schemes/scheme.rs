@@ -5,6 +5,7 @@ use std::ops::Range;
 use piola_device::Device;
 use serde::{Deserialize, Serialize};
 
+use super::momentum::MOST_COMPONENTS;
 use super::{
     CoupledScheme, DeviceRefusal, DeviceSteps, NewmarkScheme, PartitionedScheme, Phase,
     SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
@@ -74,8 +75,8 @@ pub trait Scheme: Send + Sync {
     /// Appends the values of its own [`figures`](SchemeDescription::figures) at `state`.
     fn figures(&self, _state: &[f64], _figures: &mut Vec<f64>) {}
 
-    /// The mass in kg that has come in and gone out through the open boundary with the number of a body, if it is one.
-    fn passed(&self, _state: &[f64], _body: u32) -> Option<[f64; 2]> {
+    /// What has gone through the open boundary with the number of a body, if it is one.
+    fn passed(&self, _state: &[f64], _body: u32) -> Option<Passage> {
         None
     }
 
@@ -323,6 +324,19 @@ impl Health {
             first_escaped: self.first_escaped.or(other.first_escaped),
         }
     }
+}
+
+/// What has gone through an open boundary since the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    /// Mass in kg that has come in.
+    pub entered: f64,
+    /// Mass in kg that has gone out.
+    pub left: f64,
+    /// Energy in J of the particles that have come in, less that of those that have gone out.
+    pub energy: f64,
+    /// The same of their momentum, as [`momentum_components`](super::momentum_components) orders it.
+    pub momentum: [f64; MOST_COMPONENTS],
 }
 
 /// A bound on the time step.

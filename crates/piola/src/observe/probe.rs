@@ -10,7 +10,7 @@ use super::interpolation::Interpolated;
 use super::sensor::Sensor;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
-use crate::schemes::{Observation, Theta};
+use crate::schemes::{Observation, Theta, momentum_components};
 
 /// A probe bound to the particles of a run.
 #[derive(Clone)]
@@ -76,7 +76,7 @@ pub enum ProbeKind {
     Flux(Flux),
     /// What has come in and gone out through the open boundary with the number of a body.
     Opening(u32),
-    /// Whole fields interpolated at one fixed point of space.
+    /// Whole fields interpolated at one fixed point of space; of two, those of the first less those of the second.
     Point(Interpolated),
     /// How far a field is from a function of place and time.
     Error(Deviation),
@@ -134,9 +134,12 @@ impl Probe {
             ProbeKind::Sensor(_) => vec![Column::new(format!("{}.pressure", self.name), "Pa")],
             ProbeKind::Gauge(_) => vec![Column::new(format!("{}.elevation", self.name), "m")],
             ProbeKind::Flux(_) => vec![Column::new(format!("{}.flux", self.name), "kg/s")],
-            ProbeKind::Opening(_) => ["entered", "left"]
-                .map(|column| Column::new(format!("{}.{column}", self.name), "kg"))
-                .to_vec(),
+            ProbeKind::Opening(_) => {
+                let own = [("entered", "kg"), ("left", "kg"), ("energy", "J")].into_iter();
+                own.chain(momentum_components(dimension).iter().map(|it| (it.name, it.unit)))
+                    .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), unit))
+                    .collect()
+            }
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS
                 .iter()
                 .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), *unit))
@@ -228,9 +231,25 @@ impl Probe {
             ProbeKind::Flux(flux) => row.push(flux.record(now)),
             ProbeKind::Opening(body) => {
                 let passed = now.scheme().passed(now.state(), *body);
-                row.extend(passed.unwrap_or([f64::NAN; 2]));
+                let components = momentum_components(now.scheme().dimension()).len();
+                match passed {
+                    Some(it) => {
+                        row.extend([it.entered, it.left, it.energy]);
+                        row.extend(&it.momentum[..components]);
+                    }
+                    None => row.extend(std::iter::repeat_n(f64::NAN, 3 + components)),
+                }
             }
-            ProbeKind::Point(point) => point.record(now, scratch, row),
+            ProbeKind::Point(point) => {
+                let first = row.len();
+                point.record(now, scratch, row);
+                // Of two places, the difference.
+                if let [_, _] = point.places.as_slice() {
+                    let width = (row.len() - first) / 2;
+                    (first..first + width).for_each(|k| row[k] -= row[k + width]);
+                    row.truncate(first + width);
+                }
+            }
             ProbeKind::Error(error) => row.push(error.record(now, scratch)),
             ProbeKind::Tangent { rule, step } => {
                 let (time, state) = (now.time(), now.state());

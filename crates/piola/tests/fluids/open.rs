@@ -151,6 +151,15 @@ fn each_opening_has_its_own_account() {
         assert!(values(&finished, own).last().is_some_and(|mass| *mass > 0.7));
         assert_eq!(values(&finished, own), values(&finished, all));
     }
+    // A kilogram of a stream of 1 m/s without pressure has half a joule, and a momentum of 1 kg m/s.
+    for (name, mass, sign) in [("inlets", "entered", 1.0), ("outlets", "left", -1.0)] {
+        let [mass, energy, momentum] = [mass, "energy", "linear.x"]
+            .map(|column| values(&finished, &format!("{name}.{column}")));
+        for ((mass, energy), momentum) in mass.iter().zip(energy).zip(momentum) {
+            assert!((energy - 0.5 * sign * mass).abs() < 1e-9, "{name}: {energy} J of {mass} kg");
+            assert!((momentum - sign * mass).abs() < 1e-9, "{name}: {momentum} of {mass} kg");
+        }
+    }
     for name in ["inlets.left", "outlets.entered"] {
         assert!(values(&finished, name).iter().all(|mass| *mass == 0.0), "{name}");
     }

@@ -102,6 +102,13 @@ body = "tank"
 at = [0.0, 1.35]
 normal = [1.0, 0.0]
 radius = 0.06
+[[probe]]
+name = "between"
+kind = "point"
+body = "water"
+at = [0.43, 0.31]
+relative_to = [1.71, 0.77]
+fields = ["pressure"]
 [[plot]]
 name = "both"
 curves = ["level.elevation", "lift.force.y"]
@@ -119,6 +126,7 @@ end = 1e-5
         "floor.pressure",
         "side.pressure",
         "above.pressure",
+        "between.pressure",
     ];
     let found = columns(still, &[], names).map(|column| column[0]);
     // The box displaces 0.12 m2 of water.
@@ -136,6 +144,8 @@ end = 1e-5
         assert!((pressure / (9810.0 * depth) - 1.0).abs() < 0.02, "{found:?}");
     }
     assert_eq!(found[9], 0.0);
+    // Interpolation is exact for what is linear.
+    assert!((found[10] - 9810.0 * 0.46).abs() < 1e-6, "{found:?}");
     let misplaced = [
         ("at = [0.43, 0.0]", "at = [0.43, 0.5]", "no particle of the wall is behind this place"),
         ("normal = [0.0, 2.0]", "normal = [0.0, -2.0]", "the wall goes on in front of the sensor"),

@@ -1,3 +1,4 @@
+mod concentric;
 mod fill;
 mod points;
 mod region;

@@ -18,7 +18,7 @@ use crate::fields::FieldDescription;
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
-use crate::schemes::{DeviceRefusal, DeviceSteps, SchemeDescription};
+use crate::schemes::{DeviceRefusal, DeviceSteps, Passage, SchemeDescription};
 
 /// Matter bound to the particles that all kinds of it share.
 pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
@@ -200,7 +200,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>);
 
     /// The mass in kg that has come in and gone out through the open boundary with the number of a body, if it is one.
-    fn passed(&self, _common: &Common<D>, _state: &[f64], _body: u32) -> Option<[f64; 2]> {
+    fn passed(&self, _common: &Common<D>, _state: &[f64], _body: u32) -> Option<Passage> {
         None
     }
 

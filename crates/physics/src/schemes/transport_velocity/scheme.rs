@@ -8,8 +8,8 @@ use crate::fields::FieldDescription;
 use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Behind, DeviceRefusal, DeviceSteps, Escape, Health, Particle, Phase, Scheme, SchemeDescription,
-    SplitScheme, StepLimit,
+    Behind, DeviceRefusal, DeviceSteps, Escape, Health, Particle, Passage, Phase, Scheme,
+    SchemeDescription, SplitScheme, StepLimit,
 };
 
 impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
@@ -75,7 +75,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         self.matter.figures(&self.common, state, figures);
     }
 
-    fn passed(&self, state: &[f64], body: u32) -> Option<[f64; 2]> {
+    fn passed(&self, state: &[f64], body: u32) -> Option<Passage> {
         self.matter.passed(&self.common, state, body)
     }
 

@@ -8,7 +8,8 @@ use crate::fields::{ABSENT, FieldDescription};
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
-    Behind, CoupledScheme, Escape, Health, Particle, Phase, Scheme, SchemeDescription, StepLimit,
+    Behind, CoupledScheme, Escape, Health, Particle, Passage, Phase, Scheme, SchemeDescription,
+    StepLimit,
 };
 
 /// The fields of walls of the fluid that solids have in it too: what the fluid does to them.
@@ -156,7 +157,7 @@ impl<const D: usize> Scheme for World<D> {
         }
     }
 
-    fn passed(&self, state: &[f64], body: u32) -> Option<[f64; 2]> {
+    fn passed(&self, state: &[f64], body: u32) -> Option<Passage> {
         let part = &self.parts.all[0];
         self.system(0).passed(&state[part.state.clone()], body)
     }

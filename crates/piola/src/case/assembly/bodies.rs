@@ -151,6 +151,7 @@ fn lattice_of<const D: usize>(
         kind: match body.lattice.kind {
             model::LatticeKind::Square => LatticeKind::Square,
             model::LatticeKind::Hexagonal => LatticeKind::Hexagonal,
+            model::LatticeKind::Concentric => LatticeKind::Concentric,
         },
         placement: match body.lattice.on {
             model::LatticeOrigin::Boundary => Placement::Boundary,

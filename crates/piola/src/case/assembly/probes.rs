@@ -79,8 +79,9 @@ pub(super) fn probes<const D: usize>(
             model::ProbeKind::Opening => {
                 ProbeKind::Opening(body.map_or(0, |body| body.value as u32))
             }
-            model::ProbeKind::Point { at, fields } => {
-                let places = vec![at.value.clone()];
+            model::ProbeKind::Point { at, relative_to, fields } => {
+                let places = std::iter::once(at).chain(relative_to).map(|at| at.value.clone());
+                let places = places.collect();
                 ProbeKind::Point(interpolated(case, particles, body, places, fields))
             }
             model::ProbeKind::Tangent { step } => match case.time.rule {

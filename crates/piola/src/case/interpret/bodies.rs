@@ -357,6 +357,7 @@ fn lattice(record: &Record) -> Option<Lattice> {
     Some(Lattice {
         kind: match record.text("kind")?.as_str() {
             "hexagonal" => LatticeKind::Hexagonal,
+            "concentric" => LatticeKind::Concentric,
             _ => LatticeKind::Square,
         },
         on: match record.text("on")?.as_str() {

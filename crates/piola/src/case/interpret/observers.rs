@@ -25,9 +25,11 @@ impl Reader<'_, '_> {
                 at: record.numbers("at")?,
                 relative_to: record.numbers("relative_to"),
             },
-            "point" => {
-                ProbeKind::Point { fields: self.whole_fields(record)?, at: record.numbers("at")? }
-            }
+            "point" => ProbeKind::Point {
+                fields: self.whole_fields(record)?,
+                at: record.numbers("at")?,
+                relative_to: record.numbers("relative_to"),
+            },
             "line" => self.line(record)?,
             "sum" | "mean" => {
                 let name = record.text("field")?;

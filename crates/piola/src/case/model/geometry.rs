@@ -163,6 +163,8 @@ pub enum LatticeKind {
     Square,
     /// Hexagonal in 2D, hexagonal close packing in 3D.
     Hexagonal,
+    /// In layers around a centre or an axis.
+    Concentric,
 }
 
 /// Where the first particle of a lattice lies.

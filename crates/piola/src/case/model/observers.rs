@@ -94,6 +94,8 @@ pub enum ProbeKind {
     Point {
         /// The point in m.
         at: Located<Vec<f64>>,
+        /// A point in m where what the fields are is subtracted.
+        relative_to: Option<Located<Vec<f64>>>,
         /// The fields that are recorded, with all their components.
         fields: Vec<Located<FieldDescription>>,
     },

@@ -100,6 +100,10 @@ const LATTICES: Choices = choices(&[
     choice("square", "square, in 3D cubic"),
     choice("cubic", "the name of `square` in 3D"),
     choice("hexagonal", "hexagonal"),
+    choice(
+        "concentric",
+        "in layers that follow a round face: rings of a disc or an annulus and around the axis of a cylinder, shells of a ball",
+    ),
 ]);
 const ORIGINS: Choices = choices(&[
     choice("boundary", "particles on the faces of the shape's box"),

@@ -201,7 +201,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "opening",
-            meaning: "the mass of a fluid that has come in and gone out through an open boundary, which `body` names: columns `NAME.entered` and `NAME.left`",
+            meaning: "what has gone through an open boundary of a fluid, which `body` names: the mass that has come in and gone out, columns `NAME.entered` and `NAME.left`, and the energy and momentum of particles that have come in less those of particles that have gone out, `NAME.energy`, `NAME.linear.x` and on",
             dimensions: &[1, 2, 3],
             keys: &[],
         },
@@ -216,6 +216,13 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     "m",
                     Required,
                     "the point",
+                ),
+                key(
+                    "relative_to",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "m",
+                    Optional,
+                    "another point: what is there is subtracted, as for the pressure between front and back of a body in a stream",
                 ),
                 key(
                     "fields",

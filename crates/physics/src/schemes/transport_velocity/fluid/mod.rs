@@ -26,7 +26,9 @@ use crate::boundaries::SpaceTime;
 use crate::fields::{FieldDescription, columns};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
-use crate::schemes::{Accounts, Capability, DeviceRefusal, DeviceSteps, SchemeDescription};
+use crate::schemes::{
+    Accounts, Capability, DeviceRefusal, DeviceSteps, Passage, SchemeDescription,
+};
 
 use barrier::Hold;
 pub(super) use barrier::TOUCH;
@@ -379,7 +381,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         energies[0] = self.compression_energy(common, state);
     }
 
-    fn passed(&self, common: &Common<D>, state: &[f64], body: u32) -> Option<[f64; 2]> {
+    fn passed(&self, common: &Common<D>, state: &[f64], body: u32) -> Option<Passage> {
         self.passed_through(common, state, body)
     }
 

@@ -7,8 +7,8 @@ use crate::fields::FieldDescription;
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
-    DeviceRefusal, DeviceSteps, Escape, Health, Particle, Phase, Scheme, SchemeDescription,
-    SplitScheme, StepLimit,
+    DeviceRefusal, DeviceSteps, Escape, Health, Particle, Passage, Phase, Scheme,
+    SchemeDescription, SplitScheme, StepLimit,
 };
 
 impl<const D: usize> Scheme for Levels<D> {
@@ -91,9 +91,9 @@ impl<const D: usize> Scheme for Levels<D> {
         figures.extend([mass, present]);
     }
 
-    fn passed(&self, state: &[f64], body: u32) -> Option<[f64; 2]> {
-        let all = self.each(state).filter_map(|(level, part)| level.passed(part, body));
-        all.reduce(|one, other| [one[0] + other[0], one[1] + other[1]])
+    fn passed(&self, state: &[f64], body: u32) -> Option<Passage> {
+        // The coarsest level alone has open boundaries.
+        self.each(state).find_map(|(level, part)| level.passed(part, body))
     }
 
     fn energies(&self, state: &[f64], energies: &mut [f64]) {

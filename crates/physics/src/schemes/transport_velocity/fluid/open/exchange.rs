@@ -1,6 +1,7 @@
 //! Particles that go through open boundaries.
 
 use super::{Common, KEPT, Kept, WeaklyCompressible};
+use crate::parallel::Sums;
 use crate::schemes::ledger::Total;
 use crate::schemes::momentum::add_moments;
 use crate::{Vector, parallel};
@@ -50,26 +51,30 @@ impl<const D: usize> WeaklyCompressible<D> {
             match change {
                 Change::Leave => {}
                 Change::GoOut(role) => {
-                    self.carry_over(common, number, -1.0, state, &mut total);
+                    let carried = self.carry_over(common, number, -1.0, state);
+                    total.add(&carried);
                     let (own, _) = common.parts(state);
                     (own.deviation[number], own.kick[number]) = (Vector::zeros(), Vector::zeros());
-                    let (stored, kept) = Kept::of(common, state);
+                    let (stored, mut kept) = Kept::of(common, state);
                     stored.opening[number] = (role + 1) as f64;
                     kept.each[KEPT * role + 2] += common.mass[number];
+                    kept.carry(role, &carried);
                 }
                 Change::ComeIn(role) => {
                     let Some(next) = free.pop() else {
                         Kept::of(common, state).1.counts[1] += 1.0;
                         continue;
                     };
-                    self.carry_over(common, number, 1.0, state, &mut total);
+                    let carried = self.carry_over(common, number, 1.0, state);
+                    total.add(&carried);
                     let boundary = &self.open.boundaries.all[role];
                     let (own, _) = common.parts(state);
                     let end = own.position[number] - boundary.normal * boundary.length;
                     self.let_in(common, number, next as usize, (role, end), state);
-                    let (stored, kept) = Kept::of(common, state);
+                    let (stored, mut kept) = Kept::of(common, state);
                     stored.opening[number] = 0.0;
                     kept.each[KEPT * role + 1] += common.mass[number];
+                    kept.carry(role, &carried);
                 }
             }
         }
@@ -152,20 +157,21 @@ impl<const D: usize> WeaklyCompressible<D> {
         changes.extend(all.filter_map(|number| Some((number, change(number)?))));
     }
 
-    /// Books what a particle brings into the fluid, or takes out of it.
+    /// The energy and the momentum that a particle brings into the fluid, or takes out of it.
     pub(super) fn carry_over(
         &self,
         common: &Common<D>,
         number: usize,
         sign: f64,
         state: &[f64],
-        total: &mut Total,
-    ) {
+    ) -> Total {
         let (at, mass) = (common.columns(state), sign * common.mass[number]);
         let (velocity, pressure) = (&at.velocity[number], at.pressure[number]);
-        total.power +=
-            0.5 * mass * (velocity.norm_squared() + self.compliance() * pressure * pressure);
+        let mut total = Total::of(
+            0.5 * mass * (velocity.norm_squared() + self.compliance() * pressure * pressure),
+        );
         add_moments(&at.position[number], &(velocity * mass), &mut total.force);
+        total
     }
 
     /// Takes a particle of a buffer out: it waits.

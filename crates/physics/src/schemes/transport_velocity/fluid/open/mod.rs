@@ -14,6 +14,9 @@ pub use nested::{Nesting, Refined};
 use super::{Columns, Common, Fluid, LEDGER, Stored, StoredMut, WeaklyCompressible};
 use crate::boundaries::{SpaceTime, padded};
 use crate::geometry::Shape;
+use crate::schemes::Passage;
+use crate::schemes::ledger::Total;
+use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::transport_velocity::Side;
 use crate::{Vector, parallel};
 
@@ -145,9 +148,9 @@ struct Seen<const D: usize> {
 /// Numbers that a state keeps of all open boundaries: how many particles wait in the reserve, how many could
 /// not be born in the last exchange, and how many ever were.
 const COUNTS: usize = 3;
-/// Numbers that it keeps of each: the slow pressure, the mass in kg that has come in and gone out, and the slow velocity
-/// along the normal in m/s.
-const KEPT: usize = 4;
+/// Numbers that it keeps of each: the slow pressure, the mass in kg that has come in and gone out, the slow velocity
+/// along the normal in m/s, and the energy in J and the momentum that particles have brought in, less what they took out.
+const KEPT: usize = 5 + MOST_COMPONENTS;
 
 /// The open boundaries while a run goes.
 pub(super) struct Open<const D: usize> {
@@ -244,6 +247,16 @@ impl<'a> Kept<'a> {
         let (stored, tail) = StoredMut::of(common.parts(state).1, count);
         let (counts, each) = LEDGER.behind_mut(D, tail)[1..].split_at_mut(COUNTS);
         (stored, Self { counts, each })
+    }
+
+    /// Adds what a particle has brought in through one of them.
+    fn carry(&mut self, role: usize, carried: &Total) {
+        let [energy, momentum @ ..] = &mut self.each[KEPT * role + 4..][..1 + MOST_COMPONENTS]
+        else {
+            return;
+        };
+        *energy += carried.power;
+        momentum.iter_mut().zip(carried.force).for_each(|(own, more)| *own += more);
     }
 }
 
@@ -369,16 +382,17 @@ impl<const D: usize> WeaklyCompressible<D> {
         [sum(1), sum(2)]
     }
 
-    /// The same of the one that has the number of a body.
+    /// What has gone through the one that has the number of a body.
     pub(super) fn passed_through(
         &self,
         common: &Common<D>,
         state: &[f64],
         body: u32,
-    ) -> Option<[f64; 2]> {
+    ) -> Option<Passage> {
         let role = self.open.boundaries.all.iter().position(|it| it.body == body)?;
-        let each = &self.counts(common, state)?[COUNTS + KEPT * role..];
-        Some([each[1], each[2]])
+        let each = &self.counts(common, state)?[COUNTS + KEPT * role..][..KEPT];
+        let momentum = std::array::from_fn(|component| each[5 + component]);
+        Some(Passage { entered: each[1], left: each[2], energy: each[4], momentum })
     }
 
     /// The first particle that could not come in for want of others to follow it, and the name of its boundary; of a finer

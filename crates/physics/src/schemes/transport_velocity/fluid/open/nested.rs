@@ -2,6 +2,7 @@
 
 use super::{Common, Kept, Stored, WeaklyCompressible};
 use crate::geometry::Shape;
+use crate::parallel::Sums;
 use crate::schemes::ledger::Total;
 use crate::{Vector, parallel};
 
@@ -139,7 +140,7 @@ impl<const D: usize> WeaklyCompressible<D> {
             for (number, next) in changes {
                 let now = Kept::of(common, state).0.nesting[number];
                 if now != FOLLOWS && next >= FOLLOWS {
-                    self.carry_over(common, number, -1.0, state, &mut total);
+                    total.add(&self.carry_over(common, number, -1.0, state));
                 }
                 let (own, _) = common.parts(state);
                 if now == 0.0 && nesting.is_beside(&own.position[number]) {
@@ -151,7 +152,7 @@ impl<const D: usize> WeaklyCompressible<D> {
                     });
                 }
                 if now == FOLLOWS && next < FOLLOWS {
-                    self.carry_over(common, number, 1.0, state, &mut total);
+                    total.add(&self.carry_over(common, number, 1.0, state));
                 }
                 Kept::of(common, state).0.nesting[number] = if next == GONE { 0.0 } else { next };
                 if next == GONE {
