@@ -264,3 +264,76 @@ fn a_particle_that_touches_a_wall_comes_to_rest_in_front_of_it() {
     let speed = *values(&finished, "momentum.linear.y").last().expect("there are rows") / 0.08;
     assert!((speed - 1.0).abs() < 0.02, "nothing holds it along the wall: {speed}");
 }
+
+/// Fluid between two cylinders of radii 1/2 and 1, of which the surface of the inner one runs with 1/2: between them
+/// `u = (1/r - r)/3`, and the outer one has the moment `4 pi mu/3`.
+const CYLINDERS: &str = r#"
+version = 1
+title = "Fluid between two cylinders"
+dimension = 2
+
+[parameters]
+dx = 0.05
+
+[[body]]
+name = "fluid"
+shape = { kind = "annulus", center = [0.0, 0.0], inner = 0.5, outer = 1.0 }
+spacing = "dx"
+lattice = { kind = "concentric", on = "cells" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 5.0, viscosity = 0.1 }
+initial = { velocity = ["-(1/(x^2 + y^2) - 1)/3*y", "(1/(x^2 + y^2) - 1)/3*x"] }
+
+[[body]]
+name = "outer"
+shape = { kind = "annulus", center = [0.0, 0.0], inner = 1.0, outer = "1 + 4*dx" }
+spacing = "dx"
+lattice = { kind = "concentric", on = "cells" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 5.0, viscosity = 0.1 }
+wall = {}
+
+[[body]]
+name = "inner"
+shape = { kind = "ball", center = [0.0, 0.0], radius = 0.5 }
+spacing = "dx"
+lattice = { kind = "concentric", on = "cells" }
+material = { kind = "weakly_compressible", density = 1.0, wave_speed = 5.0, viscosity = 0.1 }
+wall = { sliding = { x = "-y", y = "x" } }
+
+[scheme]
+kind = "transport_velocity"
+
+[time]
+end = 1.0
+
+[[probe]]
+name = "outer"
+kind = "force"
+body = "outer"
+
+[[probe]]
+name = "error"
+kind = "error"
+body = "fluid"
+field = "velocity"
+norm = "square"
+components = { x = "-(1/(x^2 + y^2) - 1)/3*y", y = "(1/(x^2 + y^2) - 1)/3*x" }
+
+[output]
+table_every = 0.1
+"#;
+
+/// Slow modes have died out by `exp(-nu (pi/gap)^2)`, a fiftieth, at the end. A spacing is a tenth of the gap, and
+/// half of one is what a lattice does not know of a wall: 5 %.
+#[test]
+fn layers_follow_round_walls() {
+    let exact = 0.1 * 4.0 * std::f64::consts::PI / 3.0;
+    let [rings, lattice] = ["concentric", "square"].map(|kind| {
+        let finished = run(&CYLINDERS.replace("concentric", kind), &[]);
+        assert_eq!(finished.summary.outcome, Outcome::Completed);
+        let moment = values(&finished, "outer.moment.z").pop().expect("there are rows");
+        let error = values(&finished, "error.error").pop().expect("there are rows");
+        assert!((moment / exact - 1.0).abs() < 0.05 && error < 0.05, "{kind}: {moment}, {error}");
+        error
+    });
+    assert!(rings < lattice, "{rings} by rings, {lattice} by a lattice");
+}

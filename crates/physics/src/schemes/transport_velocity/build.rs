@@ -171,10 +171,14 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             Some(walls.len() as u32 - 1)
         };
         let wall_index: Vec<Option<u32>> = (0..count).map(&mut index).collect();
-        let of_walls = |conditions: &[PrescribedVelocity]| {
-            components(conditions, &wall_index, &walls, &particles)
+        let places = || walls.iter().map(|wall| particles.position[wall.number as usize]);
+        // The surface that slides is the face, not where the particle is behind it.
+        let surface = |(wall, place): (&WallParticle<D>, Vector<D>)| {
+            place + wall.faces.between() * wall.faces.depth()
         };
-        let (motion, sliding) = (of_walls(&input.motion)?, of_walls(&input.sliding)?);
+        let surfaces: Vec<Vector<D>> = walls.iter().zip(places()).map(surface).collect();
+        let motion = components(&input.motion, &wall_index, &places().collect::<Vec<_>>())?;
+        let sliding = components(&input.sliding, &wall_index, &surfaces)?;
         let support = MovingSupport::new(
             &particles.position,
             is_wall.clone(),
@@ -307,12 +311,11 @@ fn check<const D: usize>(
     Ok(())
 }
 
-/// Prescribed components of wall particles, numbered among these.
+/// Prescribed components of wall particles, numbered among these, at their places.
 fn components<const D: usize>(
     conditions: &[PrescribedVelocity],
     wall_index: &[Option<u32>],
-    walls: &[WallParticle<D>],
-    particles: &Particles<D>,
+    places: &[Vector<D>],
 ) -> Result<PrescribedComponents, TransportVelocityError> {
     let mut renumbered = Vec::new();
     for condition in conditions {
@@ -326,9 +329,7 @@ fn components<const D: usize>(
         let particles = condition.particles.iter().map(index).collect::<Result<_, _>>()?;
         renumbered.push(PrescribedVelocity { particles, ..condition.clone() });
     }
-    let positions: Vec<Vector<D>> =
-        walls.iter().map(|wall| particles.position[wall.number as usize]).collect();
-    Ok(PrescribedComponents::new(&renumbered, &positions))
+    Ok(PrescribedComponents::new(&renumbered, places))
 }
 
 /// Body forces of which walls feel those of the matter beside them, too, as their ghost values need them, CTVF (47): those
