@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::fill::ON_BOUNDARY;
 use super::lattice::Lattice;
+use super::shape::Probe;
 use super::{Placement, Shape};
 use crate::Vector;
 use crate::parallel::for_each_chunk;
@@ -72,6 +73,7 @@ fn classify<const D: usize>(
     };
     let mut cells = vec![Cell::Outside; lattice.len()];
     for_each_chunk(&mut cells, |first, cells| {
+        let mut shape = shape.probe();
         for (i, cell) in cells.iter_mut().enumerate() {
             let depth = shape.depth(&lattice.fold(&lattice.position(lattice.place(first + i))));
             *cell = if depth >= radius {
@@ -95,21 +97,18 @@ fn owners<const D: usize>(
     particle: &[u32],
     site: usize,
 ) -> Vec<(u32, u32)> {
-    let divisions = divisions::<D>();
     let place = lattice.place(site);
     let center = lattice.position(place);
     let own = particle[site];
     let around = if own == NONE { particles_around(lattice, particle, place) } else { Vec::new() };
     let mut owners: Vec<(u32, u32)> = Vec::new();
-    for number in 0..divisions.pow(D as u32) {
-        let point = Vector::from_fn(|axis, _| {
-            let step = number / divisions.pow(axis as u32) % divisions;
-            let fraction = (step as f64 + 0.5) / divisions as f64 - 0.5;
+    let midpoint = |steps: &[usize; D]| {
+        Vector::from_fn(|axis, _| {
+            let fraction = (steps[axis] as f64 + 0.5) / divisions::<D>() as f64 - 0.5;
             center[axis] + fraction * lattice.edges[axis]
-        });
-        if shape.depth(&lattice.fold(&point)) < 0.0 {
-            continue;
-        }
+        })
+    };
+    within(&mut shape.probe(), lattice, &midpoint, ([0; D], divisions::<D>()), &mut |point| {
         let distance = |other: &&(u32, Vector<D>)| (other.1 - point).norm_squared();
         let nearest = around.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let owner = nearest.map_or(own, |(owner, _)| *owner);
@@ -118,8 +117,40 @@ fn owners<const D: usize>(
             Some((_, count)) => *count += 1,
             None => owners.push((owner, 1)),
         }
-    }
+    });
     owners
+}
+
+/// Visits the midpoints of a block, of so many along each edge, that lie in the shape. A block that is further from the
+/// boundary than it is large lies on one side of it as a whole.
+fn within<const D: usize>(
+    shape: &mut Probe<'_, D>,
+    lattice: &Lattice<D>,
+    midpoint: &impl Fn(&[usize; D]) -> Vector<D>,
+    (first, count): ([usize; D], usize),
+    see: &mut impl FnMut(Vector<D>),
+) {
+    let ends = [midpoint(&first), midpoint(&first.map(|step| step + count - 1))];
+    let (middle, radius) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]).norm());
+    // Across a periodic bound what is beside each other is not.
+    let is_whole = ends.iter().all(|end| lattice.fold(end) == *end);
+    let depth = if is_whole { shape.depth(&middle) } else { 0.0 };
+    if depth < -radius || count == 1 && shape.depth(&lattice.fold(&middle)) < 0.0 {
+        return;
+    }
+    if depth > radius || count == 1 {
+        for number in 0..count.pow(D as u32) {
+            see(midpoint(&std::array::from_fn(|axis| {
+                first[axis] + number / count.pow(axis as u32) % count
+            })));
+        }
+        return;
+    }
+    let half = count / 2;
+    for part in 0..1 << D {
+        let begin = std::array::from_fn(|axis| first[axis] + (part >> axis & 1) * half);
+        within(shape, lattice, midpoint, (begin, half), see);
+    }
 }
 
 /// The particles next to `place`, or two sites away where there is none next to it.

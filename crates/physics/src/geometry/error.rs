@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::fill::MOST_SITES;
-use super::{MeshError, PointsError};
+use super::{MeshError, PointsError, SurfaceError};
 
 /// A reason why no particles can be made or selected.
 #[derive(Debug, Error)]
@@ -152,6 +152,9 @@ pub enum GeometryError {
     /// A file of points cannot be used.
     #[error(transparent)]
     Points(#[from] PointsError),
+    /// A surface of triangles cannot be used.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
     /// A mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),

@@ -5,6 +5,7 @@ mod concentric;
 mod cut;
 mod error;
 mod faces;
+mod facets;
 mod file;
 mod fill;
 mod jitter;
@@ -25,6 +26,7 @@ pub use cloud::{
 pub use error::GeometryError;
 pub use faces::Faces;
 pub(crate) use faces::turned_normal;
+pub use facets::{Arrangement, Facets, Soundness, SurfaceError};
 pub use fill::{FillReport, fill, turns};
 pub(crate) use jitter::uniform;
 pub use lattice::{LatticeKind, LatticeSpec, Placement};

@@ -1,12 +1,13 @@
 //! Closed regions of space that particles fill.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use super::GeometryError;
 use super::error::{axis_name, finite, positive};
 use super::polygon;
+use super::{Facets, GeometryError};
 use crate::{Tensor, Vector};
 
 /// A region of space with its boundary.
@@ -36,6 +37,8 @@ enum Kind<const D: usize> {
         corners: Vec<Vector<2>>,
         ends: Option<[f64; 2]>,
     },
+    /// In 3D.
+    Surface(Arc<Facets>),
     Turned {
         of: Box<Shape<D>>,
         about: Vector<D>,
@@ -142,6 +145,18 @@ impl<const D: usize> Shape<D> {
         Ok(Self(Kind::Polygon { corners, ends }))
     }
 
+    /// What a closed surface of triangles encloses, in 3D.
+    ///
+    /// # Errors
+    /// 1D and 2D.
+    pub fn surface(facets: Arc<Facets>) -> Result<Self, GeometryError> {
+        if D != 3 {
+            let (what, expected) = ("a surface of facets", "3D; in 2D its outline is a polygon");
+            return Err(GeometryError::Dimension { what, got: D, expected });
+        }
+        Ok(Self(Kind::Surface(facets)))
+    }
+
     /// A shape turned by an angle in rad about a point in m, in 3D about a unit axis: counter-clockwise as seen from
     /// its tip, in 2D from the tip of z. Particles that fill it are on a lattice that is turned with it.
     ///
@@ -207,6 +222,20 @@ impl<const D: usize> Shape<D> {
     /// A depth below the boundary in m: 0 on it, negative outside, and nowhere further from 0 than
     /// the boundary is from `point`.
     pub fn depth(&self, point: &Vector<D>) -> f64 {
+        self.depth_by(point, &mut |facets, place| facets.depth(place))
+    }
+
+    /// The same at one place after another, see [`Probe`].
+    pub(super) fn probe(&self) -> Probe<'_, D> {
+        Probe { shape: self, known: Vec::new() }
+    }
+
+    /// The depth with that in surfaces of facets from outside.
+    fn depth_by<'a>(
+        &'a self,
+        point: &Vector<D>,
+        of_surface: &mut dyn FnMut(&'a Facets, &Vector<3>) -> f64,
+    ) -> f64 {
         match &self.0 {
             Kind::Box { min, max } => {
                 let depth = |axis: usize| (point[axis] - min[axis]).min(max[axis] - point[axis]);
@@ -228,17 +257,21 @@ impl<const D: usize> Shape<D> {
                 let along = |[min, max]: [f64; 2]| (point[D - 1] - min).min(max - point[D - 1]);
                 ends.map_or(depth, |ends| depth.min(along(ends)))
             }
+            Kind::Surface(facets) => of_surface(facets, &in_space(point)),
             Kind::Turned { of, about, rotation } => {
-                of.depth(&(rotation.transpose() * (point - about) + about))
+                of.depth_by(&(rotation.transpose() * (point - about) + about), of_surface)
             }
-            Kind::Union(shapes) => {
-                shapes.iter().map(|shape| shape.depth(point)).fold(f64::NEG_INFINITY, f64::max)
-            }
-            Kind::Intersection(shapes) => {
-                shapes.iter().map(|shape| shape.depth(point)).fold(f64::INFINITY, f64::min)
-            }
+            Kind::Union(shapes) => shapes
+                .iter()
+                .map(|shape| shape.depth_by(point, of_surface))
+                .fold(f64::NEG_INFINITY, f64::max),
+            Kind::Intersection(shapes) => shapes
+                .iter()
+                .map(|shape| shape.depth_by(point, of_surface))
+                .fold(f64::INFINITY, f64::min),
             Kind::Difference { from, remove } => {
-                remove.iter().map(|shape| -shape.depth(point)).fold(from.depth(point), f64::min)
+                let whole = from.depth_by(point, of_surface);
+                remove.iter().map(|shape| -shape.depth_by(point, of_surface)).fold(whole, f64::min)
             }
         }
     }
@@ -268,6 +301,10 @@ impl<const D: usize> Shape<D> {
                 };
                 (whole(min, |[low, _]| low), whole(max, |[_, high]| high))
             }
+            Kind::Surface(facets) => {
+                let (min, max) = facets.bounding_box();
+                (from_space(&min), from_space(&max))
+            }
             Kind::Turned { of, about, rotation } => {
                 let (min, max) = of.bounding_box();
                 let (middle, half) = (0.5 * (min + max), 0.5 * (max - min));
@@ -280,7 +317,7 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// The volume in m^D, where it is known: for boxes, balls, annuli, cylinders and polygons, for these turned, and
+    /// The volume in m^D, where it is known: for boxes, balls, annuli, cylinders, polygons and closed surfaces, for these turned, and
     /// for these
     /// with others cut out of a box wholly inside of it and apart from each other.
     pub fn exact_volume(&self) -> Option<f64> {
@@ -293,6 +330,7 @@ impl<const D: usize> Shape<D> {
             Kind::Polygon { corners, ends } => {
                 Some(polygon::area(corners).abs() * ends.map_or(1.0, |[min, max]| max - min))
             }
+            Kind::Surface(facets) => facets.volume(),
             Kind::Turned { of, .. } => of.exact_volume(),
             Kind::Union(shapes) | Kind::Intersection(shapes) => match shapes.as_slice() {
                 [only] => only.exact_volume(),
@@ -336,6 +374,22 @@ impl<const D: usize> Shape<D> {
         }
     }
 
+    /// The shape's surface of triangles, if it is one.
+    pub(super) fn as_surface(&self) -> Option<&Facets> {
+        match &self.0 {
+            Kind::Surface(facets) => Some(facets),
+            _ => None,
+        }
+    }
+
+    /// The shapes of which this is the union: at least itself.
+    pub(super) fn parts(&self) -> &[Self] {
+        match &self.0 {
+            Kind::Union(shapes) => shapes,
+            _ => std::slice::from_ref(self),
+        }
+    }
+
     /// The corners, where the shape is one box.
     pub(super) fn corners(&self) -> Option<(Vector<D>, Vector<D>)> {
         match self.0 {
@@ -353,6 +407,51 @@ pub(super) struct Round<const D: usize> {
     pub radii: [f64; 2],
     /// Unit vector along the axis of a cylinder, and its length in m.
     pub axis: Option<(Vector<D>, f64)>,
+}
+
+/// Depths at places that follow each other closely: a place that is nearer to the one before than a closed surface was there
+/// is on the same side of it, and the side is what takes time to tell.
+pub(super) struct Probe<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    /// The last place in each surface, and the depth there.
+    known: Vec<(&'a Facets, Vector<3>, f64)>,
+}
+
+impl<const D: usize> Probe<'_, D> {
+    /// As [`Shape::depth`].
+    pub fn depth(&mut self, point: &Vector<D>) -> f64 {
+        let known = &mut self.known;
+        self.shape.depth_by(point, &mut |facets, place| {
+            let last = known.iter_mut().find(|(other, ..)| std::ptr::eq(*other, facets));
+            match last {
+                Some((_, at, depth)) => {
+                    let is_beside = facets.soundness().is_closed()
+                        && (place - *at).norm() < (1.0 - 1e-9) * depth.abs();
+                    *depth = match is_beside {
+                        true => facets.distance(place).copysign(*depth),
+                        false => facets.depth(place),
+                    };
+                    *at = *place;
+                    *depth
+                }
+                None => {
+                    let depth = facets.depth(place);
+                    known.push((facets, *place, depth));
+                    depth
+                }
+            }
+        })
+    }
+}
+
+/// A point of a surface, which is in 3D.
+pub(super) fn in_space<const D: usize>(point: &Vector<D>) -> Vector<3> {
+    Vector::from_fn(|axis, _| if axis < D { point[axis] } else { 0.0 })
+}
+
+/// The same the other way round.
+pub(super) fn from_space<const D: usize>(point: &Vector<3>) -> Vector<D> {
+    Vector::from_fn(|axis, _| point[axis])
 }
 
 type Bounds<const D: usize> = (Vector<D>, Vector<D>);

@@ -1,5 +1,6 @@
 //! The shortest ways out of a shape.
 
+use super::shape::{from_space, in_space};
 use super::{Faces, Shape};
 use crate::Vector;
 
@@ -7,6 +8,10 @@ use crate::Vector;
 const HALVINGS: u32 = 40;
 /// Steps of a walk along a ray, each as long as the depth allows.
 const MOST_STEPS: usize = 200;
+/// Most ways to facets that are told apart.
+const MOST_WAYS: usize = 256;
+/// A place that is no deeper in a shape than this part of the way to there is on its boundary.
+const ON_FACET: f64 = 1e-6;
 /// Ways whose lengths differ by less than this part count as equally short.
 const TIE: f64 = 0.05;
 
@@ -18,6 +23,9 @@ impl<const D: usize> Shape<D> {
     ///
     /// Directions are searched from those to the faces, edges and corners of a cube.
     pub fn ways_out(&self, point: &Vector<D>, bounds: &(Vector<D>, Vector<D>)) -> Faces<D> {
+        if let Some(faces) = self.nearest_facets(point, bounds) {
+            return faces;
+        }
         let extent = (bounds.1 - bounds.0).norm();
         let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
         let starts = (0..3usize.pow(D as u32)).filter_map(|number| {
@@ -51,6 +59,31 @@ impl<const D: usize> Shape<D> {
         }
         let depth = faces[0].0;
         Faces::new(faces.into_iter().map(|face| face.1).collect(), depth)
+    }
+
+    /// The ways to the nearest facets, where the point is inside of a surface of them and of no other part of the shape: they end
+    /// within the bounds, and in no other part.
+    fn nearest_facets(
+        &self,
+        point: &Vector<D>,
+        bounds: &(Vector<D>, Vector<D>),
+    ) -> Option<Faces<D>> {
+        let mut around = self.parts().iter().filter(|part| part.depth(point) > 0.0);
+        let (own, None) = (around.next()?, around.next()) else { return None };
+        let places = own.as_surface()?.nearest(&in_space(point), 1.0 + TIE);
+        let depth = own.depth(point);
+        let mut ways = Vec::with_capacity(places.len());
+        for place in &places {
+            let place = from_space::<D>(place);
+            let is_within =
+                (0..D).all(|axis| bounds.0[axis] < place[axis] && place[axis] < bounds.1[axis]);
+            let ends = |part: &Self| part.depth(&place) < ON_FACET * depth;
+            if !is_within || !self.parts().iter().all(ends) {
+                return None;
+            }
+            ways.push((place - point).normalize());
+        }
+        Some(Faces::new(apart(&ways), depth))
     }
 
     /// The faces on the two sides of a point inside a thin part of the shape, where the face opposite to the
@@ -131,6 +164,28 @@ impl<const D: usize> Shape<D> {
         }
         outer
     }
+}
+
+/// Of unit vectors the first, and the first of each group that is apart from those before: facets of a curved face follow
+/// each other by small turns, and those beyond an edge do not. Far from facets, where there are more than [`MOST_WAYS`], the
+/// first alone.
+fn apart<const D: usize>(ways: &[Vector<D>]) -> Vec<Vector<D>> {
+    let mut left: Vec<Vector<D>> = ways.iter().take(MOST_WAYS).copied().collect();
+    let mut normals = Vec::new();
+    while let Some(first) = left.first().copied() {
+        normals.push(first);
+        let (mut group, mut next) = (vec![first], 0);
+        while let Some(own) = group.get(next).copied() {
+            next += 1;
+            let (near, rest) = left.iter().partition(|way| way.dot(&own) > 1.0 - TIE);
+            left = rest;
+            group.extend::<Vec<_>>(near);
+        }
+        if ways.len() > MOST_WAYS {
+            break;
+        }
+    }
+    normals
 }
 
 /// The shortest way close to a start, and its direction.

@@ -17,6 +17,7 @@ mod operators;
 mod planning;
 mod probes;
 mod runs;
+mod shapes;
 mod solids;
 mod speeds;
 mod structures;

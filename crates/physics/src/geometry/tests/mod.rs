@@ -1,4 +1,5 @@
 mod concentric;
+mod facets;
 mod fill;
 mod points;
 mod region;

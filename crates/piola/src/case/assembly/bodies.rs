@@ -1,11 +1,14 @@
 //! Bodies turned into particles.
 
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Body, Case};
 use crate::case::source::Located;
 use crate::geometry::{
-    FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
-    from_mesh, from_points, surroundings,
+    Arrangement, Facets, FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement,
+    Shape, Soundness, fill, from_mesh, from_points, surroundings,
 };
 use crate::neighbors::{Domain, refuse_coincident};
 use crate::operators::relax;
@@ -188,6 +191,50 @@ fn relaxed<const D: usize>(
     Ok(made)
 }
 
+/// So many spacings are the support of a kernel, and what is beyond is not seen.
+const THIN: f64 = 3.0;
+
+/// The facets of a file, which is read once.
+fn facets_of(
+    (file, arrangement): (&Path, &Arrangement),
+    read: &OnceLock<Arc<Facets>>,
+) -> Result<Arc<Facets>, GeometryError> {
+    if let Some(facets) = read.get() {
+        return Ok(facets.clone());
+    }
+    let facets = Arc::new(Facets::from_file(file, arrangement)?);
+    Ok(read.get_or_init(|| facets).clone())
+}
+
+/// What the user should know of surfaces from files.
+pub(super) fn surfaces(case: &Case) -> Vec<String> {
+    let mut told = Vec::new();
+    for body in &case.bodies {
+        let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
+        for (file, facets) in body.shape.surfaces() {
+            let Some(facets) = facets.get() else { continue };
+            let mut tell = |text: String| told.push(format!("`{}`: {text}", file.display()));
+            if facets.soundness() != &Soundness::default() {
+                tell(facets.soundness().to_string());
+            }
+            let crossings = facets.crossings();
+            if crossings > 0 {
+                tell(format!("{crossings} pairs of facets cross each other"));
+            }
+            let layers = facets.thickness() / spacing;
+            if layers < THIN {
+                let name = &*body.name;
+                tell(format!(
+                    "the thinnest part has {layers:.1} spacings of the body `{name}`: particles see through less than {THIN}"
+                ));
+            }
+        }
+    }
+    told.sort();
+    told.dedup();
+    told
+}
+
 pub(super) fn shape<const D: usize>(
     case: &Case,
     body: &Body,
@@ -208,6 +255,9 @@ pub(super) fn shape<const D: usize>(
         model::Shape::Polygon { corners, ends } => {
             let corners = corners.iter().map(|corner| Vector::<2>::from(*corner)).collect();
             Shape::polygon(corners, *ends)
+        }
+        model::Shape::Surface { file, arrangement, facets } => {
+            facets_of((&file.value, arrangement), facets).and_then(Shape::surface)
         }
         model::Shape::Turned { of, angle, about, axis } => {
             shape(case, body, of)?.turned(*angle, vector(about), (*axis).into())

@@ -1,6 +1,9 @@
 //! Bodies: shapes, lattices, materials and initial state; and regions.
 
+use std::sync::Arc;
+
 use super::*;
+use nalgebra::{Rotation3, Unit, Vector3};
 use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use crate::case::expression::Expression;
@@ -8,7 +11,7 @@ use crate::case::model::{
     Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Region, Shape,
     Stiffness,
 };
-use crate::geometry::{CloudPoints, CloudSpec, CloudVolumes};
+use crate::geometry::{Arrangement, CloudPoints, CloudSpec, CloudVolumes};
 
 /// The keys that give the stiffness of a material, of which one is needed.
 const STIFFNESSES: [&str; 3] = ["bulk_modulus", "wave_speed", "young_modulus"];
@@ -129,6 +132,19 @@ impl Reader<'_, '_> {
                     self.meaningless(record, "z", "in 2D");
                 }
                 Shape::Polygon { corners: corners?, ends }
+            }
+            "surface" => {
+                let axis = match record.has("axis") {
+                    true => self.unit(record, "axis")?,
+                    false => vec![0.0, 0.0, 1.0],
+                };
+                let axis = Unit::new_normalize(Vector3::from_column_slice(&axis));
+                let rotation = Rotation3::from_axis_angle(&axis, number(record, "angle")?);
+                let shift = vector(record, "move").unwrap_or_else(|| vec![0.0; 3]);
+                let shift = Vector3::from_column_slice(&shift);
+                let arrangement = Arrangement { scale: number(record, "scale")?, rotation, shift };
+                let (file, facets) = (self.file(record, "file")?, Arc::default());
+                Shape::Surface { file, arrangement, facets }
             }
             "turned" => {
                 let of = record.record("of").and_then(|of| self.shape(of));

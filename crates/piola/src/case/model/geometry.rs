@@ -1,11 +1,12 @@
 //! Domain, bodies and regions of space.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 use super::{Material, Opening, Wall};
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::geometry::CloudSpec;
+use crate::geometry::{Arrangement, CloudSpec, Facets};
 
 /// The space that the particles live in.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +80,15 @@ pub enum Shape {
         /// In 3D the ends along z in m.
         ends: Option<[f64; 2]>,
     },
+    /// What the triangles of a file enclose.
+    Surface {
+        /// The file, relative paths resolved against the folder of the case file.
+        file: Located<PathBuf>,
+        /// How its facets are laid out in space.
+        arrangement: Arrangement,
+        /// The facets, once they have been read.
+        facets: Arc<OnceLock<Arc<Facets>>>,
+    },
     /// A shape turned with its lattice.
     Turned {
         /// The shape.
@@ -121,22 +131,35 @@ impl Shape {
         matches!(self, Self::Points { .. } | Self::Mesh { .. })
     }
 
+    /// The surfaces from files in it, as far as they have been read.
+    pub fn surfaces(&self) -> Vec<(&Path, &OnceLock<Arc<Facets>>)> {
+        match self {
+            Self::Surface { file, facets, .. } => vec![(file.as_path(), facets)],
+            _ => self.parts().into_iter().flat_map(Self::surfaces).collect(),
+        }
+    }
+
+    /// The shapes that it is made of.
+    fn parts(&self) -> Vec<&Self> {
+        match self {
+            Self::Union(shapes) | Self::Intersection(shapes) => {
+                shapes.iter().map(|shape| &shape.value).collect()
+            }
+            Self::Difference { from, remove } => {
+                std::iter::once(&from.value).chain(remove.iter().map(|cut| &cut.value)).collect()
+            }
+            Self::Turned { of, .. } => vec![&of.value],
+            _ => Vec::new(),
+        }
+    }
+
     /// The files that the shape reads.
     pub fn files(&self) -> Vec<&Located<PathBuf>> {
         match self {
-            Self::Points { file } | Self::Mesh { file, .. } => vec![file],
-            Self::Union(shapes) | Self::Intersection(shapes) => {
-                shapes.iter().flat_map(|shape| shape.files()).collect()
+            Self::Points { file } | Self::Mesh { file, .. } | Self::Surface { file, .. } => {
+                vec![file]
             }
-            Self::Difference { from, remove } => {
-                from.files().into_iter().chain(remove.iter().flat_map(|cut| cut.files())).collect()
-            }
-            Self::Turned { of, .. } => of.files(),
-            Self::Box { .. }
-            | Self::Ball { .. }
-            | Self::Annulus { .. }
-            | Self::Cylinder { .. }
-            | Self::Polygon { .. } => Vec::new(),
+            _ => self.parts().into_iter().flat_map(Self::files).collect(),
         }
     }
 }

@@ -172,6 +172,48 @@ static SHAPE: TaggedSpec = TaggedSpec {
             ],
         },
         KindSpec {
+            name: "surface",
+            meaning: "what a closed surface of triangles encloses: STL, binary or ASCII, OBJ or PLY. Small holes and facets that are the other way round or there twice do no harm, and are told",
+            dimensions: &[3],
+            keys: &[
+                key(
+                    "file",
+                    Kind::File,
+                    "",
+                    Required,
+                    "the file, relative to the folder of the case file",
+                ),
+                key(
+                    "scale",
+                    Kind::Number(Interval::POSITIVE),
+                    "m",
+                    Default("1.0"),
+                    "length of a unit of the file: 0.001 where it is a millimetre",
+                ),
+                key(
+                    "angle",
+                    Kind::Number(Interval::ANY),
+                    "rad",
+                    Default("0.0"),
+                    "by which it is turned about the origin of the file after that, counter-clockwise as seen from the tip of the axis",
+                ),
+                key(
+                    "axis",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "1",
+                    Derived("z"),
+                    "the direction of the axis, of any length",
+                ),
+                key(
+                    "move",
+                    POINT,
+                    "m",
+                    Derived("the origin"),
+                    "where the origin of the file comes to be",
+                ),
+            ],
+        },
+        KindSpec {
             name: "turned",
             meaning: "another shape, turned; if it is the whole of a body, together with the lattice of the particles",
             dimensions: &[2, 3],

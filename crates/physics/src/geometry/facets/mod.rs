@@ -1,0 +1,131 @@
+//! Closed surfaces of triangles, as files of drawings have them.
+
+mod read;
+mod sound;
+mod tree;
+
+use std::path::Path;
+
+use nalgebra::Rotation3;
+
+pub use read::SurfaceError;
+pub use sound::Soundness;
+
+use crate::Vector;
+use tree::Tree;
+
+/// A triangle by its corners in m, counter-clockwise as seen from outside.
+type Triangle = [Vector<3>; 3];
+
+/// How the facets of a file become those of a body: made larger, turned about the origin, and then moved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrangement {
+    /// Metres of a unit of the file.
+    pub scale: f64,
+    /// The rotation.
+    pub rotation: Rotation3<f64>,
+    /// By how much they are moved in m.
+    pub shift: Vector<3>,
+}
+
+/// What a surface of triangles encloses, theory (97).
+///
+/// Inside is where the winding number is above one half: `w = sum Omega_f / 4 pi`, with the solid angles of the facets as seen
+/// from the point, is 1 inside of a closed surface and 0 outside, and where facets are missing it changes smoothly through the
+/// hole [Jacobson2013]. Of facets that are far from a point, those of a node of the tree, the area vectors are taken
+/// together, to the second order [Barill2018].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Facets {
+    tree: Tree,
+    volume: f64,
+    soundness: Soundness,
+}
+
+impl Facets {
+    /// Those of triangles, of which facets without an area and those that are there twice are left out, and those that are the
+    /// other way round than the ones beside them are turned.
+    ///
+    /// # Errors
+    /// Corners that are not finite, and no facets.
+    pub fn new(triangles: Vec<[Vector<3>; 3]>) -> Result<Self, SurfaceError> {
+        sound::check(&triangles)?;
+        let (triangles, soundness) = sound::mended(triangles)?;
+        let six = |[a, b, c]: &Triangle| a.dot(&b.cross(c));
+        let volume = triangles.iter().map(six).sum::<f64>() / 6.0;
+        Ok(Self { tree: Tree::new(triangles), volume: volume.abs(), soundness })
+    }
+
+    /// Those of a file: STL, binary or ASCII, OBJ, PLY, by the end of its name.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is of another kind or broken, and what [`Self::new`] refuses.
+    pub fn from_file(path: &Path, arrangement: &Arrangement) -> Result<Self, SurfaceError> {
+        let mut triangles = read::triangles(path)?;
+        sound::check(&triangles)?;
+        let Arrangement { scale, rotation, shift } = arrangement;
+        for corner in triangles.iter_mut().flatten() {
+            *corner = rotation * (*corner * *scale) + shift;
+        }
+        Self::new(triangles)
+    }
+
+    /// What was found when the facets were read.
+    pub fn soundness(&self) -> &Soundness {
+        &self.soundness
+    }
+
+    /// Number of facets.
+    pub fn len(&self) -> usize {
+        self.tree.triangles().len()
+    }
+
+    /// Whether there are none, which [`Self::new`] refuses.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// What they enclose, in m^3, where they are closed.
+    pub fn volume(&self) -> Option<f64> {
+        self.soundness.is_closed().then_some(self.volume)
+    }
+
+    /// Lower and upper corner in m of the box around them.
+    pub fn bounding_box(&self) -> (Vector<3>, Vector<3>) {
+        self.tree.bounds()
+    }
+
+    /// How often they wind round a point: 1 inside, 0 outside, between them near holes.
+    pub fn winding(&self, point: &Vector<3>) -> f64 {
+        self.tree.winding(point)
+    }
+
+    /// The distance in m from the nearest facet.
+    pub fn distance(&self, point: &Vector<3>) -> f64 {
+        (self.tree.nearest(point) - point).norm()
+    }
+
+    /// The same, less than zero outside.
+    pub fn depth(&self, point: &Vector<3>) -> f64 {
+        let distance = self.distance(point);
+        if self.winding(point) > 0.5 { distance } else { -distance }
+    }
+
+    /// The places on facets that are nearest to a point: that one first, and those of other facets that are no more than `reach`
+    /// times as far away.
+    pub fn nearest(&self, point: &Vector<3>, reach: f64) -> Vec<Vector<3>> {
+        let first = self.tree.nearest(point);
+        let mut all = vec![first];
+        self.tree.within(point, reach * (first - point).norm(), &mut all);
+        all
+    }
+
+    /// How many pairs of facets that have no corner in common cross each other.
+    pub fn crossings(&self) -> usize {
+        self.tree.crossings()
+    }
+
+    /// The thinnest part in m: the shortest way from the middle of a facet straight through to the other side.
+    pub fn thickness(&self) -> f64 {
+        self.tree.thickness()
+    }
+}

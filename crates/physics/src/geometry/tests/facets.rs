@@ -1,0 +1,275 @@
+//! Surfaces of triangles against shapes that are known, and files of them.
+
+use std::f64::consts::PI;
+use std::io::Write;
+
+use nalgebra::Rotation3;
+use proptest::prelude::*;
+
+use crate::Vector;
+use crate::geometry::{
+    Arrangement, Facets, GeometryError, LatticeSpec, Placement, Shape, SurfaceError, fill,
+};
+
+type Triangle = [Vector<3>; 3];
+
+/// A torus about z with radii of 1 and 0.4 m, its outside facing out.
+fn torus(around: usize, along: usize) -> Vec<Triangle> {
+    let place = |i: usize, j: usize| {
+        let [a, b] = [i as f64 / around as f64, j as f64 / along as f64].map(|x| 2.0 * PI * x);
+        let radius = 1.0 + 0.4 * b.cos();
+        Vector::<3>::new(radius * a.cos(), radius * a.sin(), 0.4 * b.sin())
+    };
+    let mut all = Vec::new();
+    for i in 0..around {
+        for j in 0..along {
+            let (k, l) = ((i + 1) % around, (j + 1) % along);
+            all.push([place(i, j), place(k, j), place(k, l)]);
+            all.push([place(i, j), place(k, l), place(i, l)]);
+        }
+    }
+    all
+}
+
+/// The depth in a torus without facets.
+fn depth_of_torus(x: &Vector<3>) -> f64 {
+    0.4 - (x.xy().norm() - 1.0).hypot(x.z)
+}
+
+/// The box from 0 to `end`.
+fn cuboid(end: [f64; 3]) -> Vec<Triangle> {
+    let corner = |bits: usize| {
+        Vector::<3>::from_fn(|axis, _| if bits >> axis & 1 == 1 { end[axis] } else { 0.0 })
+    };
+    let sides =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let both = |[a, b, c, d]: [usize; 4]| [[a, b, c], [a, c, d]].map(|facet| facet.map(corner));
+    sides.into_iter().flat_map(both).collect()
+}
+
+/// Places all over a box that is somewhat larger than a torus.
+fn places() -> impl Iterator<Item = Vector<3>> {
+    // Three numbers without a common measure fill the box evenly.
+    (1..3000).map(|k| {
+        let part = |step: f64| (f64::from(k) * step).fract() - 0.5;
+        Vector::<3>::new(3.2 * part(0.819_172_5), 3.2 * part(0.671_043_6), 1.2 * part(0.549_700_4))
+    })
+}
+
+#[test]
+fn a_torus_is_as_deep_as_its_facets_are_fine() {
+    let facets = Facets::new(torus(200, 80)).unwrap();
+    assert!(facets.soundness().is_closed());
+    assert_eq!((facets.soundness().turned, facets.soundness().left_out), (0, 0));
+    // Chords are r (1 - cos(half an angle)) below their arcs: 1.4 (1.57e-2)^2/2 and 0.4 (3.93e-2)^2/2.
+    let chord = 1.8e-4 + 3.1e-4;
+    for x in places() {
+        let expected = depth_of_torus(&x);
+        let found = facets.depth(&x);
+        assert!((found - expected).abs() < chord, "{found} for {expected} at {x}");
+        let winding = facets.winding(&x);
+        let sharp = if found > 0.0 { 1.0 } else { 0.0 };
+        // Nodes at twice their radius and more are taken together to the second order: right to the third power of a half.
+        assert!((winding - sharp).abs() < 1.0 / 8.0, "{winding} at {x}, {found} deep");
+    }
+    let exact = 2.0 * PI * PI * 0.16;
+    let volume = facets.volume().unwrap();
+    assert!(volume < exact && volume > exact * (1.0 - 2.0 * chord / 0.4), "{volume} of {exact}");
+}
+
+#[test]
+fn a_box_of_facets_is_a_box() {
+    let end = [1.0, 2.0, 3.0];
+    let facets = Facets::new(cuboid(end)).unwrap();
+    assert_eq!(facets.volume(), Some(6.0));
+    assert_eq!(facets.bounding_box(), (Vector::zeros(), Vector::from(end)));
+    assert!((facets.thickness() - 1.0).abs() < 1e-12);
+    assert_eq!(facets.crossings(), 0);
+    let surface = Shape::surface(facets.into()).unwrap();
+    let plain = Shape::cuboid(Vector::zeros(), Vector::<3>::from(end)).unwrap();
+    for x in places() {
+        let x = x + Vector::<3>::new(0.5, 1.0, 1.5);
+        let (found, expected) = (surface.depth(&x), plain.depth(&x));
+        let is_same = if expected > 0.0 { (found - expected).abs() < 1e-12 } else { found < 0.0 };
+        assert!(is_same, "{found} for {expected} at {x}");
+    }
+    // On the same lattice there are the same particles, with what is inside of their cells.
+    let spec =
+        LatticeSpec { placement: Placement::Cells, ..LatticeSpec::square([0.25, 0.25, 0.25]) };
+    let [found, expected] = [&surface, &plain].map(|shape| fill(shape, &spec).unwrap());
+    assert_eq!(found.particles.position, expected.particles.position);
+    assert!((found.total_volume - 6.0).abs() < 1e-12);
+}
+
+#[test]
+fn walls_of_facets_have_their_normals() {
+    let surface = Shape::surface(Facets::new(torus(200, 80)).unwrap().into()).unwrap();
+    let far = Shape::ball(Vector::<3>::repeat(8.0), 1.0).unwrap();
+    let bounds = (Vector::<3>::repeat(-9.0), Vector::<3>::repeat(9.0));
+    for shape in [surface.clone(), Shape::union(vec![far, surface]).unwrap()] {
+        for x in places().filter(|x| (0.02..0.3).contains(&depth_of_torus(x))).take(200) {
+            let ring = Vector::<3>::new(x.x, x.y, 0.0).normalize();
+            let faces = shape.ways_out(&x, &bounds);
+            // A facet is an eightieth of a turn.
+            let turned = faces.between().dot(&(x - ring).normalize());
+            assert!(turned > (PI / 80.0_f64).cos() - 1e-3, "{turned} at {x}");
+            assert!((faces.depth() - depth_of_torus(&x)).abs() < 5e-4);
+        }
+    }
+    let cuboid = Shape::surface(Facets::new(cuboid([1.0; 3])).unwrap().into()).unwrap();
+    let faces = cuboid.ways_out(&Vector::<3>::new(0.1, 0.1, 0.5), &bounds);
+    assert_eq!(faces.normals().len(), 2, "behind an edge: {faces:?}");
+    let side = cuboid.ways_out(&Vector::<3>::new(0.1, 0.3, 0.5), &bounds);
+    assert_eq!(side.normals().len(), 1);
+    assert!((side.between() + Vector::x()).norm() < 1e-12, "{side:?}");
+}
+
+#[test]
+fn holes_and_facets_that_are_turned_or_there_twice_do_no_harm() {
+    let sound = Facets::new(torus(60, 30)).unwrap();
+    let mut spoilt = torus(60, 30);
+    for triangle in spoilt.iter_mut().skip(5).step_by(7) {
+        triangle.swap(0, 1);
+    }
+    let turned = spoilt.iter().skip(5).step_by(7).count();
+    let twice: Vec<Triangle> = spoilt.iter().step_by(11).copied().collect();
+    let count = twice.len();
+    spoilt.extend(twice);
+    spoilt.push([spoilt[0][0], spoilt[0][0], spoilt[0][1]]);
+    let mended = Facets::new(spoilt).unwrap();
+    let found = mended.soundness();
+    assert_eq!((found.turned, found.left_out, found.open_sides), (turned, count + 1, 0));
+    let text = found.to_string();
+    assert!(text.contains("the other way round") && text.contains("left out"), "{text}");
+    // A hole of a facet of 0.13 by 0.08 m.
+    let holed = Facets::new(torus(60, 30)[1..].to_vec()).unwrap();
+    assert_eq!((holed.soundness().open_sides, holed.volume()), (3, None));
+    assert!(holed.soundness().to_string().contains("3 sides belong to one facet only"));
+    for x in places() {
+        let expected = sound.depth(&x);
+        assert!((mended.depth(&x) - expected).abs() < 1e-12, "at {x}");
+        let is_near = (x - torus(60, 30)[0][0]).norm() < 0.3;
+        assert!(is_near || (holed.depth(&x) - expected).abs() < 1e-12, "at {x}");
+    }
+    // One box in another, and one that sticks out of it.
+    let moved = |by: f64| {
+        let all = cuboid([1.0; 3]).into_iter();
+        all.map(move |facet| facet.map(|x| x * 0.5 + Vector::<3>::repeat(by)))
+    };
+    let crossings = |by: f64| {
+        Facets::new(cuboid([1.0; 3]).into_iter().chain(moved(by)).collect()).unwrap().crossings()
+    };
+    assert_eq!(crossings(0.3), 0);
+    assert!(crossings(0.7) >= 6);
+}
+
+/// A file with these bytes, and what is read of it.
+fn read(name: &str, bytes: &[u8]) -> Result<Facets, SurfaceError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::File::create(&path).unwrap().write_all(bytes).unwrap();
+    let rotation = Rotation3::identity();
+    let arrangement = Arrangement { scale: 1.0, rotation, shift: Vector::zeros() };
+    Facets::from_file(&path, &arrangement)
+}
+
+fn binary(head: &[u8; 80], triangles: &[Triangle]) -> Vec<u8> {
+    let mut bytes = head.to_vec();
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for triangle in triangles {
+        bytes.extend([0; 12]);
+        let numbers = triangle.iter().flat_map(|corner| corner.iter());
+        bytes.extend(numbers.flat_map(|x| (*x as f32).to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+fn text(triangles: &[Triangle]) -> String {
+    let mut text = "solid\n".to_owned();
+    for triangle in triangles {
+        text += " facet normal 0 0 0\n  outer loop\n";
+        for x in triangle {
+            text += &format!("   vertex {} {} {}\n", x.x, x.y, x.z);
+        }
+        text += "  endloop\n endfacet\n";
+    }
+    text + "endsolid\n"
+}
+
+const OBJ: &str = "# a box\nmtllib none.mtl\no box\nv 0 0 0\nv 1 0 0\nv 0 2 0\nv 1 2 0\nv 0 0 3\nv 1 0 3\nv 0 2 3\nv 1 2 3\n\
+    f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n\
+    element face 6\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 2 0\n1 2 0\n0 0 3\n1 0 3\n0 2 3\n1 2 3\n\
+    4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+
+#[test]
+fn files_of_all_kinds_have_the_same_box() {
+    let triangles = cuboid([1.0, 2.0, 3.0]);
+    let mut solid = [b' '; 80];
+    solid[..5].copy_from_slice(b"solid");
+    let files: [(&str, Vec<u8>); 5] = [
+        ("box.stl", binary(&[b'-'; 80], &triangles)),
+        ("like_text.STL", binary(&solid, &triangles)),
+        ("text.stl", text(&triangles).into_bytes()),
+        ("box.obj", OBJ.as_bytes().to_vec()),
+        ("box.ply", PLY.as_bytes().to_vec()),
+    ];
+    for (name, bytes) in files {
+        let facets = read(name, &bytes).unwrap();
+        assert_eq!((facets.len(), facets.volume()), (12, Some(6.0)), "{name}");
+        assert_eq!(facets.soundness(), &Default::default(), "{name}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("box.obj");
+    std::fs::write(&path, OBJ).unwrap();
+    let rotation = Rotation3::from_axis_angle(&Vector::<3>::z_axis(), 0.5 * PI);
+    let shift = Vector::<3>::new(0.0, 0.0, 7.0);
+    let facets = Facets::from_file(&path, &Arrangement { scale: 1e-3, rotation, shift }).unwrap();
+    let (low, high) = facets.bounding_box();
+    assert!((low - Vector::<3>::new(-2e-3, 0.0, 7.0)).norm() < 1e-15);
+    assert!((high - Vector::<3>::new(0.0, 1e-3, 7.003)).norm() < 1e-15);
+}
+
+#[test]
+fn broken_files_are_told() {
+    let mut short = binary(&[b'-'; 80], &cuboid([1.0; 3]));
+    short.truncate(500);
+    let mut nan = cuboid([1.0; 3]);
+    nan[4][1].y = f64::NAN;
+    let faults: [(&str, Vec<u8>, &str); 8] = [
+        ("a.stl", short, "room for 8.32 facets where a binary file would have 12"),
+        ("a.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(), "facet 1: "),
+        ("a.stl", binary(&[b'-'; 80], &nan), "a corner of facet 5 is at [1.0, NaN"),
+        ("a.stl", binary(&[b'-'; 80], &[]), "no facets"),
+        ("a.obj", b"v 0 0 0\nf 1 2 3\n".to_vec(), "is broken: "),
+        ("a.ply", PLY.replace("4 1 3 7 5", "4 1 3 7 8").into_bytes(), "the vertex 8 (from 0) of 8"),
+        ("a.ply", PLY.replace("float z", "float w").into_bytes(), "a vertex has no number `z`"),
+        ("a.step", Vec::new(), "ends neither with `.stl`, `.obj` nor `.ply`"),
+    ];
+    for (name, bytes, said) in faults {
+        let error = read(name, &bytes).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+    let missing = std::path::Path::new("no such file.stl");
+    let rotation = Rotation3::identity();
+    let plain = Arrangement { scale: 1.0, rotation, shift: Vector::zeros() };
+    let error = Facets::from_file(missing, &plain).unwrap_err().to_string();
+    assert!(error.contains("no such file.stl` cannot be read"), "{error}");
+    let flat = Shape::<2>::surface(Facets::new(cuboid([1.0; 3])).unwrap().into());
+    assert!(matches!(flat, Err(GeometryError::Dimension { .. })));
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_cause_a_panic(
+        mut bytes in proptest::collection::vec(any::<u8>(), 0..300),
+        start in 0usize..4,
+        end in 0usize..3,
+    ) {
+        let begin = [&b""[..], b"solid ", b"ply\nformat ascii 1.0\nelement vertex 1\n", b"v 1 2 3\nf "];
+        bytes.splice(0..0, begin[start].iter().copied());
+        let _ = read(["a.stl", "a.obj", "a.ply"][end], &bytes);
+    }
+}

@@ -1,0 +1,120 @@
+//! Walls and bodies of fluid around shapes from files.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use piola::case::{self, Finished, LoadOptions, Session};
+
+use super::escapes::values;
+
+/// A ring of 0.5 m and 0.2 m held under water that is at rest and surrounds it.
+const RING: &str = r#"
+version = 1
+title = "A ring under water"
+dimension = 3
+[parameters]
+dx = 0.08
+[domain]
+periodic = { x = [-0.96, 0.96], y = [-0.96, 0.96], z = [-0.48, 0.48] }
+[[body]]
+name = "water"
+shape = { kind = "difference", from = { kind = "box", min = [-0.96, -0.96, -0.48], max = [0.96, 0.96, 0.48] }, remove = [{ kind = "surface", file = "ring.obj", scale = 0.5 }] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 50.0 }
+initial = { pressure = "1000 * 9.81 * (0.48 - z)" }
+[[body]]
+name = "ring"
+shape = { kind = "surface", file = "ring.obj", scale = 0.5 }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 50.0 }
+wall = {}
+[scheme]
+kind = "transport_velocity"
+[[load]]
+kind = "body_force"
+body = "water"
+acceleration = ["0", "0", "-9.81"]
+[[probe]]
+name = "ring"
+kind = "force"
+body = "ring"
+[time]
+end = 1e-6
+"#;
+
+/// A torus of radii 1 and 0.4 with quadrilaterals, without the first `missing` of them.
+fn torus(missing: usize) -> String {
+    let (around, along) = (64, 24);
+    let mut text = String::new();
+    for i in 0..around {
+        for j in 0..along {
+            let [a, b] = [(i, around), (j, along)].map(|(k, n)| 2.0 * PI * k as f64 / n as f64);
+            let radius = 1.0 + 0.4 * b.cos();
+            let [x, y, z] = [radius * a.cos(), radius * a.sin(), 0.4 * b.sin()];
+            text += &format!("v {x} {y} {z}\n");
+        }
+    }
+    for number in missing..around * along {
+        let (i, j) = (number / along, number % along);
+        let corner = |i: usize, j: usize| i % around * along + j % along + 1;
+        let corners = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        text += &format!("f {} {} {} {}\n", corners[0], corners[1], corners[2], corners[3]);
+    }
+    text
+}
+
+fn session(text: &str, surface: &str) -> Result<Session, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("ring.obj"), surface).unwrap();
+    std::fs::write(path("case.toml"), text).unwrap();
+    let load = |path: &Path| case::load(path, &LoadOptions::default());
+    let case = load(&path("case.toml")).and_then(|case| Session::new(&case));
+    case.map_err(|problems| problems.to_string())
+}
+
+fn finished(text: &str, surface: &str) -> Finished {
+    let session = session(text, surface).unwrap();
+    session.run(&std::sync::atomic::AtomicBool::new(false), &mut |_| {}).unwrap()
+}
+
+/// Water lifts what it surrounds by the weight of what this displaces: `2 pi^2 R r^2`. Facets cut 1 % off, and what a sum over
+/// a kernel is off by on a lattice is 2 %, as for boxes.
+#[test]
+fn water_lifts_a_ring_from_a_file() {
+    let finished = finished(RING, &torus(0));
+    let lift = values(&finished, "ring.force.z")[0];
+    let exact = 1000.0 * 9.81 * 2.0 * PI * PI * 0.5 * 0.04;
+    assert!((lift / exact - 1.0).abs() < 0.03, "{lift} of {exact}");
+    for axis in ["x", "y"] {
+        let aside = values(&finished, &format!("ring.force.{axis}"))[0];
+        assert!(aside.abs() < 0.03 * exact, "{aside} along {axis}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_surface_is_told() {
+    let warnings = |surface: &str| session(RING, surface).unwrap().plan().warnings.join("\n");
+    let sound = warnings(&torus(0));
+    assert!(!sound.contains("ring.obj"), "{sound}");
+    let holed = warnings(&torus(1));
+    assert!(holed.contains("it has holes: 4 sides belong to one facet only"), "{holed}");
+    let thin =
+        session(&RING.replace("scale = 0.5", "scale = 0.25"), &torus(0)).unwrap().plan().warnings;
+    let thin = thin.join("\n");
+    assert!(thin.contains("the thinnest part has 2.5 spacings of the body `ring`"), "{thin}");
+    for (from, to, said) in [
+        ("ring.obj", "none.obj", "none.obj"),
+        ("ring.obj", "ring.step", "ring.step"),
+        ("scale = 0.5", "scale = 0.0", "above 0"),
+        ("scale = 0.5", "axis = [0, 0, 0]", "must have a direction"),
+        ("dimension = 3", "dimension = 2", "surface"),
+    ] {
+        let error = session(&RING.replace(from, to), &torus(0)).err().expect(to);
+        assert!(error.contains(said) && error.contains("case.toml:"), "{error}");
+    }
+    let broken = session(RING, "v 0 0 0\nf 1 2 3\n").err().unwrap();
+    assert!(broken.contains("ring.obj` is broken") && broken.contains("case.toml:"), "{broken}");
+}
