@@ -62,6 +62,8 @@ pub(super) fn concentric<const D: usize>(
     placement: Placement,
 ) -> Concentric<D> {
     let layers = Layers::between(round.radii, wanted, placement);
+    // A shell that is thinner than a spacing has no more particles for that.
+    let along = layers.width.max(0.5 * wanted);
     let mut all = Concentric {
         position: Vec::new(),
         volume: Vec::new(),
@@ -76,7 +78,7 @@ pub(super) fn concentric<const D: usize>(
             };
             for number in 0..layers.count {
                 let (radius, whole, inside) = layers.layer(number);
-                let count = count(sphere(D, radius) / layers.width.powi(D as i32 - 1));
+                let count = room(sphere(D, radius) / along.powi(D as i32 - 1));
                 for a in 0..count {
                     all.position.push(round.center + around::<D>(a, count, number) * radius);
                     all.volume.push(measure(inside) / count as f64);
@@ -85,22 +87,22 @@ pub(super) fn concentric<const D: usize>(
             }
         }
         Some((direction, length)) => {
-            let along = Layers::between([0.0, *length], wanted, placement);
+            let slices = Layers::between([0.0, *length], wanted, placement);
             let across = perpendicular(direction);
             let of_disc = |ends: [f64; 2]| PI * (ends[1].powi(2) - ends[0].max(0.0).powi(2));
-            all.spacing = all.spacing.max(along.width);
-            for slice in 0..along.count {
-                let (height, _, [low, high]) = along.layer(slice);
+            all.spacing = all.spacing.max(slices.width);
+            for slice in 0..slices.count {
+                let (height, _, [low, high]) = slices.layer(slice);
                 for number in 0..layers.count {
                     let (radius, whole, inside) = layers.layer(number);
-                    let count = count(2.0 * PI * radius / layers.width);
+                    let count = room(2.0 * PI * radius / along);
                     let foot = round.center + direction * height;
                     for a in 0..count {
-                        let angle = angle(a, count, number + slice);
-                        let way = across[0] * angle.cos() + across[1] * angle.sin();
+                        let turn = angle(a, count, number + slice);
+                        let way = across[0] * turn.cos() + across[1] * turn.sin();
                         all.position.push(foot + way * radius);
                         all.volume.push(of_disc(inside) * (high - low) / count as f64);
-                        all.weight.push(of_disc(whole) * along.width / count as f64);
+                        all.weight.push(of_disc(whole) * slices.width / count as f64);
                     }
                 }
             }
@@ -110,7 +112,7 @@ pub(super) fn concentric<const D: usize>(
 }
 
 /// As many particles as there is room for in a layer: one in the centre.
-fn count(room: f64) -> usize {
+fn room(room: f64) -> usize {
     room.round().max(1.0) as usize
 }
 
@@ -136,8 +138,8 @@ fn around<const D: usize>(a: usize, count: usize, layer: usize) -> Vector<D> {
     match D {
         1 => way[0] = if a == 0 { 1.0 } else { -1.0 },
         2 => {
-            let angle = angle(a, count, layer);
-            (way[0], way[1]) = (angle.cos(), angle.sin());
+            let turn = angle(a, count, layer);
+            (way[0], way[1]) = (turn.cos(), turn.sin());
         }
         _ => {
             let height = 1.0 - (2 * a + 1) as f64 / count as f64;

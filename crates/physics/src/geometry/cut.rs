@@ -134,11 +134,17 @@ fn within<const D: usize>(
     let (middle, radius) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]).norm());
     // Across a periodic bound what is beside each other is not.
     let is_whole = ends.iter().all(|end| lattice.fold(end) == *end);
-    let depth = if is_whole { shape.depth(&middle) } else { 0.0 };
-    if depth < -radius || count == 1 && shape.depth(&lattice.fold(&middle)) < 0.0 {
+    if count == 1 {
+        if shape.depth(&lattice.fold(&middle)) >= 0.0 {
+            see(middle);
+        }
         return;
     }
-    if depth > radius || count == 1 {
+    let depth = if is_whole { shape.depth(&middle) } else { 0.0 };
+    if depth < -radius {
+        return;
+    }
+    if depth > radius {
         for number in 0..count.pow(D as u32) {
             see(midpoint(&std::array::from_fn(|axis| {
                 first[axis] + number / count.pow(axis as u32) % count

@@ -207,13 +207,18 @@ fn check<const D: usize>(
         return Err(GeometryError::Jitter { value: spec.jitter });
     }
     let even = spec.spacing.iter().all(|spacing| *spacing == spec.spacing[0]);
-    if spec.kind == LatticeKind::Hexagonal && !even {
-        let (what, value) = ("a hexagonal lattice has", spec.spacing.to_vec());
-        return Err(GeometryError::Uneven { what, value });
+    let what = match spec.kind {
+        LatticeKind::Square => None,
+        LatticeKind::Hexagonal => Some("a hexagonal lattice has"),
+        LatticeKind::Concentric => Some("concentric layers have"),
+    };
+    if let Some(what) = what.filter(|_| !even) {
+        return Err(GeometryError::Uneven { what, value: spec.spacing.to_vec() });
     }
-    if spec.kind == LatticeKind::Concentric && !even {
-        let (what, value) = ("concentric layers have", spec.spacing.to_vec());
-        return Err(GeometryError::Uneven { what, value });
+    let on_faces = spec.kind == LatticeKind::Concentric && spec.placement == Placement::Boundary;
+    if on_faces && spec.periodic.contains(&true) {
+        let what = "layers on the ends of a body that goes round a periodic domain";
+        return Err(GeometryError::Dimension { what, got: D, expected: "layers on cells" });
     }
     if spec.kind == LatticeKind::Hexagonal && D > 1 && spec.periodic.contains(&true) {
         let (what, expected) = ("a hexagonal lattice around a periodic domain", "a square one");

@@ -317,8 +317,7 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// The volume in m^D, where it is known: for boxes, balls, annuli, cylinders, polygons and closed surfaces, for these turned, and
-    /// for these
+    /// The volume in m^D, where it is known: for boxes, balls, annuli, cylinders, polygons and closed surfaces, for these turned, and for these
     /// with others cut out of a box wholly inside of it and apart from each other.
     pub fn exact_volume(&self) -> Option<f64> {
         match &self.0 {
@@ -374,19 +373,17 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// The shape's surface of triangles, if it is one.
-    pub(super) fn as_surface(&self) -> Option<&Facets> {
+    /// The surfaces of triangles that bound it, but those of what is turned.
+    pub(super) fn surfaces(&self) -> Vec<&Facets> {
         match &self.0 {
-            Kind::Surface(facets) => Some(facets),
-            _ => None,
-        }
-    }
-
-    /// The shapes of which this is the union: at least itself.
-    pub(super) fn parts(&self) -> &[Self] {
-        match &self.0 {
-            Kind::Union(shapes) => shapes,
-            _ => std::slice::from_ref(self),
+            Kind::Surface(facets) => vec![facets],
+            Kind::Union(shapes) | Kind::Intersection(shapes) => {
+                shapes.iter().flat_map(Self::surfaces).collect()
+            }
+            Kind::Difference { from, remove } => {
+                std::iter::once(&**from).chain(remove).flat_map(Self::surfaces).collect()
+            }
+            _ => Vec::new(),
         }
     }
 

@@ -10,8 +10,8 @@ const HALVINGS: u32 = 40;
 const MOST_STEPS: usize = 200;
 /// Most ways to facets that are told apart.
 const MOST_WAYS: usize = 256;
-/// A place that is no deeper in a shape than this part of the way to there is on its boundary.
-const ON_FACET: f64 = 1e-6;
+/// A place that is no deeper in a shape than this part of the box around it is on its boundary.
+const ON_FACET: f64 = 1e-9;
 /// Ways whose lengths differ by less than this part count as equally short.
 const TIE: f64 = 0.05;
 
@@ -61,29 +61,55 @@ impl<const D: usize> Shape<D> {
         Faces::new(faces.into_iter().map(|face| face.1).collect(), depth)
     }
 
-    /// The ways to the nearest facets, where the point is inside of a surface of them and of no other part of the shape: they end
-    /// within the bounds, and in no other part.
+    /// The ways to the nearest facets, where the nearest part of the boundary is one of facets, and within the bounds. A point on
+    /// a facet has the normal of that.
     fn nearest_facets(
         &self,
         point: &Vector<D>,
         bounds: &(Vector<D>, Vector<D>),
     ) -> Option<Faces<D>> {
-        let mut around = self.parts().iter().filter(|part| part.depth(point) > 0.0);
-        let (own, None) = (around.next()?, around.next()) else { return None };
-        let places = own.as_surface()?.nearest(&in_space(point), 1.0 + TIE);
-        let depth = own.depth(point);
-        let mut ways = Vec::with_capacity(places.len());
-        for place in &places {
-            let place = from_space::<D>(place);
-            let is_within =
-                (0..D).all(|axis| bounds.0[axis] < place[axis] && place[axis] < bounds.1[axis]);
-            let ends = |part: &Self| part.depth(&place) < ON_FACET * depth;
-            if !is_within || !self.parts().iter().all(ends) {
+        if let Some((of, about, rotation)) = self.as_turned() {
+            // The bounds are judged where the point is.
+            let everywhere = (Vector::repeat(f64::NEG_INFINITY), Vector::repeat(f64::INFINITY));
+            let faces =
+                of.nearest_facets(&(rotation.tr_mul(&(point - about)) + about), &everywhere)?;
+            let normals: Vec<_> = faces.normals().iter().map(|normal| rotation * normal).collect();
+            let ends = normals.iter().map(|normal| point + normal * faces.depth());
+            return is_within(ends, bounds).then(|| Faces::new(normals, faces.depth()));
+        }
+        let surfaces = self.surfaces();
+        if surfaces.is_empty() {
+            return None;
+        }
+        let (low, high) = self.bounding_box();
+        let (depth, tiny) = (self.depth(point), ON_FACET * (high - low).norm());
+        let found = surfaces.iter().flat_map(|facets| facets.nearest(&in_space(point), 1.0 + TIE));
+        let found: Vec<(Vector<D>, Vector<D>)> =
+            found.map(|(place, normal)| (from_space(&place), from_space(&normal))).collect();
+        let distance = |place: &Vector<D>| (place - point).norm();
+        let least = found.iter().map(|(place, _)| distance(place)).fold(f64::INFINITY, f64::min);
+        // Another part of the boundary is nearer, or the point is outside.
+        if depth < -tiny || (least - depth.max(0.0)).abs() > tiny {
+            return None;
+        }
+        let mut ways = Vec::with_capacity(found.len());
+        for (place, normal) in found {
+            let length = distance(&place);
+            if length > (1.0 + TIE) * least + tiny || self.depth(&place).abs() > tiny {
+                continue;
+            }
+            if !is_within(std::iter::once(place), bounds) {
                 return None;
             }
-            ways.push((place - point).normalize());
+            if length > tiny {
+                ways.push((place - point) / length);
+            } else {
+                let step = normal * (10.0 * tiny);
+                let is_out = self.depth(&(place + step)) < self.depth(&(place - step));
+                ways.push(if is_out { normal } else { -normal });
+            }
         }
-        Some(Faces::new(apart(&ways), depth))
+        (!ways.is_empty()).then(|| Faces::new(apart(&ways), least))
     }
 
     /// The faces on the two sides of a point inside a thin part of the shape, where the face opposite to the
@@ -164,6 +190,16 @@ impl<const D: usize> Shape<D> {
         }
         outer
     }
+}
+
+/// Whether places lie between two corners.
+fn is_within<const D: usize>(
+    mut places: impl Iterator<Item = Vector<D>>,
+    bounds: &(Vector<D>, Vector<D>),
+) -> bool {
+    places.all(|place| {
+        (0..D).all(|axis| bounds.0[axis] < place[axis] && place[axis] < bounds.1[axis])
+    })
 }
 
 /// Of unit vectors the first, and the first of each group that is apart from those before: facets of a curved face follow

@@ -59,8 +59,14 @@ pub(super) fn case(
     setting: Setting<'_>,
 ) -> Option<Case> {
     let dimension = context.dimension?;
-    let mut reader =
-        Reader { context, dimension, setting, names: Names::default(), late: Late::default() };
+    let mut reader = Reader {
+        context,
+        dimension,
+        setting,
+        names: Names::default(),
+        late: Late::default(),
+        surfaces: Vec::new(),
+    };
     reader.collect_names(record);
     // Without a scheme nothing is known of what the rest of the case may say.
     let described = record.record("scheme")?;
@@ -196,6 +202,8 @@ struct Reader<'r, 'c> {
     setting: Setting<'r>,
     names: Names,
     late: Late,
+    /// Surfaces from files: the same one is read once.
+    surfaces: Vec<super::model::Surface>,
 }
 
 /// What a run is too short for.

@@ -22,7 +22,9 @@ mod systems;
 mod time;
 
 pub use checks::{Against, Check, Expectation, Level, Members, Quantity, Reduction, Trend, When};
-pub use geometry::{Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape};
+pub use geometry::{
+    Body, Domain, Initial, Lattice, LatticeKind, LatticeOrigin, Region, Shape, Surface,
+};
 pub use loads::{Boundary, Load, LoadKind, Roller, Turning};
 pub use materials::{Material, OpenFlow, Opening, PlaneState, Profile, Stiffness, Wall};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};

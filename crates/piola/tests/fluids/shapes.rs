@@ -100,11 +100,14 @@ fn what_is_wrong_with_a_surface_is_told() {
     let sound = warnings(&torus(0));
     assert!(!sound.contains("ring.obj"), "{sound}");
     let holed = warnings(&torus(1));
-    assert!(holed.contains("it has holes: 4 sides belong to one facet only"), "{holed}");
+    assert!(
+        holed.contains("it has holes: 4 sides of facets have none on the other side"),
+        "{holed}"
+    );
     let thin =
         session(&RING.replace("scale = 0.5", "scale = 0.25"), &torus(0)).unwrap().plan().warnings;
     let thin = thin.join("\n");
-    assert!(thin.contains("the thinnest part has 2.5 spacings of the body `ring`"), "{thin}");
+    assert!(thin.contains("the body `ring` is 2.5 spacings thick where it is thinnest"), "{thin}");
     for (from, to, said) in [
         ("ring.obj", "none.obj", "none.obj"),
         ("ring.obj", "ring.step", "ring.step"),

@@ -3,6 +3,7 @@
 mod read;
 mod sound;
 mod tree;
+mod triangle;
 
 use std::path::Path;
 
@@ -43,16 +44,14 @@ pub struct Facets {
 
 impl Facets {
     /// Those of triangles, of which facets without an area and those that are there twice are left out, and those that are the
-    /// other way round than the ones beside them are turned.
+    /// other way round than the ones beside them are turned; all of them, if they enclose what is outside.
     ///
     /// # Errors
     /// Corners that are not finite, and no facets.
     pub fn new(triangles: Vec<[Vector<3>; 3]>) -> Result<Self, SurfaceError> {
         sound::check(&triangles)?;
-        let (triangles, soundness) = sound::mended(triangles)?;
-        let six = |[a, b, c]: &Triangle| a.dot(&b.cross(c));
-        let volume = triangles.iter().map(six).sum::<f64>() / 6.0;
-        Ok(Self { tree: Tree::new(triangles), volume: volume.abs(), soundness })
+        let (triangles, soundness, volume) = sound::mended(triangles)?;
+        Ok(Self { tree: Tree::new(triangles), volume, soundness })
     }
 
     /// Those of a file: STL, binary or ASCII, OBJ, PLY, by the end of its name.
@@ -61,12 +60,17 @@ impl Facets {
     /// A file that cannot be read, is of another kind or broken, and what [`Self::new`] refuses.
     pub fn from_file(path: &Path, arrangement: &Arrangement) -> Result<Self, SurfaceError> {
         let mut triangles = read::triangles(path)?;
-        sound::check(&triangles)?;
+        let of_file = |error: SurfaceError| SurfaceError::Broken {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        };
+        // Before what is not finite spreads to all coordinates.
+        sound::check(&triangles).map_err(of_file)?;
         let Arrangement { scale, rotation, shift } = arrangement;
         for corner in triangles.iter_mut().flatten() {
             *corner = rotation * (*corner * *scale) + shift;
         }
-        Self::new(triangles)
+        Self::new(triangles).map_err(of_file)
     }
 
     /// What was found when the facets were read.
@@ -84,9 +88,9 @@ impl Facets {
         self.len() == 0
     }
 
-    /// What they enclose, in m^3, where they are closed.
+    /// What they enclose, in m^3, where they are one closed piece: of several, one may lie in another.
     pub fn volume(&self) -> Option<f64> {
-        self.soundness.is_closed().then_some(self.volume)
+        (self.soundness.is_closed() && self.soundness.pieces == 1).then_some(self.volume)
     }
 
     /// Lower and upper corner in m of the box around them.
@@ -101,27 +105,29 @@ impl Facets {
 
     /// The distance in m from the nearest facet.
     pub fn distance(&self, point: &Vector<3>) -> f64 {
-        (self.tree.nearest(point) - point).norm()
+        (self.tree.nearest(point).0 - point).norm()
     }
 
-    /// The same, less than zero outside.
+    /// The same, less than zero outside. Through a hole it jumps.
     pub fn depth(&self, point: &Vector<3>) -> f64 {
         let distance = self.distance(point);
         if self.winding(point) > 0.5 { distance } else { -distance }
     }
 
-    /// The places on facets that are nearest to a point: that one first, and those of other facets that are no more than `reach`
-    /// times as far away.
-    pub fn nearest(&self, point: &Vector<3>, reach: f64) -> Vec<Vector<3>> {
+    /// The nearest places on facets, with the unit normals of these, that are no more than `reach` times as far from a point as
+    /// the nearest of all, which comes first.
+    pub fn nearest(&self, point: &Vector<3>, reach: f64) -> Vec<(Vector<3>, Vector<3>)> {
         let first = self.tree.nearest(point);
         let mut all = vec![first];
-        self.tree.within(point, reach * (first - point).norm(), &mut all);
-        all
+        all.extend(self.tree.within(point, reach * (first.0 - point).norm()));
+        let normal = |number: usize| triangle::area(&self.tree.triangles()[number]).normalize();
+        all.into_iter().map(|(place, number)| (place, normal(number))).collect()
     }
 
-    /// How many pairs of facets that have no corner in common cross each other.
-    pub fn crossings(&self) -> usize {
-        self.tree.crossings()
+    /// How many pairs of facets that have no corner in common and do not lie in one plane cross each other, as far as they are
+    /// counted: up to `most`.
+    pub fn crossings(&self, most: usize) -> usize {
+        self.tree.crossings(most)
     }
 
     /// The thinnest part in m: the shortest way from the middle of a facet straight through to the other side.

@@ -3,10 +3,11 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use ply_rs_bw::parser::Parser;
+use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, Property};
 use thiserror::Error;
 
+use super::super::file::{self, FileFault};
 use super::Triangle;
 use crate::Vector;
 
@@ -19,12 +20,12 @@ const STL_FACET: usize = 50;
 #[non_exhaustive]
 pub enum SurfaceError {
     /// It cannot be read.
-    #[error("`{}` cannot be read: {error}", path.display())]
+    #[error("`{}` cannot be read: {reason}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
         /// Why.
-        error: std::io::Error,
+        reason: String,
     },
     /// The end of its name is of no kind that is known.
     #[error("`{}` ends neither with `.stl`, `.obj` nor `.ply`", path.display())]
@@ -33,7 +34,7 @@ pub enum SurfaceError {
         path: PathBuf,
     },
     /// It is not what the end of its name says.
-    #[error("`{}` is broken: {reason}", path.display())]
+    #[error("`{}` is broken: {reason}; export it again, as triangles", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
@@ -63,27 +64,31 @@ pub(super) fn triangles(path: &Path) -> Result<Vec<Triangle>, SurfaceError> {
         Some("ply") => ply,
         _ => return Err(SurfaceError::Kind { path: path_of() }),
     };
-    let bytes =
-        std::fs::read(path).map_err(|error| SurfaceError::Unreadable { path: path_of(), error })?;
+    let bytes = file::read(path).map_err(|fault| {
+        let reason = match fault {
+            FileFault::Unreadable(error) => error.to_string(),
+            FileFault::NotAFile => "it is not a file".to_owned(),
+            FileFault::TooLarge => format!("it is larger than {} bytes", file::MOST_BYTES),
+        };
+        SurfaceError::Unreadable { path: path_of(), reason }
+    })?;
     parse(bytes).map_err(|reason| SurfaceError::Broken { path: path_of(), reason })
 }
 
-/// A file of the length that its number of facets says is binary, whatever it begins with.
+/// A file of the length that its number of facets says is binary, whatever it begins with; one whose first word is `solid`, and
+/// whose second line has a facet, is text.
 fn stl(mut bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
     let count = bytes.get(STL_HEAD - 4..STL_HEAD).and_then(|it| it.try_into().ok());
     let count = count.map(u32::from_le_bytes).unwrap_or_default() as usize;
-    let is_binary = bytes.len() == STL_HEAD + STL_FACET * count && bytes.len() >= STL_HEAD;
-    if is_binary {
+    if bytes.len() == STL_HEAD + STL_FACET * count {
         // The reader takes what begins with `solid` for text.
         bytes[..5].copy_from_slice(b"     ");
-    } else if bytes.starts_with(b"solid") {
-        // The name of the solid may be missing, and is no use.
-        let line = bytes.iter().position(|&byte| byte == b'\n').unwrap_or(bytes.len());
-        bytes.splice(..line, *b"solid it");
+    } else if let Some(text) = plain(&bytes) {
+        bytes = text.into_bytes();
     } else {
         let facets = bytes.len().saturating_sub(STL_HEAD) as f64 / STL_FACET as f64;
         return Err(format!(
-            "it does not begin with `solid`, as text does, and has room for {facets} facets where a binary file would have {count}"
+            "it is no text that begins with `solid` and a facet, and has room for {facets} facets where a binary file would have {count}"
         ));
     }
     let mut source = Cursor::new(bytes);
@@ -94,6 +99,32 @@ fn stl(mut bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
         Ok(facet.vertices.map(corner))
     };
     facets.enumerate().map(facet).collect()
+}
+
+/// An STL in text as one solid, whose normals are no use, if it is one.
+fn plain(bytes: &[u8]) -> Option<String> {
+    let text = std::str::from_utf8(bytes).ok()?.trim_start_matches('\u{feff}');
+    let begins = |line: &str, word: &str| {
+        line.split_whitespace().next().is_some_and(|first| first.eq_ignore_ascii_case(word))
+    };
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let is_text = begins(lines.next()?, "solid")
+        && lines.next().is_some_and(|line| begins(line, "facet") || begins(line, "endsolid"));
+    if !is_text {
+        return None;
+    }
+    let mut plain = String::with_capacity(bytes.len());
+    plain.push_str("solid it\n");
+    for line in text.lines() {
+        if begins(line, "facet") {
+            plain.push_str("facet normal 0 0 0\n");
+        } else if !begins(line, "solid") && !begins(line, "endsolid") {
+            plain.push_str(line);
+            plain.push('\n');
+        }
+    }
+    plain.push_str("endsolid it\n");
+    Some(plain)
 }
 
 fn obj(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
@@ -114,8 +145,22 @@ fn obj(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
 
 fn ply(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
     let parser = Parser::<DefaultElement>::new();
-    let read = parser.read_ply(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
-    let of = |name: &str| read.payload.get(name).map_or(&[][..], Vec::as_slice);
+    let most = bytes.len();
+    let mut source = Reader::new(Cursor::new(bytes));
+    let header = parser.read_header(&mut source).map_err(|error| error.to_string())?;
+    for element in header.elements.values() {
+        // Each takes a byte and more.
+        if element.count > most || element.properties.is_empty() {
+            return Err(format!(
+                "{} of the element `{}` with {} properties are more than there is in it",
+                element.count,
+                element.name,
+                element.properties.len()
+            ));
+        }
+    }
+    let payload = parser.read_payload(&mut source, &header).map_err(|error| error.to_string())?;
+    let of = |name: &str| payload.get(name).map_or(&[][..], Vec::as_slice);
     let coordinate = |vertex: &DefaultElement, name: &str| {
         let value = vertex.get(name).and_then(number);
         value.ok_or_else(|| format!("a vertex has no number `{name}`"))
@@ -128,7 +173,8 @@ fn ply(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
     let mut all = Vec::new();
     for face in of("face") {
         let list = face.get("vertex_indices").or_else(|| face.get("vertex_index"));
-        let list = list.and_then(indices).ok_or("a face has no list `vertex_indices`")?;
+        let list = list.and_then(indices);
+        let list = list.ok_or("a face has no list `vertex_indices` of whole numbers from 0")?;
         // A face with more than three corners is a fan.
         for pair in list.get(1..).unwrap_or_default().windows(2) {
             add(&corners, &[list[0], pair[0], pair[1]], &mut all)?;
@@ -138,19 +184,30 @@ fn ply(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
 }
 
 fn number(property: &Property) -> Option<f64> {
-    match property {
-        Property::Float(value) => Some(f64::from(*value)),
-        Property::Double(value) => Some(*value),
-        _ => None,
-    }
+    Some(match *property {
+        Property::Char(value) => value.into(),
+        Property::UChar(value) => value.into(),
+        Property::Short(value) => value.into(),
+        Property::UShort(value) => value.into(),
+        Property::Int(value) => value.into(),
+        Property::UInt(value) => value.into(),
+        Property::Float(value) => value.into(),
+        Property::Double(value) => value,
+        _ => return None,
+    })
 }
 
 fn indices(property: &Property) -> Option<Vec<u32>> {
+    fn all<T: Copy + TryInto<u32>>(list: &[T]) -> Option<Vec<u32>> {
+        list.iter().map(|&index| index.try_into().ok()).collect()
+    }
     match property {
-        Property::ListUChar(list) => Some(list.iter().map(|&index| index.into()).collect()),
-        Property::ListUShort(list) => Some(list.iter().map(|&index| index.into()).collect()),
-        Property::ListUInt(list) => Some(list.clone()),
-        Property::ListInt(list) => list.iter().map(|&index| index.try_into().ok()).collect(),
+        Property::ListChar(list) => all(list),
+        Property::ListUChar(list) => all(list),
+        Property::ListShort(list) => all(list),
+        Property::ListUShort(list) => all(list),
+        Property::ListInt(list) => all(list),
+        Property::ListUInt(list) => all(list),
         _ => None,
     }
 }

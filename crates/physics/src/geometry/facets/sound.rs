@@ -1,18 +1,18 @@
 //! What is wrong with the facets of a file, and what of it can be mended.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::tree::area;
+use super::triangle::area;
 use super::{SurfaceError, Triangle};
 
 /// What was found when facets were read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Soundness {
-    /// Sides that belong to one facet only: those of holes.
+    /// Pieces that have no side in common.
+    pub pieces: usize,
+    /// Sides that are not gone along as often one way as the other: those of holes.
     pub open_sides: usize,
-    /// Sides that belong to more than two facets.
-    pub shared_sides: usize,
-    /// Facets that were the other way round than those beside them, and have been turned.
+    /// Facets that were the other way round than those beside them, or than all should be, and have been turned.
     pub turned: usize,
     /// Facets that were there twice or without an area, and have been left out.
     pub left_out: usize,
@@ -22,6 +22,11 @@ impl Soundness {
     /// Whether the surface has no holes.
     pub fn is_closed(&self) -> bool {
         self.open_sides == 0
+    }
+
+    /// Whether nothing is wrong.
+    pub fn is_sound(&self) -> bool {
+        self.is_closed() && self.turned == 0 && self.left_out == 0
     }
 }
 
@@ -43,12 +48,14 @@ pub(super) fn check(triangles: &[Triangle]) -> Result<(), SurfaceError> {
     Ok(())
 }
 
-/// The facets without those that are there twice or have no area, all of each piece the same way round: as most of its area
-/// was.
-pub(super) fn mended(triangles: Vec<Triangle>) -> Result<(Vec<Triangle>, Soundness), SurfaceError> {
+/// The facets without those that are there twice or have no area, all of each piece the same way round, as most of its area
+/// was, and such that they enclose a volume, which is told in m^3.
+pub(super) fn mended(
+    triangles: Vec<Triangle>,
+) -> Result<(Vec<Triangle>, Soundness, f64), SurfaceError> {
     let mut soundness = Soundness::default();
     let mut numbers = HashMap::<[u64; 3], u32>::new();
-    let mut known = HashMap::<[u32; 3], ()>::new();
+    let mut known = HashSet::new();
     let (mut kept, mut corners) = (Vec::new(), Vec::new());
     for triangle in triangles {
         let own = triangle.map(|corner| {
@@ -57,32 +64,45 @@ pub(super) fn mended(triangles: Vec<Triangle>) -> Result<(Vec<Triangle>, Soundne
             let next = numbers.len() as u32;
             *numbers.entry(bits).or_insert(next)
         });
-        let mut sorted = own;
-        sorted.sort_unstable();
-        if !(area(&triangle).norm() > 0.0) || known.insert(sorted, ()).is_some() {
+        // Facets on each other that face each other are where two pieces touch.
+        let least = (0..3).min_by_key(|&k| own[k]).unwrap_or_default();
+        let turned = [0, 1, 2].map(|k| own[(least + k) % 3]);
+        let is_point = own[0] == own[1] || own[1] == own[2] || own[2] == own[0];
+        if is_point || !known.insert(turned) {
             soundness.left_out += 1;
             continue;
         }
         kept.push(triangle);
         corners.push(own);
     }
-    if kept.is_empty() {
+    turn(&mut kept, &mut corners, &mut soundness);
+    // Facets whose corners are in line have sides that others need.
+    let count = kept.len();
+    kept.retain(|triangle| area(triangle).norm() > 0.0);
+    soundness.left_out += count - kept.len();
+    let Some(origin) = kept.first().map(|triangle| triangle[0]) else {
         return Err(SurfaceError::NoFacets);
+    };
+    let six = |triangle: &Triangle| {
+        let [a, b, c] = triangle.map(|corner| corner - origin);
+        a.dot(&b.cross(&c))
+    };
+    let volume = kept.iter().map(six).sum::<f64>() / 6.0;
+    if volume < 0.0 {
+        kept.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        soundness.turned = kept.len() - soundness.turned.min(kept.len());
     }
-    turn(&mut kept, &corners, &mut soundness);
-    Ok((kept, soundness))
+    Ok((kept, soundness, volume.abs()))
 }
 
-/// Turns the facets that are the other way round than those beside them.
-fn turn(kept: &mut [Triangle], corners: &[[u32; 3]], soundness: &mut Soundness) {
+/// Turns the facets that are the other way round than those beside them, and counts pieces and open sides.
+fn turn(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Soundness) {
     let mut beside = HashMap::<(u32, u32), Vec<(u32, bool)>>::new();
-    for (facet, own) in (0u32..).zip(corners) {
+    for (facet, own) in (0u32..).zip(&*corners) {
         for (side, way) in sides(*own) {
             beside.entry(side).or_default().push((facet, way));
         }
     }
-    soundness.open_sides = beside.values().filter(|facets| facets.len() == 1).count();
-    soundness.shared_sides = beside.values().filter(|facets| facets.len() > 2).count();
     // Of each facet, whether it goes the other way round than the first one of its piece.
     let mut is_other = vec![None; corners.len()];
     for first in 0..corners.len() {
@@ -90,6 +110,7 @@ fn turn(kept: &mut [Triangle], corners: &[[u32; 3]], soundness: &mut Soundness) 
             continue;
         }
         is_other[first] = Some(false);
+        soundness.pieces += 1;
         let (mut piece, mut next) = (vec![first], 0);
         while let Some(&facet) = piece.get(next) {
             next += 1;
@@ -112,9 +133,15 @@ fn turn(kept: &mut [Triangle], corners: &[[u32; 3]], soundness: &mut Soundness) 
         let wrong = area_of(true) <= area_of(false);
         for &facet in piece.iter().filter(|&&facet| is_other[facet] == Some(wrong)) {
             kept[facet].swap(1, 2);
+            corners[facet].swap(1, 2);
             soundness.turned += 1;
         }
     }
+    let mut balance = HashMap::<(u32, u32), i64>::new();
+    for (side, way) in corners.iter().flat_map(|own| sides(*own)) {
+        *balance.entry(side).or_default() += if way { 1 } else { -1 };
+    }
+    soundness.open_sides = balance.values().filter(|both| **both != 0).count();
 }
 
 /// A number of facets in words.
@@ -126,16 +153,13 @@ impl std::fmt::Display for Soundness {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut all = Vec::new();
         if self.open_sides > 0 {
-            all.push(format!("it has holes: {} sides belong to one facet only", self.open_sides));
-        }
-        if self.shared_sides > 0 {
-            all.push(format!("{} sides belong to more than two facets", self.shared_sides));
+            all.push(format!(
+                "it has holes: {} sides of facets have none on the other side",
+                self.open_sides
+            ));
         }
         if self.turned > 0 {
-            all.push(format!(
-                "{} the other way round than those beside were turned",
-                facets(self.turned)
-            ));
+            all.push(format!("{} the other way round were turned", facets(self.turned)));
         }
         if self.left_out > 0 {
             all.push(format!(

@@ -199,7 +199,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// Appends its own figures.
     fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>);
 
-    /// The mass in kg that has come in and gone out through the open boundary with the number of a body, if it is one.
+    /// What has gone through the open boundary with the number of a body, if it is one.
     fn passed(&self, _common: &Common<D>, _state: &[f64], _body: u32) -> Option<Passage> {
         None
     }

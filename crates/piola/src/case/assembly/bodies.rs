@@ -1,14 +1,13 @@
 //! Bodies turned into particles.
 
-use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Body, Case};
 use crate::case::source::Located;
 use crate::geometry::{
-    Arrangement, Facets, FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement,
-    Shape, Soundness, fill, from_mesh, from_points, surroundings,
+    Facets, FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
+    from_mesh, from_points, surroundings,
 };
 use crate::neighbors::{Domain, refuse_coincident};
 use crate::operators::relax;
@@ -191,47 +190,57 @@ fn relaxed<const D: usize>(
     Ok(made)
 }
 
-/// So many spacings are the support of a kernel, and what is beyond is not seen.
+/// Parts of a body that have fewer layers of particles are told.
 const THIN: f64 = 3.0;
 
+/// Most pairs of facets that cross each other which are counted.
+const MOST_CROSSINGS: usize = 1000;
+
 /// The facets of a file, which is read once.
-fn facets_of(
-    (file, arrangement): (&Path, &Arrangement),
-    read: &OnceLock<Arc<Facets>>,
-) -> Result<Arc<Facets>, GeometryError> {
-    if let Some(facets) = read.get() {
+fn facets_of(surface: &model::Surface) -> Result<Arc<Facets>, GeometryError> {
+    if let Some(facets) = surface.facets.get() {
         return Ok(facets.clone());
     }
-    let facets = Arc::new(Facets::from_file(file, arrangement)?);
-    Ok(read.get_or_init(|| facets).clone())
+    let facets = Arc::new(Facets::from_file(&surface.file, &surface.arrangement)?);
+    Ok(surface.facets.get_or_init(|| facets).clone())
 }
 
 /// What the user should know of surfaces from files.
 pub(super) fn surfaces(case: &Case) -> Vec<String> {
-    let mut told = Vec::new();
-    for body in &case.bodies {
-        let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
-        for (file, facets) in body.shape.surfaces() {
-            let Some(facets) = facets.get() else { continue };
-            let mut tell = |text: String| told.push(format!("`{}`: {text}", file.display()));
-            if facets.soundness() != &Soundness::default() {
-                tell(facets.soundness().to_string());
+    let (mut told, mut seen) = (Vec::new(), Vec::new());
+    let all = case.bodies.iter().flat_map(|body| body.shape.surfaces());
+    for surface in all {
+        let Some(facets) = surface.facets.get() else { continue };
+        if seen.iter().any(|other| Arc::ptr_eq(other, facets)) {
+            continue;
+        }
+        seen.push(facets.clone());
+        let mut tell = |text: String| told.push(format!("`{}`: {text}", surface.file.display()));
+        if !facets.soundness().is_sound() {
+            tell(facets.soundness().to_string());
+        }
+        match facets.crossings(MOST_CROSSINGS) {
+            0 => (),
+            MOST_CROSSINGS => {
+                tell(format!("{MOST_CROSSINGS} pairs of facets or more cross each other"))
             }
-            let crossings = facets.crossings();
-            if crossings > 0 {
-                tell(format!("{crossings} pairs of facets cross each other"));
-            }
-            let layers = facets.thickness() / spacing;
-            if layers < THIN {
-                let name = &*body.name;
-                tell(format!(
-                    "the thinnest part has {layers:.1} spacings of the body `{name}`: particles see through less than {THIN}"
-                ));
-            }
+            count => tell(format!("{count} pairs of facets cross each other")),
         }
     }
-    told.sort();
-    told.dedup();
+    for body in &case.bodies {
+        // What is cut out of a body is no part of it.
+        let model::Shape::Surface(surface) = &body.shape.value else { continue };
+        let Some(facets) = surface.facets.get() else { continue };
+        let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
+        let layers = facets.thickness() / spacing;
+        if layers < THIN {
+            told.push(format!(
+                "the body `{}` is {layers:.1} spacings thick where it is thinnest, less than {THIN}: make the spacing smaller, or expect \
+                 fluid on one side to feel that on the other",
+                *body.name
+            ));
+        }
+    }
     told
 }
 
@@ -256,9 +265,7 @@ pub(super) fn shape<const D: usize>(
             let corners = corners.iter().map(|corner| Vector::<2>::from(*corner)).collect();
             Shape::polygon(corners, *ends)
         }
-        model::Shape::Surface { file, arrangement, facets } => {
-            facets_of((&file.value, arrangement), facets).and_then(Shape::surface)
-        }
+        model::Shape::Surface(surface) => facets_of(surface).and_then(Shape::surface),
         model::Shape::Turned { of, angle, about, axis } => {
             shape(case, body, of)?.turned(*angle, vector(about), (*axis).into())
         }

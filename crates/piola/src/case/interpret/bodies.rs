@@ -9,7 +9,7 @@ use piola_formulas::hyperelastic::HyperelasticLaw;
 use crate::case::expression::Expression;
 use crate::case::model::{
     Body, Initial, Lattice, LatticeKind, LatticeOrigin, Material, PlaneState, Region, Shape,
-    Stiffness,
+    Stiffness, Surface,
 };
 use crate::geometry::{Arrangement, CloudPoints, CloudSpec, CloudVolumes};
 
@@ -143,8 +143,15 @@ impl Reader<'_, '_> {
                 let shift = vector(record, "move").unwrap_or_else(|| vec![0.0; 3]);
                 let shift = Vector3::from_column_slice(&shift);
                 let arrangement = Arrangement { scale: number(record, "scale")?, rotation, shift };
-                let (file, facets) = (self.file(record, "file")?, Arc::default());
-                Shape::Surface { file, arrangement, facets }
+                let file = self.file(record, "file")?;
+                let known = self
+                    .surfaces
+                    .iter()
+                    .find(|known| *known.file == *file && known.arrangement == arrangement);
+                let facets = known.map_or_else(Arc::default, |known| known.facets.clone());
+                let surface = Surface { file, arrangement, facets };
+                self.surfaces.push(surface.clone());
+                Shape::Surface(surface)
             }
             "turned" => {
                 let of = record.record("of").and_then(|of| self.shape(of));

@@ -1,6 +1,6 @@
 //! Domain, bodies and regions of space.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use super::{Material, Opening, Wall};
@@ -36,6 +36,17 @@ pub struct Body {
     pub opening: Option<Located<Opening>>,
     /// Number of the system that it belongs to, if that is not the main one.
     pub system: Option<usize>,
+}
+
+/// A surface of triangles from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// The file, relative paths resolved against the folder of the case file.
+    pub file: Located<PathBuf>,
+    /// How its facets are laid out in space.
+    pub arrangement: Arrangement,
+    /// The facets, once they have been read: those of all shapes of this file that are laid out alike.
+    pub facets: Arc<OnceLock<Arc<Facets>>>,
 }
 
 /// A region that particles fill.
@@ -81,14 +92,7 @@ pub enum Shape {
         ends: Option<[f64; 2]>,
     },
     /// What the triangles of a file enclose.
-    Surface {
-        /// The file, relative paths resolved against the folder of the case file.
-        file: Located<PathBuf>,
-        /// How its facets are laid out in space.
-        arrangement: Arrangement,
-        /// The facets, once they have been read.
-        facets: Arc<OnceLock<Arc<Facets>>>,
-    },
+    Surface(Surface),
     /// A shape turned with its lattice.
     Turned {
         /// The shape.
@@ -131,10 +135,10 @@ impl Shape {
         matches!(self, Self::Points { .. } | Self::Mesh { .. })
     }
 
-    /// The surfaces from files in it, as far as they have been read.
-    pub fn surfaces(&self) -> Vec<(&Path, &OnceLock<Arc<Facets>>)> {
+    /// The surfaces from files in it.
+    pub fn surfaces(&self) -> Vec<&Surface> {
         match self {
-            Self::Surface { file, facets, .. } => vec![(file.as_path(), facets)],
+            Self::Surface(surface) => vec![surface],
             _ => self.parts().into_iter().flat_map(Self::surfaces).collect(),
         }
     }
@@ -156,9 +160,9 @@ impl Shape {
     /// The files that the shape reads.
     pub fn files(&self) -> Vec<&Located<PathBuf>> {
         match self {
-            Self::Points { file } | Self::Mesh { file, .. } | Self::Surface { file, .. } => {
-                vec![file]
-            }
+            Self::Points { file }
+            | Self::Mesh { file, .. }
+            | Self::Surface(Surface { file, .. }) => vec![file],
             _ => self.parts().into_iter().flat_map(Self::files).collect(),
         }
     }

@@ -102,7 +102,7 @@ const LATTICES: Choices = choices(&[
     choice("hexagonal", "hexagonal"),
     choice(
         "concentric",
-        "in layers that follow a round face: rings of a disc or an annulus and around the axis of a cylinder, shells of a ball",
+        "in layers that follow a round face: rings of a disc or an annulus and around the axis of a cylinder, shells of a ball; without ghosts and boundary areas",
     ),
 ]);
 const ORIGINS: Choices = choices(&[

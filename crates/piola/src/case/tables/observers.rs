@@ -201,7 +201,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "opening",
-            meaning: "what has gone through an open boundary of a fluid, which `body` names: the mass that has come in and gone out, columns `NAME.entered` and `NAME.left`, and the energy and momentum of particles that have come in less those of particles that have gone out, `NAME.energy`, `NAME.linear.x` and on",
+            meaning: "what has gone through an open boundary of a fluid, which `body` names: the mass that has come in and gone out, columns `NAME.entered` and `NAME.left`, and the energy and momentum of particles that have come in less those of particles that have gone out, without what pressure does to them there, `NAME.energy`, `NAME.linear.x` and on",
             dimensions: &[1, 2, 3],
             keys: &[],
         },
