@@ -89,6 +89,21 @@ pub fn parse(text: &str, name: &str, options: &LoadOptions) -> Result<Case, Prob
     assemble(SourceText { name: name.to_owned(), text: text.to_owned() }, None, options)
 }
 
+/// Reads a case from its text, as if it stood in a file in `folder`: files that it mentions are looked for
+/// from there.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_in(
+    folder: &Path,
+    text: &str,
+    name: &str,
+    options: &LoadOptions,
+) -> Result<Case, Problems> {
+    let source = SourceText { name: name.to_owned(), text: text.to_owned() };
+    assemble(source, Some(folder), options)
+}
+
 fn assemble(
     file: SourceText,
     folder: Option<&Path>,
