@@ -1,6 +1,7 @@
 //! Cases.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use piola::case::{self, Level, LoadOptions, Problems, Session, load, parse_in};
 use pyo3::exceptions::PyValueError;
@@ -9,6 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::display::{preformatted, table};
 use crate::errors::{Fault, case_error, faults, file_error, guard};
+use crate::functions::{Registry, make_threads, refuse_inside};
 use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::toml;
@@ -28,7 +30,8 @@ enum Source {
 /// Case(table, *, folder=".", variant=None, level="case")
 ///
 /// table: a dict with the keys of a case file (docs/case-file.md). NumPy arrays and numbers, tuples and paths
-/// may stand in it. It becomes the text of a case file, which `case.toml` shows and messages point into.
+/// may stand in it, and functions of some of x, y, z and t where a case has an expression. It becomes the text of a
+/// case file, which `case.toml` shows and messages point into.
 /// folder: where files that the case names are looked for.
 /// variant: name of a variant, or of a member of a sweep (`NAME.3`).
 /// level: "case", or the settings "coarse" or "paper" of the case.
@@ -43,17 +46,25 @@ enum Source {
 pub struct Case {
     source: Source,
     options: LoadOptions,
+    registry: Registry,
 }
 
 impl Case {
-    fn of(source: Source, variant: Option<String>, level: &str) -> PyResult<Self> {
+    fn of(
+        source: Source,
+        registry: Registry,
+        variant: Option<String>,
+        level: &str,
+    ) -> PyResult<Self> {
         let found = Level::ALL.into_iter().find(|known| known.name() == level);
         let level = found.ok_or_else(|| {
             PyValueError::new_err(format!(
                 "level is \"case\", \"coarse\" or \"paper\", not {level:?}"
             ))
         })?;
-        Ok(Self { source, options: LoadOptions { variant, level, ..LoadOptions::default() } })
+        let functions = registry.functions.clone();
+        let options = LoadOptions { variant, level, functions, ..LoadOptions::default() };
+        Ok(Self { source, options, registry })
     }
 
     /// Reads the case as it is now, without the GIL.
@@ -70,7 +81,25 @@ impl Case {
 
     fn build(&self, py: Python<'_>) -> PyResult<Session> {
         let case = self.model(py)?;
-        guard(py, || Session::new(&case))?.map_err(|problems| case_error(py, &problems))
+        self.built(py, &case)?.map_err(|problems| case_error(py, &problems))
+    }
+
+    /// Makes the particles. Functions are asked for values of the start.
+    fn built(&self, py: Python<'_>, case: &case::Case) -> PyResult<Result<Session, Problems>> {
+        refuse_inside()?;
+        self.registry.shared.set_end(*case.time.end);
+        self.registry.shared.take();
+        let session = guard(py, || {
+            make_threads();
+            Session::new(case)
+        })?;
+        self.sound()?;
+        Ok(session)
+    }
+
+    /// Raises what a function has raised.
+    fn sound(&self) -> PyResult<()> {
+        self.registry.shared.take().map_or(Ok(()), Err)
     }
 }
 
@@ -84,9 +113,11 @@ impl Case {
         variant: Option<String>,
         level: &str,
     ) -> PyResult<Self> {
-        let text = ::toml::to_string(&toml::table(table)?)
+        let mut registry = Registry::default();
+        let text = ::toml::to_string(&toml::table(table, &mut registry)?)
             .map_err(|error| PyValueError::new_err(format!("this is no TOML: {error}")))?;
-        Self::of(Source::Text { text, folder: folder.unwrap_or_default() }, variant, level)
+        let source = Source::Text { text, folder: folder.unwrap_or_default() };
+        Self::of(source, registry, variant, level)
     }
 
     /// Reads the case file at `path`. It is read again by whatever asks for the case later.
@@ -95,7 +126,7 @@ impl Case {
     #[staticmethod]
     #[pyo3(signature = (path, *, variant=None, level="case"))]
     fn load(py: Python<'_>, path: PathBuf, variant: Option<String>, level: &str) -> PyResult<Self> {
-        let case = Self::of(Source::File(path), variant, level)?;
+        let case = Self::of(Source::File(path), Registry::default(), variant, level)?;
         match case.read(py)? {
             Err(problems) if problems.is_io() => Err(case_error(py, &problems)),
             _ => Ok(case),
@@ -103,7 +134,8 @@ impl Case {
     }
 
     /// Sets the key that `path` leads to, as `--set` does: `body.water.spacing`, `load.0.acceleration`. A path
-    /// with `+` at its end appends to a list, the value None removes the key. Returns the case itself.
+    /// with `+` at its end appends to a list, the value None removes the key. A value may hold functions, as in
+    /// `Case`. Returns the case itself.
     fn set<'py>(
         mut slf: PyRefMut<'py, Self>,
         path: &str,
@@ -114,8 +146,9 @@ impl Case {
         }
         let text = match value.is_none() {
             true => String::new(),
-            false => toml::value(value, path)?.to_string(),
+            false => toml::value(value, path, &mut slf.registry)?.to_string(),
         };
+        slf.options.functions = slf.registry.functions.clone();
         slf.options.overrides.push(format!("{path}={text}"));
         Ok(slf)
     }
@@ -124,7 +157,7 @@ impl Case {
     /// particles are made for it.
     fn faults(&self, py: Python<'_>) -> PyResult<Vec<Fault>> {
         let built = match self.read(py)? {
-            Ok(case) => guard(py, || Session::new(&case).map(|_| ()))?,
+            Ok(case) => self.built(py, &case)?.map(|_| ()),
             Err(problems) => Err(problems),
         };
         Ok(built.err().map(|problems| faults(&problems)).unwrap_or_default())
@@ -136,6 +169,7 @@ impl Case {
     fn check(&self, py: Python<'_>) -> PyResult<Plan> {
         let mut session = self.build(py)?;
         let plan = guard(py, || session.plan())?;
+        self.sound()?;
         Ok(Plan::new(session.case(), plan))
     }
 
@@ -157,7 +191,7 @@ impl Case {
         } else if resume {
             return Err(PyValueError::new_err("to resume a run needs the folder of its results"));
         }
-        Ok(Simulation::new(session, out))
+        Ok(Simulation::new(session, out, Arc::clone(&self.registry.shared)))
     }
 
     /// The text that the case is read from, into which messages point: of the file, or what the dict has become.

@@ -11,6 +11,7 @@ mod bodies;
 mod case;
 mod display;
 mod errors;
+mod functions;
 mod moment;
 mod plan;
 mod run;

@@ -16,6 +16,13 @@ pub fn schedule(interval: f64) -> PyResult<Schedule> {
     Err(PyValueError::new_err(format!("the interval is a time above 0 in s, not {interval}")))
 }
 
+/// When a schedule is due after `time`, by more than what two times may differ by and be the same.
+fn next_due(schedule: &Schedule, time: f64) -> f64 {
+    // Nothing comes next where intervals are too short to be counted: that is the next step.
+    let next = schedule.next_after(time * (1.0 + 1e-12)).filter(|next| next.is_finite());
+    next.unwrap_or(0.0).max(time * (1.0 + 2e-12))
+}
+
 /// A moment of a run. What it shows of the state (bodies, energy, limits) is gone when the run goes on: to ask for
 /// it then raises RuntimeError.
 #[pyclass(module = "piola", frozen)]
@@ -118,7 +125,7 @@ impl Every {
         let simulation = self.simulation.bind(py);
         if self.shown.is_some() {
             let time = simulation.get().standing().progress.time;
-            let goal = self.schedule.next_after(time).map_or(Goal::End, Goal::Until);
+            let goal = Goal::Until(next_due(&self.schedule, time));
             if !Simulation::advance(simulation, goal, false)? {
                 let is_ended = simulation.get().standing().changes;
                 // The end is shown once.
@@ -137,7 +144,7 @@ impl Every {
 pub struct Watcher {
     schedule: Schedule,
     /// When it is to look next, in s.
-    due: Option<f64>,
+    due: f64,
     /// The time that it saw last, in s.
     seen: Option<f64>,
     pub function: Py<PyAny>,
@@ -146,12 +153,12 @@ pub struct Watcher {
 impl Watcher {
     pub fn new(schedule: Schedule, now: Standing, function: Py<PyAny>) -> Self {
         let time = now.progress.time;
-        let due = if now.progress.step == 0 { Some(time) } else { schedule.next_after(time) };
+        let due = if now.progress.step == 0 { time } else { next_due(&schedule, time) };
         Self { schedule, due, seen: None, function }
     }
 
     /// When it is to look next, in s.
-    pub fn due(&self) -> Option<f64> {
+    pub fn due(&self) -> f64 {
         self.due
     }
 
@@ -160,13 +167,13 @@ impl Watcher {
         let time = now.progress.time;
         if self.seen.is_some_and(|seen| seen > time) {
             // The run has gone back.
-            self.due = self.schedule.next_after(time);
+            self.due = next_due(&self.schedule, time);
         }
-        let is_due = self.due.is_some_and(|due| due <= time * (1.0 + 1e-12));
+        let is_due = self.due <= time * (1.0 + 1e-12);
         let takes = self.seen != Some(time) && (is_due || is_last);
         if takes {
             self.seen = Some(time);
-            self.due = self.schedule.next_after(time);
+            self.due = next_due(&self.schedule, time);
         }
         takes
     }

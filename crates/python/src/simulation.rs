@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use piola::case::Session;
 use piola::time::Progress;
@@ -18,6 +18,7 @@ use pyo3::types::PyDict;
 use crate::bodies::Bodies;
 use crate::display::table;
 use crate::errors::{guard, panic_error};
+use crate::functions::{Shared, refuse_inside};
 use crate::moment::{Every, Moment, Watcher, schedule};
 use crate::plan;
 use crate::run::Run;
@@ -51,6 +52,8 @@ pub struct Simulation {
     pub watchers: Mutex<Vec<Watcher>>,
     /// What is left of the run when it has ended.
     pub ended: Mutex<Option<Py<Run>>>,
+    /// The functions of the case.
+    pub functions: Arc<Shared>,
     pub folder: Option<PathBuf>,
     pub title: String,
     pub end: f64,
@@ -64,9 +67,10 @@ pub fn inside<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Simulation {
-    pub fn new(session: Session, folder: Option<PathBuf>) -> Self {
+    pub fn new(session: Session, folder: Option<PathBuf>, functions: Arc<Shared>) -> Self {
         let case = session.case();
         Self {
+            functions,
             folder,
             title: case.title.clone(),
             end: *case.time.end,
@@ -88,6 +92,7 @@ impl Simulation {
 
     /// The session, for a thread that holds the GIL. After a panic there is none.
     pub fn session(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Session>> {
+        refuse_inside()?;
         self.waiting.fetch_add(1, Ordering::SeqCst);
         let locked = self.session.lock_py_attached(py);
         self.waiting.fetch_sub(1, Ordering::SeqCst);

@@ -33,6 +33,8 @@ enum Pause {
     Reached,
     /// The run has come to its end or has failed.
     Ended,
+    /// A function of the case has raised.
+    Raised,
     /// Signals are to be seen to, or functions to be called.
     Breath,
     Fault(RunError),
@@ -129,6 +131,15 @@ impl Simulation {
                 drop(claim);
                 Self::conclude(slf).map(|_| false)
             }
+            Ok(Pause::Raised) => {
+                // The state has what came of it: the last good one is looked for.
+                let raised = simulation.functions.take();
+                let run = simulation.close(py)?;
+                let text = "a function has raised";
+                let failed =
+                    Failed { kind: "function", run: Some(run.into_any()), ..Failed::default() };
+                Err(raised.unwrap_or_else(|| run_error(py, text.to_owned(), failed)))
+            }
             Ok(Pause::Fault(error)) => Err(file_error(py, &error)),
             Err(error) => Err(simulation.stop(slf, error)),
         }
@@ -136,7 +147,7 @@ impl Simulation {
 
     /// Takes steps without the GIL until there is a reason to pause.
     fn burst(&self, py: Python<'_>, goal: Goal) -> PyResult<Pause> {
-        let due = inside(&self.watchers).iter().filter_map(Watcher::due).fold(f64::MAX, f64::min);
+        let due = inside(&self.watchers).iter().map(Watcher::due).fold(f64::MAX, f64::min);
         let burst = || {
             let start = Instant::now();
             loop {
@@ -149,7 +160,11 @@ impl Simulation {
                 if due <= time * (1.0 + 1e-12) || start.elapsed() > BREATH {
                     return Some(Pause::Breath);
                 }
-                match self.change(Session::step)? {
+                let stepped = self.change(Session::step)?;
+                if self.functions.has_raised() {
+                    return Some(Pause::Raised);
+                }
+                match stepped {
                     Ok(true) if matches!(goal, Goal::Step) => return Some(Pause::Reached),
                     Ok(true) => {}
                     Ok(false) => return Some(Pause::Ended),

@@ -124,6 +124,16 @@ def test_observers_see_the_start_the_multiples_and_the_end(case):
     assert len(late) == 2 and 0.16 <= late[0] < late[1] == 0.2
 
 
+@pytest.mark.parametrize("interval", [1e-9, 1e-300, 5e-324])
+def test_intervals_shorter_than_any_step_are_every_step(case, interval):
+    simulation = case.start()
+    seen = []
+    simulation.observe(interval, lambda moment: seen.append(moment.steps))
+    simulation.run()
+    assert seen == list(range(simulation.steps + 1))
+    assert [moment.steps for moment in case.start().every(interval)] == seen
+
+
 def test_a_run_that_fails_says_where_and_why(failing, tmp_path):
     simulation = failing.start(tmp_path / "out")
     with pytest.raises(piola.RunError) as caught:
