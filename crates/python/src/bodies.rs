@@ -61,8 +61,16 @@ impl Bodies {
 /// A body, with its fields as arrays: `body["velocity"]`.
 ///
 /// An array has a row for each particle, in the order of particle files, which is the same at all moments (where
-/// particles come in or go out, of those that are there). It is a copy: `body["velocity"][:, 0] = 0` changes
-/// nothing in the simulation, `body["velocity"] = values` does.
+/// particles come in or go out, of those that are there). Its shape is (particles,) for a scalar, (particles, D) for a
+/// vector, (particles, D, D) for a tensor, (particles, 6) for xx, yy, zz, yz, xz, xy of symmetric tensors; its unit is SI,
+/// as `fields()` says. It is a copy: `body["velocity"][:, 0] = 0` changes nothing in the simulation.
+///
+/// `body["velocity"] = values` does, before the first step or between two: an array of the shape that reading it gives, of
+/// numbers that fit 64-bit floats, in any order in memory. What is prescribed stays as it is.
+///
+/// To read or write raises KeyError if the scheme has no such field, RuntimeError if it is of a moment that is over; to
+/// write, ValueError for a wrong shape, NaN, infinity, or a field that cannot be set, and TypeError for other types. Then
+/// nothing is changed.
 #[pyclass(module = "piola", frozen)]
 pub struct Body {
     simulation: Py<Simulation>,
@@ -100,10 +108,7 @@ impl Body {
 
 #[pymethods]
 impl Body {
-    /// The values of a field at the moment: a copy, of the shape (particles,) for a scalar, (particles, D) for a
-    /// vector, (particles, D, D) for a tensor, or (particles, 6) for xx, yy, zz, yz, xz, xy.
-    ///
-    /// Raises KeyError if the scheme has no such field, RuntimeError if it is of a moment that is over.
+    /// The values of a field at the moment.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let (column, particles, dimension) = self.read(py, name)?;
         let shape = shape(&column.description, particles.len(), dimension);
@@ -115,11 +120,7 @@ impl Body {
         array(py, values, &shape)
     }
 
-    /// Gives a field other values, before the first step or between two: an array of the shape that reading it
-    /// gives, of numbers that fit 64-bit floats, in any order in memory.
-    ///
-    /// Raises KeyError, ValueError for a wrong shape, NaN, infinity, or a field that cannot be set, TypeError for
-    /// other types. Then nothing is changed.
+    /// Gives a field other values.
     fn __setitem__(&self, py: Python<'_>, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let (mut column, particles, dimension) = self.read(py, name)?;
         let shape = shape(&column.description, particles.len(), dimension);
