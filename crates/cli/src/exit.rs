@@ -1,7 +1,5 @@
 //! Exit codes, in one place.
 
-use std::process::ExitCode;
-
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
@@ -56,12 +54,6 @@ impl Exit {
             format!("{code:>5}  {meaning}\n")
         });
         format!("Exit codes:\n{}", lines.concat())
-    }
-}
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        Self::from(exit.code())
     }
 }
 

@@ -60,8 +60,14 @@ pub struct Estimate {
 }
 
 impl Pace {
-    fn new(start: Instant) -> Self {
+    /// A pace that is first asked at `start`, or later.
+    pub fn new(start: Instant) -> Self {
         Self { start, first: None }
+    }
+
+    /// Where the run stands, on one line.
+    pub fn line(&mut self, progress: &Progress) -> String {
+        line(progress, &self.estimate(progress, Instant::now()))
     }
 
     fn estimate(&mut self, progress: &Progress, now: Instant) -> Estimate {

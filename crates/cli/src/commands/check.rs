@@ -20,7 +20,7 @@ pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
     let mut session = assemble(&arguments.case.case, &case)?;
     let text = match arguments.stages {
         Some(form) => stages(&session.scheme().phases(), form),
-        None => report(&case, &session.plan()),
+        None => plan_text(&case, &session.plan()),
     };
     terminal::print(&text)?;
     Ok(Exit::Success)
@@ -65,8 +65,14 @@ fn grouped(columns: &[&str]) -> String {
     text.collect::<Vec<_>>().join(" ")
 }
 
-/// The plan as lines of a name and what it says.
-fn report(case: &Case, plan: &Plan) -> String {
+/// The plan of a case as `piola check` prints it.
+pub fn plan_text(case: &Case, plan: &Plan) -> String {
+    let rows: Vec<Vec<String>> = plan_rows(case, plan).into_iter().map(Vec::from).collect();
+    format!("{}\n\n{}\n", heading(case), table::align(&rows, None, &[]).join("\n"))
+}
+
+/// The plan as lines of a name and what it says; the name is empty where a line belongs to the one above.
+pub fn plan_rows(case: &Case, plan: &Plan) -> Vec<[String; 2]> {
     let mut rows: Vec<[String; 2]> = Vec::new();
     let mut section = |name: &str, lines: Vec<String>| {
         for (number, line) in lines.into_iter().enumerate() {
@@ -106,10 +112,7 @@ fn report(case: &Case, plan: &Plan) -> String {
     section("memory", vec![bytes(plan.memory)]);
     section("output", plan.outputs.clone());
     section("warning", plan.warnings.clone());
-
-    let rows: Vec<Vec<String>> = rows.into_iter().map(Vec::from).collect();
-    let lines = table::align(&rows, None, &[]);
-    format!("{}\n\n{}\n", heading(case), lines.join("\n"))
+    rows
 }
 
 fn heading(case: &Case) -> String {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use piola::case::{Case, Level, LoadOptions, Problems, Session, load};
+use piola::case::{Case, LoadOptions, Problems, Session, load};
 
 use crate::arguments::CaseArguments;
 use crate::exit::{Exit, Fault};
@@ -36,7 +36,7 @@ fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
     let options = LoadOptions {
         overrides: arguments.set.iter().cloned().chain(device).collect(),
         variant: arguments.variant.clone(),
-        level: Level::Case,
+        ..LoadOptions::default()
     };
     load(&arguments.case, &options).map_err(|problems| refusal(&arguments.case, &problems))
 }

@@ -150,7 +150,7 @@ fn levels(arguments: &VerifyArguments) -> &'static [Level] {
 fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
     let read = |variant: Option<&str>, level: Level| -> Result<Case, Fault> {
         let variant = variant.map(str::to_owned);
-        let options = LoadOptions { overrides: Vec::new(), variant, level };
+        let options = LoadOptions { variant, level, ..LoadOptions::default() };
         load(path, &options).map_err(|problems| refusal(path, &problems))
     };
     let folder = folder_name(path);

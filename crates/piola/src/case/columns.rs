@@ -76,6 +76,25 @@ impl Session {
         Ok(FieldValues { description: *description, values })
     }
 
+    /// The particles that are parts of the body with a number in the case at the moment, in the order of
+    /// all columns.
+    pub fn particles_of(&mut self, body: usize) -> Vec<usize> {
+        let now = self.executor.now();
+        let (scheme, state) = (now.scheme(), now.state());
+        let is_there = |&a: &usize| scheme.body_of(state, a).is_some_and(|of| of as usize == body);
+        (0..scheme.particle_count()).filter(is_there).collect()
+    }
+
+    /// The energies at the moment in J, by name; the last is their sum, `total`.
+    pub fn energies(&mut self) -> Vec<(&'static str, f64)> {
+        let now = self.executor.now();
+        let names = now.scheme().description().energies;
+        let mut energies = vec![0.0; names.len()];
+        now.scheme().energies(now.state(), &mut energies);
+        let total = energies.iter().sum();
+        names.iter().copied().zip(energies).chain([("total", total)]).collect()
+    }
+
     /// Gives a column other values, particle by particle, before the first step or between two.
     /// Accelerations follow, and what is prescribed stays as it is. What that adds to energy and
     /// momentum of a run that has begun is in no ledger: their balance is off by it from there on. Values

@@ -2,6 +2,7 @@
 
 use super::diagnostics::Problem;
 use super::document::{Node, Table, Value};
+use super::functions::Functions;
 use super::outline::table_of;
 use super::record::{Datum, Record};
 use super::source::{Located, Place, SourceText};
@@ -26,6 +27,8 @@ pub(super) struct Context<'a> {
     pub dimension: Option<usize>,
     /// Named numbers, without a value where it was refused.
     pub parameters: Vec<(String, Option<f64>)>,
+    /// Functions that may stand for expressions; any in a record.
+    pub functions: Option<&'a Functions>,
     /// What was found so far.
     pub problems: Vec<Problem>,
     /// What is left out without being wrong, in sentences.

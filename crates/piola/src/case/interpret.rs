@@ -7,6 +7,7 @@ use self::sweeps::run_traits;
 use super::catalogue;
 use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
+use super::functions::Functions;
 use super::model::{
     Body, Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Preset, Scheme, StepControl,
     Time, Variant,
@@ -43,6 +44,9 @@ pub(super) struct Setting<'a> {
     /// Whether the case is not as its author wrote it, by overrides of the command line: what it says
     /// about the run may then be left out where it does not fit any more.
     pub is_changed: bool,
+    /// Functions that the case may name. `None` in a record, which does not hold them: any name will do there, and
+    /// nothing is run.
+    pub functions: Option<&'a Functions>,
 }
 
 impl Setting<'_> {

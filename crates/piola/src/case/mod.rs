@@ -13,6 +13,7 @@ pub mod diagnostics;
 mod document;
 pub mod expression;
 mod finished;
+mod functions;
 mod interpret;
 pub mod model;
 
@@ -46,6 +47,7 @@ pub use diagnostics::{Problem, Problems};
 use document::{Node, Table, Value};
 pub use expression::Expression;
 pub use finished::Finished;
+pub use functions::Functions;
 use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
@@ -68,6 +70,8 @@ pub struct LoadOptions {
     /// The setting that is read. The overrides of `[coarse]` or `[paper]` come first, those of a
     /// variant next, the variant's own coarse ones after them.
     pub level: Level,
+    /// What `"@NAME"` stands for in place of an expression.
+    pub functions: Functions,
 }
 
 /// Reads the case file at `path`.
@@ -89,6 +93,21 @@ pub fn parse(text: &str, name: &str, options: &LoadOptions) -> Result<Case, Prob
     assemble(SourceText { name: name.to_owned(), text: text.to_owned() }, None, options)
 }
 
+/// Reads a case from its text, as if it stood in a file in `folder`: files that it mentions are looked for
+/// from there.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_in(
+    folder: &Path,
+    text: &str,
+    name: &str,
+    options: &LoadOptions,
+) -> Result<Case, Problems> {
+    let source = SourceText { name: name.to_owned(), text: text.to_owned() };
+    assemble(source, Some(folder), options)
+}
+
 fn assemble(
     file: SourceText,
     folder: Option<&Path>,
@@ -103,7 +122,8 @@ fn assemble(
     let tree = parsed.map_err(|problems| Problems::new(sources.clone(), problems))?;
     let variant = options.variant.as_deref().filter(|name| *name != "base");
     let is_changed = !options.overrides.is_empty();
-    let wanted = Setting { variant, level: options.level, folder, is_changed };
+    let functions = Some(&options.functions);
+    let wanted = Setting { variant, level: options.level, folder, is_changed, functions };
     let case = read(&tree, &sources, options, wanted).and_then(|(case, changed)| {
         if !is_changed {
             others(&tree, &sources, options, wanted, &case)?;
@@ -134,7 +154,8 @@ fn read(
 fn recorded(text: &str, variant: Option<&str>) -> Result<Case, Problems> {
     let sources: Arc<[SourceText]> =
         Arc::new([SourceText { name: "the case as run".to_owned(), text: text.to_owned() }]);
-    let setting = Setting { variant, level: Level::Case, folder: None, is_changed: true };
+    let (level, folder, functions) = (Level::Case, None, None);
+    let setting = Setting { variant, level, folder, is_changed: true, functions };
     let tree = document::parse(text);
     let case = tree.and_then(|tree| check(&tree, &sources, setting, Vec::new()));
     let case = case.map_err(|problems| Problems::new(sources, problems))?;
@@ -154,8 +175,14 @@ fn check(
         }
         _ => None,
     };
-    let mut context =
-        Context { sources, dimension, parameters: Vec::new(), problems, remarks: Vec::new() };
+    let mut context = Context {
+        sources,
+        dimension,
+        parameters: Vec::new(),
+        functions: setting.functions,
+        problems,
+        remarks: Vec::new(),
+    };
     evaluate_parameters(&mut context, tree);
     let record = context.table(&tables::CASE, tree, Place::new(0, 0..0));
     let case = interpret::case(&record, &mut context, setting);

@@ -6,7 +6,7 @@ use super::assembly::{self, bodies::BodyReport};
 use super::model;
 use super::session::Session;
 use crate::neighbors::NeighborStatistics;
-use crate::schemes::Particle;
+use crate::schemes::{Particle, Scheme, StepLimit};
 use crate::time::{StepControl, supersonic};
 
 /// What will happen when a case runs.
@@ -85,7 +85,37 @@ pub struct PlannedLimit {
 /// back to, and a rate.
 const STATES: usize = 6;
 
+/// What was found to bound a step, smallest first.
+fn planned_limits(
+    scheme: &dyn Scheme,
+    control: StepControl,
+    found: &[StepLimit],
+) -> Vec<PlannedLimit> {
+    let number = match control {
+        StepControl::Cfl(number) => number,
+        StepControl::Fixed(_) | StepControl::AtMost(_) => 1.0,
+    };
+    let planned = found.iter().map(|limit| PlannedLimit {
+        name: limit.name,
+        step: if limit.scaled { number * limit.step } else { limit.step },
+        particle: scheme.particle(limit.particle),
+    });
+    let mut limits: Vec<PlannedLimit> = planned.collect();
+    limits.sort_by(|a, b| a.step.total_cmp(&b.step));
+    limits
+}
+
 impl Session {
+    /// The bounds on the next step, smallest first.
+    pub fn limits(&mut self) -> Vec<PlannedLimit> {
+        let mut found = Vec::new();
+        let state = self.executor.state().to_owned();
+        self.executor.scheme.inspect(&state, &mut found);
+        self.executor.look_anew();
+        let control = assembly::step_control(&self.case);
+        planned_limits(self.executor.scheme.as_ref(), control, &found)
+    }
+
     /// Looks at the initial state and times the first two steps, or two evaluations of the rates where steps solve equations.
     pub fn plan(&mut self) -> Plan {
         let control = assembly::step_control(&self.case);
@@ -94,19 +124,7 @@ impl Session {
         scheme.constrain(0.0, &mut state);
         let mut found = Vec::new();
         let health = scheme.inspect(&state, &mut found);
-        let number = match control {
-            StepControl::Cfl(number) => number,
-            StepControl::Fixed(_) | StepControl::AtMost(_) => 1.0,
-        };
-        let mut limits: Vec<PlannedLimit> = found
-            .iter()
-            .map(|limit| PlannedLimit {
-                name: limit.name,
-                step: if limit.scaled { number * limit.step } else { limit.step },
-                particle: scheme.particle(limit.particle),
-            })
-            .collect();
-        limits.sort_by(|a, b| a.step.total_cmp(&b.step));
+        let limits = planned_limits(scheme, control, &found);
         let mut warnings = self.built.warnings.clone();
         warnings.extend(supersonic([health.largest_speed, health.largest_wave_speed]));
         let (step, limiter) = match control.choose(&found) {

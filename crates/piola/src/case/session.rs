@@ -147,6 +147,11 @@ impl Session {
         self.executor.progress()
     }
 
+    /// What has been recorded so far.
+    pub fn tables(&self) -> &SharedTables {
+        &self.tables
+    }
+
     /// Lets `observer` look from now on, after those of the case.
     pub fn observe(&mut self, observer: Box<dyn Observer>) {
         self.executor.observe(observer);
@@ -265,11 +270,12 @@ impl Session {
         self.conclude(summary)
     }
 
-    /// Ends the run where it is, and shows this moment to all observers as the last.
+    /// Ends the run where it is, and shows this moment to all observers as the last. No step is taken
+    /// after it, but columns can be read.
     ///
     /// # Errors
     /// As [`Session::step`].
-    pub fn finish(mut self) -> Result<Finished, RunError> {
+    pub fn finish(&mut self) -> Result<Finished, RunError> {
         self.begin()?;
         let summary = self.executor.finish()?;
         self.conclude(summary)
@@ -286,11 +292,11 @@ impl Session {
     }
 
     /// What is left of a run: its tables, charts, record and report.
-    fn conclude(self, summary: Summary) -> Result<Finished, RunError> {
-        let Self { case, built, mut executor, outputs, .. } = self;
+    fn conclude(&mut self, summary: Summary) -> Result<Finished, RunError> {
+        let Self { case, built, executor, outputs, .. } = self;
         let tables = self.tables.lock().clone();
         let particles = executor.scheme.particle_count();
-        let mut warnings = built.warnings;
+        let mut warnings = built.warnings.clone();
         warnings.extend(summary.warnings.iter().cloned());
         warnings.extend(unbalanced(&tables, &case.time));
         let gone = removed(&tables);
@@ -304,9 +310,9 @@ impl Session {
         let files: Vec<PathBuf> = Vec::new();
         let mut finished =
             Finished { summary, tables, files, warnings, particles, linear, own_steps };
-        let Some(outputs) = outputs else { return Ok(finished) };
+        let Some(outputs) = outputs.take() else { return Ok(finished) };
         let folder = outputs.folder().to_owned();
-        finished.files = outputs.finish(&case, &finished, self.build_seconds)?;
+        finished.files = outputs.finish(case, &finished, self.build_seconds)?;
         if case.output.report {
             // The results are whole without it.
             match report::write(&folder) {

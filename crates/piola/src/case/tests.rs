@@ -8,6 +8,7 @@ use super::*;
 
 mod devices;
 mod faults;
+mod functions;
 mod hostile;
 mod implicit;
 mod integrators;
@@ -243,6 +244,7 @@ fn the_case_as_run_is_the_same_case() {
         variant: Some("no-upwinding".to_owned()),
         overrides: vec!["time.end=2".to_owned()],
         level: Level::Coarse,
+        ..LoadOptions::default()
     };
     let case = parse(FULL, "case.toml", &options).unwrap();
     let again = read_with(&case.as_run, &[]).unwrap();

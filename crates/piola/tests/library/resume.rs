@@ -13,8 +13,12 @@ use rayon::prelude::*;
 
 fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
-    let options =
-        LoadOptions { overrides, variant: variant.map(str::to_owned), level: Level::Coarse };
+    let options = LoadOptions {
+        overrides,
+        variant: variant.map(str::to_owned),
+        level: Level::Coarse,
+        ..LoadOptions::default()
+    };
     case::load(path, &options).unwrap_or_else(|problems| panic!("{problems}"))
 }
 

@@ -124,7 +124,7 @@ fn however_steps_are_taken_the_bits_are_the_same() {
         assert_eq!(seen.times, times, "{}", case.title);
         assert_eq!(seen.speeds, whole.tables.steps.values("largest_speed").unwrap());
 
-        let same = |session: Session, witness: &Witness| {
+        let same = |mut session: Session, witness: &Witness| {
             let finished = session.finish().unwrap();
             assert_eq!(finished.tables, whole.tables, "{}", case.title);
             let [one, other] = [&finished, &whole].map(|it| (it.summary.steps, it.summary.time));
@@ -244,4 +244,28 @@ fn what_cannot_be_is_refused_with_its_reason() {
     assert!(other.resume(checkpoint).is_err());
     let finished = piston.finish().unwrap();
     assert_eq!((finished.summary.outcome, finished.summary.steps), (Outcome::Interrupted, 1));
+}
+
+/// What a session says of a moment is what tables, plan and files say of it, also when the run has ended.
+#[test]
+fn a_moment_is_what_the_tables_say() {
+    let case = load("upwind/dam-break", &["time.end=0.05"]);
+    let mut session = session(&case);
+    let planned = session.plan().limits;
+    assert!(!planned.is_empty() && session.limits() == planned);
+    while session.step().unwrap() {}
+    let before = session.column("velocity").unwrap();
+    let finished = session.finish().unwrap();
+    assert_eq!(session.column("velocity").unwrap(), before);
+    assert!(!session.step().unwrap(), "there is nothing after the end");
+    let energies = session.energies();
+    assert_eq!(energies.last().map(|(name, _)| *name), Some("total"));
+    for (name, joules) in energies {
+        let values = finished.tables.energy.values(name).unwrap();
+        assert_eq!(values.last(), Some(&joules), "{name}");
+    }
+    assert_eq!(*session.tables().lock(), finished.tables);
+    let all: Vec<usize> = (0..session.ids().len()).collect();
+    assert_eq!(session.particles_of(0), all);
+    assert!(session.particles_of(1).is_empty());
 }

@@ -51,7 +51,7 @@ fn read(arguments: &SweepArguments, options: &LoadOptions) -> Result<Case, Fault
 fn of_case(arguments: &SweepArguments, name: &str) -> Result<(Vec<String>, Vec<Member>), Fault> {
     let overrides = arguments.case.set.clone();
     let options =
-        |variant| LoadOptions { overrides: overrides.clone(), variant, level: Level::Case };
+        |variant| LoadOptions { overrides: overrides.clone(), variant, ..LoadOptions::default() };
     // The first member is there if the sweep is; a wrong name is explained by reading it.
     let first = read(arguments, &options(Some(format!("{name}.1"))))?;
     let Some(sweep) = first.sweeps.iter().find(|sweep| *sweep.name == name) else {
@@ -120,7 +120,7 @@ fn of_flags(arguments: &SweepArguments) -> Result<(Vec<String>, Vec<Member>), Fa
         let mut overrides = arguments.case.set.clone();
         overrides.extend(values.iter().map(|(key, value)| format!("{key}={value}")));
         let variant = arguments.case.variant.clone();
-        let case = read(arguments, &LoadOptions { overrides, variant, level: Level::Case })?;
+        let case = read(arguments, &LoadOptions { overrides, variant, ..LoadOptions::default() })?;
         let values = values.iter().map(|(_, text)| MemberValue::new(text, &case)).collect();
         members.push(Member { name, values, case });
     }

@@ -1,7 +1,11 @@
 //! Numbers, names, expressions and lists of them.
 
+use std::sync::Arc;
+
 use super::{Context, Datum, Located, Node, Problem, Table, Value, one_of, suggestion};
+use crate::boundaries::SpaceTime;
 use crate::case::expression::{Expression, ExpressionError, Scope, constants, functions};
+use crate::case::functions::MARK;
 use crate::case::overrides::start_of_content;
 use crate::case::settings::keys_with_values;
 use crate::case::source::Place;
@@ -125,6 +129,9 @@ impl Context<'_> {
 
     fn expression(&mut self, name: &str, variables: Variables, node: &Node) -> Option<Expression> {
         match &node.value {
+            Value::Text(text) if text.starts_with(MARK) => {
+                self.function(name, text, variables, node.place)
+            }
             Value::Text(text) => {
                 let time = variables == Variables::PositionAndTime;
                 self.parse(text, node.place, self.dimension.unwrap_or(3), time)
@@ -138,6 +145,41 @@ impl Context<'_> {
                 None
             }
         }
+    }
+
+    /// The function from outside that a text names.
+    fn function(
+        &mut self,
+        name: &str,
+        text: &str,
+        variables: Variables,
+        place: Place,
+    ) -> Option<Expression> {
+        // What is not known is not run either.
+        let unknown: Arc<dyn SpaceTime> = Arc::new(0.0);
+        let known = self.functions;
+        let found = known.map_or(Some(&unknown), |known| known.get(&text[MARK.len_utf8()..]));
+        let Some(function) = found else {
+            let message = format!("there is no function `{text}`");
+            let help = match known.and_then(|known| known.names().next()) {
+                Some(first) => {
+                    format!("functions are given by a program; there is `{MARK}{first}`")
+                }
+                None => {
+                    "write an expression; functions are given by a program that uses the library"
+                        .to_owned()
+                }
+            };
+            self.report(Problem::new(place, message, "unknown function").help(help));
+            return None;
+        };
+        if variables != Variables::PositionAndTime && !function.is_steady() {
+            let message =
+                format!("`{name}` is the same at all times, and `{text}` is a function of t");
+            self.report(Problem::new(place, message, "depends on t"));
+            return None;
+        }
+        Some(Expression::outside(text, function.clone()))
     }
 
     fn parse(&mut self, text: &str, place: Place, axes: usize, time: bool) -> Option<Expression> {

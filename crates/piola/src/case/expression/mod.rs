@@ -9,15 +9,19 @@
 
 mod engine;
 mod functions;
+mod outside;
 mod syntax;
 mod token;
 
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::boundaries::SpaceTime;
+
 pub use functions::{Function, constants, functions};
 
 use engine::Program;
+use outside::Outside;
 
 /// The longest expression in bytes.
 pub const MAX_LENGTH: usize = 4096;
@@ -124,6 +128,7 @@ pub struct Expression {
 enum Form {
     Constant(f64),
     Variable(Arc<Program>),
+    Outside(Outside),
 }
 
 impl Expression {
@@ -152,6 +157,11 @@ impl Expression {
         Ok(Self { text: text.into(), form })
     }
 
+    /// A function from outside, which `text` names.
+    pub fn outside(text: &str, function: Arc<dyn SpaceTime>) -> Self {
+        Self { text: text.into(), form: Form::Outside(Outside(function)) }
+    }
+
     /// The text as the user wrote it.
     pub fn text(&self) -> &str {
         &self.text
@@ -161,7 +171,7 @@ impl Expression {
     pub fn as_constant(&self) -> Option<f64> {
         match self.form {
             Form::Constant(value) => Some(value),
-            Form::Variable(_) => None,
+            Form::Variable(_) | Form::Outside(_) => None,
         }
     }
 
@@ -170,6 +180,7 @@ impl Expression {
         match &self.form {
             Form::Constant(_) => false,
             Form::Variable(program) => program.depends_on(variable),
+            Form::Outside(function) => function.depends_on(variable),
         }
     }
 
@@ -185,6 +196,7 @@ impl Expression {
         match &self.form {
             Form::Constant(value) => *value,
             Form::Variable(program) => program.eval(position, time),
+            Form::Outside(function) => function.0.value(position, time),
         }
     }
 
@@ -193,7 +205,8 @@ impl Expression {
         self.derivative(Variable::T, position, time)
     }
 
-    /// Its exact derivative by a variable, the others being fixed, computed with dual numbers.
+    /// Its exact derivative by a variable, the others being fixed, computed with dual numbers. Of a function from
+    /// outside that by time is what it says, those by coordinates are quotients of differences.
     ///
     /// At a kink or jump (`abs`, `sign`, `min`, `max`, `floor`, `step`, `mod`) it is that of the
     /// branch that [`eval`](Self::eval) takes there; a jump contributes none.
@@ -201,6 +214,7 @@ impl Expression {
         match &self.form {
             Form::Constant(_) => 0.0,
             Form::Variable(program) => program.derivative(by, position, time),
+            Form::Outside(function) => function.derivative(by, position, time),
         }
     }
 }

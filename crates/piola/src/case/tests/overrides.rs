@@ -53,7 +53,12 @@ fn settings_are_applied_in_order() {
     let read = |variant: Option<&str>, level| {
         let variant = variant.map(str::to_owned);
         let overrides = vec!["body.ring.spacing=0.75".to_owned()];
-        let case = parse(&text, "case.toml", &LoadOptions { overrides, variant, level }).unwrap();
+        let case = parse(
+            &text,
+            "case.toml",
+            &LoadOptions { overrides, variant, level, ..LoadOptions::default() },
+        )
+        .unwrap();
         (case.time.end.value, case.bodies[0].spacing[0], case.bodies[1].spacing[0])
     };
     assert_eq!(read(None, Level::Case), (3.0, 0.25, 0.75));

@@ -1,0 +1,247 @@
+//! Cases.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use piola::case::{self, Level, LoadOptions, Problems, Session, load, parse_in};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::display::{preformatted, table};
+use crate::errors::{Fault, case_error, faults, file_error, guard};
+use crate::functions::{Registry, make_threads, refuse_inside};
+use crate::plan::Plan;
+use crate::simulation::Simulation;
+use crate::toml;
+
+/// Under which name the text of a dict stands in messages and records.
+const DICT: &str = "case";
+
+/// Where the text of a case is.
+#[derive(Clone, Debug)]
+enum Source {
+    File(PathBuf),
+    Text { text: String, folder: PathBuf },
+}
+
+/// A case: what `case.toml` says, with what was set on top of it.
+///
+/// Case(table, *, folder=".", variant=None, level="case")
+///
+/// table: a dict with the keys of a case file (docs/case-file.md). NumPy arrays and numbers, tuples and paths
+/// may stand in it, and functions of some of x, y, z and t where a case has an expression. It becomes the text of a
+/// case file, which `case.toml` shows and messages point into.
+/// folder: where files that the case names are looked for.
+/// variant: name of a variant, or of a member of a sweep (`NAME.3`).
+/// level: "case", or the settings "coarse" or "paper" of the case.
+///
+/// What is wrong with a case is said by `faults`, and raised as `CaseError` by `check` and `start`.
+///
+/// >>> import piola
+/// >>> case = piola.Case({"version": 1, "title": "a bar", "dimension": 4})
+/// >>> [fault.message for fault in case.faults() if "dimension" in fault.message]
+/// ['`dimension` must be from 1 to 3, got 4']
+#[pyclass(module = "piola")]
+pub struct Case {
+    source: Source,
+    options: LoadOptions,
+    registry: Registry,
+}
+
+impl Case {
+    fn of(
+        source: Source,
+        registry: Registry,
+        variant: Option<String>,
+        level: &str,
+    ) -> PyResult<Self> {
+        let found = Level::ALL.into_iter().find(|known| known.name() == level);
+        let level = found.ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "level is \"case\", \"coarse\" or \"paper\", not {level:?}"
+            ))
+        })?;
+        let functions = registry.functions.clone();
+        let options = LoadOptions { variant, level, functions, ..LoadOptions::default() };
+        Ok(Self { source, options, registry })
+    }
+
+    /// Reads the case as it is now, without the GIL.
+    fn read(&self, py: Python<'_>) -> PyResult<Result<case::Case, Problems>> {
+        guard(py, || match &self.source {
+            Source::File(path) => load(path, &self.options),
+            Source::Text { text, folder } => parse_in(folder, text, DICT, &self.options),
+        })
+    }
+
+    fn model(&self, py: Python<'_>) -> PyResult<case::Case> {
+        self.read(py)?.map_err(|problems| case_error(py, &problems))
+    }
+
+    fn build(&self, py: Python<'_>) -> PyResult<Session> {
+        let case = self.model(py)?;
+        self.built(py, &case)?.map_err(|problems| case_error(py, &problems))
+    }
+
+    /// Makes the particles. Functions are asked for values of the start.
+    fn built(&self, py: Python<'_>, case: &case::Case) -> PyResult<Result<Session, Problems>> {
+        refuse_inside()?;
+        self.registry.shared.set_end(*case.time.end);
+        self.registry.shared.take();
+        let session = guard(py, || {
+            make_threads();
+            Session::new(case)
+        })?;
+        self.sound()?;
+        Ok(session)
+    }
+
+    /// Raises what a function has raised.
+    fn sound(&self) -> PyResult<()> {
+        self.registry.shared.take().map_or(Ok(()), Err)
+    }
+}
+
+#[pymethods]
+impl Case {
+    #[new]
+    #[pyo3(signature = (table, *, folder=None, variant=None, level="case"))]
+    fn new(
+        table: &Bound<'_, PyDict>,
+        folder: Option<PathBuf>,
+        variant: Option<String>,
+        level: &str,
+    ) -> PyResult<Self> {
+        let mut registry = Registry::default();
+        let text = ::toml::to_string(&toml::table(table, &mut registry)?)
+            .map_err(|error| PyValueError::new_err(format!("this is no TOML: {error}")))?;
+        let source = Source::Text { text, folder: folder.unwrap_or_default() };
+        Self::of(source, registry, variant, level)
+    }
+
+    /// Reads the case file at `path`. It is read again by whatever asks for the case later.
+    ///
+    /// Raises CaseError if there is no such file. What is wrong in it is said by `faults`.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, variant=None, level="case"))]
+    fn load(py: Python<'_>, path: PathBuf, variant: Option<String>, level: &str) -> PyResult<Self> {
+        let case = Self::of(Source::File(path), Registry::default(), variant, level)?;
+        match case.read(py)? {
+            Err(problems) if problems.is_io() => Err(case_error(py, &problems)),
+            _ => Ok(case),
+        }
+    }
+
+    /// Sets the key that `path` leads to, as `--set` does: `body.water.spacing`, `load.0.acceleration`. A path
+    /// with `+` at its end appends to a list, the value None removes the key. A value may hold functions, as in
+    /// `Case`. Returns the case itself.
+    fn set<'py>(
+        mut slf: PyRefMut<'py, Self>,
+        path: &str,
+        value: &Bound<'py, PyAny>,
+    ) -> PyResult<PyRefMut<'py, Self>> {
+        if path.contains('=') {
+            return Err(PyValueError::new_err(format!("this is no path of a key: {path:?}")));
+        }
+        let text = match value.is_none() {
+            true => String::new(),
+            false => toml::value(value, path, &mut slf.registry)?.to_string(),
+        };
+        slf.options.functions = slf.registry.functions.clone();
+        slf.options.overrides.push(format!("{path}={text}"));
+        Ok(slf)
+    }
+
+    /// What is wrong with the case, in the order of its text: a list of `Fault`, empty for a good case. The
+    /// particles are made for it.
+    fn faults(&self, py: Python<'_>) -> PyResult<Vec<Fault>> {
+        let built = match self.read(py)? {
+            Ok(case) => self.built(py, &case)?.map(|_| ()),
+            Err(problems) => Err(problems),
+        };
+        Ok(built.err().map(|problems| faults(&problems)).unwrap_or_default())
+    }
+
+    /// What a run will do, without doing it: makes the particles, and times two steps.
+    ///
+    /// Raises CaseError.
+    fn check(&self, py: Python<'_>) -> PyResult<Plan> {
+        let mut session = self.build(py)?;
+        let plan = guard(py, || session.plan())?;
+        self.sound()?;
+        Ok(Plan::new(session.case(), plan))
+    }
+
+    /// Makes the particles and what else a run needs.
+    ///
+    /// out: folder of the results, as `piola run --out` writes it; None for a run in memory alone.
+    /// resume: goes on from the newest checkpoint in `out`, with the same bits.
+    ///
+    /// Raises CaseError; RunError if there is nothing to resume from.
+    #[pyo3(signature = (out=None, *, resume=false))]
+    fn start(&self, py: Python<'_>, out: Option<PathBuf>, resume: bool) -> PyResult<Simulation> {
+        let mut session = self.build(py)?;
+        if let Some(folder) = &out {
+            let placed = guard(py, || match resume {
+                true => session.resume_from(folder),
+                false => session.write_to(folder),
+            })?;
+            placed.map_err(|error| file_error(py, &error))?;
+        } else if resume {
+            return Err(PyValueError::new_err("to resume a run needs the folder of its results"));
+        }
+        Ok(Simulation::new(session, out, Arc::clone(&self.registry.shared)))
+    }
+
+    /// The text that the case is read from, into which messages point: of the file, or what the dict has become.
+    ///
+    /// Raises OSError if the file cannot be read.
+    #[getter]
+    fn text(&self) -> PyResult<String> {
+        match &self.source {
+            Source::File(path) => Ok(std::fs::read_to_string(path)?),
+            Source::Text { text, .. } => Ok(text.clone()),
+        }
+    }
+
+    /// The text of the case with all that was set. Raises CaseError.
+    #[getter]
+    fn toml(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.model(py)?.as_run)
+    }
+
+    /// What the case shows, in one line. Raises CaseError.
+    #[getter]
+    fn title(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.model(py)?.title)
+    }
+
+    fn __repr__(&self) -> String {
+        let source = match &self.source {
+            Source::File(path) => path.display().to_string(),
+            Source::Text { .. } => "of a dict".to_owned(),
+        };
+        let set = self.options.overrides.iter().map(|text| format!(", {text}"));
+        format!("<Case {source}{}>", set.collect::<String>())
+    }
+
+    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        let case = match self.read(py)? {
+            Ok(case) => case,
+            Err(problems) => return Ok(preformatted(&problems.to_string())),
+        };
+        let dimension = format!("{}D", case.dimension);
+        let bodies: Vec<&str> = case.bodies.iter().map(|body| body.name.value.as_str()).collect();
+        let (bodies, end) = (bodies.join(", "), format!("{} s", *case.time.end));
+        let rows = [
+            ["dimension", dimension.as_str()],
+            ["bodies", &bodies],
+            ["scheme", case.scheme.value.name()],
+            ["end", &end],
+        ];
+        let text = preformatted(&case.as_run);
+        let text = format!("<details><summary>text</summary>{text}</details>");
+        Ok(table(&case.title, rows) + &text)
+    }
+}

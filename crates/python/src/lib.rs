@@ -1,0 +1,47 @@
+//! The Python package `piola`: what of it is Rust, the module `piola._piola`.
+//!
+//! All goes through `piola::case`. Steps are taken without the GIL; `simulation` says who waits for whom.
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+mod arrays;
+mod bodies;
+mod case;
+mod display;
+mod errors;
+mod functions;
+mod moment;
+mod plan;
+mod run;
+mod simulation;
+mod stepping;
+mod tables;
+mod toml;
+
+/// Runs the program `piola` with its name and its arguments, and returns its exit code.
+#[pyfunction]
+fn main(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
+    errors::guard(py, || piola_cli::main(arguments))
+}
+
+#[pymodule]
+fn _piola(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("CaseError", py.get_type::<errors::CaseError>())?;
+    module.add("RunError", py.get_type::<errors::RunError>())?;
+    module.add_class::<errors::Fault>()?;
+    module.add_class::<case::Case>()?;
+    module.add_class::<plan::Plan>()?;
+    module.add_class::<simulation::Simulation>()?;
+    module.add_class::<moment::Moment>()?;
+    module.add_class::<moment::Every>()?;
+    module.add_class::<bodies::Bodies>()?;
+    module.add_class::<bodies::Body>()?;
+    module.add_class::<tables::Tables>()?;
+    module.add_class::<tables::Table>()?;
+    module.add_class::<run::Run>()?;
+    module.add_function(wrap_pyfunction!(main, module)?)
+}

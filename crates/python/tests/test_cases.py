@@ -1,0 +1,236 @@
+"""Cases: reading, setting, faults, plans."""
+
+import doctest
+import pathlib
+
+import numpy as np
+import pytest
+
+import piola
+from piola import _piola
+
+from helpers import program
+
+
+def test_a_dict_is_the_text_of_a_case(table, tmp_path):
+    case = piola.Case(table)
+    file = tmp_path / "case.toml"
+    file.write_text(case.toml)
+    again = piola.Case.load(file)
+    assert again.toml == case.toml
+    assert case.title == "a column of water"
+    assert 'title = "a column of water"' in case.toml
+    assert case.faults() == []
+
+
+def test_values_of_numpy_tuples_and_paths_are_values(table, tmp_path):
+    plain = piola.Case(table).toml
+    table["body"][0]["spacing"] = np.float64(0.25)
+    table["body"][0]["shape"]["max"] = np.array([1.0, 2.0])
+    table["probe"][0]["at"] = (0.5, 2.0)
+    table["dimension"] = np.int32(2)
+    assert piola.Case(table).toml == plain
+    points = tmp_path / "points.csv"
+    points.write_text("x,y,volume\n0,0,1\n1,0,1\n0,1,1\n1,1,1\n")
+    table["body"][0] = {
+        "name": "water",
+        "shape": {"kind": "points", "file": pathlib.Path("points.csv")},
+        "material": table["body"][0]["material"],
+    }
+    table["boundary"], table["probe"] = [], []
+    case = piola.Case(table, folder=tmp_path)
+    assert case.check().bodies[0]["particles"] == 4
+    # Without the folder the file is not found, and the message says where it was looked for.
+    (fault,) = piola.Case(table, folder=tmp_path / "other").faults()
+    assert "there is no file" in fault.message and fault.help.startswith("paths are relative")
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (object(), TypeError, "a case has numbers, texts, booleans, lists, dicts and functions, not `object`: in `time.end`"),
+        (None, TypeError, "not `NoneType`: in `time.end`"),
+        (1 << 70, ValueError, "the whole number is too large: in `time.end`"),
+        ({1: 2}, TypeError, "keys of a case are texts, not `int`: in `time.end`"),
+        (1j, TypeError, "not `complex`: in `time.end`"),
+    ],
+)
+def test_what_no_case_can_have_is_refused(table, value, error, text):
+    table["time"]["end"] = value
+    with pytest.raises(error) as caught:
+        piola.Case(table)
+    assert text in str(caught.value)
+
+
+def test_a_list_that_holds_itself_is_refused(table):
+    table["body"].append(table["body"])
+    with pytest.raises(ValueError, match="nested too deeply"):
+        piola.Case(table)
+
+
+def test_set_is_the_override_of_the_command_line(case):
+    assert case.set("body.water.spacing", 0.5) is case
+    assert case.check().bodies[0]["spacing"] == [0.5, 0.5]
+    case.set("load+", {"kind": "body_force", "acceleration": ["0", "-9.81"]})
+    assert '[[load]]' in case.toml
+    case.set("load", None)
+    assert '[[load]]' not in case.toml
+    case.set("body.water.initial.velocity", ["0", "0"])
+    assert case.start().energy["kinetic"] == 0.0
+    with pytest.raises(ValueError, match="no path of a key"):
+        case.set("time.end=1", 2)
+
+
+def test_faults_have_the_text_and_places_of_the_program(table, tmp_path):
+    table["body"][0]["spacing"] = -1.0
+    table["scheme"]["kernl"] = "gauss"
+    case = piola.Case(table)
+    faults = case.faults()
+    assert len(faults) == 2
+    with pytest.raises(piola.CaseError) as caught:
+        case.start()
+    error = caught.value
+    assert isinstance(error, ValueError)
+    assert [fault.message for fault in error.faults] == [fault.message for fault in faults]
+    # The same text in a file gets the same text from the program.
+    assert str(error).count("--> case:") == 2
+    (tmp_path / "case.toml").write_text(case.text)
+    shown = program("check", "case.toml", cwd=tmp_path)
+    assert shown.returncode == 2
+    assert shown.stderr.startswith(str(error).replace("--> case:", "--> case.toml:"))
+    fault = next(fault for fault in faults if "spacing" in fault.message)
+    line = case.text.splitlines()[fault.line - 1]
+    assert line[fault.column - 1 :] == "-1.0"
+    assert (fault.source, fault.label) == ("case", "must be above 0")
+
+
+def test_faults_of_set_point_into_what_was_set(case):
+    case.set("time.cfl", "fast")
+    (fault,) = case.faults()
+    assert fault.source == "command line"
+    # The text of the value stands in quotes.
+    assert (fault.line, fault.column) == (1, len('--set time.cfl="') + 1)
+    assert "Fault command line:1:" in repr(fault)
+
+
+def test_nan_in_a_case_is_a_fault_with_its_place(case):
+    case.set("time.end", float("nan"))
+    (fault,) = case.faults()
+    assert fault.message == "expected a finite number, got NaN"
+
+
+def test_what_only_particles_show_is_a_fault(case):
+    case.set("boundary.floor.where.point", [0.0, -5.0])
+    (fault,) = case.faults()
+    assert fault.message == "this region selects no particle"
+    assert case.text.splitlines()[fault.line - 1] == "[boundary.where]"
+    with pytest.raises(piola.CaseError):
+        case.check()
+
+
+def test_files_that_are_not_there(tmp_path):
+    with pytest.raises(piola.CaseError, match="cannot be read") as caught:
+        piola.Case.load(tmp_path / "none.toml")
+    (fault,) = caught.value.faults
+    assert (fault.line, fault.column) == (None, None)
+    bad = tmp_path / "case.toml"
+    bad.write_text("version = 1\ntitle = ")
+    # What is wrong in a file is said when it is asked for.
+    case = piola.Case.load(bad)
+    assert "a value is missing here" in case.faults()[0].message
+    assert "a value is missing here" in case._repr_html_()
+    with pytest.raises(piola.CaseError):
+        case.title  # noqa: B018
+
+
+def test_settings_and_variants(tmp_path):
+    assert program("new", "mine", cwd=tmp_path).returncode == 0
+    file = tmp_path / "mine" / "case.toml"
+    fine, coarse = piola.Case.load(file), piola.Case.load(file, level="coarse")
+    assert (fine.check().bodies[0]["particles"], coarse.check().bodies[0]["particles"]) == (231, 66)
+    with pytest.raises(ValueError, match='level is "case", "coarse" or "paper", not "rough"'):
+        piola.Case.load(file, level="rough")
+    with pytest.raises(piola.CaseError, match="nothing"):
+        piola.Case.load(file, variant="nothing").check()
+
+
+def test_the_plan_is_that_of_the_program(case, tmp_path):
+    plan = case.check()
+    (tmp_path / "case.toml").write_text(case.toml)
+    shown = program("check", "case.toml", cwd=tmp_path)
+    # What was measured differs.
+    kept = [
+        [line for line in text.splitlines() if not line.startswith("wall time")]
+        for text in (str(plan), shown.stdout)
+    ]
+    assert kept[0] == kept[1] and len(kept[0]) > 8
+    (body,) = plan.bodies
+    assert body == {
+        "name": "water",
+        "particles": 45,
+        "volume": 2.0,
+        "exact_volume": 2.0,
+        "spacing": [0.25, 0.25],
+    }
+    assert plan.limits[0]["step"] == plan.step and plan.limits[0]["name"] == plan.limiter == "acoustic"
+    assert plan.steps == int(np.ceil(0.2 / plan.step - 1e-9))
+    assert plan.neighbors["least"] <= plan.neighbors["mean"] <= plan.neighbors["most"]
+    assert plan.seconds > 0 and plan.memory > 45 * 8 and plan.evaluations_per_second > 0
+    assert plan.warnings == [] and len(plan.outputs) == 2
+    html = plan._repr_html_()
+    assert html.startswith("<table>") and "45 particles" in html and html.count("<tr>") == len(kept[0]) - 1
+
+
+def test_a_case_in_a_notebook_is_escaped(table):
+    table["title"] = "<b>&"
+    html = piola.Case(table)._repr_html_()
+    assert "<caption>&lt;b&gt;&amp;</caption>" in html and "<b>" not in html
+
+
+@pytest.mark.parametrize("module", [piola, _piola])
+def test_examples_in_docstrings_run(module):
+    finder = doctest.DocTestFinder(exclude_empty=True)
+    runner = doctest.DocTestRunner()
+    examples = 0
+    for name, member in [("", module), *vars(module).items()]:
+        if getattr(member, "__doc__", None) and not name.startswith("__"):
+            for test in finder.find(member, name or module.__name__, module=False):
+                examples += len(test.examples)
+                runner.run(test)
+    assert runner.summarize().failed == 0
+    assert examples >= 3
+
+
+def test_all_that_is_public_has_a_docstring():
+    for name in piola.__all__:
+        if name == "__version__":
+            continue
+        member = getattr(piola, name)
+        assert member.__doc__, name
+        for attribute, value in vars(member).items():
+            if not attribute.startswith("_"):
+                assert value.__doc__, f"{name}.{attribute}"
+
+
+def test_the_stubs_name_all_there_is():
+    import ast  # noqa: PLC0415
+
+    folder = pathlib.Path(piola.__file__).parent
+    assert (folder / "py.typed").exists()
+    tree = ast.parse((folder / "_piola.pyi").read_text())
+    stubs = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    for name in [name for name in vars(_piola) if not name.startswith("__")]:
+        assert name in stubs, name
+        node = stubs[name]
+        if not isinstance(node, ast.ClassDef):
+            continue
+        known = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
+        known |= {item.target.id for item in node.body if isinstance(item, ast.AnnAssign)}
+        there = {key for key in vars(getattr(_piola, name)) if not key.startswith("__")}
+        there |= {key for key in ("__getitem__", "__setitem__", "__len__", "__iter__", "__next__", "__enter__")
+                  if key in vars(getattr(_piola, name))}
+        there -= {"_repr_html_"}
+        assert there <= known, (name, there - known)
+        # What the stubs promise is there; attributes of exceptions are set when they are raised.
+        if not name.endswith("Error"):
+            assert {key for key in known if not key.startswith("__")} <= there, (name, known - there)

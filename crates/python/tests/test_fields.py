@@ -1,0 +1,220 @@
+"""Fields, tables and pictures as arrays."""
+
+import numpy as np
+import pytest
+
+import piola
+
+
+def test_shapes_units_and_names(case):
+    body = case.start().bodies["water"]
+    assert len(body) == 45 and body.name == "water" and repr(body) == "<Body water of 45 particles>"
+    assert sorted(body.ids) == list(range(45))
+    shapes = {name: body[name].shape for name in ("pressure", "velocity", "deformation_gradient")}
+    assert shapes == {"pressure": (45,), "velocity": (45, 2), "deformation_gradient": (45, 2, 2)}
+    assert np.array_equal(body["deformation_gradient"], np.broadcast_to(np.eye(2), (45, 2, 2)))
+    assert body["velocity"].dtype == np.float64
+    name, unit, meaning = next(field for field in body.fields() if field[0] == "velocity")
+    assert (unit, meaning) == ("m/s", "velocity v")
+    assert list(body) == body.keys() == [field[0] for field in body.fields()]
+    assert "velocity" in body and "temperature" not in body
+
+
+def test_positions_are_the_lattice(case):
+    body = case.start().bodies["water"]
+    x, y = np.meshgrid(np.arange(5) * 0.25, np.arange(9) * 0.25)
+    expected = np.stack([x.ravel(), y.ravel()], axis=1)
+    found = body["position"][np.lexsort(body["position"].T)]
+    assert np.allclose(found, expected, rtol=0, atol=1e-12)
+
+
+def test_bodies_are_a_mapping(case):
+    bodies = case.start().bodies
+    assert list(bodies) == bodies.keys() == ["water"] and len(bodies) == 1
+    assert "water" in bodies and "air" not in bodies
+    with pytest.raises(KeyError, match="there is no body `air`; there are `water`"):
+        bodies["air"]
+
+
+def test_arrays_are_copies(case):
+    simulation = case.start()
+    body = simulation.bodies["water"]
+    array = body["velocity"]
+    array[:] = 7.0
+    assert body["velocity"].max() <= 0.0
+    body["velocity"] = array
+    array[:] = 9.0
+    assert body["velocity"].max() == 7.0
+
+
+def test_initial_fields_from_arrays(case):
+    simulation = case.start()
+    body = simulation.bodies["water"]
+    x, y = body["position"].T
+    field = np.stack([0.1 * y, -0.2 * x], axis=1)
+    body["velocity"] = field
+    floor = y == 0.0
+    assert floor.sum() == 5
+    # What is prescribed stays as it is.
+    expected = field.copy()
+    expected[floor, 1] = 0.0
+    assert np.array_equal(body["velocity"], expected)
+    volume, density = body["volume"], 1000.0
+    kinetic = 0.5 * (density * volume * (expected**2).sum(axis=1)).sum()
+    assert simulation.energy["kinetic"] == pytest.approx(kinetic, rel=1e-13)
+    # The run starts from there, as one of a case that says so does.
+    other = case.set("body.water.initial.velocity", ["0.1 * y", "-0.2 * x"]).start()
+    simulation.run()
+    other.run()
+    assert np.array_equal(body["velocity"], other.bodies["water"]["velocity"])
+
+
+def test_any_memory_order_and_exact_type(case):
+    body = case.start().bodies["water"]
+    field = np.arange(90.0).reshape(45, 2)
+    floor = body["position"][:, 1] == 0.0
+    expected = field.copy()
+    expected[floor, 1] = 0.0
+    wide = np.zeros((45, 4))
+    wide[:, ::2] = field
+    backward = field[::-1].copy()[::-1]
+    forms = [field.astype(np.int32), field.astype(np.float32), np.asfortranarray(field), wide[:, ::2],
+             backward, field.astype(">f8"), field.tolist()]
+    for form in forms:
+        body["velocity"] = np.zeros((45, 2))
+        body["velocity"] = form
+        assert np.array_equal(body["velocity"], expected)
+
+
+@pytest.mark.parametrize(
+    ("values", "error", "text"),
+    [
+        (np.zeros((45, 3)), ValueError, "`velocity` of `water` has the shape (45, 2), not (45, 3)"),
+        (np.zeros((2, 45)), ValueError, "has the shape (45, 2), not (2, 45)"),
+        (np.zeros(90), ValueError, "has the shape (45, 2), not (90,)"),
+        (0.0, ValueError, "has the shape (45, 2), not ()"),
+        (np.zeros((45, 2), complex), TypeError, "takes 64-bit floats, not complex128"),
+        (np.full((45, 2), "1"), TypeError, "takes 64-bit floats, not <U1"),
+        (np.zeros((45, 2), object), TypeError, "takes 64-bit floats, not object"),
+        (None, TypeError, "takes 64-bit floats, not object (of a `NoneType`)"),
+        (np.full((45, 2), np.nan), ValueError, "for the column `velocity` is NaN"),
+        (np.full((45, 2), np.inf), ValueError, "for the column `velocity` is inf"),
+    ],
+)
+def test_bad_arrays_are_refused_and_change_nothing(case, values, error, text):
+    simulation = case.start()
+    body = simulation.bodies["water"]
+    before = body["velocity"]
+    with pytest.raises(error) as caught:
+        body["velocity"] = values
+    assert text in str(caught.value)
+    assert np.array_equal(body["velocity"], before)
+    moment = simulation.now()
+    with pytest.raises(error):
+        body["velocity"] = values
+    assert np.array_equal(moment.bodies["water"]["velocity"], before)
+
+
+def test_fields_that_are_not_there_or_cannot_be_set(case):
+    body = case.start().bodies["water"]
+    with pytest.raises(KeyError, match="the scheme `upwind` has no column `velocty`; expected `position`"):
+        body["velocty"]
+    with pytest.raises(KeyError, match="has no column `velocty`"):
+        body["velocty"] = np.zeros((45, 2))
+    with pytest.raises(ValueError, match="`pressure` of the scheme `upwind` cannot be set; those that can: `velocity`"):
+        body["pressure"] = np.zeros(45)
+    with pytest.raises(TypeError, match="a field cannot be deleted: `velocity`"):
+        del body["velocity"]
+
+
+def test_one_body_of_two_is_set_alone(table):
+    other = {**table["body"][0], "name": "other"}
+    other["shape"] = {"kind": "box", "min": [3.0, 0.0], "max": [4.0, 2.0]}
+    table["body"].append(other)
+    simulation = piola.Case(table).start()
+    first, second = (simulation.bodies[name] for name in ("water", "other"))
+    assert sorted([*first.ids, *second.ids]) == list(range(90))
+    assert first["position"][:, 0].max() < 2 < second["position"][:, 0].min()
+    before = first["velocity"]
+    second["velocity"] = np.full((45, 2), 0.5)
+    assert np.array_equal(first["velocity"], before)
+    assert second["velocity"][:, 0].min() == 0.5
+
+
+def test_energy_limits_and_tables_agree(case):
+    simulation = case.start()
+    assert simulation.limits == case.check().limits
+    simulation.run()
+    energy = simulation.energy
+    table = simulation.tables["energy"]
+    assert energy["total"] == sum(value for name, value in energy.items() if name != "total")
+    for name, value in energy.items():
+        assert table[name][-1] == value
+    assert table["time"].tolist() == simulation.tables["steps"]["time"].tolist()
+    assert len(table) == 21 and table.array.shape == (21, len(table.columns))
+    assert table.units["total"] == "J" and "total" in table and list(table) == table.columns
+    with pytest.raises(KeyError, match="there is no column `potential`; there are `time`"):
+        table["potential"]
+    html = table._repr_html_()
+    assert html.count("<tr>") == 1 + 5 + 1 + 5 and "<th>total [J]</th>" in html
+
+
+def test_histories_profiles_and_quantities(table):
+    table["probe"].append(
+        {"name": "axis", "kind": "line", "from": [0.5, 0.0], "to": [0.5, 2.0], "points": 9, "fields": ["pressure"]}
+    )
+    simulation = piola.Case(table).start()
+    run = simulation.run()
+    tables = run.tables
+    assert list(tables) == ["probes", "energy", "momentum", "steps", "axis"]
+    time, top = tables.curve("top.displacement.y")
+    assert np.array_equal(time, tables["probes"]["time"])
+    assert np.array_equal(top, tables["probes"]["top.displacement.y"])
+    assert np.array_equal(top, run.quantity("top.displacement.y"))
+    distance, pressure = tables.curve("axis.pressure")
+    assert np.allclose(distance, np.linspace(0, 2, 9)) and pressure.shape == (9,)
+    assert np.array_equal(tables["axis"]["axis.pressure"], pressure)
+    assert {"top.displacement.y", "energy.total", "axis.pressure"} <= set(tables.curves())
+    assert run.quantity("run.steps") == run.steps and run.quantity("run.outcome") == "completed"
+    for ask in (lambda: tables.curve("none"), lambda: run.quantity("run.none"), lambda: tables["none"]):
+        with pytest.raises(KeyError):
+            ask()
+
+
+def test_tables_can_be_read_while_a_run_goes(case):
+    simulation = case.start()
+    assert len(simulation.tables["energy"]) == 0
+    simulation.run(until=0.1)
+    assert len(simulation.tables["energy"]) == 11
+    assert len(simulation.run().tables["energy"]) == 21
+
+
+def test_pandas(case):
+    pandas = pytest.importorskip("pandas")
+    simulation = case.start()
+    simulation.run()
+    table = simulation.tables["steps"]
+    frame = table.to_pandas()
+    assert isinstance(frame, pandas.DataFrame) and list(frame.columns) == table.columns
+    assert np.array_equal(frame.to_numpy(), table.array)
+
+
+def test_pictures(table, tmp_path):
+    table["picture"] = [{"field": "pressure", "times": [0.1, 0.2]}]
+    run = piola.Case(table).start(tmp_path / "out").run()
+    assert len(run.pictures) == 2
+    for picture in run.pictures:
+        assert picture._repr_png_().startswith(b"\x89PNG")
+        assert picture.path.startswith(str(tmp_path / "out" / "pictures"))
+    in_memory = piola.Case(table).start()
+    run = in_memory.run()
+    assert run.pictures == [] and run.report is None and run.folder is None and run.files == []
+    assert "completed" in run._repr_html_() and in_memory._repr_html_() == run._repr_html_()
+
+
+def test_simulations_in_a_notebook(case):
+    simulation = case.start()
+    simulation.step()
+    assert simulation._repr_html_().startswith("<table><caption>a column of water</caption>")
+    assert repr(simulation).startswith("<Simulation at t = 0.0")
+    assert repr(case) == "<Case of a dict>" and repr(simulation.now()).endswith("after 1 steps>")

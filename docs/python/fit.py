@@ -1,0 +1,127 @@
+# Fitting material constants to a curve
+# =====================================
+#
+# A sheet is stretched by 30 %. Measured are the force and how much narrower the sheet becomes; wanted are Young's
+# modulus and Poisson's ratio of a St. Venant-Kirchhoff material.
+#
+# The method is that of Gauss and Newton: with the derivatives of what is computed by the constants, the best step of a
+# linear problem, again and again. The derivatives are quotients of differences of runs. Runs are the same to the bit
+# whenever they are repeated, so that small differences have no noise but that of rounding.
+
+import numpy as np
+
+import piola
+
+WIDTH = 1.0  # m
+
+case = piola.Case(
+    {
+        "version": 1,
+        "title": "A sheet is stretched",
+        "dimension": 2,
+        "parameters": {"young": 1e6, "poisson": 0.3, "width": WIDTH},
+        "body": [
+            {
+                "name": "sheet",
+                "shape": {"kind": "box", "min": [0, 0], "max": [1, "width"]},
+                "spacing": 0.2,
+                "material": {
+                    "kind": "saint_venant_kirchhoff",
+                    "density": 1000.0,
+                    "young_modulus": "young",
+                    "poisson_ratio": "poisson",
+                    "plane": "stress",
+                },
+            }
+        ],
+        "scheme": {"kind": "dual_support", "kernel": "quintic_spline", "neighbors": 12},
+        "boundary": [
+            {
+                "name": "foot",
+                "where": {"kind": "plane", "point": [0, 0], "normal": [-1, 0]},
+                "displacement": {"x": "0"},
+            },
+            {
+                "name": "floor",
+                "where": {"kind": "plane", "point": [0, 0], "normal": [0, -1]},
+                "displacement": {"y": "0"},
+            },
+            {
+                "name": "head",
+                "where": {"kind": "plane", "point": [1, 0], "normal": [1, 0]},
+                "displacement": {"x": "0.3 * t"},
+            },
+        ],
+        "time": {"integrator": "static", "end": 1.0, "step": 0.1, "tolerance": 1e-11},
+        "probe": [
+            {
+                "name": "head",
+                "kind": "sum",
+                "field": "reaction",
+                "where": {"kind": "plane", "point": [1, 0], "normal": [1, 0]},
+            },
+            {"name": "top", "kind": "particle", "at": [0.5, "width"], "fields": ["displacement"]},
+        ],
+        "output": {"every": 1.0, "table_every": 0.1},
+    }
+)
+
+
+def computed(constants):
+    """Force in kN and narrowing in mm at ten stretches, one after the other."""
+    young, poisson = constants
+    case.set("parameters.young", float(young)).set("parameters.poisson", float(poisson))
+    tables = case.start().run().tables
+    _, force = tables.curve("head.reaction.x")
+    _, top = tables.curve("top.displacement.y")
+    return np.concatenate([force[1:] / 1e3, -top[1:] * 1e3])
+
+
+# The measurement. For this material the exact answer is known: with the strain e = (stretch^2 - 1) / 2 the force is
+# width * young * stretch * e, and the stretch across is sqrt(1 - 2 * poisson * e). The scatter of an instrument, 1 % of
+# the largest value, comes on top.
+
+TRUE = np.array([1.7e6, 0.21])
+stretch = 1 + 0.03 * np.arange(1, 11)
+strain = (stretch**2 - 1) / 2
+exact = np.concatenate(
+    [WIDTH * TRUE[0] * stretch * strain / 1e3, WIDTH * (1 - np.sqrt(1 - 2 * TRUE[1] * strain)) * 1e3]
+)
+scatter = np.random.default_rng(1).normal(scale=0.01, size=20)
+measured = exact + scatter * np.repeat([exact[9], exact[19]], 10)
+
+# What the particles compute with these constants is the exact answer.
+
+assert np.abs(computed(TRUE) / exact - 1).max() < 1e-6
+
+
+def derivatives(constants):
+    """The derivatives of `computed`, a column for each constant."""
+    columns = []
+    for number, size in enumerate([1.0, 1e-6]):
+        shift = np.zeros(2)
+        shift[number] = size
+        columns.append((computed(constants + shift) - computed(constants - shift)) / (2 * size))
+    return np.stack(columns, axis=1)
+
+
+# Each kind of measurement has the weight of its scatter.
+
+weights = 1 / np.repeat([exact[9], exact[19]], 10)
+constants = np.array([1e6, 0.3])
+for turn in range(8):
+    slope = derivatives(constants) * weights[:, None]
+    misfit = (measured - computed(constants)) * weights
+    step, *_ = np.linalg.lstsq(slope, misfit, rcond=None)
+    constants = constants + step
+    print(f"{turn}: young = {constants[0]:.6e} Pa, poisson = {constants[1]:.6f}, misfit {np.linalg.norm(misfit):.4f}")
+    if np.all(np.abs(step) < 1e-7 * constants):
+        break
+else:
+    raise AssertionError("it does not converge")
+
+# How well the constants are known follows from the same derivatives.
+
+deviation = 0.01 * np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
+print(f"young = {constants[0]:.4g} +- {deviation[0]:.1g} Pa, poisson = {constants[1]:.4f} +- {deviation[1]:.1g}")
+assert np.all(np.abs(constants - TRUE) < 3 * deviation)
