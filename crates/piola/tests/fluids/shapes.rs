@@ -1,4 +1,5 @@
 //! Walls and bodies of fluid around shapes from files.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
 use std::f64::consts::PI;
 use std::path::Path;
