@@ -28,7 +28,7 @@ pub enum SurfaceError {
         reason: String,
     },
     /// The end of its name is of no kind that is known.
-    #[error("`{}` ends neither with `.stl`, `.obj` nor `.ply`", path.display())]
+    #[error("`{}` is of no kind that is known, expected a name that ends with `.stl`, `.obj` or `.ply`", path.display())]
     Kind {
         /// The file.
         path: PathBuf,

@@ -297,7 +297,7 @@ fn broken_files_are_told() {
         ("a.obj", b"v 0 0 0\nf 1 2 3\n".to_vec(), "is broken: "),
         ("a.ply", PLY.replace("4 1 3 7 5", "4 1 3 7 8").into_bytes(), "the vertex 8 (from 0) of 8"),
         ("a.ply", PLY.replace("float z", "float w").into_bytes(), "a vertex has no number `z`"),
-        ("a.step", Vec::new(), "ends neither with `.stl`, `.obj` nor `.ply`"),
+        ("a.step", Vec::new(), "ends with `.stl`, `.obj` or `.ply`"),
     ];
     for (name, bytes, said) in faults {
         let error = read(name, &bytes).unwrap_err().to_string();

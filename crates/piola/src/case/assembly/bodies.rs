@@ -126,7 +126,7 @@ pub(super) fn around<const D: usize>(
 }
 
 fn refuse_spacing(case: &Case, body: &Body, error: &GeometryError) -> Problem {
-    if matches!(error, GeometryError::TurnedPeriodic) {
+    if matches!(error, GeometryError::TurnedPeriodic | GeometryError::NotRound) {
         return refuse(case, body, error);
     }
     let label = format!("spacing of body `{}`", body.name.value);
