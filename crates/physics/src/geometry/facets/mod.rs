@@ -33,8 +33,8 @@ pub struct Arrangement {
 ///
 /// Inside is where the winding number is above one half: `w = sum Omega_f / 4 pi`, with the solid angles of the facets as seen
 /// from the point, is 1 inside of a closed surface and 0 outside, and where facets are missing it changes smoothly through the
-/// hole [Jacobson2013]. Of facets that are far from a point, those of a node of the tree, the area vectors are taken
-/// together, to the second order [Barill2018].
+/// hole. Of facets that are far from a point, those of a node of the tree, the area vectors are taken
+/// together, to the second order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facets {
     tree: Tree,

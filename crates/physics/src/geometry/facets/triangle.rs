@@ -8,7 +8,7 @@ pub(super) fn area([a, b, c]: &Triangle) -> Vector<3> {
     (b - a).cross(&(c - a)) * 0.5
 }
 
-/// The solid angle of a triangle as seen from a point, more than zero from behind [Oosterom1983].
+/// The solid angle of a triangle as seen from a point, more than zero from behind.
 pub(super) fn solid_angle(triangle: &Triangle, point: &Vector<3>) -> f64 {
     let (a, b, c) = (triangle[0] - point, triangle[1] - point, triangle[2] - point);
     let (x, y, z) = (a.norm(), b.norm(), c.norm());
