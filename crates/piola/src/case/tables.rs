@@ -14,6 +14,7 @@ mod interpolation;
 mod loads;
 mod observers;
 mod plastic;
+mod shapes;
 mod solids;
 mod time;
 mod waves;

@@ -13,6 +13,7 @@ mod gradients;
 mod implicit;
 mod joined;
 mod rigid;
+mod rigid_refusals;
 mod runs;
 mod scalar;
 mod statics;

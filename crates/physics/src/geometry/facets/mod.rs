@@ -44,7 +44,7 @@ pub struct Facets {
 
 impl Facets {
     /// Those of triangles, of which facets without an area and those that are there twice are left out, and those that are the
-    /// other way round than the ones beside them are turned; all of them, if they enclose what is outside.
+    /// other way round than the ones beside them are flipped; all of them, if they enclose what is outside.
     ///
     /// # Errors
     /// Corners that are not finite, and no facets.
@@ -76,16 +76,6 @@ impl Facets {
     /// What was found when the facets were read.
     pub fn soundness(&self) -> &Soundness {
         &self.soundness
-    }
-
-    /// Number of facets.
-    pub fn len(&self) -> usize {
-        self.tree.triangles().len()
-    }
-
-    /// Whether there are none, which [`Self::new`] refuses.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// What they enclose, in m^3, where they are one closed piece: of several, one may lie in another.

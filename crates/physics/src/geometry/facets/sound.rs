@@ -8,12 +8,12 @@ use super::{SurfaceError, Triangle};
 /// What was found when facets were read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Soundness {
-    /// Pieces that have no side in common.
+    /// Pieces that have no edge in common.
     pub pieces: usize,
-    /// Sides that are not gone along as often one way as the other: those of holes.
-    pub open_sides: usize,
-    /// Facets that were the other way round than those beside them, or than all should be, and have been turned.
-    pub turned: usize,
+    /// Edges that facets do not go along as often one way as the other: those of holes.
+    pub open_edges: usize,
+    /// Facets that were the other way round than those beside them, or than all should be, and have been flipped.
+    pub flipped: usize,
     /// Facets that were there twice or without an area, and have been left out.
     pub left_out: usize,
 }
@@ -21,17 +21,17 @@ pub struct Soundness {
 impl Soundness {
     /// Whether the surface has no holes.
     pub fn is_closed(&self) -> bool {
-        self.open_sides == 0
+        self.open_edges == 0
     }
 
     /// Whether nothing is wrong.
     pub fn is_sound(&self) -> bool {
-        self.is_closed() && self.turned == 0 && self.left_out == 0
+        self.is_closed() && self.flipped == 0 && self.left_out == 0
     }
 }
 
-/// A side of a facet by the numbers of its ends, the smaller one first, and whether the facet has them in that order.
-fn sides(corners: [u32; 3]) -> [((u32, u32), bool); 3] {
+/// An edge of a facet by the numbers of its ends, the smaller one first, and whether the facet has them in that order.
+fn edges(corners: [u32; 3]) -> [((u32, u32), bool); 3] {
     [0, 1, 2].map(|k| {
         let (from, to) = (corners[k], corners[(k + 1) % 3]);
         if from < to { ((from, to), true) } else { ((to, from), false) }
@@ -66,17 +66,17 @@ pub(super) fn mended(
         });
         // Facets on each other that face each other are where two pieces touch.
         let least = (0..3).min_by_key(|&k| own[k]).unwrap_or_default();
-        let turned = [0, 1, 2].map(|k| own[(least + k) % 3]);
+        let ordered = [0, 1, 2].map(|k| own[(least + k) % 3]);
         let is_point = own[0] == own[1] || own[1] == own[2] || own[2] == own[0];
-        if is_point || !known.insert(turned) {
+        if is_point || !known.insert(ordered) {
             soundness.left_out += 1;
             continue;
         }
         kept.push(triangle);
         corners.push(own);
     }
-    turn(&mut kept, &mut corners, &mut soundness);
-    // Facets whose corners are in line have sides that others need.
+    orient(&mut kept, &mut corners, &mut soundness);
+    // Facets whose corners are in line have edges that others need.
     let count = kept.len();
     kept.retain(|triangle| area(triangle).norm() > 0.0);
     soundness.left_out += count - kept.len();
@@ -90,17 +90,17 @@ pub(super) fn mended(
     let volume = kept.iter().map(six).sum::<f64>() / 6.0;
     if volume < 0.0 {
         kept.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-        soundness.turned = kept.len() - soundness.turned.min(kept.len());
+        soundness.flipped = kept.len() - soundness.flipped.min(kept.len());
     }
     Ok((kept, soundness, volume.abs()))
 }
 
-/// Turns the facets that are the other way round than those beside them, and counts pieces and open sides.
-fn turn(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Soundness) {
+/// Flips the facets that are the other way round than those beside them, and counts pieces and open edges.
+fn orient(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Soundness) {
     let mut beside = HashMap::<(u32, u32), Vec<(u32, bool)>>::new();
     for (facet, own) in (0u32..).zip(&*corners) {
-        for (side, way) in sides(*own) {
-            beside.entry(side).or_default().push((facet, way));
+        for (edge, way) in edges(*own) {
+            beside.entry(edge).or_default().push((facet, way));
         }
     }
     // Of each facet, whether it goes the other way round than the first one of its piece.
@@ -115,12 +115,12 @@ fn turn(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Soundne
         while let Some(&facet) = piece.get(next) {
             next += 1;
             let own = is_other[facet] == Some(true);
-            for (side, way) in sides(corners[facet]) {
-                let [one, two] = beside[&side][..] else { continue };
+            for (edge, way) in edges(corners[facet]) {
+                let [one, two] = beside[&edge][..] else { continue };
                 let (other, its_way) = if one.0 as usize == facet { two } else { one };
                 let other = other as usize;
                 if is_other[other].is_none() {
-                    // Neighbours go along their common side in turns.
+                    // Neighbours go along their common edge in opposite ways.
                     is_other[other] = Some(own != (its_way == way));
                     piece.push(other);
                 }
@@ -134,32 +134,32 @@ fn turn(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Soundne
         for &facet in piece.iter().filter(|&&facet| is_other[facet] == Some(wrong)) {
             kept[facet].swap(1, 2);
             corners[facet].swap(1, 2);
-            soundness.turned += 1;
+            soundness.flipped += 1;
         }
     }
     let mut balance = HashMap::<(u32, u32), i64>::new();
-    for (side, way) in corners.iter().flat_map(|own| sides(*own)) {
-        *balance.entry(side).or_default() += if way { 1 } else { -1 };
+    for (edge, way) in corners.iter().flat_map(|own| edges(*own)) {
+        *balance.entry(edge).or_default() += if way { 1 } else { -1 };
     }
-    soundness.open_sides = balance.values().filter(|both| **both != 0).count();
+    soundness.open_edges = balance.values().filter(|both| **both != 0).count();
 }
 
 /// A number of facets in words.
-pub(super) fn facets(count: usize) -> String {
+fn facets(count: usize) -> String {
     if count == 1 { "1 facet".to_owned() } else { format!("{count} facets") }
 }
 
 impl std::fmt::Display for Soundness {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut all = Vec::new();
-        if self.open_sides > 0 {
+        if self.open_edges > 0 {
             all.push(format!(
-                "it has holes: {} sides of facets have none on the other side",
-                self.open_sides
+                "it has holes: {} edges have no facet on their other side",
+                self.open_edges
             ));
         }
-        if self.turned > 0 {
-            all.push(format!("{} the other way round were turned", facets(self.turned)));
+        if self.flipped > 0 {
+            all.push(format!("{} the other way round were flipped", facets(self.flipped)));
         }
         if self.left_out > 0 {
             all.push(format!(

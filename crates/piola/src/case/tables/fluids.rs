@@ -165,7 +165,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
         ),
         key(
             "refine",
-            Kind::List(&super::geometry::ANY_SHAPE),
+            Kind::List(&super::shapes::ANY_SHAPE),
             "",
             Optional,
             "regions in which the spacing of fluids and walls is half of that around them, theory (95): the first within the fluid, each other one within the one before; no meaning for solids",

@@ -1,0 +1,223 @@
+//! Shapes: from numbers, and from files.
+
+use super::*;
+
+/// A shape, as an entry of a list.
+pub(super) static ANY_SHAPE: Kind = Kind::Tagged(&SHAPE);
+
+pub(super) static SHAPE: TaggedSpec = TaggedSpec {
+    title: "shape",
+    meaning: "A region that particles fill.",
+    common: &[],
+    kinds: &[
+        KindSpec {
+            name: "box",
+            meaning: "the box between two corners",
+            dimensions: &[1, 2, 3],
+            keys: CORNERS,
+        },
+        KindSpec {
+            name: "ball",
+            meaning: "a ball, in 2D a disc",
+            dimensions: &[1, 2, 3],
+            keys: ROUND,
+        },
+        KindSpec {
+            name: "annulus",
+            meaning: "what lies between two radii: a ring in 2D, a hollow ball in 3D",
+            dimensions: &[2, 3],
+            keys: &[
+                key("center", POINT, "m", Required, "centre"),
+                key("inner", Kind::Number(Interval::POSITIVE), "m", Required, "inner radius"),
+                key("outer", Kind::Number(Interval::POSITIVE), "m", Required, "outer radius"),
+            ],
+        },
+        KindSpec {
+            name: "cylinder",
+            meaning: "a straight cylinder",
+            dimensions: &[3],
+            keys: &[
+                key("start", POINT, "m", Required, "centre of one end"),
+                key("end", POINT, "m", Required, "centre of the other end"),
+                key("radius", Kind::Number(Interval::POSITIVE), "m", Required, "radius"),
+            ],
+        },
+        KindSpec {
+            name: "polygon",
+            meaning: "what straight sides enclose in the plane of x and y; in 3D from one `z` to another",
+            dimensions: &[2, 3],
+            keys: &[
+                key(
+                    "corners",
+                    Kind::List(&Kind::Numbers(Length::Pair, Interval::ANY)),
+                    "m",
+                    Required,
+                    "x and y of the corners, one after the other, either way round",
+                ),
+                key(
+                    "z",
+                    Kind::Numbers(Length::Ends, Interval::ANY),
+                    "m",
+                    Derived("needed in 3D"),
+                    "the ends along z",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "surface",
+            meaning: "what a closed surface of triangles encloses: STL, binary or ASCII, OBJ or PLY. Small holes and facets that are the other way round or there twice do no harm, and are told",
+            dimensions: &[3],
+            keys: &[
+                FILE,
+                key(
+                    "scale",
+                    Kind::Number(Interval::POSITIVE),
+                    "m",
+                    Default("1.0"),
+                    "length of a unit of the file: 0.001 where it is a millimetre",
+                ),
+                key(
+                    "angle",
+                    Kind::Number(Interval::ANY),
+                    "rad",
+                    Default("0.0"),
+                    "by which it is turned about the origin of the file after that, counter-clockwise as seen from the tip of the axis",
+                ),
+                key(
+                    "axis",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "1",
+                    Derived("z"),
+                    "the direction of the axis, of any length",
+                ),
+                key(
+                    "move",
+                    POINT,
+                    "m",
+                    Derived("the origin"),
+                    "where the origin of the file comes to be",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "turned",
+            meaning: "another shape, turned; if it is the whole of a body, together with the lattice of the particles",
+            dimensions: &[2, 3],
+            keys: &[
+                key("of", Kind::Tagged(&SHAPE), "", Required, "the shape"),
+                key(
+                    "angle",
+                    Kind::Number(Interval::ANY),
+                    "rad",
+                    Required,
+                    "by which it is turned, counter-clockwise as seen from the tip of the axis: `10 * pi / 180` is 10 degrees",
+                ),
+                key("about", POINT, "m", Derived("the origin"), "a point that stays where it is"),
+                key(
+                    "axis",
+                    Kind::Numbers(Length::Dimension, Interval::ANY),
+                    "1",
+                    Derived("z in 2D; needed in 3D"),
+                    "the direction of the axis, of any length",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "union",
+            meaning: "what lies in any of some shapes",
+            dimensions: &[1, 2, 3],
+            keys: &[key("of", Kind::List(&Kind::Tagged(&SHAPE)), "", Required, "the shapes")],
+        },
+        KindSpec {
+            name: "intersection",
+            meaning: "what lies in all of some shapes",
+            dimensions: &[1, 2, 3],
+            keys: &[key("of", Kind::List(&Kind::Tagged(&SHAPE)), "", Required, "the shapes")],
+        },
+        KindSpec {
+            name: "difference",
+            meaning: "what lies in one shape and in none of some others",
+            dimensions: &[1, 2, 3],
+            keys: &[
+                key("from", Kind::Tagged(&SHAPE), "", Required, "the shape to cut from"),
+                key(
+                    "remove",
+                    Kind::List(&Kind::Tagged(&SHAPE)),
+                    "",
+                    Required,
+                    "the shapes to cut away",
+                ),
+            ],
+        },
+        KindSpec {
+            name: "points",
+            meaning: "the points of a CSV file with the columns x, y, z (as many as there are dimensions) and volume",
+            dimensions: &[1, 2, 3],
+            keys: &[FILE],
+        },
+        KindSpec {
+            name: "mesh",
+            meaning: "the nodes or the cells of a mesh of finite elements, with its boundary: Gmsh (`.msh` 4.1 or 2.2, ASCII) or an unstructured grid of VTK (`.vtk` ASCII, `.vtu`) of straight-edged cells",
+            dimensions: &[1, 2, 3],
+            keys: MESH,
+        },
+    ],
+};
+
+/// A file of a shape.
+const FILE: KeySpec =
+    key("file", Kind::File, "", Required, "the file, relative to the folder of the case file");
+
+const MESH: &[KeySpec] = &[
+    FILE,
+    key("points", Kind::Name(CLOUD_POINTS), "", Default("\"nodes\""), "where particles are"),
+    key(
+        "volumes",
+        Kind::Name(CLOUD_VOLUMES),
+        "",
+        Default("\"cells\""),
+        "what volumes they have, which always sum to that of the cells",
+    ),
+    key(
+        "array",
+        Kind::Text,
+        "",
+        Optional,
+        "with `volumes = \"array\"`, the name of the array of nodes or of cells that has them, in m^D",
+    ),
+    key(
+        "spacings",
+        Kind::Text,
+        "",
+        Derived("the edges of cubes of the kernel weights"),
+        "the name of the array of nodes or of cells that has the spacings of particles in m, in which supports are measured",
+    ),
+    key(
+        "part",
+        Kind::Text,
+        "",
+        Derived("all cells of the case's dimension"),
+        "the named set of cells that is the body",
+    ),
+];
+const CLOUD_POINTS: Choices =
+    choices(&[choice("nodes", "at the nodes"), choice("cells", "at the centroids of the cells")]);
+const CLOUD_VOLUMES: Choices = choices(&[
+    choice("cells", "the cell; a node has an equal share of each of its cells"),
+    choice("nearest", "a node has what of its cells is nearest to it, as in a Voronoi diagram"),
+    choice("array", "the numbers of an array of the file"),
+]);
+
+const POINT: Kind = Kind::Numbers(Length::Dimension, Interval::ANY);
+pub(super) const CORNERS: &[KeySpec] = &[
+    key("min", POINT, "m", Required, "lower corner"),
+    key("max", POINT, "m", Required, "upper corner"),
+];
+pub(super) const ROUND: &[KeySpec] = &[
+    key("center", POINT, "m", Required, "centre"),
+    key("radius", Kind::Number(Interval::POSITIVE), "m", Required, "radius"),
+];
+pub(super) const FLAT: &[KeySpec] = &[
+    key("point", POINT, "m", Required, "a point of the plane"),
+    key("normal", POINT, "1", Required, "its normal, of any length"),
+];
