@@ -3,7 +3,7 @@
 Writes reference/LAW-STATE.csv: load factor and nominal stress in Pa of a block that is stretched
 along one axis while its other sides are free, or held where the state is plane strain. The stretches
 across are those at which the stress across is zero, by bisection on the closed forms of the
-principal stresses, theory (38), (41) and (42).
+principal stresses, theory (38), (41) and (42), and Gent's, theory (99).
 """
 
 from math import pi, sin
@@ -46,6 +46,14 @@ def ogden(stretches, moduli=(0.63e6, 1.2e3, -1e4), exponents=(1.3, 5.0, -2.0), b
     return stresses
 
 
+def gent(stretches, shear=0.4e6, limit=30.0, bulk=1e6):
+    j, volume = volumetric(bulk, stretches)
+    first = sum(l * l for l in stretches)
+    isochoric = j ** (-2 / 3)
+    stiffening = shear * limit / (limit - (isochoric * first - 3))
+    return [stiffening * isochoric * (l - first / (3 * l)) + p for l, p in zip(stretches, volume)]
+
+
 def across(law, stretch, states):
     """The stretch across, one for all free directions, without stress there."""
     low, high = 0.05, 3.0
@@ -55,7 +63,7 @@ def across(law, stretch, states):
     return middle
 
 
-LAWS = {f.__name__: f for f in (saint_venant_kirchhoff, mooney_rivlin, ogden)}
+LAWS = {f.__name__: f for f in (saint_venant_kirchhoff, mooney_rivlin, ogden, gent)}
 STATES = {
     "strain": lambda stretch, free: [stretch, free, 1.0],
     "stress": lambda stretch, free: [stretch, free, free],

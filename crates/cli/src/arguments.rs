@@ -7,9 +7,21 @@ use clap_complete::Shell;
 
 use crate::exit::Exit;
 
+/// Version, commit, and what the program can load: a static one loads no drivers of devices.
+const VERSION: &str = if cfg!(target_feature = "crt-static") {
+    concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("PIOLA_COMMIT"), "; devices: processor)")
+} else {
+    concat!(
+        env!("CARGO_PKG_VERSION"),
+        " (commit ",
+        env!("PIOLA_COMMIT"),
+        "; devices: processor, and CUDA and OpenCL where there are drivers)",
+    )
+};
+
 /// Solid and fluid mechanics with smoothed particle hydrodynamics.
 #[derive(Debug, Parser)]
-#[command(name = "piola", version, about, after_help = Exit::table())]
+#[command(name = "piola", version = VERSION, about, after_help = Exit::table())]
 #[command(propagate_version = true, arg_required_else_help = true)]
 pub struct Arguments {
     /// What to do.
@@ -22,13 +34,13 @@ pub struct Arguments {
 pub enum Command {
     /// Run a case and write its results
     Run(RunArguments),
-    /// Read and build a case, run nothing, and say what a run will do
+    /// Read and build a case without running it, and report what a run will do
     Check(CheckArguments),
     /// Run a case with every value of one or two keys, and compare
     Sweep(SweepArguments),
     /// Run all cases below some folders and evaluate their checks
     Verify(VerifyArguments),
-    /// Make the report of an earlier run again, from its results folder
+    /// Make the report of an earlier run again from its results folder
     Report {
         /// The results folder
         #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
@@ -40,20 +52,32 @@ pub enum Command {
         #[arg(value_name = "NAME")]
         name: PathBuf,
     },
-    /// List the devices that `--device` takes
+    /// List the devices for `--device`
     Devices,
+    /// Serve assistants that speak the Model Context Protocol over the standard input and output
+    Mcp {
+        /// The folder with the cases, outside of which nothing is written
+        #[arg(value_name = "DIR", default_value = ".", value_hint = ValueHint::DirPath)]
+        folder: PathBuf,
+    },
     /// Print the JSON schema of case files
     Schema,
     /// Print the reference of all keys of case files, as Markdown
     Reference,
-    /// Print the completions of a shell
+    /// Write the manual pages, one for each command
+    Man {
+        /// The folder that they are written to, which is created
+        #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+        folder: PathBuf,
+    },
+    /// Print the completion script of a shell
     Completions {
         /// The shell
         shell: Shell,
     },
 }
 
-/// Which case, and with what changes.
+/// The case, with its changes.
 #[derive(Args, Debug)]
 pub struct CaseArguments {
     /// The case file
@@ -66,10 +90,10 @@ pub struct CaseArguments {
     /// Apply this variant of the case, or this member of a sweep (NAME.1, NAME.2, ...)
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
-    /// Threads to use [default: one for each processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Compute on this device, as `piola devices` lists them, for example cuda:0
+    /// Compute on this device, as listed by `piola devices`, for example cuda:0
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
 }
@@ -81,16 +105,16 @@ pub struct RunArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Folder of the results [default: results/ and the name of the case's folder and variant]
+    /// Results folder [default: results/ and the name of the case's folder and variant]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Go on from the newest sound checkpoint in the folder of the results
+    /// Continue from the newest sound checkpoint in the results folder
     #[arg(long)]
     pub resume: bool,
     /// Show neither progress nor summary
     #[arg(long, short)]
     pub quiet: bool,
-    /// Write progress and summary to stdout for programs, a JSON object a line
+    /// Write progress and summary to stdout for programs, one JSON object per line
     #[arg(long, conflicts_with = "quiet")]
     pub json_progress: bool,
 }
@@ -103,7 +127,7 @@ pub struct CheckArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Show the stages of a step instead, with what each reads, gathers from neighbours, writes and
-    /// shows them: as a table, or as a drawing in the language DOT
+    /// exposes: as a table, or as a graph in DOT
     #[arg(long, value_name = "FORM", num_args = 0..=1, require_equals = true,
           default_missing_value = "table")]
     pub stages: Option<StageForm>,
@@ -112,7 +136,7 @@ pub struct CheckArguments {
 /// How stages are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum StageForm {
-    /// One line a stage.
+    /// One line per stage.
     Table,
     /// Text for `dot -Tsvg`.
     Dot,
@@ -125,17 +149,17 @@ pub struct SweepArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// A key and its values, for example body.column.spacing=0.2,0.1; with two keys every pair runs
+    /// A key and its values, for example body.column.spacing=0.2,0.1; two keys give every pair
     #[arg(long, value_name = "PATH=V1,V2,...", required_unless_present = "sweep")]
     pub over: Vec<String>,
-    /// The members of this sweep of the case file instead
+    /// Run the members of this sweep of the case file instead
     #[arg(long, value_name = "NAME", conflicts_with_all = ["over", "variant"])]
     pub sweep: Option<String>,
-    /// Members that run at the same time, each with its share of the threads
+    /// Number of members that run at the same time and share the threads
     #[arg(long, value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: u16,
-    /// Folder of the results [default: results/ and the name of the case's folder with -sweep]
+    /// Results folder [default: results/ and the name of the case's folder with -sweep]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
     /// Show neither progress nor table
@@ -150,24 +174,24 @@ pub struct VerifyArguments {
     /// Case files, or folders in which all files called case.toml are found
     #[arg(value_name = "PATH", default_value = "cases", value_hint = ValueHint::AnyPath)]
     pub paths: Vec<PathBuf>,
-    /// Run at all settings: the coarse one, the case as it stands, the paper's
+    /// Run all settings: coarse, the case as it stands, and the paper's
     #[arg(long)]
     pub full: bool,
-    /// Run at the paper's setting only
+    /// Run only the paper's setting
     #[arg(long, conflicts_with = "full")]
     pub paper: bool,
-    /// Run what takes long, too, or only these variants and sweeps of it (`base` is the case
+    /// Run long variants and sweeps too, or only these of them (`base` is the case
     /// itself); may take hours
     #[arg(long, value_name = "NAMES", num_args = 0.., require_equals = true, value_delimiter = ',')]
     pub long: Option<Vec<String>>,
-    /// Write a page with all checks, charts and results beside it, for example docs/validation.md;
-    /// results of other cases that it has already stay
+    /// Write a page with all checks, and its charts and results, for example docs/validation.md;
+    /// existing results of other cases are kept
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub page: Option<PathBuf>,
     /// Only the case with this id, or in a folder of this name
     #[arg(long, value_name = "ID")]
     pub only: Option<String>,
-    /// Threads to use [default: one for each processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }

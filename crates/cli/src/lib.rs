@@ -17,6 +17,7 @@ mod commands;
 mod events;
 mod exit;
 mod interrupt;
+mod mcp;
 mod progress;
 mod summary;
 mod table;
@@ -49,8 +50,10 @@ fn dispatch(command: Command) -> Result<Exit, Fault> {
         Command::Report { folder } => commands::report::report(&folder),
         Command::New { name } => commands::new::new(&name),
         Command::Devices => commands::devices::devices(),
+        Command::Mcp { folder } => mcp::serve(&folder),
         Command::Schema => commands::generate::schema(),
         Command::Reference => commands::generate::reference(),
+        Command::Man { folder } => commands::generate::man(&folder),
         Command::Completions { shell } => commands::generate::completions(shell),
     }
 }

@@ -27,7 +27,10 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
     let stepping = summary.timings.iter().find(|timing| timing.stage == "step");
     let stepping = stepping.map_or(seconds, |timing| timing.seconds);
     let speed = if stepping > 0.0 {
-        format!(", {} particle evaluations a second", large(summary.evaluations as f64 / stepping))
+        format!(
+            ", {} particle evaluations per second",
+            large(summary.evaluations as f64 / stepping)
+        )
     } else {
         String::new()
     };
@@ -79,7 +82,7 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
     }
     for retry in &summary.retries {
         let text = format!(
-            "{} after step {}: went back to t = {} s, and on with {} of each step",
+            "{} after step {}: went back to t = {} s and continued with {} of each step",
             retry.kind,
             retry.step,
             significant(retry.back_to, 6),

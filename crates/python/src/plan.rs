@@ -42,7 +42,7 @@ pub fn limits<'py>(py: Python<'py>, limits: &[PlannedLimit]) -> PyResult<Bound<'
 #[pymethods]
 impl Plan {
     /// A dict for each body: name, particles, volume in m^D, exact_volume (None where it is not known), spacing
-    /// in m along each axis.
+    /// in m along each axis, and finest: how many times smaller that is in the finest region.
     #[getter]
     fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let list = PyList::empty(py);
@@ -53,6 +53,7 @@ impl Plan {
             entry.set_item("volume", body.volume)?;
             entry.set_item("exact_volume", body.exact_volume)?;
             entry.set_item("spacing", body.spacing.clone())?;
+            entry.set_item("finest", body.finest)?;
             list.append(entry)?;
         }
         Ok(list)

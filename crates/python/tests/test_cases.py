@@ -170,6 +170,7 @@ def test_the_plan_is_that_of_the_program(case, tmp_path):
         "particles": 45,
         "volume": 2.0,
         "exact_volume": 2.0,
+        "finest": 1.0,
         "spacing": [0.25, 0.25],
     }
     assert plan.limits[0]["step"] == plan.step and plan.limits[0]["name"] == plan.limiter == "acoustic"

@@ -12,7 +12,7 @@ SCRIPTS = sorted((DOCS / "python").glob("*.py"))
 
 
 def test_there_are_worked_examples():
-    assert [script.stem for script in SCRIPTS] == ["cantilever", "convergence", "dam_break", "fit"]
+    assert [script.stem for script in SCRIPTS] == ["cantilever", "convergence", "dam_break", "fit", "surface"]
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)

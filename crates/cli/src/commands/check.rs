@@ -104,7 +104,7 @@ pub fn plan_rows(case: &Case, plan: &Plan) -> Vec<[String; 2]> {
     section(
         "wall time",
         vec![format!(
-            "{} without output, at {} particle evaluations a second",
+            "{} without output, at {} particle evaluations per second",
             duration(plan.seconds),
             large(plan.evaluations_per_second)
         )],
@@ -141,7 +141,11 @@ fn bodies(plan: &Plan) -> Vec<String> {
             vec![
                 body.name.clone(),
                 count(body.particles as u64, "particle"),
-                format!("spacing {} m", spacing.collect::<Vec<_>>().join(" x ")),
+                format!(
+                    "spacing {} m{}",
+                    spacing.collect::<Vec<_>>().join(" x "),
+                    finest(body.finest)
+                ),
                 format!(
                     "volume {} {unit}{}",
                     significant(body.volume, 6),
@@ -156,6 +160,11 @@ fn bodies(plan: &Plan) -> Vec<String> {
         lines.push(format!("{all} particles in all"));
     }
     lines
+}
+
+/// What is said of regions of finer spacing.
+fn finest(times: f64) -> String {
+    if times > 1.0 { format!(", to 1/{times} of it") } else { String::new() }
 }
 
 /// Three significant digits, as a number so that its sign can be shown.

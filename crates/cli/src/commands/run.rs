@@ -91,6 +91,11 @@ fn code(error: &RunError) -> Exit {
 /// `results/` with the name of the case's folder, or of the case file if it is not called
 /// `case.toml`, and of the variant.
 pub(super) fn default_folder(path: &Path, variant: Option<&str>) -> PathBuf {
+    Path::new("results").join(default_name(path, variant))
+}
+
+/// The name of the folder of results of a case.
+pub(crate) fn default_name(path: &Path, variant: Option<&str>) -> OsString {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let name = match path.file_stem() {
         Some(stem) if stem != "case" => Some(stem),
@@ -101,7 +106,7 @@ pub(super) fn default_folder(path: &Path, variant: Option<&str>) -> PathBuf {
         name.push("-");
         name.push(variant);
     }
-    Path::new("results").join(name)
+    name
 }
 
 #[cfg(test)]

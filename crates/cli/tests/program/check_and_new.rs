@@ -19,7 +19,7 @@ fn check_says_what_will_happen_and_runs_nothing() {
             "acoustic",
             "0.004 s",
             "8 to t = 0.03 s",
-            "particle evaluations a second",
+            "particle evaluations per second",
             "2 particle files",
             "16 rows of the tables",
         ],

@@ -36,7 +36,27 @@ fn help_lists_the_exit_codes() {
         assert_contains(&stdout, &["Exit codes:", "  3  the run failed", "130  interrupted"]);
     }
     let (stdout, _) = Place::new().run("--version", 0);
-    assert_eq!(stdout, format!("piola {}\n", env!("CARGO_PKG_VERSION")));
+    let version = stdout.strip_prefix(&format!("piola {} (commit ", env!("CARGO_PKG_VERSION")));
+    let (commit, _) = version.unwrap().split_once("; devices: processor").unwrap();
+    let is_hash = commit.len() >= 10 && commit.chars().all(|c| c.is_ascii_hexdigit());
+    assert!(is_hash || commit == "unknown", "{stdout}");
+}
+
+#[test]
+fn manual_pages_tell_of_every_command() {
+    let place = Place::new();
+    place.run("man pages/man1", 0);
+    for (page, parts) in [
+        ("piola", ["piola\\-verify(1)", "Exit codes"]),
+        ("piola-run", ["\\-\\-resume", "newest sound checkpoint"]),
+        ("piola-mcp", ["Model Context Protocol", "[default: .]"]),
+    ] {
+        let text = place.read(&format!("pages/man1/{page}.1"));
+        assert!(text.starts_with(".ie") || text.contains(".TH"), "{text}");
+        assert_contains(&text, &parts);
+    }
+    place.write("file", "");
+    place.run("man file", 4);
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod bad_cases;
 mod check_and_new;
 mod generated;
 mod interrupt;
+mod mcp;
 mod page;
 mod report;
 mod repository;

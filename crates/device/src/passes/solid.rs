@@ -18,7 +18,7 @@ use crate::text::{Language, Precision};
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What a step of a solid needs to know.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Solid {
     /// Its law.
     pub law: HyperelasticLaw,

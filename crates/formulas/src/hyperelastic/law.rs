@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::constants::positive;
 use super::{
-    HyperelasticResponse, LameConstants, LinearElastic, MooneyRivlin, NeoHookean,
+    EnergyFunction, HyperelasticResponse, LameConstants, LinearElastic, MooneyRivlin, NeoHookean,
     NeoHookeanLogarithmic, Ogden, OgdenTerm, SaintVenantKirchhoff,
 };
 use crate::Number;
@@ -23,7 +23,7 @@ use crate::volumetric::MaterialError;
 /// assert_eq!(law.stress(&Matrix3::<f64>::zeros()), Matrix3::zeros());
 /// # Ok::<(), piola_formulas::volumetric::MaterialError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum HyperelasticLaw {
     /// See [`LinearElastic`].
@@ -38,17 +38,20 @@ pub enum HyperelasticLaw {
     MooneyRivlin(MooneyRivlin),
     /// See [`Ogden`].
     Ogden(Ogden),
+    /// See [`EnergyFunction`].
+    Energy(EnergyFunction),
 }
 
 impl HyperelasticLaw {
     /// Names of all laws, as in a case file.
-    pub const NAMES: [&'static str; 6] = [
+    pub const NAMES: [&'static str; 7] = [
         "linear_elastic",
         "saint_venant_kirchhoff",
         "neo_hookean",
         "neo_hookean_logarithmic",
         "mooney_rivlin",
         "ogden",
+        "hyperelastic",
     ];
 
     /// The law's name in a case file, one of [`HyperelasticLaw::NAMES`].
@@ -60,6 +63,7 @@ impl HyperelasticLaw {
             Self::NeoHookeanLogarithmic(_) => Self::NAMES[3],
             Self::MooneyRivlin(_) => Self::NAMES[4],
             Self::Ogden(_) => Self::NAMES[5],
+            Self::Energy(_) => Self::NAMES[6],
         }
     }
 
@@ -125,6 +129,7 @@ impl HyperelasticLaw {
                 let products = law.terms.iter().map(|term| term.modulus * term.exponent);
                 of(0.5 * products.sum::<f64>(), law.bulk_modulus)
             }
+            Self::Energy(law) => law.small_strain(),
         }
     }
 
@@ -144,6 +149,7 @@ impl HyperelasticResponse for HyperelasticLaw {
             Self::NeoHookeanLogarithmic(law) => law.energy(a),
             Self::MooneyRivlin(law) => law.energy(a),
             Self::Ogden(law) => law.energy(a),
+            Self::Energy(law) => law.energy(a),
         }
     }
 
@@ -156,6 +162,7 @@ impl HyperelasticResponse for HyperelasticLaw {
             Self::NeoHookeanLogarithmic(law) => law.stress(a),
             Self::MooneyRivlin(law) => law.stress(a),
             Self::Ogden(law) => law.stress(a),
+            Self::Energy(law) => law.stress(a),
         }
     }
 }

@@ -8,10 +8,12 @@
 //! half of the digits only, and an energy that is quadratic in it hardly any.
 //!
 //! - [`HyperelasticLaw`] is the registry, by which a case file names a material.
+//! - [`EnergyFunction`] is the law of an energy that is none of those.
 //! - [`Reduced`] puts a law into one or two dimensions, where the missing ones are held or free.
 //! - [`LameConstants`] come from any usual pair of parameters.
 
 mod constants;
+mod energy;
 mod kinematics;
 mod law;
 mod linear;
@@ -22,6 +24,7 @@ mod reduced;
 mod spectral;
 
 pub use constants::LameConstants;
+pub use energy::{EnergyError, EnergyFunction, Instruction, Invariant};
 pub use law::HyperelasticLaw;
 pub use linear::{LinearElastic, SaintVenantKirchhoff};
 pub use mooney_rivlin::MooneyRivlin;

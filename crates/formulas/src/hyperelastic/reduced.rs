@@ -27,7 +27,7 @@ pub type Tangent<const D: usize> = [[SMatrix<f64, D, D>; D]; D];
 /// assert!((bar.stress(&Matrix1::new(0.01_f64))[(0, 0)] - 0.05).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reduced<const D: usize> {
     law: HyperelasticLaw,
     state: StressState,
@@ -122,7 +122,7 @@ impl<const D: usize> Reduced<D> {
     /// `(W_ii - W_ij + W_i/l_i)/2`.
     pub fn wave_moduli(&self, displacement_gradient: &SMatrix<f64, D, D>) -> [f64; 2] {
         if let (HyperelasticLaw::NeoHookeanLogarithmic(own), false) =
-            (self.law, self.state.is_free_across())
+            (&self.law, self.state.is_free_across())
         {
             return own.wave_moduli(displacement_gradient);
         }

@@ -23,6 +23,9 @@ enum Cell {
 /// No particle.
 const NONE: u32 = u32::MAX;
 
+/// Shares of a midpoint, which particles that are equally near to it have in equal parts: as many as one to sixteen divide.
+const SHARES: u64 = 720_720;
+
 /// The sites of `lattice` in `shape`, and the volume of the shape that belongs to each, see
 /// [`super::fill`]. Sites to which nothing belongs are left out.
 pub(super) fn cut<const D: usize>(
@@ -41,20 +44,21 @@ pub(super) fn cut<const D: usize>(
     }
     let boundary: Vec<usize> =
         (0..cells.len()).filter(|&i| matches!(cells[i], Cell::Cut | Cell::Corner)).collect();
-    let found: Vec<Vec<(u32, u32)>> =
+    let found: Vec<Vec<(u32, u64)>> =
         boundary.par_iter().map(|&site| owners(shape, lattice, &particle, site)).collect();
 
-    // Whole numbers of midpoints: their sum does not depend on any order.
-    let whole = divisions::<D>().pow(D as u32) as u32;
+    // Whole numbers of shares: their sum does not depend on any order.
+    let whole = SHARES * divisions::<D>().pow(D as u32) as u64;
     let inside = |&site: &usize| if cells[site] == Cell::Inside { whole } else { 0 };
-    let mut midpoints: Vec<u32> = sites.iter().map(inside).collect();
+    let mut shares: Vec<u64> = sites.iter().map(inside).collect();
     for (owner, count) in found.into_iter().flatten() {
-        midpoints[owner as usize] += count;
+        shares[owner as usize] += count;
     }
-    let part = lattice.cell_volume() / f64::from(whole);
-    let kept = sites.iter().zip(midpoints).filter(|&(_, midpoints)| midpoints > 0);
-    kept.map(|(&site, midpoints)| {
-        (lattice.position(lattice.place(site)), part * f64::from(midpoints))
+    // Exact for whole cells, halves and quarters.
+    let part = |shares: u64| shares as f64 / whole as f64;
+    let kept = sites.iter().zip(shares).filter(|&(_, shares)| shares > 0);
+    kept.map(|(&site, shares)| {
+        (lattice.position(lattice.place(site)), lattice.cell_volume() * part(shares))
     })
     .unzip()
 }
@@ -90,18 +94,23 @@ fn classify<const D: usize>(
     cells
 }
 
-/// The particles that own parts of the cell of `site`, with the number of midpoints each.
+/// The particles that own parts of the cell of `site`, with the number of shares each: those next to a midpoint, by equal
+/// parts where there are several, so that a shape with a symmetry of the lattice has masses with it.
 fn owners<const D: usize>(
     shape: &Shape<D>,
     lattice: &Lattice<D>,
     particle: &[u32],
     site: usize,
-) -> Vec<(u32, u32)> {
+) -> Vec<(u32, u64)> {
     let place = lattice.place(site);
     let center = lattice.position(place);
     let own = particle[site];
-    let around = if own == NONE { particles_around(lattice, particle, place) } else { Vec::new() };
-    let mut owners: Vec<(u32, u32)> = Vec::new();
+    let around = match own {
+        NONE => particles_around(lattice, particle, place),
+        own => vec![(own, center)],
+    };
+    let equal = ON_BOUNDARY * lattice.edges.norm_squared();
+    let mut owners: Vec<(u32, u64)> = Vec::new();
     let midpoint = |steps: &[usize; D]| {
         Vector::from_fn(|axis, _| {
             let fraction = (steps[axis] as f64 + 0.5) / divisions::<D>() as f64 - 0.5;
@@ -109,13 +118,15 @@ fn owners<const D: usize>(
         })
     };
     within(&mut shape.probe(), lattice, &midpoint, ([0; D], divisions::<D>()), &mut |point| {
-        let distance = |other: &&(u32, Vector<D>)| (other.1 - point).norm_squared();
-        let nearest = around.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let owner = nearest.map_or(own, |(owner, _)| *owner);
-        match owners.iter_mut().find(|(known, _)| *known == owner) {
-            _ if owner == NONE => (),
-            Some((_, count)) => *count += 1,
-            None => owners.push((owner, 1)),
+        let distances = around.iter().map(|(owner, at)| (*owner, (at - point).norm_squared()));
+        let least = distances.clone().map(|(_, distance)| distance).fold(f64::INFINITY, f64::min);
+        let nearest = distances.filter(|(_, distance)| *distance <= least + equal);
+        let share = SHARES / (nearest.clone().count() as u64).max(1);
+        for (owner, _) in nearest {
+            match owners.iter_mut().find(|(known, _)| *known == owner) {
+                Some((_, count)) => *count += share,
+                None => owners.push((owner, share)),
+            }
         }
     });
     owners

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::fill::MOST_SITES;
-use super::{MeshError, PointsError, SurfaceError};
+use super::{MeshError, OutlineError, PointsError, SurfaceError};
 
 /// A reason why no particles can be made or selected.
 #[derive(Debug, Error)]
@@ -155,6 +155,9 @@ pub enum GeometryError {
     /// A surface of triangles cannot be used.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
+    /// An outline cannot be read.
+    #[error(transparent)]
+    Outline(#[from] OutlineError),
     /// A mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),

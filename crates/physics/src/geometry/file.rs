@@ -14,6 +14,16 @@ pub(super) enum FileFault {
     TooLarge,
 }
 
+impl std::fmt::Display for FileFault {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Unreadable(error) => error.fmt(out),
+            Self::NotAFile => out.write_str("it is not a file"),
+            Self::TooLarge => write!(out, "it is larger than {MOST_BYTES} bytes"),
+        }
+    }
+}
+
 impl From<io::Error> for FileFault {
     fn from(error: io::Error) -> Self {
         Self::Unreadable(error)

@@ -73,6 +73,11 @@ pub(super) fn check(corners: &[Vector<2>]) -> Result<(), GeometryError> {
     Ok(())
 }
 
+/// Whether sides of two polygons have a point in common.
+pub(super) fn meet(one: &[Vector<2>], other: &[Vector<2>]) -> bool {
+    sides(one).any(|own| sides(other).any(|side| cross(&own, &side)))
+}
+
 /// Whether two sides have a point in common.
 fn cross(one: &[Vector<2>; 2], other: &[Vector<2>; 2]) -> bool {
     let apart = |[a, b]: &[Vector<2>; 2], [c, d]: &[Vector<2>; 2]| {

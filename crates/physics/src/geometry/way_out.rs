@@ -12,6 +12,8 @@ const MOST_STEPS: usize = 200;
 const MOST_WAYS: usize = 256;
 /// A place that is no deeper in a shape than this part of the box around it is on its boundary.
 const ON_FACET: f64 = 1e-9;
+/// How far from the boundary, as a part of the box around everything, ways are searched for a place on it.
+const SHIFT: f64 = 1e-6;
 /// Ways whose lengths differ by less than this part count as equally short.
 const TIE: f64 = 0.05;
 
@@ -27,6 +29,18 @@ impl<const D: usize> Shape<D> {
             return faces;
         }
         let extent = (bounds.1 - bounds.0).norm();
+        // On the boundary, where all ways are as short up to round-off, the search begins a little deeper.
+        if self.depth(point) < ON_FACET * extent
+            && let Some(inward) = self.inward(point, SHIFT * extent)
+        {
+            let shift = inward * (SHIFT * extent);
+            if self.depth(&(point + shift)) > ON_FACET * extent {
+                let faces = self.ways_out(&(point + shift), bounds);
+                let back = faces.normals().first().map_or(0.0, |normal| shift.dot(normal));
+                let depth = (faces.depth() + back).max(0.0);
+                return Faces::new(faces.normals().to_vec(), depth);
+            }
+        }
         let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
         let starts = (0..3usize.pow(D as u32)).filter_map(|number| {
             let turn = |axis: usize| (number / 3usize.pow(axis as u32) % 3) as f64 - 1.0;
@@ -59,6 +73,15 @@ impl<const D: usize> Shape<D> {
         }
         let depth = faces[0].0;
         Faces::new(faces.into_iter().map(|face| face.1).collect(), depth)
+    }
+
+    /// The direction in which the depth grows about a point, by differences over `step` m on both sides.
+    fn inward(&self, point: &Vector<D>, step: f64) -> Option<Vector<D>> {
+        let slope: Vector<D> = Vector::from_fn(|axis, _| {
+            let aside = Vector::from_fn(|i, _| if i == axis { step } else { 0.0 });
+            self.depth(&(point + aside)) - self.depth(&(point - aside))
+        });
+        slope.try_normalize(0.1 * step)
     }
 
     /// The ways to the nearest facets, where the nearest part of the boundary is one of facets, and within the bounds. A point on
@@ -269,6 +292,30 @@ mod tests {
         assert!(close(way(1.15, 0.97), -1.0, 0.0), "at the rim");
         let diagonal = 0.5_f64.sqrt();
         assert!(close(way(-0.1, -0.1), diagonal, diagonal));
+    }
+
+    #[test]
+    fn places_on_the_boundary_face_out_of_it() {
+        let bounds = (Vector::<2>::repeat(-5.0), Vector::<2>::repeat(5.0));
+        let ball = Shape::ball(Vector::<2>::new(0.2, 0.1), 0.5).unwrap();
+        for number in 0..100 {
+            let angle = 0.063 * f64::from(number);
+            let normal = Vector::<2>::new(angle.cos(), angle.sin());
+            for depth in [-1e-16, 0.0, 1e-16] {
+                let at = Vector::<2>::new(0.2, 0.1) + normal * (0.5 - depth);
+                let faces = ball.ways_out(&at, &bounds);
+                assert!((faces.between() - normal).norm() < 1e-3, "{angle} {faces:?}");
+                assert!(faces.depth() < 1e-9, "{faces:?}");
+            }
+        }
+        let (tank, bounds) = tank();
+        let floor = tank.ways_out(&Vector::<2>::new(0.3, 0.0), &bounds);
+        assert_eq!(floor.normals(), [Vector::<2>::new(0.0, 1.0)]);
+        assert!(floor.depth() < 1e-9);
+        // On the outer bounds, where the way leads through the floor.
+        let below = tank.ways_out(&Vector::<2>::new(0.3, -0.3), &bounds);
+        assert_eq!(below.normals(), [Vector::<2>::new(0.0, 1.0)]);
+        assert!((below.depth() - 0.3).abs() < 1e-9, "{below:?}");
     }
 
     #[test]

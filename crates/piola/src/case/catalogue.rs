@@ -31,7 +31,7 @@ pub fn integrators() -> Vec<Choice> {
     let meaning = |kind: IntegratorKind| match kind {
         IntegratorKind::TvdRk2 => "explicit two-stage TVD Runge-Kutta, Upwind (4.1)",
         IntegratorKind::SspRk3 => {
-            "explicit three-stage strong-stability-preserving Runge-Kutta, of third order, which damps what nothing else does; `upwind` and `total_lagrangian` only"
+            "explicit three-stage strong-stability-preserving Runge-Kutta, of third order, which damps modes that nothing else damps; `upwind` and `total_lagrangian` only"
         }
         IntegratorKind::KickDriftKick => {
             "kick-drift-kick, CTVF (54) to (60); with `upwind` only where `tau_velocity` and `tau_pressure` are 0"
@@ -40,19 +40,19 @@ pub fn integrators() -> Vec<Choice> {
             "Newmark's method, implicit, with `beta` and `gamma`; `total_lagrangian` only"
         }
         IntegratorKind::HhtAlpha => {
-            "the method of Hilber, Hughes and Taylor, implicit, which damps short periods by `alpha`; `total_lagrangian` only"
+            "method of Hilber, Hughes and Taylor, implicit, which damps short periods by `alpha`; `total_lagrangian` only"
         }
         IntegratorKind::GeneralisedAlpha => {
             "generalised-alpha, implicit, which damps short periods by `spectral_radius` and long ones least; `total_lagrangian` only"
         }
         IntegratorKind::Static => {
-            "no motion: equilibrium under loads that grow with the time, which is the load factor; `total_lagrangian` only"
+            "no motion: equilibrium under loads that grow with time, which is the load factor; `total_lagrangian` only"
         }
         IntegratorKind::ArcLength => {
-            "no motion, and loads may fall: steps along the path of equilibria, stable or not, of which the time is the length. In the first step it is the load factor, which is `step.load_factor` from then on, and `t` in loads and boundaries; `total_lagrangian` only"
+            "no motion, and loads may fall: steps along the path of stable or unstable equilibria, with its length as time. In the first step the time is the load factor, which is `step.load_factor` from then on, and `t` in loads and boundaries; `total_lagrangian` only"
         }
         IntegratorKind::BackwardEuler => {
-            "backward Euler, implicit, of first order, which damps short periods away, Upwind (4.4); `upwind` only"
+            "backward Euler, implicit, of first order, which strongly damps short periods, Upwind (4.4); `upwind` only"
         }
         IntegratorKind::CrankNicolson => {
             "Crank-Nicolson, implicit, of second order and without damping, Upwind (4.5); `upwind` only"

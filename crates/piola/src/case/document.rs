@@ -110,7 +110,7 @@ pub(super) fn read(path: &Path) -> Result<SourceText, Problems> {
             Arc::from([source]),
             vec![
                 Problem::whole(message)
-                    .help("is this the right file? Point clouds stand in CSV files"),
+                    .help("is this the right file? Point clouds are read from CSV files"),
             ],
         ));
     }
@@ -242,7 +242,7 @@ fn syntax_problem(text: &str, span: Range<usize>, message: &str) -> Problem {
         return match word.split_whitespace().next() {
             None => Problem::new(place, "a value is missing here", "expected a value"),
             Some(first) if first != word && is_number(first) => {
-                Problem::new(place, format!("a unit stands behind a number: {word}"), "a unit")
+                Problem::new(place, format!("there is a unit after a number: {word}"), "a unit")
                     .help(WITHOUT_UNIT)
             }
             Some(_) => {

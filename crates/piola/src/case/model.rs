@@ -177,7 +177,7 @@ impl Case {
     pub fn evaluate(&self, text: &str) -> Option<f64> {
         let parameters: Vec<_> =
             self.parameters.iter().map(|known| (known.name.clone(), Some(known.value))).collect();
-        let scope = Scope { axes: 0, time: false, parameters: &parameters };
+        let scope = Scope::of_parameters(&parameters);
         Expression::parse(text, &scope).ok()?.as_constant()
     }
 

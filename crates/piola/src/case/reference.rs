@@ -13,7 +13,7 @@ use crate::schemes::SchemeDescription;
 pub fn markdown() -> String {
     let mut page = String::from(
         "# Reference of the case file\n\n\
-         Made from the descriptions that the program checks case files against.\n\n\
+         Generated from the descriptions against which the program checks case files.\n\n\
          Wherever a number is expected, text with an expression of the parameters does as well: \
          `\"2 * speed\"`.\n",
     );
@@ -101,16 +101,16 @@ fn value(kind: &Kind) -> String {
         Kind::Expression(variables) => format!("expression of {}", names(*variables)),
         Kind::Name(_) => "name, see below".to_owned(),
         Kind::Numbers(length, interval) => match length {
-            Length::Dimension => within("list, one number an axis", interval.describe()),
+            Length::Dimension => within("list, one number per axis", interval.describe()),
             Length::Pair => within("list of 2 numbers", interval.describe()),
             Length::Ends => "list of 2 numbers, the smaller one first".to_owned(),
             Length::Any => within("list of numbers", interval.describe()),
         },
         Kind::NumberOrPerAxis(interval) => {
-            within("number, or list with one an axis,", interval.describe())
+            within("number, or list with one per axis,", interval.describe())
         }
         Kind::Expressions(variables) => {
-            format!("list, one expression of {} an axis", names(*variables))
+            format!("list, one expression of {} per axis", names(*variables))
         }
         Kind::PerAxis(inner) => {
             format!("table with the keys `x`, `y`, `z`, each: {}", value(inner))
@@ -140,8 +140,8 @@ fn fields(page: &mut String) {
     push(
         page,
         "\n## Fields\n\n\
-         What each scheme shows, to probes, lines, pictures and particle files. Evolved fields are \
-         the state; derived ones are made of it when somebody looks.\n",
+         The fields that each scheme provides to probes, lines, pictures and particle files. Evolved \
+         fields are the state; derived ones are computed from it on demand.\n",
     );
     for scheme in SchemeDescription::ALL {
         let head = "| field | kind | unit | life | meaning |\n|---|---|---|---|---|\n";

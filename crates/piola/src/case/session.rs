@@ -81,7 +81,7 @@ pub enum RunError {
         newest: CheckpointError,
     },
     /// A checkpoint is of a run with other outputs.
-    #[error("{0}; nothing was changed; start anew without `--resume`")]
+    #[error("{0}; nothing was changed; start again without `--resume`")]
     Misfit(#[from] Misfit),
     /// A folder was named for a run that had begun without it.
     #[error("the run has begun: name the folder of its results before the first step")]

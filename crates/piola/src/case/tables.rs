@@ -47,13 +47,7 @@ pub static CASE: TableSpec = TableSpec {
             Optional,
             "named numbers, or expressions of earlier ones, usable wherever a number or an expression is expected",
         ),
-        key(
-            "domain",
-            Kind::Table(&geometry::DOMAIN),
-            "",
-            Optional,
-            "the space that the particles live in",
-        ),
+        key("domain", Kind::Table(&geometry::DOMAIN), "", Optional, "the computational domain"),
         key(
             "body",
             Kind::List(&Kind::Table(&geometry::BODY)),
@@ -81,9 +75,9 @@ pub static CASE: TableSpec = TableSpec {
             Kind::Table(&time::CHECKPOINT),
             "",
             Optional,
-            "when the run writes a file that it can be resumed from; it also does on Ctrl-C and SIGTERM",
+            "when the run writes a file from which it can be resumed; it also does so on Ctrl-C and SIGTERM",
         ),
-        key("compute", Kind::Table(&time::COMPUTE), "", Optional, "who computes"),
+        key("compute", Kind::Table(&time::COMPUTE), "", Optional, "the device that computes"),
         key(
             "load",
             Kind::List(&Kind::Tagged(&loads::LOAD)),
@@ -125,7 +119,7 @@ pub static CASE: TableSpec = TableSpec {
             Kind::Table(&COARSE),
             "",
             Optional,
-            "the quick setting that `piola verify` runs",
+            "the quick setting run by `piola verify`",
         ),
         key(
             "paper",
@@ -189,7 +183,7 @@ const UPWIND: KindSpec = KindSpec {
             Kind::Number(Interval::POSITIVE),
             "spacings",
             Required,
-            "smoothing length h in units of the particle spacing; the support radius is the kernel's multiple of it",
+            "smoothing length h in units of the particle spacing; the support radius is a multiple of it that depends on the kernel",
         ),
         key(
             "correction",
@@ -203,48 +197,48 @@ const UPWIND: KindSpec = KindSpec {
             Kind::Name(WEIGHTS),
             "",
             Default("\"lattice\""),
-            "what is summed under the kernel",
+            "weight of a particle in kernel sums",
         ),
         key(
             "tau_velocity",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Default("0.0"),
-            "share of the upwinding of velocity",
+            "strength of the upwinding of the velocity",
         ),
         key(
             "tau_pressure",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Default("0.0"),
-            "share of the upwinding of pressure",
+            "strength of the upwinding of the pressure",
         ),
         key(
             "dissipation",
             Kind::Name(DISSIPATIONS),
             "",
             Default("\"corrected\""),
-            "form of both upwindings; what is not `corrected` is for comparison with the paper only",
+            "form of both upwindings; all but `corrected` are only for comparison with the paper",
         ),
         key(
             "reconstruction",
             Kind::Boolean,
             "",
             Default("false"),
-            "whether states at mid-edges are reconstructed linearly, Upwind (3.53)",
+            "whether states at the midpoint of a pair are reconstructed linearly, Upwind (3.53)",
         ),
         key(
             "wave_speed",
             Kind::Name(WAVE_SPEEDS),
             "",
             Default("\"constant\""),
-            "the wave speed of the upwinding",
+            "wave speed used by the upwinding",
         ),
     ],
 };
 
 const CORRECTIONS: Choices = choices(&[
-    choice("none", "the kernel as it is"),
+    choice("none", "no correction"),
     choice("gradient", "gradients exact for linear fields"),
     choice("kernel_and_gradient", "kernel exact for constants, gradients exact for linear fields"),
 ]);
@@ -254,10 +248,10 @@ const WEIGHTS: Choices = choices(&[
 ]);
 const DISSIPATIONS: Choices = choices(&[
     choice("corrected", "as derived"),
-    choice("printed_3_38", "velocity without the density, as Upwind (3.38) is printed"),
+    choice("printed_3_38", "velocity term without the density, as printed in Upwind (3.38)"),
     choice(
         "printed_3_42",
-        "pressure with the sign of Upwind (3.42) as printed, which feeds energy in",
+        "pressure term with the sign printed in Upwind (3.42), which feeds energy in",
     ),
     choice("as_printed", "both of these"),
 ]);
@@ -268,7 +262,7 @@ const WAVE_SPEEDS: Choices = choices(&[
 
 static COARSE: TableSpec = TableSpec {
     title: "[coarse]",
-    meaning: "The quick setting that `piola verify` runs, for tests.",
+    meaning: "The quick setting run by `piola verify`, for tests.",
     keys: &[key(
         "set",
         Kind::List(&Kind::Text),
@@ -280,14 +274,14 @@ static COARSE: TableSpec = TableSpec {
 
 static PAPER: TableSpec = TableSpec {
     title: "[paper]",
-    meaning: "Particle numbers, steps and parameters of the publication, where the case as it stands has others.",
+    meaning: "Particle numbers, steps and parameters of the publication, where they differ from those of the case.",
     keys: &[
         key(
             "set",
             Kind::List(&Kind::Text),
             "",
             Default("[]"),
-            "overrides, each `path.to.key=value`, applied before those of a variant; none where the case as it stands has the publication's setting",
+            "overrides, each `path.to.key=value`, applied before those of a variant; none if the case already has the setting of the publication",
         ),
         checks::LONG,
     ],
@@ -311,7 +305,7 @@ static VARIANT: TableSpec = TableSpec {
             Kind::List(&Kind::Text),
             "",
             Default("[]"),
-            "overrides that come on top in the coarse setting",
+            "further overrides in the coarse setting",
         ),
         checks::PAPER,
         checks::LONG,

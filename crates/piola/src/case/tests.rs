@@ -94,7 +94,7 @@ fn reads_bodies() {
             relax: 0
         }
     );
-    let material = column.material.value;
+    let material = column.material.value.clone();
     assert_eq!(material.density(), 1000.0);
     // Upwind (6.31) with c = 10: kappa = 1000 * 100 / 7.
     assert_eq!(material.bulk_modulus(2), 1e5 / 7.0);

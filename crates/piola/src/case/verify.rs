@@ -7,7 +7,7 @@ use std::fmt;
 use std::rc::Rc;
 
 use super::finished::Finished;
-use super::model::{Against, Case, Check, Expectation, Level};
+use super::model::{Against, Case, Check, Level};
 use crate::observe::Series;
 use crate::time::Outcome;
 pub use format::significant;
@@ -184,8 +184,8 @@ pub fn needed_variants(case: &Case) -> Vec<Option<String>> {
 /// The runs that a check looks at, with those that it compares with.
 fn all_runs(case: &Case, check: &Check) -> Vec<Option<String>> {
     let mut names = own_runs(case, check);
-    if let Expectation::LessThan(other) | Expectation::MoreThan(other) = &check.expectation {
-        names.push(other.as_ref().map(|name| name.value.clone()));
+    if let Some(other) = check.expectation.other() {
+        names.push(other.map(|name| name.value.clone()));
     }
     names
 }

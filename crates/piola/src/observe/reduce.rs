@@ -70,6 +70,8 @@ pub enum Reduction<Reference = Curve> {
     CurveRms(Reference),
     /// Another reduction of the history between two times in s.
     Within([f64; 2], Box<Self>),
+    /// Another reduction of the moving mean over so many seconds.
+    Smoothed(f64, Box<Self>),
 }
 
 /// What a reduction needs besides the history.
@@ -110,7 +112,7 @@ macro_rules! registry {
             pub fn name(&self) -> &'static str {
                 match self {
                     $($pattern => $name,)*
-                    Self::Within(_, inner) => inner.name(),
+                    Self::Within(_, inner) | Self::Smoothed(_, inner) => inner.name(),
                 }
             }
         }
@@ -125,30 +127,30 @@ registry! {
     "at", Time, Self::At(_), "the value at a time, or at a distance along a line, interpolated between rows";
     "mean", None, Self::Mean, "the mean over time";
     "range", None, Self::Range, "largest minus smallest value";
-    "middle", None, Self::Middle, "half way between largest and smallest value";
+    "middle", None, Self::Middle, "midpoint between largest and smallest value";
     "amplitude", None, Self::Amplitude, "half of the difference between largest and smallest value";
     "period", None, Self::Period,
-        "the period in s of the oscillation about the middle between largest and smallest value";
+        "the period in s of the oscillation about the midpoint between largest and smallest value";
     "frequency", None, Self::Frequency, "one over that period, in 1/s";
     "cycle_mean", None, Self::CycleMean,
-        "the mean over whole periods, from the first to the last rise through that middle";
+        "the mean over whole periods, from the first to the last upward crossing of that midpoint";
     "extremum", Number, Self::Extremum(_),
-        "the value at the local extremum of this number; wiggles below 5 % of the range are ignored";
+        "the value at the local extremum with this number; fluctuations below 5 % of the range are ignored";
     "extremum_time", Number, Self::ExtremumTime(_), "the time of that extremum in s";
     "zero_time", Number, Self::ZeroTime(_),
-        "the time in s of the change of sign of this number; wiggles are ignored";
+        "the time in s of the change of sign with this number; fluctuations are ignored";
     "zero_place", Number, Self::ZeroPlace(_),
-        "the distance from the start of a line of the change of sign of this number; wiggles are ignored";
+        "the distance from the start of a line to the change of sign with this number; fluctuations are ignored";
     "largest_rise", None, Self::LargestRise,
         "the largest increase from one row to the next, negative if all rows fall";
     "growth", None, Self::Growth, "last value over first value, minus 1";
     "integral", None, Self::Integral,
-        "the integral over time: of a pulse in stress over that of another the coefficient of reflection or transmission";
+        "the integral over time; the ratio for two stress pulses is a coefficient of reflection or transmission";
     "centroid", None, Self::Centroid,
-        "the mean of the times, weighted by the value: when a pulse passes";
-    "curve", Reference, Self::Curve(_), "the largest absolute difference to a reference curve";
+        "the mean time weighted by the value: the time at which a pulse passes";
+    "curve", Reference, Self::Curve(_), "the largest absolute difference from a reference curve";
     "curve_rms", Reference, Self::CurveRms(_),
-        "the root mean square over time, or along a line, of the difference to a reference curve";
+        "the root mean square over time, or along a line, of the difference from a reference curve";
 }
 
 impl ReductionEntry {
@@ -188,6 +190,9 @@ impl<Reference> Reduction<Reference> {
             Self::Within([first, last], inner) => {
                 format!("{} from {first} to {last} s", inner.label())
             }
+            Self::Smoothed(width, inner) => {
+                format!("{} of the moving mean over {width} s", inner.label())
+            }
             Self::Extremum(number)
             | Self::ExtremumTime(number)
             | Self::ZeroTime(number)
@@ -204,7 +209,7 @@ impl<Reference> Reduction<Reference> {
             Self::Frequency => "1/s".into(),
             Self::Integral if unit == "1" => "s".into(),
             Self::Integral => format!("{unit} s"),
-            Self::Within(_, inner) => inner.unit(unit),
+            Self::Within(_, inner) | Self::Smoothed(_, inner) => inner.unit(unit),
             Self::Growth => "1".into(),
             _ => unit.into(),
         }
@@ -214,7 +219,7 @@ impl<Reference> Reduction<Reference> {
     pub fn reference(&self) -> Option<&Reference> {
         match self {
             Self::Curve(reference) | Self::CurveRms(reference) => Some(reference),
-            Self::Within(_, inner) => inner.reference(),
+            Self::Within(_, inner) | Self::Smoothed(_, inner) => inner.reference(),
             _ => None,
         }
     }
@@ -223,7 +228,7 @@ impl<Reference> Reduction<Reference> {
     pub fn reference_mut(&mut self) -> Option<&mut Reference> {
         match self {
             Self::Curve(reference) | Self::CurveRms(reference) => Some(reference),
-            Self::Within(_, inner) => inner.reference_mut(),
+            Self::Within(_, inner) | Self::Smoothed(_, inner) => inner.reference_mut(),
             _ => None,
         }
     }
@@ -263,6 +268,9 @@ impl<Reference> Reduction<Reference> {
             Self::Within(window, inner) => {
                 Reduction::Within(*window, Box::new(inner.try_map(change)?))
             }
+            Self::Smoothed(width, inner) => {
+                Reduction::Smoothed(*width, Box::new(inner.try_map(change)?))
+            }
         })
     }
 }
@@ -284,6 +292,8 @@ impl Reduction {
     /// - `curve` and `curve_rms` compare the straight lines between rows with those between the
     ///   points of the reference, over the time that both cover, without error of sampling.
     /// - A window leaves the rows between its times, and interpolated ones at them.
+    /// - The moving mean is that of the straight lines over a width about each row that has half of it on both sides. Of
+    ///   an oscillation of frequency f it leaves the share sin(pi f w) / (pi f w).
     ///
     /// # Errors
     /// A history with values that are not finite, times that do not grow, or not enough rows; and
@@ -330,6 +340,10 @@ impl Reduction {
                 let (time, values) = history.between(*window)?;
                 inner.apply(&time, &values)
             }
+            Self::Smoothed(width, inner) => {
+                let (time, values) = history.moving_mean(*width)?;
+                inner.apply(&time, &values)
+            }
         }
     }
 }
@@ -358,7 +372,7 @@ pub enum ReduceError {
         values: usize,
     },
     /// A value is infinite or not a number.
-    #[error("the value in row {row} (at {time}) is {value}, which is no finite number")]
+    #[error("the value in row {row} (at {time}) is {value}, which is not a finite number")]
     NotFinite {
         /// Row, from 1.
         row: usize,
@@ -368,7 +382,7 @@ pub enum ReduceError {
         value: f64,
     },
     /// A time is not finite or not later than the one before.
-    #[error("row {row} is at {time}, which is not beyond the row before")]
+    #[error("row {row} is at {time}, which is not after the previous row")]
     TimeNotGrowing {
         /// Row, from 1.
         row: usize,
@@ -376,7 +390,7 @@ pub enum ReduceError {
         time: f64,
     },
     /// The time asked for is not covered.
-    #[error("{time} lies outside of the table, which covers {first} to {last}")]
+    #[error("{time} is outside the table, which covers {first} to {last}")]
     TimeOutside {
         /// The time asked for in s.
         time: f64,
@@ -385,8 +399,27 @@ pub enum ReduceError {
         /// Last time of the history in s.
         last: f64,
     },
+    /// The moving mean sees no more than a row.
+    #[error(
+        "a moving mean over {width} s is shorter than the time between two rows of the table, {apart} s on average: \
+         lower output.table_every, or take a longer one"
+    )]
+    TooNarrow {
+        /// Width of the mean in s.
+        width: f64,
+        /// Mean time between rows in s.
+        apart: f64,
+    },
+    /// The moving mean is as wide as all there is.
+    #[error("a moving mean over {width} s leaves nothing of a history that covers {covered} s")]
+    TooWide {
+        /// Width of the mean in s.
+        width: f64,
+        /// What the history, or its window, covers in s.
+        covered: f64,
+    },
     /// There are fewer local extrema.
-    #[error("there is no local extremum number {wanted}: {found} are there")]
+    #[error("there is no local extremum number {wanted}: only {found} were found")]
     NoSuchExtremum {
         /// Number asked for, from 1.
         wanted: usize,
@@ -394,7 +427,7 @@ pub enum ReduceError {
         found: usize,
     },
     /// There are fewer changes of sign.
-    #[error("there is no change of sign number {wanted}: {found} are there")]
+    #[error("there is no change of sign number {wanted}: only {found} were found")]
     NoSuchZero {
         /// Number asked for, from 1.
         wanted: usize,
@@ -411,14 +444,14 @@ pub enum ReduceError {
         crossings: usize,
     },
     /// There is nothing to balance.
-    #[error("the integral over this window is 0, so that no pulse passes in it")]
+    #[error("the integral over this window is 0: no pulse passes in it")]
     NoPulse,
     /// Growth has no meaning.
     #[error("the growth over a first value of 0 is not defined")]
     GrowthFromZero,
     /// History and reference have no time in common.
     #[error(
-        "the reference covers {} to {} and the table {} to {}: they have nothing in common",
+        "the reference covers {} to {} and the table {} to {}: they do not overlap",
         reference[0], reference[1], history[0], history[1]
     )]
     NoOverlap {

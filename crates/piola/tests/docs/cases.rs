@@ -1,11 +1,11 @@
-//! The table of cases in the README, and the page of each case.
+//! The gallery of cases, the page of each case, and the case files that pages show.
 
 use std::collections::BTreeSet;
 use std::fs;
 
 use piola::case::{LoadOptions, Session, parse};
 
-use super::pages::{below, page, root};
+use super::pages::{Page, all, below, page, root};
 
 /// Largest picture beside a case in bytes: clones stay small.
 const LARGEST_PICTURE: u64 = 200_000;
@@ -21,23 +21,28 @@ fn cases() -> BTreeSet<(String, String)> {
     files.collect()
 }
 
-/// The rows of the README whose second column links to a folder of `cases/`.
-fn rows() -> Vec<(String, String)> {
-    let readme = page("README.md");
+/// The rows of the gallery: the folder and the id of the case, and the picture.
+fn rows() -> Vec<(String, String, String)> {
+    let gallery = page("docs/gallery.md");
     let row = |line: &str| {
-        let mut columns = line.strip_prefix("| ")?.split(" | ");
-        let (id, link) = (columns.next()?, columns.next()?);
-        let folder = link.split_once("](cases/")?.1.split(')').next()?;
-        Some((format!("cases/{folder}"), id.to_owned()))
+        let mut columns = line.strip_prefix("| <img src=\"../")?.split(" | ");
+        let (picture, case) = (columns.next()?.split('"').next()?, columns.next()?);
+        let (id, link) = case.split_once(" [")?;
+        let folder = link.split_once("](../")?.1.split(')').next()?;
+        Some((folder.to_owned(), id.to_owned(), picture.to_owned()))
     };
-    readme.text.lines().filter_map(row).collect()
+    gallery.text.lines().filter_map(row).collect()
 }
 
 #[test]
-fn the_table_of_the_readme_lists_all_cases_once() {
+fn the_gallery_lists_all_cases_once_with_their_pictures() {
     let rows = rows();
-    assert_eq!(rows.iter().cloned().collect::<BTreeSet<_>>(), cases());
+    let listed = rows.iter().map(|(folder, id, _)| (folder.clone(), id.clone()));
+    assert_eq!(listed.collect::<BTreeSet<_>>(), cases());
     assert_eq!(rows.len(), cases().len(), "a case has two rows");
+    for (folder, _, picture) in rows {
+        assert_eq!(picture, format!("{folder}/picture.png"));
+    }
 }
 
 #[test]
@@ -54,13 +59,27 @@ fn each_case_has_a_page_with_its_command_and_picture() {
     }
 }
 
+/// The whole case files that a page shows.
+fn shown(page: &Page) -> Vec<&str> {
+    let blocks = page.text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+    blocks.filter(|block| block.starts_with("version = 1")).collect()
+}
+
 #[test]
-fn the_case_in_the_readme_is_a_good_one() {
-    let readme = page("README.md");
-    let case = readme.text.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
-    let text = case.expect("the README shows a case file");
-    let case = parse(text, "README.md", &LoadOptions::default());
-    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
-    let session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
-    assert!(!session.case().probes.is_empty());
+fn cases_that_pages_show_are_good_ones() {
+    let mut count = 0;
+    for page in all() {
+        for text in shown(&page) {
+            let case = parse(text, &page.name, &LoadOptions::default());
+            let case = case.unwrap_or_else(|problems| panic!("{}:\n{problems}", page.name));
+            let session = Session::new(&case);
+            let session = session.unwrap_or_else(|problems| panic!("{}:\n{problems}", page.name));
+            assert!(!session.case().probes.is_empty(), "{}", page.name);
+            count += 1;
+        }
+    }
+    // One in the page about making a case, one in that about convergence, and one a tutorial.
+    let tutorials = below("docs/tutorials", &[".md"]);
+    assert!(tutorials.iter().all(|page| shown(page).len() == 1), "a tutorial shows a case");
+    assert!(count >= tutorials.len() + 2, "{count}");
 }

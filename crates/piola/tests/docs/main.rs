@@ -8,4 +8,5 @@ mod pages;
 mod paths;
 mod promises;
 mod rooms;
+mod summary;
 mod validation;

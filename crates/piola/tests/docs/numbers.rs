@@ -1,4 +1,4 @@
-//! No number in a table of a README that the results or the case do not hold.
+//! No number in a table of a README or of the gallery that the results or the case do not hold.
 
 use piola::case::page::CaseResults;
 
@@ -73,12 +73,14 @@ fn numbers_in_tables_of_cases_are_those_of_the_results() {
         if !numbers.is_empty() {
             wrong.push(format!("{}: {}", readme.name, numbers.join(", ")));
         }
-        // The table of all cases has a row for each.
-        let main = page("README.md");
-        let rows = main.text.lines().filter(|line| line.contains(&format!("]({folder})")));
-        let numbers = unheld(&rows.collect::<Vec<_>>().join("\n"), case, &folder);
+        // The gallery has a row for each.
+        let gallery = page("docs/gallery.md");
+        let rows = gallery.text.lines().filter(|line| line.contains(&format!("](../{folder})")));
+        let rows: Vec<&str> = rows.collect();
+        assert!(!rows.is_empty(), "the gallery has no row of {folder}");
+        let numbers = unheld(&rows.join("\n"), case, &folder);
         if !numbers.is_empty() {
-            wrong.push(format!("README.md, {folder}: {}", numbers.join(", ")));
+            wrong.push(format!("docs/gallery.md, {folder}: {}", numbers.join(", ")));
         }
     }
     assert!(wrong.is_empty(), "neither results nor files of the case hold:\n{}", wrong.join("\n"));

@@ -44,7 +44,10 @@ fn a_stream_goes_through_finer_regions() {
         .replace("y = [0.0, \"length\"]", "y = [0.0, 0.6]")
         .replace("max = [\"length\", \"length\"]", "max = [\"length\", 0.6]");
     let probe = "[[probe]]\nname = \"error\"\nkind = \"error\"\nbody = \"water\"\nfield = \"velocity\"\ncomponents = { x = \"1\", y = \"0\" }\n";
-    let finished = run(&format!("{text}{probe}"), &["parameters.length=3.0", "parameters.end=0.3"]);
+    let text = format!("{text}{probe}");
+    let finest = session(&text, &["parameters.length=3.0"]).unwrap().plan().bodies[0].finest;
+    assert_eq!(finest, 4.0, "two regions halve the spacing twice");
+    let finished = run(&text, &["parameters.length=3.0", "parameters.end=0.3"]);
     assert_eq!(finished.summary.outcome.summary(), "completed");
     let worst = values(&finished, "error.error").into_iter().fold(0.0, f64::max);
     // Finer particles are born in the cells of a lattice that goes on without end, and a uniform stream is met exactly.

@@ -308,7 +308,7 @@ fn openings_that_cannot_work_are_refused() {
         &["body.inlet.opening.normal=[-1.0, 0.0]"],
         "no fluid is in front of the opening `inlet`",
     );
-    refused(&["body.inlet.opening.velocity=['1/(y - y)', '0']"], "no number");
+    refused(&["body.inlet.opening.velocity=['1/(y - y)', '0']"], "not a number");
     refused(
         &["body.inlet.opening.pressure='0'"],
         "`velocity` and `pressure` cannot both be prescribed",

@@ -121,3 +121,39 @@ fn what_is_wrong_with_a_surface_is_told() {
     let broken = session(RING, "v 0 0 0\nf 1 2 3\n").err().unwrap();
     assert!(broken.contains("ring.obj` is broken") && broken.contains("case.toml:"), "{broken}");
 }
+
+/// A plate with a round window, drawn, is filled with its own mass; what is wrong with a drawing is said with the case's line.
+#[test]
+fn a_body_is_cut_to_a_drawing() {
+    let case = |shape: &str| {
+        format!(
+            "version = 1\ntitle = \"A plate\"\ndimension = 2\n[[body]]\nname = \"plate\"\nspacing = 0.05\n\
+             shape = {{ kind = \"outline\", file = \"plate.svg\", {shape} }}\n\
+             material = {{ kind = \"linear_elastic\", density = 1.0, young_modulus = 1.0, poisson_ratio = 0.3 }}\n\
+             [scheme]\nkind = \"dual_support\"\n[time]\nend = 1.0\n[output]\nevery = 1.0\n"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let built = |shape: &str, drawing: &str| {
+        let path = |name: &str| folder.path().join(name);
+        std::fs::write(path("plate.svg"), drawing).unwrap();
+        std::fs::write(path("case.toml"), case(shape)).unwrap();
+        let case = case::load(&path("case.toml"), &LoadOptions::default());
+        let built = case.and_then(|case| Session::new(&case));
+        built.map_err(|problems| problems.to_string())
+    };
+    let drawing = "<svg><path d=\"M0 0h2000v1000h-2000z M1300 500a300 300 0 1 0 -600 0a300 300 0 1 0 600 0z\"/></svg>";
+    let body = &built("scale = 0.001", drawing).unwrap().plan().bodies[0];
+    let exact = 2.0 - PI * 0.09;
+    // Squares of a sixteenth of a spacing that a circle cuts count as inside or outside, about half of them each.
+    assert!((body.volume / exact - 1.0).abs() < 1e-3, "{} of {exact}", body.volume);
+    for (shape, drawing, said) in [
+        ("scale = 0.001", "<svg><rect width=\"3\"/></svg>", "<rect> is not followed"),
+        ("scale = 0.0", drawing, "above 0"),
+        ("z = [0, 1]", drawing, "no meaning in 2D"),
+        ("move = [1]", drawing, "2 entries"),
+    ] {
+        let error = built(shape, drawing).err().expect(shape);
+        assert!(error.contains(said) && error.contains("case.toml:"), "{error}");
+    }
+}

@@ -21,13 +21,14 @@ spacing = 0.0625
 lattice = { on = "boundary" }
 "#;
 
-const LAWS: [&str; 6] = [
+const LAWS: [&str; 7] = [
     "kind = 'linear_elastic', young_modulus = 1e6, poisson_ratio = 0.3",
     "kind = 'saint_venant_kirchhoff', young_modulus = 1e6, poisson_ratio = 0.3",
     "kind = 'neo_hookean', young_modulus = 1e6, poisson_ratio = 0.3",
     "kind = 'neo_hookean_logarithmic', young_modulus = 1e6, poisson_ratio = 0.3",
     "kind = 'mooney_rivlin', c10 = 1.5e5, c01 = 4e4, bulk_modulus = 8e5",
     "kind = 'ogden', moduli = [3e5, -5e4], exponents = [1.3, -2.0], bulk_modulus = 8e5",
+    "kind = 'hyperelastic', energy = '-2.5e6 * ln(1 - (I1b - 3)/15) + 4e5 * (J - 1)^2'",
 ];
 
 /// Steps of a motion that waves cross the block twice in, explicit and implicit ones.

@@ -68,7 +68,7 @@ fn sum<T: Scalar>([strain, hourglass]: [T; 2]) -> T {
 fn check_force<const D: usize>(cloud: &Cloud<D>, state: StressState) {
     for law in laws() {
         for choice in [(false, 0.0), (false, 1.0), (true, 0.1)] {
-            let body = discrete(cloud, law, state, choice);
+            let body = discrete(cloud, law.clone(), state, choice);
             let displacement = disorder(&cloud.particles, 0.05);
             let force = forces(&body, &displacement);
             let scale = force.iter().map(Vector::amax).fold(0.0, f64::max);
@@ -96,7 +96,7 @@ fn forces_are_the_negative_gradient_of_the_energy() {
 fn the_stiffness_is_the_second_derivative_of_the_energy() {
     let cloud = Cloud::simplices([1.0, 1.0], [5, 5], 0.25);
     for law in laws() {
-        let body = discrete(&cloud, law, StressState::PlaneStrain, (true, 0.1));
+        let body = discrete(&cloud, law.clone(), StressState::PlaneStrain, (true, 0.1));
         let displacement = disorder(&cloud.particles, 0.05);
         let direction = |shift: usize| -> Vec<Vector<2>> {
             let vector = |a: usize| Vector::from_fn(|i, _| noise(shift + 2 * a + i));
@@ -128,8 +128,8 @@ fn the_stiffness_is_the_second_derivative_of_the_energy() {
 #[test]
 fn hourglass_energy_is_that_of_the_source_and_positive() {
     let cloud = Cloud::simplices([1.0, 1.0], [7, 7], 0.25);
-    let law = laws()[3];
-    let body = discrete(&cloud, law, StressState::PlaneStrain, (false, 2.0));
+    let law = laws()[3].clone();
+    let body = discrete(&cloud, law.clone(), StressState::PlaneStrain, (false, 2.0));
     let support = cloud.support();
     let displacement = disorder(&cloud.particles, 0.2);
     let mu = law.small_strain().mu;
@@ -157,11 +157,11 @@ fn hourglass_energy_is_that_of_the_source_and_positive() {
 fn check_patch<const D: usize>(cloud: &Cloud<D>, state: StressState) {
     for law in laws() {
         for (patch, hourglass) in [(true, 0.0), (true, 0.1), (false, 0.1)] {
-            let body = discrete(cloud, law, state, (patch, hourglass));
+            let body = discrete(cloud, law.clone(), state, (patch, hourglass));
             let slope = some_gradient::<D>();
             let places = &cloud.particles.position;
             let displacement: Vec<Vector<D>> = places.iter().map(|x| slope * x).collect();
-            let stress = Reduced::<D>::new(law, state).unwrap().stress(&slope);
+            let stress = Reduced::<D>::new(law.clone(), state).unwrap().stress(&slope);
             let tractions = || cloud.areas.iter().map(|area| stress * area);
             let force = forces(&body, &displacement);
             let scale = tractions().map(|t| t.amax()).fold(0.0, f64::max);
@@ -188,7 +188,7 @@ fn forces_have_no_sum_and_no_moment() {
     let cloud = Cloud::simplices([1.0; 3], [4; 3], 0.2);
     for law in laws() {
         for choice in [(false, 1.0), (true, 0.1)] {
-            let body = discrete(&cloud, law, StressState::ThreeDimensional, choice);
+            let body = discrete(&cloud, law.clone(), StressState::ThreeDimensional, choice);
             let displacement = disorder(&cloud.particles, 0.05);
             let force = forces(&body, &displacement);
             let total: f64 = force.iter().map(Vector::norm).sum();
@@ -246,8 +246,8 @@ fn the_hourglass_force_of_a_scalar_is_the_slope_of_its_energy() {
 #[test]
 fn the_hourglass_energy_of_a_vector_is_that_of_its_components() {
     let cloud = Cloud::simplices([1.0; 3], [4; 3], 0.15);
-    let law = laws()[0];
-    let body = discrete(&cloud, law, StressState::ThreeDimensional, (false, 0.3));
+    let law = laws()[0].clone();
+    let body = discrete(&cloud, law.clone(), StressState::ThreeDimensional, (false, 0.3));
     let displacement = disorder(&cloud.particles, 0.05);
     let support = cloud.support();
     let gradient = DualGradient::plain(&cloud.particles, &support).expect("a gradient");

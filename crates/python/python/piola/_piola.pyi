@@ -24,6 +24,7 @@ class _BodyPlan(TypedDict):
     particles: int
     volume: float
     exact_volume: float | None
+    finest: float
     spacing: list[float]
 
 class _Neighbors(TypedDict):

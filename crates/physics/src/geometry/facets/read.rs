@@ -7,7 +7,7 @@ use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, Property};
 use thiserror::Error;
 
-use super::super::file::{self, FileFault};
+use super::super::file;
 use super::Triangle;
 use crate::Vector;
 
@@ -64,14 +64,8 @@ pub(super) fn triangles(path: &Path) -> Result<Vec<Triangle>, SurfaceError> {
         Some("ply") => ply,
         _ => return Err(SurfaceError::Kind { path: path_of() }),
     };
-    let bytes = file::read(path).map_err(|fault| {
-        let reason = match fault {
-            FileFault::Unreadable(error) => error.to_string(),
-            FileFault::NotAFile => "it is not a file".to_owned(),
-            FileFault::TooLarge => format!("it is larger than {} bytes", file::MOST_BYTES),
-        };
-        SurfaceError::Unreadable { path: path_of(), reason }
-    })?;
+    let bytes = file::read(path)
+        .map_err(|fault| SurfaceError::Unreadable { path: path_of(), reason: fault.to_string() })?;
     parse(bytes).map_err(|reason| SurfaceError::Broken { path: path_of(), reason })
 }
 

@@ -185,6 +185,35 @@ fn volumes_of_round_shapes_converge() {
     assert_converges(&cylinder, 0.4, 1e-2);
 }
 
+fn assert_mirrored<const D: usize>(spacing: f64, placement: Placement) {
+    let shape = Shape::ball(Vector::zeros(), 1.0).unwrap();
+    let spec = LatticeSpec { placement, ..LatticeSpec::square([spacing; D]) };
+    let particles = fill(&shape, &spec).unwrap().particles;
+    let near = |at: &Vector<D>, other: &Vector<D>| (at - other).norm() < 1e-9;
+    let images = |at: &Vector<D>| {
+        let mut swapped = *at;
+        swapped.swap_rows(0, D - 1);
+        [-at, swapped]
+    };
+    for (at, volume) in particles.position.iter().zip(&particles.volume) {
+        for image in images(at) {
+            let found = particles.position.iter().position(|other| near(other, &image)).unwrap();
+            let twin = particles.volume[found];
+            assert!((volume - twin).abs() < 1e-12 * particles.weight[0], "{at} {volume} {twin}");
+        }
+    }
+}
+
+#[test]
+fn a_ball_has_the_same_masses_on_all_sides() {
+    for placement in [Placement::Boundary, Placement::Cells] {
+        for spacing in [0.2, 0.27] {
+            assert_mirrored::<2>(spacing, placement);
+            assert_mirrored::<3>(spacing, placement);
+        }
+    }
+}
+
 #[test]
 fn combinations_have_the_volumes_of_their_parts() {
     let square =

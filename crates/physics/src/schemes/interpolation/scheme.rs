@@ -27,9 +27,9 @@ columns! {
     enum Made;
     constant position: Vector, "m", "position x";
     constant function: Scalar, "1", "the function f";
-    constant approximation: Scalar, "1", "its interpolation <f> = W f";
-    constant error: Scalar, "1", "<f> - f";
-    constant gradient: Vector, "1/m", "the sum <grad f> = X f";
+    constant approximation: Scalar, "1", "its interpolation, `<f> = W f`";
+    constant error: Scalar, "1", "`<f> - f`";
+    constant gradient: Vector, "1/m", "the sum `<grad f> = X f`";
     constant second_gradient: Tensor, "1/m2", "the gradient of that, row by row";
     constant neighbors: Scalar, "1", "number of particles and ghosts in the support";
     constant volume: Scalar, "m3", "quadrature volume V";

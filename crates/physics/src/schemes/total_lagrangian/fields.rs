@@ -14,7 +14,7 @@ columns! {
     kept kick: Vector, "m/s2", "acceleration for the next kick, zero where a velocity is prescribed";
     derived(2) acceleration: Vector, "m/s2", "rate of the velocity";
     derived(1) internal_force: Vector, "N", "force of stresses on the particle";
-    derived(3) reaction: Vector, "N", "what holds the particle where it is prescribed";
+    derived(3) reaction: Vector, "N", "force that holds the particle where its motion is prescribed";
     derived(1) deformation_gradient: Tensor, "1", "deformation gradient F, row by row";
     derived(1) determinant: Scalar, "1", "determinant of F in the resolved dimensions";
     derived(1) stress: Tensor, "Pa", "first Piola-Kirchhoff stress P without viscosity, row by row";

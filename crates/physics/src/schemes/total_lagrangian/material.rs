@@ -8,7 +8,7 @@ use piola_formulas::tensor;
 use crate::Tensor;
 
 /// The material of one body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Material<const D: usize> {
     /// Density in kg/m^3. In 1D and 2D masses, forces and energies are those of a body of 1 m in
     /// each of the missing dimensions.
@@ -33,7 +33,7 @@ pub struct Mixture<const D: usize>(pub Vec<(Material<D>, f64)>);
 impl<const D: usize> Mixture<D> {
     /// Each material by itself.
     pub fn of_each(materials: &[Material<D>]) -> Vec<Self> {
-        materials.iter().map(|material| Self(vec![(*material, 1.0)])).collect()
+        materials.iter().map(|material| Self(vec![(material.clone(), 1.0)])).collect()
     }
 
     /// Density in kg/m^3.

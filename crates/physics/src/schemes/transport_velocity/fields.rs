@@ -12,10 +12,10 @@ columns! {
     derived(0) acceleration: Vector, "m/s2", "rate of the momentum velocity";
     derived(0) force: Vector, "N", "total force; on a wall or a solid that of the fluid";
     evolved pressure: Scalar, "Pa", "pressure p, positive in compression";
-    evolved density: Scalar, "kg/m3", "density rho as the scheme has it";
+    evolved density: Scalar, "kg/m3", "density rho used by the scheme";
     derived(1) vorticity: Scalar, "1/s", "curl of u, in 3D its magnitude";
     derived(1) divergence: Scalar, "1/s", "divergence of u";
-    derived(2) surface: Scalar, "1", "1 on a free surface, if they are looked for";
+    derived(2) surface: Scalar, "1", "1 on a free surface, if free surfaces are detected";
     derived(2) surface_normal: Vector, "1", "unit normal near a free surface";
     derived(0) wall: Scalar, "1", "1 for particles of walls, 0 for others";
     constant normal: Vector, "1", "unit normal of walls, towards the fluid";

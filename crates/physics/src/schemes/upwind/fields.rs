@@ -14,11 +14,11 @@ columns! {
     evolved velocity: Vector, "m/s", "velocity v";
     derived(1) acceleration: Vector, "m/s2", "rate of the velocity";
     derived(0) pressure: Scalar, "Pa", "pressure p(J), positive in compression";
-    evolved volume_ratio: Scalar, "1", "volume ratio J as evolved";
+    evolved volume_ratio: Scalar, "1", "evolved volume ratio J";
     derived(0) determinant: Scalar, "1", "determinant of the deformation gradient";
     evolved deformation_gradient: Tensor, "1", "deformation gradient F, row by row";
     derived(0) density: Scalar, "kg/m3", "current density, from the evolved J";
-    derived(0) wave_speed: Scalar, "m/s", "fastest wave, measured on the reference";
+    derived(0) wave_speed: Scalar, "m/s", "fastest wave speed, measured on the reference configuration";
     constant smoothing_length: Scalar, "m", "smoothing length h";
     constant neighbors: Scalar, "1", "number of neighbours";
     constant volume: Scalar, "m3", "reference quadrature volume V";

@@ -6,8 +6,8 @@ use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Body, Case};
 use crate::case::source::Located;
 use crate::geometry::{
-    Facets, FillReport, GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, fill,
-    from_mesh, from_points, surroundings,
+    Facets, FillReport, GeometryError, LatticeKind, LatticeSpec, Outline, Particles, Placement,
+    Shape, fill, from_mesh, from_points, surroundings,
 };
 use crate::neighbors::{Domain, refuse_coincident};
 use crate::operators::relax;
@@ -29,6 +29,8 @@ pub struct BodyReport {
     pub exact_volume: Option<f64>,
     /// The particle spacing along each axis in m.
     pub spacing: Vec<f64>,
+    /// How many times smaller it is where that is finest: 1, but for regions of finer spacing.
+    pub finest: f64,
 }
 
 /// A vector of a case as one of `D` components; the reader has checked its length.
@@ -63,6 +65,7 @@ pub(super) fn particles<const D: usize>(
                     volume,
                     exact_volume: report.exact_volume,
                     spacing: report.actual_spacing.to_vec(),
+                    finest: 1.0,
                 },
             )
         });
@@ -264,6 +267,9 @@ pub(super) fn shape<const D: usize>(
         model::Shape::Polygon { corners, ends } => {
             let corners = corners.iter().map(|corner| Vector::<2>::from(*corner)).collect();
             Shape::polygon(corners, *ends)
+        }
+        model::Shape::Outline { file, scale, shift, ends } => {
+            Outline::read(file, *scale, (*shift).into()).and_then(|outline| outline.shape(*ends))
         }
         model::Shape::Surface(surface) => facets_of(surface).and_then(Shape::surface),
         model::Shape::Turned { of, angle, about, axis } => {

@@ -121,7 +121,7 @@ impl Joined {
             let made = Mixture(
                 parts
                     .iter()
-                    .map(|&(body, volume)| (materials[body as usize], volume / whole))
+                    .map(|&(body, volume)| (materials[body as usize].clone(), volume / whole))
                     .collect(),
             );
             let known = mixtures.iter().position(|known| *known == made);

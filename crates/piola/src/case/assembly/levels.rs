@@ -80,6 +80,7 @@ pub(super) fn build<const D: usize>(
         shown.extend(particles, &own.collect::<Vec<_>>());
     }
     let alone: f64 = fluid_volume(case, &built.bodies);
+    let coarsest = all[0].spacing.iter().copied().fold(0.0, f64::max);
     for report in &mut built.bodies {
         (report.particles, report.volume) = (0, 0.0);
     }
@@ -88,6 +89,7 @@ pub(super) fn build<const D: usize>(
         if let Some(body) = levels.body_of(&start, a) {
             let report = &mut built.bodies[body as usize];
             (report.particles, report.volume) = (report.particles + 1, report.volume + volume);
+            report.finest = report.finest.max((coarsest / shown.spacing[a]).round());
         }
     }
     let off = fluid_volume(case, &built.bodies) - alone;
@@ -123,7 +125,7 @@ fn check(case: &Case, settings: &model::TransportVelocity) -> Result<(), Vec<Pro
     }
     if settings.settings.density == DensityRule::Summation {
         return refuse(
-            "where spacings meet no level sees all masses, so that the density is no sum of them",
+            "where spacings meet no level contains all masses, so that the density cannot be their sum",
             "use `density = \"continuity\"`",
         );
     }
@@ -143,7 +145,7 @@ fn check(case: &Case, settings: &model::TransportVelocity) -> Result<(), Vec<Pro
         );
         return refuse(
             &message,
-            "let the surface run by `sliding` of the wall, or remove `refine`",
+            "use `sliding` of the wall to move its surface in place, or remove `refine`",
         );
     }
     let follows = |probe: &&model::Probe| {
@@ -153,7 +155,7 @@ fn check(case: &Case, settings: &model::TransportVelocity) -> Result<(), Vec<Pro
     };
     if let Some(probe) = case.probes.iter().find(follows) {
         let message = format!(
-            "the probe `{}` follows a particle of the fluid, which others take the place of in finer regions",
+            "the probe `{}` follows a particle of the fluid, which is replaced by others in finer regions",
             *probe.name
         );
         return refuse(&message, "use the kind `point`, or name the wall that it is of as `body`");

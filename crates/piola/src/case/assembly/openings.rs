@@ -193,7 +193,7 @@ fn boundary<const D: usize>(
     if let Some(a) = own().find(|&a| !is_finite(a)) {
         let place = particles.position[a].as_slice();
         let message =
-            format!("what is prescribed at the opening `{name}` is no number at {place:?} m");
+            format!("the value prescribed at the opening `{name}` is not a number at {place:?} m");
         return refuse(message, "not finite", "correct the expression");
     }
     let relaxation = opening.relaxation.unwrap_or_else(|| {

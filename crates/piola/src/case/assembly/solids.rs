@@ -342,15 +342,15 @@ fn materials<const D: usize>(case: &Case, problems: &mut Vec<Problem>) -> Vec<Ma
     let mut materials = Vec::new();
     for body in &case.bodies {
         // The reader of cases has refused others for this scheme.
-        let (density, law, plane) = match body.material.value {
-            model::Material::Hyperelastic { density, law, plane } => (density, law, plane),
+        let (density, law, plane) = match &body.material.value {
+            model::Material::Hyperelastic { density, law, plane } => (*density, law, *plane),
             model::Material::Rigid { density } => {
-                materials.push(Material::rigid(density));
+                materials.push(Material::rigid(*density));
                 continue;
             }
             _ => continue,
         };
-        match Reduced::new(law, plane.stress_state(case.dimension)) {
+        match Reduced::new(law.clone(), plane.stress_state(case.dimension)) {
             Ok(law) => materials.push(Material { density, law }),
             Err(error) => {
                 let place = body.material.place;

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use piola_formulas::hyperelastic::{EnergyError, EnergyFunction};
+
 use super::{Context, Datum, Located, Node, Problem, Table, Value, one_of, suggestion};
 use crate::boundaries::SpaceTime;
-use crate::case::expression::{Expression, ExpressionError, Scope, constants, functions};
+use crate::case::expression::{Expression, ExpressionError, Scope, constants, energy, functions};
 use crate::case::functions::MARK;
 use crate::case::overrides::start_of_content;
 use crate::case::settings::keys_with_values;
@@ -183,9 +185,28 @@ impl Context<'_> {
     }
 
     fn parse(&mut self, text: &str, place: Place, axes: usize, time: bool) -> Option<Expression> {
-        let scope = Scope { axes, time, parameters: &self.parameters };
-        match Expression::parse(text, &scope) {
-            Ok(expression) => Some(expression),
+        let scope = Scope { axes, time, ..Scope::of_parameters(&self.parameters) };
+        self.or_report(Expression::parse(text, &scope), text, place)
+    }
+
+    /// The strain energy that a text writes out.
+    pub(in crate::case) fn energy(
+        &mut self,
+        text: &str,
+        place: Place,
+    ) -> Option<Result<EnergyFunction, EnergyError>> {
+        let parsed = energy(text, &Scope::of_parameters(&self.parameters));
+        self.or_report(parsed, text, place).map(EnergyFunction::new)
+    }
+
+    fn or_report<T>(
+        &mut self,
+        read: Result<T, ExpressionError>,
+        text: &str,
+        place: Place,
+    ) -> Option<T> {
+        match read {
+            Ok(value) => Some(value),
             Err(error) => {
                 if !error.is_consequence {
                     let problem = self.in_text(text, place, error);

@@ -75,7 +75,7 @@ describe! {
     "sign", sign, zero, "-1 below 0, 0 at 0, 1 above";
     "step", step, zero, "0 below 0, 1 from 0 on";
     "smooth", smooth, bell,
-        "0 below -1, 1 above 1, between them the step at 0 that the modified mollifier of radius 1 smooths";
+        "0 below -1, 1 above 1, in between the step at 0 smoothed by the modified mollifier of radius 1";
     "floor", f64::floor, zero, "largest whole number not above";
     "ceil", f64::ceil, zero, "smallest whole number not below";
     "round", f64::round, zero, "nearest whole number";

@@ -7,6 +7,7 @@
 //! Grammar, from weakest to strongest: `+ -`, then `* /`, then a sign, then `^` (from the right),
 //! then numbers, names, brackets and calls `f(a)`, `f(a, b)`. So `-2^2` is -4 and `2^-1` is 0.5.
 
+mod energy;
 mod engine;
 mod functions;
 mod outside;
@@ -16,8 +17,11 @@ mod token;
 use std::ops::Range;
 use std::sync::Arc;
 
+use piola_formulas::hyperelastic::Invariant;
+
 use crate::boundaries::SpaceTime;
 
+pub use energy::energy;
 pub use functions::{Function, constants, functions};
 
 use engine::Program;
@@ -37,9 +41,22 @@ pub struct Scope<'a> {
     pub time: bool,
     /// Named numbers, without a value where it was refused.
     pub parameters: &'a [(String, Option<f64>)],
+    /// Whether the invariants of a strain are known, see [`energy`].
+    pub invariants: bool,
 }
 
-impl Scope<'_> {
+impl<'a> Scope<'a> {
+    /// Parameters alone.
+    pub fn of_parameters(parameters: &'a [(String, Option<f64>)]) -> Self {
+        Self { axes: 0, time: false, parameters, invariants: false }
+    }
+
+    /// The name of an invariant, if they are known.
+    fn invariant(&self, name: &str) -> Option<&'static str> {
+        let named = Invariant::ALL.into_iter().find(|(known, _)| *known == name);
+        named.filter(|_| self.invariants).map(|(name, _)| name)
+    }
+
     fn variable(&self, name: &str) -> Option<Variable> {
         let variable = match name {
             "x" => Variable::X,
@@ -67,7 +84,9 @@ impl Scope<'_> {
         let parameters = self.parameters.iter().map(|(name, _)| name.as_str());
         let known = functions().iter().map(|function| function.name);
         let constants = constants().iter().map(|(name, _)| *name);
-        axes.chain(time).chain(parameters).chain(constants).chain(known).collect()
+        let invariants = Invariant::ALL.iter().map(|(name, _)| *name);
+        let invariants = invariants.filter(|_| self.invariants);
+        axes.chain(time).chain(invariants).chain(parameters).chain(constants).chain(known).collect()
     }
 }
 

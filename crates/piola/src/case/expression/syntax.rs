@@ -222,6 +222,15 @@ impl<'a> Parser<'a> {
             let known = ["x", "y", "z", "t"].into_iter().find(|variable| *variable == name);
             return known.map(Tree::Variable).ok_or_else(|| self.no_name(name, span));
         }
+        if let Some(name) = self.scope.invariant(name) {
+            if self.scope.parameter(name).is_some() {
+                let message =
+                    format!("`{name}` is an invariant of the strain, and a parameter too");
+                let error = ExpressionError::new(span.clone(), message, "which of the two?");
+                return Err(error.help("give the parameter another name"));
+            }
+            return Ok(Tree::Variable(name));
+        }
         match self.scope.parameter(name) {
             None => {}
             Some(Some(value)) => return Ok(Tree::Number(value)),
@@ -240,6 +249,10 @@ impl<'a> Parser<'a> {
         let error = |message| ExpressionError::new(span.clone(), message, label);
         let axes = self.scope.axes;
         match name {
+            "x" | "y" | "z" | "t" if axes == 0 && self.scope.invariants => error(format!(
+                "`{name}` cannot be used here: an energy depends on the strain alone"
+            ))
+            .help("I1, I2, J, I1b and I2b are known here"),
             "x" | "y" | "z" | "t" if axes == 0 => {
                 error(format!("`{name}` cannot be used here: the value must be one number"))
                     .help("only parameters, numbers and functions are known here")

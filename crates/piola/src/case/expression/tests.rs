@@ -6,7 +6,7 @@ const PARAMETERS: &[(&str, f64)] = &[("speed", -2.5), ("length", 0.5)];
 fn with<T>(use_scope: impl FnOnce(&Scope<'_>) -> T) -> T {
     let parameters: Vec<_> =
         PARAMETERS.iter().map(|(name, v)| ((*name).to_owned(), Some(*v))).collect();
-    use_scope(&Scope { axes: 3, time: true, parameters: &parameters })
+    use_scope(&Scope { axes: 3, time: true, ..Scope::of_parameters(&parameters) })
 }
 
 fn parse(text: &str) -> Result<Expression, ExpressionError> {
@@ -136,7 +136,7 @@ fn says_what_is_wrong_and_where() {
 
 #[test]
 fn knows_only_the_variables_of_its_scope() {
-    let flat = Scope { axes: 2, time: false, parameters: &[] };
+    let flat = Scope { axes: 2, ..Scope::of_parameters(&[]) };
     assert!(Expression::parse("x + y", &flat).is_ok());
     let error = Expression::parse("z", &flat).unwrap_err();
     assert_eq!(error.message, "there is no `z` in 2 dimension(s)");

@@ -123,15 +123,16 @@ impl Reader<'_, '_> {
             "polygon" => {
                 let corners = record.list("corners").iter();
                 let corners: Option<Vec<_>> = corners.map(|it| it.value.as_pair()).collect();
-                let ends = record.ends("z").map(|ends| ends.value);
-                if self.dimension == 3 && ends.is_none() {
-                    let message = "a polygon in 3D needs the key `z`: its two ends";
-                    return self.refuse(Problem::new(record.place, message, "`z` is missing"));
+                Shape::Polygon { corners: corners?, ends: self.ends_along_z(record)? }
+            }
+            "outline" => {
+                let shift = record.ends("move").map_or([0.0; 2], |shift| shift.value);
+                Shape::Outline {
+                    file: self.file(record, "file")?,
+                    scale: number(record, "scale")?,
+                    shift,
+                    ends: self.ends_along_z(record)?,
                 }
-                if self.dimension == 2 {
-                    self.meaningless(record, "z", "in 2D");
-                }
-                Shape::Polygon { corners: corners?, ends }
             }
             "surface" => {
                 let axis = match record.has("axis") {
@@ -183,6 +184,20 @@ impl Reader<'_, '_> {
             _ => return None,
         };
         Some(Located::new(shape, record.place))
+    }
+
+    /// The ends along z of what is drawn in the plane: in 3D two, in 2D none.
+    fn ends_along_z(&mut self, record: &Record) -> Option<Option<[f64; 2]>> {
+        let ends = record.ends("z").map(|ends| ends.value);
+        if self.dimension == 3 && ends.is_none() {
+            let message =
+                format!("a shape of kind `{}` in 3D needs the key `z`: its two ends", record.kind);
+            return self.refuse(Problem::new(record.place, message, "`z` is missing"));
+        }
+        if self.dimension == 2 {
+            self.meaningless(record, "z", "in 2D");
+        }
+        Some(ends)
     }
 
     pub(super) fn shapes(&mut self, record: &Record, key: &str) -> Option<Vec<Located<Shape>>> {

@@ -10,11 +10,12 @@ use crate::case::model::{
 use crate::case::suggest::one_of;
 
 /// The ways to say what is expected, each with the keys that belong to it.
-const WAYS: [&[&str]; 7] = [
+const WAYS: [&[&str]; 8] = [
     &["expected"],
     &["at_least", "at_most"],
     &["less_than"],
     &["more_than"],
+    &["equal_to"],
     &["order"],
     &["monotone"],
     &["ratio"],
@@ -88,6 +89,11 @@ impl Reader<'_, '_> {
         };
         // `at` is a place where the quantity is one of a line, which only the probes tell.
         let end = known.end.filter(|_| of_this_run && at_this_setting && known.probes.is_some());
+        if let Some(Quantity::Run(name)) = quantity.as_deref() {
+            for key in ["window", "smooth"] {
+                self.meaningless(record, key, &format!("for `run.{name}`, which has no history"));
+            }
+        }
         let line = quantity.as_ref().zip(known.probes);
         let line = line.and_then(|(quantity, probes)| line_of(quantity, probes));
         let reduce = match line {
@@ -159,6 +165,10 @@ impl Reader<'_, '_> {
             "curve_rms" => Reduction::CurveRms(self.file(record, "reference")?),
             plain => Reduction::plain(plain)?,
         };
+        let reduction = match record.has("smooth") {
+            true => Reduction::Smoothed(*record.number("smooth")?, Box::new(reduction)),
+            false => reduction,
+        };
         match record.has("window") {
             true => Some(Reduction::Within(self.window(record, end)?, Box::new(reduction))),
             false => Some(reduction),
@@ -179,7 +189,9 @@ impl Reader<'_, '_> {
     /// A reduction of a profile: one that has a meaning for values at places.
     fn along_line(&mut self, record: &Record, line: &Probe) -> Option<Reduction> {
         let name = record.text("reduce")?;
-        self.meaningless(record, "window", &format!("along the line `{}`", *line.name));
+        for key in ["window", "smooth"] {
+            self.meaningless(record, key, &format!("along the line `{}`", *line.name));
+        }
         if ALONG_LINES.contains(&name.as_str()) {
             let reduction = match self.reduction(record, None)? {
                 Reduction::Within(_, reduction) => *reduction,
@@ -240,18 +252,18 @@ impl Reader<'_, '_> {
             ways.retain(|way| way[0] != "expected");
         }
         let Some(way) = ways.first() else {
-            let message = "the check says nothing of what is expected";
+            let message = "the check gives no expected value";
             return self.refuse(Problem::new(record.place, message, "nothing expected").help(
-                "give `expected` and `tolerance`, `at_least`, `at_most`, `less_than` or `more_than`, \
-                 or of a sweep `order`, `monotone` or `ratio`",
+                "give `expected` and `tolerance`, `at_least`, `at_most`, `less_than`, `more_than` or \
+                 `equal_to`, or of a sweep `order`, `monotone` or `ratio`",
             ));
         };
         if let Some(second) = ways.get(1) {
-            let message = "the check says in two ways what is expected";
+            let message = "the check gives the expected value in two ways";
             let problem = Problem::new(first_place(record, second), message, "the second way");
             return self.refuse(problem.help("make two checks of it"));
         }
-        if way[0] != "expected" || is_outcome {
+        if !["expected", "equal_to"].contains(&way[0]) || is_outcome {
             for key in ["tolerance", "absolute"] {
                 self.meaningless(record, key, "here");
             }
@@ -268,6 +280,11 @@ impl Reader<'_, '_> {
                 Some(Expectation::Bounds { at_least: bound("at_least"), at_most: bound("at_most") })
             }
             "less_than" => self.other(record, "less_than").map(Expectation::LessThan),
+            "equal_to" => {
+                let other = self.other(record, "equal_to")?;
+                let (tolerance, absolute) = self.tolerance(record, "equal_to")?;
+                Some(Expectation::EqualTo { other, tolerance: tolerance.value, absolute })
+            }
             "order" | "monotone" | "ratio" => self.trend(record, way[0]),
             _ => self.other(record, "more_than").map(Expectation::MoreThan),
         }
@@ -305,22 +322,27 @@ impl Reader<'_, '_> {
     }
 
     fn expected(&mut self, record: &Record) -> Option<Expectation> {
-        let place = record.value_place("expected");
         let expected = self.expected_number(record);
-        if !record.has("tolerance") {
-            let message = "`expected` needs `tolerance` beside it";
-            let problem = Problem::new(place, message, "`tolerance` is missing");
-            return self
-                .refuse(problem.help("0.01 is one per cent; or `absolute = true` with a value"));
-        }
-        let (expected, tolerance) = (expected?, record.number("tolerance")?);
-        let absolute = record.boolean("absolute")?;
+        let (tolerance, absolute) = self.tolerance(record, "expected")?;
+        let expected = expected?;
         if expected == 0.0 && !absolute {
             let message = "a share of 0 is 0: `tolerance` must be absolute here";
             let problem = Problem::new(tolerance.place, message, "relative to 0");
             return self.refuse(problem.help("add `absolute = true`"));
         }
         Some(Expectation::Value { expected, tolerance: tolerance.value, absolute })
+    }
+
+    /// The tolerance that belongs to the value of `key`, and whether it is absolute.
+    fn tolerance(&mut self, record: &Record, key: &str) -> Option<(Located<f64>, bool)> {
+        if !record.has("tolerance") {
+            let message = format!("`{key}` needs `tolerance` beside it");
+            let place = record.value_place(key);
+            let problem = Problem::new(place, message, "`tolerance` is missing");
+            return self
+                .refuse(problem.help("0.01 is one per cent; or `absolute = true` with a value"));
+        }
+        Some((record.number("tolerance")?, record.boolean("absolute")?))
     }
 
     /// The variant that a result is compared with, which must be another one.

@@ -162,7 +162,9 @@ impl Reader<'_, '_> {
             let message = format!("`{trend}` needs {needed} values of `{path}` or more, got {got}");
             let problem = Problem::new(place, message, "too few members");
             return self.refuse(match needed {
-                3 => problem.help("give `expected`, from which two errors are had, or more values"),
+                3 => {
+                    problem.help("give `expected`, so that two members have errors, or more values")
+                }
                 _ => problem.help("give more values, in `coarse` too if it is there"),
             });
         }
@@ -173,7 +175,7 @@ impl Reader<'_, '_> {
                 key.path.value, bad.text
             );
             return self.refuse(
-                Problem::new(place, message, "of this key there is no order")
+                Problem::new(place, message, "this key has no convergence order")
                     .help("`monotone` and `ratio` take members as they follow each other"),
             );
         }

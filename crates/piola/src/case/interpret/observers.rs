@@ -124,7 +124,7 @@ impl Reader<'_, '_> {
             }
             (both, _) => {
                 let message = match both {
-                    true => "there are `exact` and `components`, and they exclude each other",
+                    true => "`exact` and `components` cannot both be given",
                     false => "the probe needs the key `exact`, or `components` of a vector",
                 };
                 self.refuse(Problem::new(record.place, message, "what should it be?"))
@@ -155,7 +155,7 @@ impl Reader<'_, '_> {
                 let (given, missing) = if has_lower { ("min", "max") } else { ("max", "min") };
                 let message = format!("a box has two corners, and `{missing}` is not given");
                 let problem = Problem::new(record.value_place(given), message, "one corner only");
-                self.refuse(problem.help(format!("give `{missing}`, or leave both away")))
+                self.refuse(problem.help(format!("give `{missing}`, or leave out both")))
             }
         }
     }

@@ -70,7 +70,7 @@ impl Reader<'_, '_> {
             record.whole::<usize>("neighbors").map(|count| count.map(SupportSize::Neighbors));
         if let (Some(_), Some(place)) = (record.key_place("support"), record.key_place("neighbors"))
         {
-            let message = "`support` and `neighbors` both say how large supports are";
+            let message = "`support` and `neighbors` both set the size of supports";
             self.report(
                 Problem::new(place, message, "the second way to say it").help("remove one of them"),
             );
@@ -96,13 +96,13 @@ impl Reader<'_, '_> {
             )),
             (Form::Adjoint, Configuration::Updated) => Some((
                 "configuration",
-                "matrices of the moment need the strong form",
+                "matrices of the current configuration need the strong form",
                 "not with `form = \"adjoint\"`",
                 "use `configuration = \"total\"`",
             )),
             (_, Configuration::Updated) if self.dimension > 1 => Some((
                 "configuration",
-                "matrices of the moment are for one dimension",
+                "matrices of the current configuration are for one dimension",
                 "not in this dimension",
                 "use `configuration = \"total\"`",
             )),
@@ -158,6 +158,16 @@ impl Reader<'_, '_> {
                 }
                 let terms: Vec<_> = moduli.iter().copied().zip(exponents.iter().copied()).collect();
                 HyperelasticLaw::ogden(&terms, number(record, "bulk_modulus")?)
+            }
+            "hyperelastic" => {
+                let text = record.text("energy")?;
+                match self.context.energy(&text, text.place)? {
+                    Ok(energy) => Ok(HyperelasticLaw::Energy(energy)),
+                    Err(error) => {
+                        let message = format!("this cannot be an energy: {error}");
+                        return self.refuse(Problem::new(text.place, message, "no energy"));
+                    }
+                }
             }
             name => {
                 let make = match name {

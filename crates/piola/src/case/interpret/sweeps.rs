@@ -97,7 +97,7 @@ impl Reader<'_, '_> {
             Value::Integer(number) => Some(*number as f64),
             Value::Float(number) => Some(*number),
             Value::Text(text) => {
-                let scope = Scope { axes: 0, time: false, parameters: &self.context.parameters };
+                let scope = Scope::of_parameters(&self.context.parameters);
                 Expression::parse(text, &scope).ok()?.as_constant()
             }
             _ => None,

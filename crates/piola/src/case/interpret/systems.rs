@@ -193,7 +193,7 @@ impl Reader<'_, '_> {
             integrator.unwrap_or_else(|| Located::new(natural.name().to_owned(), place));
         let kind = IntegratorKind::from_name(&integrator).unwrap_or(natural);
         if kind.is_static() {
-            let message = "nothing moves with this integrator, and a fluid does";
+            let message = "nothing moves with this integrator, but a fluid does";
             let problem = Problem::new(integrator.place, message, "no motion");
             return self.refuse(problem.help("use `kick_drift_kick`, or an implicit integrator"));
         }
@@ -251,7 +251,7 @@ impl Reader<'_, '_> {
                     format!("the body `{}` belongs to a system, and is no wall", *body.name);
                 let problem = Problem::new(wall.place, message, "no meaning here");
                 self.report(
-                    problem.help("remove it: `slip` of the system says what it does to the fluid"),
+                    problem.help("remove it: `slip` of the system says how fluid moves along it"),
                 );
             }
         }

@@ -146,6 +146,15 @@ pub enum Expectation {
     LessThan(Option<Located<String>>),
     /// More than the same quantity of another variant (`None`: of the base case).
     MoreThan(Option<Located<String>>),
+    /// The same as that of another variant, up to a difference.
+    EqualTo {
+        /// The variant, `None` for the base case.
+        other: Option<Located<String>>,
+        /// Largest difference, as a share of the other value unless `absolute`.
+        tolerance: f64,
+        /// Whether the tolerance has the unit of the quantity.
+        absolute: bool,
+    },
     /// The text of `run.outcome`.
     Outcome(String),
     /// How the members of a sweep follow each other.
@@ -155,6 +164,18 @@ pub enum Expectation {
         /// The value that each should have: its error is looked at instead of the quantity.
         expected: Option<f64>,
     },
+}
+
+impl Expectation {
+    /// The variant that a result is compared with, within `Some`; the inner `None` is the base case.
+    pub fn other(&self) -> Option<Option<&Located<String>>> {
+        match self {
+            Self::LessThan(other) | Self::MoreThan(other) | Self::EqualTo { other, .. } => {
+                Some(other.as_ref())
+            }
+            _ => None,
+        }
+    }
 }
 
 /// How the numbers along a key of a sweep follow each other.

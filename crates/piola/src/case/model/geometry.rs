@@ -91,6 +91,17 @@ pub enum Shape {
         /// In 3D the ends along z in m.
         ends: Option<[f64; 2]>,
     },
+    /// What the loops of a file enclose in the plane of x and y.
+    Outline {
+        /// The file, relative paths resolved against the folder of the case file.
+        file: Located<PathBuf>,
+        /// Length of its unit in m.
+        scale: f64,
+        /// Where its origin is moved to, in m.
+        shift: [f64; 2],
+        /// In 3D the ends along z in m.
+        ends: Option<[f64; 2]>,
+    },
     /// What the triangles of a file enclose.
     Surface(Surface),
     /// A shape turned with its lattice.

@@ -10,7 +10,7 @@ use crate::case::expression::Expression;
 use crate::schemes::transport_velocity;
 
 /// What a body is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Material {
     /// Pressure linear in the volume ratio, `p = -kappa (J - 1)`, Upwind (3.11) and (3.12) corrected.
     Linear {
@@ -78,7 +78,7 @@ impl Material {
     /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
     /// Upwind (6.31) solved for kappa, with gamma = 1 for the linear law.
     pub fn bulk_modulus(&self, dimension: usize) -> f64 {
-        let (density, gamma, stiffness) = match *self {
+        let (density, gamma, stiffness) = match self.clone() {
             Self::Linear { density, stiffness } => (density, 1.0, stiffness),
             Self::GammaLaw { density, gamma, stiffness } => (density, gamma, stiffness),
             Self::WeaklyCompressible { density, stiffness, .. } => (density, 1.0, stiffness),

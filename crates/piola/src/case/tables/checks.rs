@@ -41,7 +41,7 @@ pub(super) static SWEEP: TableSpec = TableSpec {
             Kind::Name(SETTINGS),
             "",
             Default("\"always\""),
-            "at which setting there is the sweep, and what is checked of it",
+            "the settings at which the sweep exists and is checked",
         ),
         PAPER,
         LONG,
@@ -50,7 +50,7 @@ pub(super) static SWEEP: TableSpec = TableSpec {
 
 pub(super) static CHECK: TableSpec = TableSpec {
     title: "[[check]]",
-    meaning: "A quantity of a run and what is expected of it: `expected` with `tolerance`, or `at_least` and `at_most`, or `less_than` or `more_than`. A check of a sweep holds for each of its members, or says with `order`, `monotone` or `ratio` how they follow each other.",
+    meaning: "A quantity of a run and its expected value: `expected` with `tolerance`, or `at_least` and `at_most`, or `less_than`, `more_than` or `equal_to` another variant. A check of a sweep applies to each of its members, or describes with `order`, `monotone` or `ratio` a trend over them.",
     keys: &[
         key(
             "variant",
@@ -92,28 +92,35 @@ pub(super) static CHECK: TableSpec = TableSpec {
             Kind::Name(Choices::Registry(catalogue::reductions)),
             "",
             Default("\"final\""),
-            "how its history becomes one number; no meaning for run.NAME",
+            "how its history is reduced to one number; has no effect for run.NAME",
         ),
         key(
             "at",
             Kind::Number(Interval::NOT_NEGATIVE),
             "s",
             Optional,
-            "the time, or of a line the distance from its start in m, for the reduction `at`",
+            "the time, or for a line the distance from its start in m, for the reduction `at`",
         ),
         key(
             "window",
             Kind::Numbers(Length::Any, Interval::NOT_NEGATIVE),
             "s",
             Derived("all of it"),
-            "two times: only the history between them counts",
+            "two times: only the history between them is used",
+        ),
+        key(
+            "smooth",
+            Kind::Number(Interval::POSITIVE),
+            "s",
+            Optional,
+            "width of a moving mean applied before the reduction, for a force with particle-scale noise: well below a period, and several rows of the table long",
         ),
         key(
             "number",
             Kind::Integer(Interval::at_least(1.0)),
             "1",
             Default("1"),
-            "which one, counted from 1, for `extremum`, `extremum_time`, `zero_time` and `zero_place`",
+            "number of the event, counted from 1, for `extremum`, `extremum_time`, `zero_time` and `zero_place`",
         ),
         key(
             "reference",
@@ -127,14 +134,14 @@ pub(super) static CHECK: TableSpec = TableSpec {
             Kind::NumberOrText,
             "",
             Optional,
-            "the value, in the unit of the quantity, with the parameters of the variant or member; text for run.outcome",
+            "expected value, in the unit of the quantity, with the parameters of the variant or member; text for run.outcome",
         ),
         key(
             "tolerance",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Optional,
-            "largest difference as a share of `expected`",
+            "largest difference relative to `expected`, or to the value of the variant in `equal_to`",
         ),
         key(
             "absolute",
@@ -148,32 +155,39 @@ pub(super) static CHECK: TableSpec = TableSpec {
         key("less_than", Kind::Text, "", Optional, "name of a variant whose value is larger"),
         key("more_than", Kind::Text, "", Optional, "name of a variant whose value is smaller"),
         key(
+            "equal_to",
+            Kind::Text,
+            "",
+            Optional,
+            "name of a variant with the same value, within `tolerance`",
+        ),
+        key(
             "order",
             Kind::Numbers(Length::Ends, Interval::ANY),
             "1",
             Optional,
-            "bounds of the order of convergence along a sweep: the slope, by least squares, of log error against log value of the key. The error is the difference to `expected`, or the quantity itself for `curve` and `curve_rms`; without either, members are compared with the next (Richardson). Negative for keys that grow with refinement",
+            "bounds of the convergence order along a sweep: the least-squares slope of log error against log value of the key. The error is the difference from `expected`, or the quantity itself for `curve` and `curve_rms`; without either, each member is compared with the next (Richardson). Negative for keys that grow with refinement",
         ),
         key(
             "monotone",
             Kind::Name(DIRECTIONS),
             "",
             Optional,
-            "the way the quantity, or with `expected` its error, goes from member to member in the order of the values",
+            "direction in which the quantity, or with `expected` its error, changes from member to member in the order of the values",
         ),
         key(
             "ratio",
             Kind::Numbers(Length::Ends, Interval::ANY),
             "1",
             Optional,
-            "bounds of the quantity, or with `expected` of its error, over that of the member before, for all members but the first",
+            "bounds of the ratio of the quantity, or with `expected` of its error, to that of the previous member, for all members but the first",
         ),
         key(
             "against",
             Kind::Name(AGAINST),
             "",
             Optional,
-            "what the expected value is worth as evidence; with `piola verify --page` every check needs it",
+            "what kind of evidence the expected value is; required of every check with `piola verify --page`",
         ),
         key("source", Kind::Text, "", Required, "where the expected value comes from"),
         key(
@@ -181,14 +195,14 @@ pub(super) static CHECK: TableSpec = TableSpec {
             Kind::Text,
             "",
             Optional,
-            "why the tolerance or the bound is what it is: order of the method, digits printed, scatter of the experiment",
+            "reason for the value of the tolerance or bound: order of the method, digits printed, scatter of the experiment",
         ),
         key(
             "unmet",
             Kind::Text,
             "",
             Optional,
-            "why it is not met, where that is known and the expected value is right all the same. It counts as not met, but does not make `piola verify` fail; as soon as all its rows are met, it does",
+            "why the check is not met, if that is known and the expected value is nevertheless right. It counts as not met but does not make `piola verify` fail; once all its rows are met, it does",
         ),
         key(
             "when",
@@ -201,8 +215,8 @@ pub(super) static CHECK: TableSpec = TableSpec {
 };
 
 const DIRECTIONS: Choices = choices(&[
-    choice("increasing", "each is above the one before"),
-    choice("decreasing", "each is below the one before"),
+    choice("increasing", "each is above the previous one"),
+    choice("decreasing", "each is below the previous one"),
 ]);
 const SETTINGS: Choices = choices(&[
     choice("always", "at the coarse setting and in the case as it stands"),
@@ -223,7 +237,7 @@ pub(super) const PAPER: KeySpec = key(
     Kind::Boolean,
     "",
     Default("false"),
-    "whether it has the publication's particle numbers, steps and parameters as it stands",
+    "whether it already has the particle numbers, steps and parameters of the publication",
 );
 /// Whether a run is left out without `--long`.
 pub(super) const LONG: KeySpec = key(
@@ -231,5 +245,5 @@ pub(super) const LONG: KeySpec = key(
     Kind::Boolean,
     "",
     Default("false"),
-    "whether `piola verify` runs it with `--long` only, as it takes more than some minutes",
+    "whether `piola verify` runs it only with `--long`, as it takes more than some minutes",
 );

@@ -26,14 +26,14 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Name(DENSITIES),
             "",
             Default("\"continuity\""),
-            "how the density is found",
+            "how the density is computed",
         ),
         key(
             "pressure",
             Kind::Name(PRESSURES),
             "",
             Derived("`edac`; `state_equation` for solids"),
-            "how the pressure is found",
+            "how the pressure is computed",
         ),
         key(
             "pressure_diffusion",
@@ -47,14 +47,14 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Name(CORRECTIONS),
             "",
             Default("\"full\""),
-            "what makes up for particles that do not move with their velocity",
+            "correction terms for particles that do not move with their velocity",
         ),
         key(
             "shifting",
             Kind::Name(SHIFTINGS),
             "",
             Default("\"spst\""),
-            "how particles are kept evenly spread",
+            "how particles are kept evenly distributed",
         ),
         key(
             "shifting_factor",
@@ -68,14 +68,14 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Default("0.001"),
-            "where the passes of `ipst` stop, CTVF (39)",
+            "tolerance at which the passes of `ipst` stop, CTVF (39)",
         ),
         key(
             "shifting_passes",
             Kind::Integer(Interval::between(1.0, 100.0)),
             "1",
             Default("5"),
-            "most passes of `ipst` a step",
+            "maximum number of passes of `ipst` per step",
         ),
         key(
             "background_pressure",
@@ -89,7 +89,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Name(VISCOUS),
             "",
             Derived("`laplacian`; no meaning for solids"),
-            "what viscous forces are made of, which is the same but at free surfaces",
+            "form of the viscous forces, which differs only at free surfaces",
         ),
         key(
             "artificial_viscosity",
@@ -110,7 +110,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Boolean,
             "",
             Derived("false; true for solids"),
-            "whether free surfaces are looked for, near which shifting is limited, CTVF (44), (45)",
+            "whether free surfaces are detected, near which shifting is limited, CTVF (44), (45)",
         ),
         key(
             "surface_shifting",
@@ -124,14 +124,14 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Boolean,
             "",
             Derived("false; no meaning for fluids"),
-            "whether velocity gradients of solids are exact for linear fields, with the momentum equation that is conjugate to that",
+            "whether velocity gradients of solids are exact for linear fields, with the conjugate momentum equation",
         ),
         key(
             "contact",
             Kind::Name(CONTACTS),
             "",
             Derived("`repulsive`; no meaning for fluids"),
-            "what solids of different bodies do to each other",
+            "how solids of different bodies interact",
         ),
         key(
             "contact_stiffness",
@@ -145,30 +145,30 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Number(Interval::POSITIVE),
             "spacings",
             Derived("none; no meaning for fluids"),
-            "how far apart particles of one body must have begun to touch as those of two bodies do; without it a body that closes up grows together",
+            "initial distance beyond which particles of one body interact like those of two bodies; without it a body whose faces meet fuses",
         ),
         key(
             "escaped",
             Kind::Name(ESCAPES),
             "",
             Default("\"stop\""),
-            "what is done about a particle that goes through a wall or leaves the box around everything; no meaning for solids in a fluid",
+            "what happens to a particle that passes through a wall or leaves the bounding box; no meaning for solids in a fluid",
         ),
         key(
             "reserve",
             Kind::Integer(Interval::between(1.0, 1e8)),
             "",
             Derived(
-                "a twentieth of the particles of the fluid and its buffers, and no less than two buffers",
+                "a twentieth of the particles of the fluid and its buffers, at least two buffers",
             ),
-            "how many particles more than at the start there may be, where open boundaries let them in, and in each finer region of `refine`, there as many as its band has room for and a tenth of its own unless it is given",
+            "maximum number of particles in addition to the initial ones, with open boundaries and in each finer region of `refine`; its default there is the number that fits into the band of the region plus a tenth of its own",
         ),
         key(
             "refine",
             Kind::List(&super::shapes::ANY_SHAPE),
             "",
             Optional,
-            "regions in which the spacing of fluids and walls is half of that around them, theory (95): the first within the fluid, each other one within the one before; no meaning for solids",
+            "regions in which the spacing of fluids and walls is half of that around them, theory (95): the first within the fluid, each further one within the previous one; no meaning for solids",
         ),
     ],
 };
@@ -184,58 +184,61 @@ const PRESSURES: Choices = choices(&[
 const VISCOUS: Choices = choices(&[
     choice(
         "laplacian",
-        "the Laplacian of the velocity, theory (23): at a free surface half of the dissipation of waves is missing",
+        "the Laplacian of the velocity, theory (23), which lacks half of the dissipation of waves at a free surface",
     ),
-    choice("stress", "the viscous stress, theory (90), which a free surface does not bear"),
+    choice("stress", "the viscous stress, theory (90), which vanishes at a free surface"),
 ]);
 const CORRECTIONS: Choices = choices(&[
     choice("full", "all terms of CTVF (12), (19), (23)"),
-    choice("paper", "all terms, the momentum equation as CTVF (27) is printed"),
-    choice("none", "no term, the divergence is that of the velocity"),
-    choice("transport_divergence", "no term, the divergence is that of the transport velocity"),
-    choice("stress", "the stress of the momentum equation alone"),
-    choice("gtvf", "the stress, the divergence is that of the transport velocity"),
+    choice("paper", "all terms, with the momentum equation as printed in CTVF (27)"),
+    choice("none", "no terms; the divergence is that of the velocity"),
+    choice("transport_divergence", "no terms; the divergence is that of the transport velocity"),
+    choice("stress", "only the stress of the momentum equation"),
+    choice("gtvf", "the stress; the divergence is that of the transport velocity"),
 ]);
 const SHIFTINGS: Choices = choices(&[
     choice("spst", "by a velocity deviation, CTVF (35)"),
     choice("ipst", "by an iterated displacement, CTVF (37) to (41)"),
-    choice("background", "by the push of a background pressure that goes with the pressure, GTVF"),
-    choice("none", "not at all"),
+    choice("background", "by a background pressure that depends on the pressure, GTVF"),
+    choice("none", "no shifting"),
 ]);
 
 const AT_SURFACES: Choices = choices(&[
-    choice("held", "not on them, and by small supports near them, CTVF (44), (45) and algorithm 1"),
-    choice("along", "along them, by whole supports"),
+    choice(
+        "held",
+        "not shifted on them, and shifted with small supports near them, CTVF (44), (45) and algorithm 1",
+    ),
+    choice("along", "shifted along them, with full supports"),
 ]);
 const CONTACTS: Choices = choices(&[
-    choice("repulsive", "they compress each other, and push by that pressure and never pull"),
-    choice("full", "all that particles of one body do, CTVF (30): they can weld"),
+    choice("repulsive", "they compress each other and push by that pressure, but never pull"),
+    choice("full", "in every term, like particles of one body, CTVF (30): they can weld"),
     choice("penalty", "springs push where particles are closer than a spacing"),
 ]);
 
 const ESCAPES: Choices = choices(&[
-    choice("stop", "the run ends and names it"),
-    choice("remove", "it is taken out of the interaction, and counted in `step.removed`"),
+    choice("stop", "the run ends with a message that names it"),
+    choice("remove", "it no longer interacts and is counted in `step.removed`"),
 ]);
 
 pub(super) static WALL: TableSpec = TableSpec {
     title: "wall",
     meaning: "Makes a body a wall of ghost particles, for the scheme `transport_velocity`.",
     keys: &[
-        key("slip", Kind::Name(SLIPS), "", Default("\"no\""), "what viscosity does along it"),
+        key("slip", Kind::Name(SLIPS), "", Default("\"no\""), "how the fluid moves along it"),
         key(
             "sliding",
             Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
             "m/s",
             Optional,
-            "velocity of its surface where it is, as of a belt, on top of its motion",
+            "velocity at which its surface slides in place, like a belt, in addition to its motion",
         ),
     ],
 };
 
 pub(super) static OPENING: TableSpec = TableSpec {
     title: "opening",
-    meaning: "Makes a body the buffer of an open boundary, for fluids of the scheme `transport_velocity`: fluid comes in and goes out through its end towards the fluid. One of `velocity`, `flow_rate` and `pressure` is needed; sound passes through all of them. At the start it is as the first body of fluid is.",
+    meaning: "Makes a body the buffer of an open boundary, for fluids of the scheme `transport_velocity`: fluid enters and leaves through its end towards the fluid. One of `velocity`, `flow_rate` and `pressure` is required; sound passes through all of them. Its initial state is that of the first body of fluid.",
     keys: &[
         key(
             "normal",
@@ -256,47 +259,49 @@ pub(super) static OPENING: TableSpec = TableSpec {
             Kind::Expression(Variables::PositionAndTime),
             "m^D/s",
             Optional,
-            "volume that comes in, less than zero where it goes out, with the same velocity everywhere",
+            "volume flow rate into the fluid, negative for outflow, with a uniform velocity",
         ),
         key(
             "pressure",
             Kind::Expression(Variables::PositionAndTime),
             "Pa",
             Optional,
-            "mean pressure of the fluid there, where it goes out with the velocity that it has or comes in along the normal",
+            "mean pressure of the fluid there; it leaves with its own velocity or enters along the normal",
         ),
         key(
             "profile",
             Kind::Table(&PROFILE),
             "",
             Optional,
-            "a factor of `velocity` or `pressure` by the place within the opening",
+            "a factor of `velocity` or `pressure` that depends on the position within the opening",
         ),
         super::loads::HISTORY,
         key(
             "relaxation",
             Kind::Number(Interval::POSITIVE),
             "s",
-            Derived("twenty times the time of sound through all bodies"),
-            "time within which mean pressures follow; faster changes pass as sound",
+            Derived("twenty times the travel time of sound through all bodies"),
+            "time scale on which mean pressures follow; faster changes pass as sound",
         ),
     ],
 };
 
-pub(super) const SLIPS: Choices =
-    choices(&[choice("no", "the fluid sticks to it"), choice("free", "the fluid slides along it")]);
+pub(super) const SLIPS: Choices = choices(&[
+    choice("no", "no slip: the fluid sticks to it"),
+    choice("free", "free slip: the fluid slides along it"),
+]);
 
 /// A factor from a file by the place within an opening.
 static PROFILE: TableSpec = TableSpec {
     title: "profile",
-    meaning: "A factor by the distance from a point within the plane of an opening, as measured or computed elsewhere: over the height of a channel, or over the radius of a pipe.",
+    meaning: "A factor that depends on the distance from a point in the plane of an opening, as measured or computed elsewhere: over the height of a channel, or over the radius of a pipe.",
     keys: &[
         key(
             "file",
             Kind::File,
             "",
             Required,
-            "CSV file of two columns, distance in m and factor: straight lines between its rows, the first and the last value beyond them",
+            "CSV file with two columns, distance in m and factor: interpolated linearly between rows, constant beyond them",
         ),
         key(
             "from",

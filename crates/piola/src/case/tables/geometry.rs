@@ -5,13 +5,13 @@ use super::*;
 
 pub(super) static DOMAIN: TableSpec = TableSpec {
     title: "[domain]",
-    meaning: "The space that the particles live in.",
+    meaning: "The computational domain.",
     keys: &[key(
         "periodic",
         Kind::PerAxis(&Kind::Numbers(Length::Ends, Interval::ANY)),
         "m",
         Optional,
-        "per axis, the ends between which space repeats itself",
+        "for each axis, the ends between which space is periodic",
     )],
 };
 
@@ -32,38 +32,38 @@ pub(super) static BODY: TableSpec = TableSpec {
             Kind::Tagged(&SHAPE),
             "",
             Required,
-            "the space that it fills in the reference state",
+            "region that it fills in the reference state",
         ),
         key(
             "spacing",
             Kind::NumberOrPerAxis(Interval::POSITIVE),
             "m",
             Derived("needed unless a file has the particles (`points`, `mesh`)"),
-            "distance between particles, one number or one per axis; a square lattice fits the shape, with the nearest spacing of which whole numbers do. Those of a fluid and its walls may differ by 5 %",
+            "distance between particles, one number or one per axis; a square lattice is fitted to the shape with the nearest spacing that divides it into whole numbers. Those of a fluid and its walls may differ by 5 %",
         ),
-        key("lattice", Kind::Table(&LATTICE), "", Default("{}"), "how the particles are laid out"),
+        key("lattice", Kind::Table(&LATTICE), "", Default("{}"), "how the particles are arranged"),
         key(
             "material",
             Kind::Tagged(&MATERIAL),
             "",
             Derived("needed by all schemes but `interpolation`"),
-            "what it is made of",
+            "its material",
         ),
-        key("initial", Kind::Table(&INITIAL), "", Default("{}"), "its state at the start"),
-        key("wall", Kind::Table(&fluids::WALL), "", Optional, "makes it a wall"),
+        key("initial", Kind::Table(&INITIAL), "", Default("{}"), "its initial state"),
+        key("wall", Kind::Table(&fluids::WALL), "", Optional, "makes the body a wall"),
         key(
             "opening",
             Kind::Table(&fluids::OPENING),
             "",
             Optional,
-            "makes it the buffer of an open boundary, an inlet or an outlet",
+            "makes the body the buffer of an open boundary, an inlet or an outlet",
         ),
     ],
 };
 
 static LATTICE: TableSpec = TableSpec {
     title: "lattice",
-    meaning: "How the particles of a body are laid out.",
+    meaning: "How the particles of a body are arranged.",
     keys: &[
         key("kind", Kind::Name(LATTICES), "", Default("\"square\""), "arrangement"),
         key(
@@ -71,14 +71,14 @@ static LATTICE: TableSpec = TableSpec {
             Kind::Name(ORIGINS),
             "",
             Default("\"boundary\""),
-            "where the first particle lies",
+            "position of the first particle",
         ),
         key(
             "jitter",
             Kind::Number(Interval::between(0.0, 0.5)),
             "spacings",
             Default("0.0"),
-            "largest displacement of a particle at random",
+            "largest random displacement of a particle",
         ),
         key(
             "seed",
@@ -92,23 +92,23 @@ static LATTICE: TableSpec = TableSpec {
             Kind::Integer(Interval::between(0.0, 1000.0)),
             "1",
             Default("0"),
-            "steps by which particles are moved apart after that, so that the cloud is even again but no lattice; those next to the faces of the shape stay",
+            "number of relaxation steps after that, which make the cloud more uniform but not a lattice; particles next to the faces of the shape stay in place",
         ),
     ],
 };
 
 const LATTICES: Choices = choices(&[
     choice("square", "square, in 3D cubic"),
-    choice("cubic", "the name of `square` in 3D"),
+    choice("cubic", "another name of `square` in 3D"),
     choice("hexagonal", "hexagonal"),
     choice(
         "concentric",
-        "in layers that follow a round face: rings of a disc or an annulus and around the axis of a cylinder, shells of a ball; without ghosts and boundary areas",
+        "in layers that follow a round face: rings in a disc or an annulus and around the axis of a cylinder, shells in a ball; without ghosts and boundary areas",
     ),
 ]);
 const ORIGINS: Choices = choices(&[
     choice("boundary", "particles on the faces of the shape's box"),
-    choice("cells", "particles half a spacing inside of them"),
+    choice("cells", "particles half a spacing inside these faces"),
 ]);
 
 pub(super) static REGION: TaggedSpec = TaggedSpec {
@@ -119,7 +119,7 @@ pub(super) static REGION: TaggedSpec = TaggedSpec {
         KindSpec { name: "all", meaning: "every particle", dimensions: &[1, 2, 3], keys: &[] },
         KindSpec {
             name: "plane",
-            meaning: "within half a local spacing of a plane, whose normal points out of the body; of a mesh, what belongs to the boundary faces in the plane",
+            meaning: "within half a local spacing of a plane whose normal points out of the body; for a mesh, the particles of the boundary faces in the plane",
             dimensions: &[1, 2, 3],
             keys: FLAT,
         },
@@ -137,13 +137,13 @@ pub(super) static REGION: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "half_space",
-            meaning: "on the side of a plane that its normal points to",
+            meaning: "on the side of a plane to which its normal points",
             dimensions: &[1, 2, 3],
             keys: FLAT,
         },
         KindSpec {
             name: "set",
-            meaning: "a named set of a mesh: its nodes; of particles in cells, its cells and those behind its faces",
+            meaning: "a named set of a mesh: its nodes; for particles in cells, its cells and those behind its faces",
             dimensions: &[1, 2, 3],
             keys: &[key(
                 "name",
@@ -158,7 +158,7 @@ pub(super) static REGION: TaggedSpec = TaggedSpec {
 
 static MATERIAL: TaggedSpec = TaggedSpec {
     title: "material",
-    meaning: "What a body is made of.",
+    meaning: "The material of a body.",
     common: &[key(
         "density",
         Kind::Number(Interval::POSITIVE),
@@ -186,14 +186,14 @@ static MATERIAL: TaggedSpec = TaggedSpec {
                     Kind::Number(Interval::ANY),
                     "1",
                     Optional,
-                    "Poisson's ratio, above -1 and below 0.5 (0.5 itself is possible without stress across)",
+                    "Poisson's ratio, above -1 and below 0.5 (0.5 itself is allowed in plane and uniaxial stress)",
                 ),
                 key(
                     "plane",
                     Kind::Name(PLANES),
                     "",
                     Derived("`stress`; no meaning in 3D"),
-                    "what the directions do that the case does not have",
+                    "assumption for the directions that are not resolved",
                 ),
             ],
         },
@@ -229,6 +229,7 @@ static MATERIAL: TaggedSpec = TaggedSpec {
         solids::NEO_HOOKEAN_LOGARITHMIC,
         solids::MOONEY_RIVLIN,
         solids::OGDEN,
+        solids::HYPERELASTIC,
         solids::RIGID,
         plastic::HYPOELASTIC,
     ],
@@ -239,7 +240,7 @@ const PRESSURE_MODULUS: KeySpec = key(
     Kind::Number(Interval::POSITIVE),
     "Pa",
     Optional,
-    "the modulus kappa of the pressure law",
+    "modulus kappa of the pressure law",
 );
 const WAVE_SPEED: KeySpec = key(
     "wave_speed",
@@ -250,32 +251,32 @@ const WAVE_SPEED: KeySpec = key(
 );
 
 pub(super) const PLANES: Choices =
-    choices(&[choice("stress", "no stress there"), choice("strain", "no strain there")]);
+    choices(&[choice("stress", "zero stress in them"), choice("strain", "zero strain in them")]);
 
 static INITIAL: TableSpec = TableSpec {
     title: "initial",
-    meaning: "State of a body at the start, as expressions of the reference position.",
+    meaning: "Initial state of a body, as expressions of the reference position.",
     keys: &[
         key(
             "velocity",
             Kind::Expressions(Variables::Position),
             "m/s",
             Derived("0"),
-            "one expression a component",
+            "one expression per component",
         ),
         key(
             "displacement",
             Kind::Expressions(Variables::Position),
             "m",
             Derived("0"),
-            "one expression a component; for the scheme `total_lagrangian`",
+            "one expression per component; for the scheme `total_lagrangian`",
         ),
         key(
             "pressure",
             Kind::Expression(Variables::Position),
             "Pa",
             Default("0.0"),
-            "pressure that the body starts with, positive in compression",
+            "initial pressure, positive in compression",
         ),
     ],
 };

@@ -4,7 +4,7 @@ use super::*;
 
 pub(super) const INTERPOLATION: KindSpec = KindSpec {
     name: "interpolation",
-    meaning: "no motion: what SPH sums make of a known function and of its gradients on the particles of a body, which needs no material, in a case that needs no `time`",
+    meaning: "no motion: the SPH approximation of a known function and of its gradients on the particles of a body; needs neither a material nor `time`",
     dimensions: &[1, 2, 3],
     keys: &[
         key(
@@ -12,7 +12,7 @@ pub(super) const INTERPOLATION: KindSpec = KindSpec {
             Kind::Expression(Variables::Position),
             "1",
             Required,
-            "the function, whose exact gradient is taken of the expression",
+            "the function; its exact gradient is derived from the expression",
         ),
         key(
             "kernel",
@@ -33,21 +33,15 @@ pub(super) const INTERPOLATION: KindSpec = KindSpec {
             Kind::Name(super::WEIGHTS),
             "",
             Default("\"lattice\""),
-            "what is summed under the kernel",
+            "weight of a particle in kernel sums",
         ),
-        key(
-            "gradient",
-            Kind::Name(GRADIENTS),
-            "",
-            Default("\"plain\""),
-            "what kernel gradients are made into",
-        ),
+        key("gradient", Kind::Name(GRADIENTS), "", Default("\"plain\""), "form of the gradient"),
         key(
             "boundary",
             Kind::Name(BOUNDARIES),
             "",
             Default("\"continued\""),
-            "what the ghosts carry that continue the lattice around the body and into its holes",
+            "values of the ghosts that continue the lattice around the body and into its holes",
         ),
     ],
 };
@@ -59,14 +53,14 @@ const GRADIENTS: Choices = choices(&[
 ]);
 
 const BOUNDARIES: Choices = choices(&[
-    choice("none", "there are no ghosts: sums end where the body does"),
+    choice("none", "no ghosts: sums end at the boundary of the body"),
     choice("continued", "the function"),
     choice(
         "value",
-        "values with which sums on the boundary are the function: Elastodynamics (2.42) in 1D, (2.46) otherwise",
+        "values for which sums on the boundary equal the function: Elastodynamics (2.42) in 1D, (2.46) otherwise",
     ),
     choice(
         "slope",
-        "values with which sums for gradients on the boundary are the gradient: Elastodynamics (2.45) in 1D; in 2D and 3D that is so of the gradient as it is interpolated once more, which is then what the field `gradient` has",
+        "values for which gradient sums on the boundary equal the gradient: Elastodynamics (2.45) in 1D; in 2D and 3D this holds for the gradient interpolated once more, which is then the field `gradient`",
     ),
 ]);

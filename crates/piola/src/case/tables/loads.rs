@@ -8,7 +8,7 @@ pub(super) const HISTORY: KeySpec = key(
     Kind::File,
     "",
     Optional,
-    "CSV file of two columns, time in s (in statics the load factor) and a factor: all expressions here are multiplied with it; straight lines between its rows, the first and the last value beyond them",
+    "CSV file with two columns, time in s (in statics the load factor) and a factor by which all expressions here are multiplied; interpolated linearly between rows, constant beyond them",
 );
 
 pub(super) static LOAD: TaggedSpec = TaggedSpec {
@@ -21,7 +21,7 @@ pub(super) static LOAD: TaggedSpec = TaggedSpec {
             Kind::Text,
             "",
             Derived("all bodies; a traction or pressure needs it if there are several"),
-            "name of the body that it acts on",
+            "name of the body on which it acts",
         ),
         HISTORY,
     ],
@@ -35,7 +35,7 @@ pub(super) static LOAD: TaggedSpec = TaggedSpec {
                 Kind::Expressions(Variables::PositionAndTime),
                 "m/s^2",
                 Required,
-                "one expression a component, of time and the reference position, with `transport_velocity` the current one",
+                "one expression per component, of time and the reference position (the current one with `transport_velocity`)",
             )],
         },
         KindSpec {
@@ -48,20 +48,20 @@ pub(super) static LOAD: TaggedSpec = TaggedSpec {
                     Kind::Tagged(&geometry::REGION),
                     "",
                     Required,
-                    "the particles of the surface that it acts on",
+                    "particles of the surface on which it acts",
                 ),
                 key(
                     "traction",
                     Kind::Expressions(Variables::PositionAndTime),
                     "Pa",
                     Required,
-                    "one expression a component, of the reference position and time",
+                    "one expression per component, of the reference position and time",
                 ),
             ],
         },
         KindSpec {
             name: "pressure",
-            meaning: "a pressure that follows the surface, along its normal and on its area of the moment; for the scheme `total_lagrangian` with `form = \"adjoint\"`",
+            meaning: "a follower pressure, along the current normal and on the current area of the surface; for the scheme `total_lagrangian` with `form = \"adjoint\"`",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -69,7 +69,7 @@ pub(super) static LOAD: TaggedSpec = TaggedSpec {
                     Kind::Tagged(&geometry::REGION),
                     "",
                     Required,
-                    "the surface that it acts on: in a plane the side that its normal points to, in other regions all sides",
+                    "surface on which it acts: for a plane the side to which its normal points, for other regions all sides",
                 ),
                 key(
                     "pressure",
@@ -82,7 +82,7 @@ pub(super) static LOAD: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "spring",
-            meaning: "a spring with a damper from the centre of mass of the particles to a point of space, each of which gets the share of its mass; for the scheme `total_lagrangian` in explicit steps",
+            meaning: "a spring with a damper between the centre of mass of the particles and a fixed point; the force is shared among the particles by mass; for the scheme `total_lagrangian` with explicit steps",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -90,35 +90,35 @@ pub(super) static LOAD: TaggedSpec = TaggedSpec {
                     Kind::Tagged(&geometry::REGION),
                     "",
                     Default("{ kind = \"all\" }"),
-                    "the particles that it is tied to",
+                    "particles to which it is attached",
                 ),
                 key(
                     "to",
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Required,
-                    "the point that it is tied to",
+                    "fixed point to which it is attached",
                 ),
                 key(
                     "stiffness",
                     Kind::Number(Interval::NOT_NEGATIVE),
                     "N/m",
                     Default("0.0"),
-                    "of the spring, for 1 m in missing dimensions",
+                    "stiffness of the spring, for 1 m in missing dimensions",
                 ),
                 key(
                     "damping",
                     Kind::Number(Interval::NOT_NEGATIVE),
                     "N s/m",
                     Default("0.0"),
-                    "of the damper",
+                    "coefficient of the damper",
                 ),
                 key(
                     "length",
                     Kind::Number(Interval::NOT_NEGATIVE),
                     "m",
-                    Derived("that of the start"),
-                    "its length without force",
+                    Derived("the initial distance"),
+                    "length at zero force",
                 ),
             ],
         },
@@ -127,7 +127,7 @@ pub(super) static LOAD: TaggedSpec = TaggedSpec {
 
 pub(super) static BOUNDARY: TableSpec = TableSpec {
     title: "[[boundary]]",
-    meaning: "Prescribed velocities, in statics displacements, of a selection of particles.",
+    meaning: "Prescribed velocities (displacements in statics) of selected particles.",
     keys: &[
         key("name", Kind::Text, "", Required, "unique name"),
         key("body", Kind::Text, "", Derived("all bodies"), "name of the body"),
@@ -144,63 +144,63 @@ pub(super) static BOUNDARY: TableSpec = TableSpec {
             Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
             "m/s",
             Optional,
-            "the components that are prescribed, as expressions of the reference position and time",
+            "prescribed components, as expressions of the reference position and time",
         ),
         key(
             "wave_maker",
             Kind::Tagged(&waves::WAVE_MAKER),
             "",
             Optional,
-            "of a wall of a fluid, instead of `velocity`: a piston that makes waves",
+            "for a wall of a fluid, instead of `velocity`: a piston that makes waves",
         ),
         key(
             "angular_velocity",
             Kind::Table(&TURN),
             "rad/s",
             Optional,
-            "of a rigid body: the components that are prescribed; `velocity` is then that of its centre of mass, or of `pivot`",
+            "for a rigid body: prescribed components; `velocity` is then that of its centre of mass, or of `pivot`",
         ),
         key(
             "pivot",
             Kind::Numbers(Length::Dimension, Interval::ANY),
             "m",
             Optional,
-            "of a rigid body: a point that goes with it, in it or not, of which `velocity` prescribes all components: a hinge where they are 0",
+            "for a rigid body: a point that moves with it, inside or outside, all of whose components are prescribed by `velocity`; a hinge if they are 0",
         ),
         key(
             "mirror",
             Kind::Boolean,
             "",
             Optional,
-            "with the scheme `total_lagrangian`: whether mirror images continue the body beyond the plane that `where` selects, across an axis, with the velocity across prescribed, in statics the displacement, the same all over it: a symmetry plane or a roller",
+            "with the scheme `total_lagrangian`: whether mirror images continue the body beyond the plane selected by `where`, normal to an axis, with a uniform prescribed normal velocity (displacement in statics): a symmetry plane or a roller",
         ),
         key(
             "displacement",
             Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
             "m",
             Optional,
-            "with the integrators `static` and `arc_length`: the components that are prescribed, as expressions of the reference position and the load factor `t`",
+            "with the integrators `static` and `arc_length`: prescribed components, as expressions of the reference position and the load factor `t`",
         ),
         key(
             "roller",
             Kind::Table(&ROLLER),
             "",
             Optional,
-            "with the integrators `static` and `arc_length`: a plane that the particles can only move along",
+            "with the integrators `static` and `arc_length`: a plane along which the particles can move",
         ),
         key(
             "tied",
             Kind::List(&Kind::Name(AXES)),
             "",
             Optional,
-            "with the integrators `static` and `arc_length`: components of the displacement that all particles have in common, like those of the face of a rigid platen",
+            "with the integrators `static` and `arc_length`: components of the displacement shared by all particles, like those of the face of a rigid platen",
         ),
     ],
 };
 
 static TURN: TableSpec = TableSpec {
     title: "angular_velocity",
-    meaning: "Components of an angular velocity that are prescribed, as expressions of time.",
+    meaning: "Prescribed components of an angular velocity, as expressions of time.",
     keys: &[turn("x"), turn("y"), turn("z")],
 };
 
@@ -210,7 +210,7 @@ const fn turn(axis: &'static str) -> KeySpec {
         Kind::Expression(Variables::PositionAndTime),
         "rad/s",
         Optional,
-        "about this axis; in 2D there is `z` alone",
+        "about this axis; in 2D only `z`",
     )
 }
 

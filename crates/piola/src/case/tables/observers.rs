@@ -7,12 +7,12 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
     meaning: "Something recorded against time in the tables, or along a line.",
     common: &[
         key("name", Kind::Text, "", Required, "unique name, the first part of its columns"),
-        key("body", Kind::Text, "", Derived("all bodies"), "name of the body that it looks at"),
+        key("body", Kind::Text, "", Derived("all bodies"), "name of the body that it observes"),
     ],
     kinds: &[
         KindSpec {
             name: "particle",
-            meaning: "the particle that is nearest to a point in the reference state",
+            meaning: "the particle nearest to a point in the reference state",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -27,7 +27,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Optional,
-                    "another point of the same body: what the particle there has is subtracted, as for the deflection of a part whose supports move",
+                    "another point of the same body: the values of the particle there are subtracted, for example for the deflection of a part whose supports move",
                 ),
                 key(
                     "fields",
@@ -48,9 +48,9 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Text,
                     "",
                     Required,
-                    "a field with one number a particle, or FIELD.COMPONENT, or FIELD.magnitude",
+                    "a scalar field, or FIELD.COMPONENT, or FIELD.magnitude",
                 ),
-                key("of", Kind::Name(EXTREMA), "", Required, "which one"),
+                key("of", Kind::Name(EXTREMA), "", Required, "largest or smallest"),
                 key(
                     "where",
                     Kind::Tagged(&super::geometry::REGION),
@@ -63,8 +63,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Optional,
-                    "lower corner of a box: of these particles only those that are in it at the time \
-                     count, and where none is there is no value",
+                    "lower corner of a box: only particles that are currently in it count; if there                      are none there is no value",
                 ),
                 key(
                     "max",
@@ -103,21 +102,21 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Text,
                     "",
                     Default("\"force\""),
-                    "a field of forces: `force`, or a part of it: `pressure_force`, `viscous_force`, `barrier_force`; of solids `contact_force`, what they touch",
+                    "a field of forces: `force`, or a part of it: `pressure_force`, `viscous_force`, `barrier_force`; for solids `contact_force`, the force of contact",
                 ),
                 key(
                     "about",
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Derived("the origin"),
-                    "the point of space that the moment is about",
+                    "point about which the moment is taken",
                 ),
                 WHERE,
             ],
         },
         KindSpec {
             name: "sensor",
-            meaning: "the pressure that a round sensor in a wall has: the force of the fluid on the patch of the wall over its area; column `NAME.pressure`. In a wall thinner than a support, what is on its far side counts too",
+            meaning: "the pressure on a round sensor in a wall: the force of the fluid on the patch of the wall over its area; column `NAME.pressure`. In a wall thinner than a support, fluid on its far side counts too",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -125,27 +124,27 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Required,
-                    "its middle, on the face of the wall",
+                    "centre, on the face of the wall",
                 ),
                 key(
                     "normal",
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "",
                     Required,
-                    "the normal of the face there, towards the fluid, of any length",
+                    "normal of the face there, towards the fluid, of any length",
                 ),
                 key(
                     "radius",
                     Kind::Number(Interval::POSITIVE),
                     "m",
                     Required,
-                    "its radius; of its edge, a spacing wide, a part counts",
+                    "radius; within its edge, a spacing wide, forces count partly",
                 ),
             ],
         },
         KindSpec {
             name: "gauge",
-            meaning: "how far a fluid reaches along a line that is a support or more away from walls, like the free surface over the floor: column `NAME.elevation`, the distance from `from`",
+            meaning: "how far a fluid extends along a line at least a support away from walls, for example the height of the free surface above the floor: column `NAME.elevation`, the distance from `from`",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -160,13 +159,13 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Required,
-                    "where it ends, above all that may come",
+                    "where it ends, above any expected level",
                 ),
             ],
         },
         KindSpec {
             name: "flux",
-            meaning: "the mass of a fluid that goes through a plane in a second: column `NAME.flux`",
+            meaning: "the mass flow rate of a fluid through a plane: column `NAME.flux`",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -181,14 +180,14 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "1",
                     Required,
-                    "its normal, of any length: the way in which the flux is positive",
+                    "its normal, of any length: the direction of positive flux",
                 ),
                 key(
                     "min",
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Optional,
-                    "lower corner of a box outside of which nothing counts",
+                    "lower corner of a box outside which nothing counts",
                 ),
                 key(
                     "max",
@@ -201,7 +200,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "opening",
-            meaning: "what has gone through an open boundary of a fluid, which `body` names: the mass that has come in and gone out, columns `NAME.entered` and `NAME.left`, and the energy and momentum of particles that have come in less those of particles that have gone out, without what pressure does to them there, `NAME.energy`, `NAME.linear.x` and on",
+            meaning: "what has passed through an open boundary of a fluid, named by `body`: the mass that has entered and left, columns `NAME.entered` and `NAME.left`, and the energy and momentum of particles that have entered minus those of particles that have left, without the work and impulse of the pressure there, `NAME.energy`, `NAME.linear.x` and so on",
             dimensions: &[1, 2, 3],
             keys: &[],
         },
@@ -222,7 +221,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Optional,
-                    "another point: what is there is subtracted, as for the pressure between front and back of a body in a stream",
+                    "another point: the values there are subtracted, for example for the pressure difference between front and back of a body in a stream",
                 ),
                 key(
                     "fields",
@@ -244,12 +243,12 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                 Kind::Number(Interval::POSITIVE),
                 "s",
                 Required,
-                "length of the step that is tested",
+                "length of the tested step",
             )],
         },
         KindSpec {
             name: "line",
-            meaning: "a profile: fields interpolated at places along a straight line, against the distance from its start; each in a file of its own, the last one for plots and checks",
+            meaning: "a profile: fields interpolated at points along a straight line, against the distance from its start; each profile is a separate file, and plots and checks use the last one",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -271,7 +270,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Integer(Interval::between(2.0, 10_000.0)),
                     "1",
                     Default("101"),
-                    "number of places, at the same distance from each other, both ends among them",
+                    "number of equidistant points, including both ends",
                 ),
                 key(
                     "fields",
@@ -291,7 +290,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "error",
-            meaning: "the sum of the differences of a field from what it should be, over the sum of what it should be",
+            meaning: "the sum of the differences of a field from its exact value, over the sum of the exact value",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -299,28 +298,28 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Text,
                     "",
                     Required,
-                    "a field with one number a particle, or FIELD.COMPONENT, or FIELD.magnitude; with `components` a vector field",
+                    "a scalar field, or FIELD.COMPONENT, or FIELD.magnitude; with `components` a vector field",
                 ),
                 key(
                     "exact",
                     Kind::Expression(Variables::PositionAndTime),
                     "",
                     Derived("required unless there are `components`"),
-                    "what it should be, of the current position and time",
+                    "exact value, as an expression of the current position and time",
                 ),
                 key(
                     "components",
                     Kind::PerAxis(&Kind::Expression(Variables::PositionAndTime)),
                     "",
                     Derived("none"),
-                    "what components of a vector should be, instead of `exact`; those that are left away do not count",
+                    "exact values of the components of a vector, instead of `exact`; omitted components do not count",
                 ),
                 key(
                     "without_mean",
                     Kind::Boolean,
                     "",
                     Default("false"),
-                    "whether the means of both are taken away first, as of a pressure without a zero",
+                    "whether the means of both are subtracted first, for example for a pressure without a reference level",
                 ),
                 key(
                     "norm",
@@ -384,7 +383,7 @@ pub(super) static OUTPUT: TableSpec = TableSpec {
             Kind::Name(COMPRESSIONS),
             "",
             Default("\"zlib\""),
-            "how the particle files are packed",
+            "how the particle files are compressed",
         ),
         key(
             "report",
@@ -396,18 +395,19 @@ pub(super) static OUTPUT: TableSpec = TableSpec {
     ],
 };
 
-const COMPRESSIONS: Choices = choices(&[choice("zlib", "with zlib"), choice("none", "not at all")]);
+const COMPRESSIONS: Choices =
+    choices(&[choice("zlib", "by zlib"), choice("none", "no compression")]);
 
 pub(super) static PICTURE: TableSpec = TableSpec {
     title: "[[picture]]",
-    meaning: "A picture of the particles coloured by a field. In 3D walls of ghost particles are left out, which would hide what is between them.",
+    meaning: "A picture of the particles coloured by a field. In 3D walls of ghost particles are left out, as they would hide what is between them.",
     keys: &[
         key(
             "field",
             Kind::Text,
             "",
             Required,
-            "a field with one number a particle, or FIELD.COMPONENT, or FIELD.magnitude",
+            "a scalar field, or FIELD.COMPONENT, or FIELD.magnitude",
         ),
         key(
             "times",
@@ -421,7 +421,7 @@ pub(super) static PICTURE: TableSpec = TableSpec {
             Kind::Numbers(Length::Ends, Interval::ANY),
             "",
             Derived("the range of the data"),
-            "ends of the colour bar, in the unit of the field",
+            "limits of the colour bar, in the unit of the field",
         ),
     ],
 };
@@ -443,7 +443,7 @@ pub(super) static PLOT: TableSpec = TableSpec {
             Kind::Boolean,
             "",
             Default("false"),
-            "of one column of a line: a map of all its profiles in colours, over place and time",
+            "for one column of a line: a colour map of all its profiles, over position and time",
         ),
     ],
 };

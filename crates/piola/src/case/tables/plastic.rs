@@ -5,7 +5,7 @@ use super::*;
 
 pub(super) const HYPOELASTIC: KindSpec = KindSpec {
     name: "hypoelastic",
-    meaning: "a solid whose deviatoric stress is integrated in time by Jaumann's rate, CTVF (4), in 2D in plane strain; for the scheme `transport_velocity`; stiffness as for `linear_elastic`",
+    meaning: "a solid whose deviatoric stress is integrated in time with the Jaumann rate, CTVF (4), in 2D in plane strain; for the scheme `transport_velocity`; stiffness as for `linear_elastic`",
     dimensions: &[1, 2, 3],
     keys: &[
         YOUNG_MODULUS,
@@ -18,28 +18,28 @@ pub(super) const HYPOELASTIC: KindSpec = KindSpec {
             Kind::Tagged(&PRESSURE_LAW),
             "",
             Derived("`{ kind = \"linear\" }`"),
-            "how the pressure follows the density",
+            "how the pressure depends on the density",
         ),
         key(
             "spall_strength",
             Kind::Number(Interval::POSITIVE),
             "Pa",
-            Derived("none: it never tears"),
-            "tension below which the pressure does not fall; where it would, the solid opens",
+            Derived("none: it never fails in tension"),
+            "limit of the tension, below which the pressure does not fall; where it would, the solid opens",
         ),
         key(
             "strength",
             Kind::Tagged(&STRENGTH),
             "",
             Derived("`{ kind = \"elastic\" }`"),
-            "when it flows plastically",
+            "flow stress",
         ),
         key(
             "temperature",
             Kind::Number(Interval::POSITIVE),
             "K",
             Default("293.15"),
-            "temperature at the start",
+            "initial temperature",
         ),
         key(
             "specific_heat",
@@ -53,7 +53,7 @@ pub(super) const HYPOELASTIC: KindSpec = KindSpec {
             Kind::Number(Interval::between(0.0, 1.0)),
             "1",
             Default("0.9"),
-            "share of the plastic work that becomes heat",
+            "fraction of the plastic work that becomes heat",
         ),
     ],
 };
@@ -83,7 +83,7 @@ static PRESSURE_LAW: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "mie_grueneisen",
-            meaning: "about the Hugoniot of shocks U = c + S u, with the internal energy",
+            meaning: "Mie-Grueneisen, about the shock Hugoniot U = c + S u, with the internal energy",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -91,14 +91,14 @@ static PRESSURE_LAW: TaggedSpec = TaggedSpec {
                     Kind::Number(Interval::NOT_NEGATIVE),
                     "1",
                     Required,
-                    "slope S of the speed of shocks over that of particles",
+                    "slope S of the shock speed over the particle speed",
                 ),
                 key(
                     "gruneisen",
                     Kind::Number(Interval::NOT_NEGATIVE),
                     "1",
                     Required,
-                    "Grueneisen's Gamma at rest",
+                    "Grueneisen coefficient Gamma at rest",
                 ),
             ],
         },
@@ -107,13 +107,13 @@ static PRESSURE_LAW: TaggedSpec = TaggedSpec {
 
 static STRENGTH: TaggedSpec = TaggedSpec {
     title: "strength",
-    meaning: "When a solid flows.",
+    meaning: "The flow stress of a solid.",
     common: &[],
     kinds: &[
-        KindSpec { name: "elastic", meaning: "never", dimensions: &[1, 2, 3], keys: &[] },
+        KindSpec { name: "elastic", meaning: "no plastic flow", dimensions: &[1, 2, 3], keys: &[] },
         KindSpec {
             name: "linear",
-            meaning: "at `yield_stress` plus `hardening` times the plastic strain",
+            meaning: "`yield_stress` plus `hardening` times the plastic strain",
             dimensions: &[1, 2, 3],
             keys: &[
                 YIELD_STRESS,
@@ -148,7 +148,7 @@ static STRENGTH: TaggedSpec = TaggedSpec {
                     Kind::Number(Interval::POSITIVE),
                     "K",
                     Derived("no effect of the temperature"),
-                    "temperature at which no strength is left; `temperature` of the material is where it is whole",
+                    "temperature at which the strength vanishes; at the `temperature` of the material the strength is full",
                 ),
             ],
         },

@@ -5,6 +5,21 @@ use super::*;
 /// A shape, as an entry of a list.
 pub(super) static ANY_SHAPE: Kind = Kind::Tagged(&SHAPE);
 
+const ENDS_ALONG_Z: KeySpec = key(
+    "z",
+    Kind::Numbers(Length::Ends, Interval::ANY),
+    "m",
+    Derived("needed in 3D"),
+    "the ends along z",
+);
+const SCALE: KeySpec = key(
+    "scale",
+    Kind::Number(Interval::POSITIVE),
+    "m",
+    Default("1.0"),
+    "length of a unit of the file: 0.001 for millimetres",
+);
+
 pub(super) static SHAPE: TaggedSpec = TaggedSpec {
     title: "shape",
     meaning: "A region that particles fill.",
@@ -24,7 +39,7 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "annulus",
-            meaning: "what lies between two radii: a ring in 2D, a hollow ball in 3D",
+            meaning: "the region between two radii: a ring in 2D, a hollow ball in 3D",
             dimensions: &[2, 3],
             keys: &[
                 key("center", POINT, "m", Required, "centre"),
@@ -52,36 +67,41 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
                     Kind::List(&Kind::Numbers(Length::Pair, Interval::ANY)),
                     "m",
                     Required,
-                    "x and y of the corners, one after the other, either way round",
+                    "x and y of the corners in order, clockwise or counter-clockwise",
                 ),
+                ENDS_ALONG_Z,
+            ],
+        },
+        KindSpec {
+            name: "outline",
+            meaning: "the region enclosed by the closed loops of a drawing: the paths and polygons of an SVG, whose y axis is turned upwards, or a CSV file with the columns x and y, and `loop` where there are several; in 3D from one `z` to another. A loop inside another one is a hole",
+            dimensions: &[2, 3],
+            keys: &[
+                FILE,
+                SCALE,
                 key(
-                    "z",
-                    Kind::Numbers(Length::Ends, Interval::ANY),
+                    "move",
+                    Kind::Numbers(Length::Pair, Interval::ANY),
                     "m",
-                    Derived("needed in 3D"),
-                    "the ends along z",
+                    Derived("the origin"),
+                    "position to which the origin of the file is then moved",
                 ),
+                ENDS_ALONG_Z,
             ],
         },
         KindSpec {
             name: "surface",
-            meaning: "what a closed surface of triangles encloses: STL, binary or ASCII, OBJ or PLY. Small holes and facets that are the other way round or there twice do no harm, and are told",
+            meaning: "the region enclosed by a closed triangulated surface: STL, binary or ASCII, OBJ or PLY. Small holes and flipped or duplicate facets do no harm and are reported",
             dimensions: &[3],
             keys: &[
                 FILE,
-                key(
-                    "scale",
-                    Kind::Number(Interval::POSITIVE),
-                    "m",
-                    Default("1.0"),
-                    "length of a unit of the file: 0.001 where it is a millimetre",
-                ),
+                SCALE,
                 key(
                     "angle",
                     Kind::Number(Interval::ANY),
                     "rad",
                     Default("0.0"),
-                    "by which it is turned about the origin of the file after that, counter-clockwise as seen from the tip of the axis",
+                    "angle by which it is then rotated about the origin of the file, counter-clockwise as seen from the tip of the axis",
                 ),
                 key(
                     "axis",
@@ -95,13 +115,13 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
                     POINT,
                     "m",
                     Derived("the origin"),
-                    "where the origin of the file comes to be",
+                    "position to which the origin of the file is then moved",
                 ),
             ],
         },
         KindSpec {
             name: "turned",
-            meaning: "another shape, turned; if it is the whole of a body, together with the lattice of the particles",
+            meaning: "another shape, rotated; if it is the whole shape of a body, together with the lattice of the particles",
             dimensions: &[2, 3],
             keys: &[
                 key("of", Kind::Tagged(&SHAPE), "", Required, "the shape"),
@@ -110,9 +130,9 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
                     Kind::Number(Interval::ANY),
                     "rad",
                     Required,
-                    "by which it is turned, counter-clockwise as seen from the tip of the axis: `10 * pi / 180` is 10 degrees",
+                    "angle by which it is rotated, counter-clockwise as seen from the tip of the axis: `10 * pi / 180` is 10 degrees",
                 ),
-                key("about", POINT, "m", Derived("the origin"), "a point that stays where it is"),
+                key("about", POINT, "m", Derived("the origin"), "a fixed point of the rotation"),
                 key(
                     "axis",
                     Kind::Numbers(Length::Dimension, Interval::ANY),
@@ -124,19 +144,19 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "union",
-            meaning: "what lies in any of some shapes",
+            meaning: "points in any of several shapes",
             dimensions: &[1, 2, 3],
             keys: &[key("of", Kind::List(&Kind::Tagged(&SHAPE)), "", Required, "the shapes")],
         },
         KindSpec {
             name: "intersection",
-            meaning: "what lies in all of some shapes",
+            meaning: "points in all of several shapes",
             dimensions: &[1, 2, 3],
             keys: &[key("of", Kind::List(&Kind::Tagged(&SHAPE)), "", Required, "the shapes")],
         },
         KindSpec {
             name: "difference",
-            meaning: "what lies in one shape and in none of some others",
+            meaning: "points in one shape and in none of several others",
             dimensions: &[1, 2, 3],
             keys: &[
                 key("from", Kind::Tagged(&SHAPE), "", Required, "the shape to cut from"),
@@ -157,7 +177,7 @@ pub(super) static SHAPE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "mesh",
-            meaning: "the nodes or the cells of a mesh of finite elements, with its boundary: Gmsh (`.msh` 4.1 or 2.2, ASCII) or an unstructured grid of VTK (`.vtk` ASCII, `.vtu`) of straight-edged cells",
+            meaning: "the nodes or the cells of a finite-element mesh, with its boundary: Gmsh (`.msh` 4.1 or 2.2, ASCII) or an unstructured VTK grid (`.vtk` ASCII, `.vtu`) of straight-edged cells",
             dimensions: &[1, 2, 3],
             keys: MESH,
         },
@@ -170,42 +190,45 @@ const FILE: KeySpec =
 
 const MESH: &[KeySpec] = &[
     FILE,
-    key("points", Kind::Name(CLOUD_POINTS), "", Default("\"nodes\""), "where particles are"),
+    key("points", Kind::Name(CLOUD_POINTS), "", Default("\"nodes\""), "positions of the particles"),
     key(
         "volumes",
         Kind::Name(CLOUD_VOLUMES),
         "",
         Default("\"cells\""),
-        "what volumes they have, which always sum to that of the cells",
+        "volumes of the particles, which always sum to that of the cells",
     ),
     key(
         "array",
         Kind::Text,
         "",
         Optional,
-        "with `volumes = \"array\"`, the name of the array of nodes or of cells that has them, in m^D",
+        "with `volumes = \"array\"`, the name of the node or cell array that contains them, in m^D",
     ),
     key(
         "spacings",
         Kind::Text,
         "",
-        Derived("the edges of cubes of the kernel weights"),
-        "the name of the array of nodes or of cells that has the spacings of particles in m, in which supports are measured",
+        Derived("the edges of cubes with the volume of the kernel weights"),
+        "the name of the node or cell array that contains the particle spacings in m, the unit of supports",
     ),
     key(
         "part",
         Kind::Text,
         "",
         Derived("all cells of the case's dimension"),
-        "the named set of cells that is the body",
+        "named set of cells that forms the body",
     ),
 ];
 const CLOUD_POINTS: Choices =
     choices(&[choice("nodes", "at the nodes"), choice("cells", "at the centroids of the cells")]);
 const CLOUD_VOLUMES: Choices = choices(&[
-    choice("cells", "the cell; a node has an equal share of each of its cells"),
-    choice("nearest", "a node has what of its cells is nearest to it, as in a Voronoi diagram"),
-    choice("array", "the numbers of an array of the file"),
+    choice("cells", "that of the cell; a node has an equal share of each of its cells"),
+    choice(
+        "nearest",
+        "a node has the part of its cells that is nearest to it, as in a Voronoi diagram",
+    ),
+    choice("array", "values of an array of the file"),
 ]);
 
 const POINT: Kind = Kind::Numbers(Length::Dimension, Interval::ANY);

@@ -16,7 +16,7 @@ struct Usual {
 
 pub(super) const TOTAL_LAGRANGIAN: KindSpec = KindSpec {
     name: "total_lagrangian",
-    meaning: "elastic solids whose particles keep their neighbours, of parts to choose; `dual_support` and `elastodynamics` are two choices of the same parts",
+    meaning: "elastic solids whose particles keep their neighbours, with selectable parts; `dual_support` and `elastodynamics` are presets of the same parts",
     dimensions: &[1, 2, 3],
     keys: &keys(Usual {
         kernel: "\"cubic_spline\"",
@@ -31,7 +31,7 @@ pub(super) const TOTAL_LAGRANGIAN: KindSpec = KindSpec {
 
 pub(super) const DUAL_SUPPORT: KindSpec = KindSpec {
     name: "dual_support",
-    meaning: "`total_lagrangian` with the choices of Dual-support: elastic solids from one discrete energy, with supports of any size",
+    meaning: "`total_lagrangian` with the defaults of Dual-support: elastic solids from one discrete energy, with supports of any size",
     dimensions: &[1, 2, 3],
     keys: &keys(Usual {
         kernel: "\"cubic_spline\"",
@@ -46,7 +46,7 @@ pub(super) const DUAL_SUPPORT: KindSpec = KindSpec {
 
 pub(super) const ELASTODYNAMICS: KindSpec = KindSpec {
     name: "elastodynamics",
-    meaning: "`total_lagrangian` with the choices of Elastodynamics: elastic solids on sparse SPH matrices, for waves and large strain; bodies whose particles share places are joined there",
+    meaning: "`total_lagrangian` with the defaults of Elastodynamics: elastic solids on sparse SPH matrices, for waves and large strain; bodies with particles at the same positions are joined there",
     dimensions: &[1, 2, 3],
     keys: &keys(Usual {
         kernel: "\"modified_mollifier\"",
@@ -66,14 +66,14 @@ const fn keys(usual: Usual) -> [KeySpec; 13] {
             Kind::Name(Choices::Registry(catalogue::kernels)),
             "",
             Default(usual.kernel),
-            "kernel that weighs the neighbours",
+            "weighting kernel",
         ),
         key(
             "weights",
             Kind::Name(super::WEIGHTS),
             "",
             Default("\"lattice\""),
-            "what is summed under the kernel",
+            "weight of a particle in kernel sums",
         ),
         key(
             "support",
@@ -87,28 +87,28 @@ const fn keys(usual: Usual) -> [KeySpec; 13] {
             Kind::Integer(Interval::at_least(1.0)),
             "1",
             Optional,
-            "support radius of a particle is the distance to its so many-th neighbour, instead of `support`; with `form = \"adjoint\"` and no `mirror`",
+            "number n: the support radius of a particle is the distance to its n-th nearest neighbour, instead of `support`; with `form = \"adjoint\"` and no `mirror`",
         ),
         key(
             "joined",
             Kind::Boolean,
             "",
             Default(usual.joined),
-            "whether bodies whose particles share places are one there",
+            "whether bodies are joined where they have particles at the same positions",
         ),
         key(
             "form",
             Kind::Name(FORMS),
             "",
             Derived(usual.form),
-            "how the divergence of the stress is taken",
+            "form of the divergence of the stress",
         ),
         key(
             "configuration",
             Kind::Name(CONFIGURATIONS),
             "",
             Default("\"total\""),
-            "where the matrices are made",
+            "configuration in which the matrices are computed",
         ),
         key(
             "gradients",
@@ -129,28 +129,28 @@ const fn keys(usual: Usual) -> [KeySpec; 13] {
             Kind::Name(TRACTIONS),
             "",
             Derived(usual.tractions),
-            "which particles tractions act on; with `form = \"adjoint\"`",
+            "particles on which tractions act; with `form = \"adjoint\"`",
         ),
         key(
             "viscosity",
             Kind::Number(Interval::NOT_NEGATIVE),
             "Pa s",
             Default("0.0"),
-            "viscosity of Kelvin and Voigt's material, theory (65); in explicit steps",
+            "Kelvin-Voigt viscosity, theory (65); with explicit steps",
         ),
         key(
             "artificial_viscosity",
             Kind::Numbers(Length::Any, Interval::NOT_NEGATIVE),
             "1",
             Derived("[0, 0]"),
-            "linear and quadratic coefficient of the artificial viscosity, theory (66); in explicit steps",
+            "linear and quadratic coefficients of the artificial viscosity, theory (66); with explicit steps",
         ),
         key(
             "damping",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1/s",
             Default("0.0"),
-            "rate at which motion dies out, to come to rest in equilibrium: about the shear wave speed over the size of the body; in explicit steps",
+            "damping rate, to reach equilibrium at rest: about the shear wave speed over the size of the body; with explicit steps",
         ),
     ]
 }
@@ -158,29 +158,29 @@ const fn keys(usual: Usual) -> [KeySpec; 13] {
 const FORMS: Choices = choices(&[
     choice(
         "strong",
-        "by the matrices of the gradient, with ghosts beyond the edges that carry the load as a slope, theory (64): the way of Elastodynamics; for one row in 1D, and in 2D for one box of a lattice with particles on its edges, out of which discs may be cut",
+        "by the gradient matrices, with ghosts beyond the edges that carry the load as a slope, theory (64): the formulation of Elastodynamics; for one row in 1D, and in 2D for one box of a lattice with particles on its edges, from which discs may be cut out",
     ),
     choice("adjoint", "by their transposes, with tractions as forces on particles"),
 ]);
 
 const CONFIGURATIONS: Choices = choices(&[
-    choice("total", "at the reference places, once"),
+    choice("total", "at the reference positions, once"),
     choice(
         "updated",
-        "at the places of the moment, in each step, which shows the tensile instability; in 1D, with `form = \"strong\"`",
+        "at the current positions, in each step, which shows the tensile instability; in 1D, with `form = \"strong\"`",
     ),
 ]);
 
 const GRADIENTS: Choices = choices(&[
     choice("patch_consistent", "corrected so that constant stress is in equilibrium on any cloud"),
-    choice("plain", "those of the papers, Dual-support (12)"),
+    choice("plain", "the gradients of the papers, Dual-support (12)"),
 ]);
 
 const TRACTIONS: Choices = choices(&[
     choice("surface", "those on the surface"),
     choice(
         "layers",
-        "behind a plane face as many layers as forces of a homogeneous stress reach, each with its share, so that such a stress is in equilibrium with plain gradients",
+        "behind a plane face all layers on which a homogeneous stress exerts forces, each with its share, so that such a stress is in equilibrium with plain gradients",
     ),
 ]);
 
@@ -199,7 +199,7 @@ const PLANE: KeySpec = key(
     Kind::Name(PLANES),
     "",
     Derived("`strain`; no meaning in 3D"),
-    "what the directions do that the case does not have",
+    "assumption for the directions that are not resolved",
 );
 const REQUIRED_BULK_MODULUS: KeySpec = key(
     "bulk_modulus",
@@ -218,7 +218,7 @@ const fn isotropic(name: &'static str, meaning: &'static str) -> KindSpec {
 
 pub(super) const RIGID: KindSpec = KindSpec {
     name: "rigid",
-    meaning: "a body that moves as one, theory (83), with the scheme `total_lagrangian` and its presets; with `joined = true` flexible bodies are clamped to it where their particles share places. Bodies touch each other only in a fluid, each in a `[[system]]` of its own",
+    meaning: "a rigid body, theory (83), with the scheme `total_lagrangian` and its presets; with `joined = true` flexible bodies are clamped to it where they have particles at the same positions. Bodies touch each other only in a fluid, each in its own `[[system]]`",
     dimensions: &[1, 2, 3],
     keys: &[],
 };
@@ -228,11 +228,11 @@ pub(super) const LINEAR_ELASTIC: KindSpec = isotropic(
 );
 pub(super) const SAINT_VENANT_KIRCHHOFF: KindSpec = isotropic(
     "saint_venant_kirchhoff",
-    "Hooke's law for the strain of Green and Lagrange, Elastodynamics (3.50); stiffness as for `linear_elastic`",
+    "Hooke's law for the Green-Lagrange strain, Elastodynamics (3.50); stiffness as for `linear_elastic`",
 );
 pub(super) const NEO_HOOKEAN: KindSpec = isotropic(
     "neo_hookean",
-    "neo-Hookean with the volume apart, Dual-support (46); stiffness as for `linear_elastic`",
+    "neo-Hookean with a separate volumetric part, Dual-support (46); stiffness as for `linear_elastic`",
 );
 pub(super) const NEO_HOOKEAN_LOGARITHMIC: KindSpec = isotropic(
     "neo_hookean_logarithmic",
@@ -240,7 +240,7 @@ pub(super) const NEO_HOOKEAN_LOGARITHMIC: KindSpec = isotropic(
 );
 pub(super) const MOONEY_RIVLIN: KindSpec = KindSpec {
     name: "mooney_rivlin",
-    meaning: "Mooney and Rivlin's rubber, theory (41)",
+    meaning: "Mooney-Rivlin rubber, theory (41)",
     dimensions: &[1, 2, 3],
     keys: &[
         key("c10", Kind::Number(Interval::ANY), "Pa", Required, "first constant"),
@@ -249,9 +249,24 @@ pub(super) const MOONEY_RIVLIN: KindSpec = KindSpec {
         PLANE,
     ],
 };
+pub(super) const HYPERELASTIC: KindSpec = KindSpec {
+    name: "hyperelastic",
+    meaning: "a strain energy of your own, theory (99)",
+    dimensions: &[1, 2, 3],
+    keys: &[
+        key(
+            "energy",
+            Kind::Text,
+            "J/m^3",
+            Required,
+            "energy per reference volume, an expression of the parameters and of the invariants of C = F^T F: `I1` = tr C, `I2` = ((tr C)^2 - C : C)/2, `J` = det F, `I1b` = J^(-2/3) I1, `I2b` = J^(-4/3) I2, with + - * / ^, exp, ln, log and sqrt. At rest I1 = I2 = 3 and J = 1, and there must be no stress; constants do not matter. For example `shear/2 * (I1b - 3) + bulk/2 * (J - 1)^2`",
+        ),
+        PLANE,
+    ],
+};
 pub(super) const OGDEN: KindSpec = KindSpec {
     name: "ogden",
-    meaning: "Ogden's rubber, theory (42)",
+    meaning: "Ogden rubber, theory (42)",
     dimensions: &[1, 2, 3],
     keys: &[
         key(
@@ -266,7 +281,7 @@ pub(super) const OGDEN: KindSpec = KindSpec {
             Kind::Numbers(Length::Any, Interval::ANY),
             "1",
             Required,
-            "exponent of each term, of the sign of its modulus",
+            "exponent of each term, with the same sign as its modulus",
         ),
         REQUIRED_BULK_MODULUS,
         PLANE,

@@ -38,35 +38,35 @@ pub(super) static TIME: TableSpec = TableSpec {
             Kind::Integer(Interval::at_least(1.0)),
             "1",
             Optional,
-            "the run fails after so many steps",
+            "maximum number of steps, after which the run fails",
         ),
         key(
             "min_step",
             Kind::Number(Interval::POSITIVE),
             "s",
             Optional,
-            "the run fails when the stable step falls below",
+            "the run fails if the stable step falls below this",
         ),
         key(
             "max_speed",
             Kind::Number(Interval::POSITIVE),
             "m/s",
             Derived("10 times the sum of the largest speed and wave speed at the start"),
-            "the run fails when a particle is faster",
+            "the run fails if a particle is faster",
         ),
         key(
             "on_failure",
             Kind::Name(REACTIONS),
             "",
             Default("\"stop\""),
-            "what happens when a state turns out to be broken",
+            "what happens when a state is found to be invalid",
         ),
         key(
             "retries",
             Kind::Integer(Interval::between(1.0, 60.0)),
             "1",
             Derived("5 with `on_failure = \"retry\"`"),
-            "how often the run may go back; the steps are halved each time, and grow again where Newton's method is quick",
+            "how often the run may go back; the steps are halved each time, and grow again where Newton's method converges quickly",
         ),
     ],
 };
@@ -88,7 +88,7 @@ const CFL: KeySpec = key(
     Derived(
         "0.3 (`transport_velocity`: 0.25, `total_lagrangian` by `kick_drift_kick`: 0.9) unless `step` is given; none with an implicit integrator",
     ),
-    "share of the time that a wave needs from particle to particle; with `total_lagrangian`, of the largest stable step of central differences",
+    "CFL number: fraction of the time that a wave needs from particle to particle; with `total_lagrangian`, fraction of the largest stable step of central differences",
 );
 
 const BETA: KeySpec = key(
@@ -112,7 +112,7 @@ const ALPHA: KeySpec = key(
     Kind::Number(Interval::between(0.0, 1.0 / 3.0)),
     "1",
     Derived("0.05, with the integrator `hht_alpha`"),
-    "share of the forces at the start of a step: the larger, the more short periods are damped",
+    "weight of the forces at the start of a step: the larger, the more short periods are damped",
 );
 
 const SPECTRAL_RADIUS: KeySpec = key(
@@ -120,7 +120,7 @@ const SPECTRAL_RADIUS: KeySpec = key(
     Kind::Number(Interval::between(0.0, 1.0)),
     "1",
     Derived("0.8, with the integrator `generalised_alpha`"),
-    "what a step multiplies the shortest periods by; 1 is the implicit midpoint rule, without damping",
+    "factor by which a step multiplies the shortest periods; 1 is the implicit midpoint rule, without damping",
 );
 
 const THETA: KeySpec = key(
@@ -128,7 +128,7 @@ const THETA: KeySpec = key(
     Kind::Number(Interval::between(0.5, 1.0)),
     "1",
     Derived("0.55, with the integrator `theta`"),
-    "share of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
+    "weight of the rates at the end of a step: 0.5 is `crank_nicolson`, 1 is `backward_euler`",
 );
 
 const TOLERANCE: KeySpec = key(
@@ -136,8 +136,7 @@ const TOLERANCE: KeySpec = key(
     Kind::Number(Interval::between(1e-13, 1e-2)),
     "1",
     Derived("1e-8 with `static`, `arc_length` or an implicit integrator, 1e-10 with `upwind`"),
-    "what Newton's method may leave of the forces, over loads and reactions; with `upwind` of \
-     the momentum of a step, over what there is and what forces change of it",
+    "largest residual force of Newton's method, relative to loads and reactions; with `upwind` the residual      momentum of a step, relative to the momentum and its change by the forces",
 );
 
 const LINEAR_SOLVER: KeySpec = key(
@@ -150,17 +149,15 @@ const LINEAR_SOLVER: KeySpec = key(
 /// How a system beside the main one goes on in time.
 static METHOD: TableSpec = TableSpec {
     title: "[system.time]",
-    meaning: "How the system takes its own steps: as many within one of the fluid as its stable step asks for, \
-              one for several of the fluid where it is slow and heavy, or one with an implicit integrator.",
+    meaning: "How the system takes its own steps: as many within one of the fluid as its stable step requires,               one for several of the fluid if it is slow and heavy, or one with an implicit integrator.",
     keys: &[INTEGRATOR, CFL, BETA, GAMMA, ALPHA, SPECTRAL_RADIUS, THETA, TOLERANCE, LINEAR_SOLVER],
 };
 
 pub(super) static SYSTEM: TableSpec = TableSpec {
     title: "[[system]]",
-    meaning: "A solid in a fluid: a formulation of its own, any but `interpolation`, for the bodies that name it with `system`. The bodies \
-              without that key are those of `[scheme]`, the fluid, for which these are walls that bend.",
+    meaning: "A solid in a fluid: any formulation but `interpolation`, for the bodies that name it with `system`. The bodies               without that key are those of `[scheme]`, the fluid, which sees the solids as walls that bend.",
     keys: &[
-        key("name", Kind::Text, "", Required, "unique name, which bodies refer to"),
+        key("name", Kind::Text, "", Required, "unique name, to which bodies refer"),
         key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),
         key("time", Kind::Table(&METHOD), "", Optional, "how it takes its steps"),
         key(
@@ -168,28 +165,28 @@ pub(super) static SYSTEM: TableSpec = TableSpec {
             Kind::Name(fluids::SLIPS),
             "",
             Default("\"no\""),
-            "what its surface does to fluid that moves along it",
+            "how fluid moves along its surface",
         ),
         key(
             "friction",
             Kind::Number(Interval::NOT_NEGATIVE),
             "1",
             Default("0.0"),
-            "Coulomb's coefficient where it slides along walls; between two systems their mean. Bodies of one system do not touch each other, but of `transport_velocity` as its `contact` says",
+            "Coulomb friction coefficient where it slides along walls; between two systems their mean. Bodies of one system do not touch each other, except with `transport_velocity`, as its `contact` says",
         ),
         key(
             "contact_stiffness",
             Kind::Number(Interval::between(0.01, MOST_STIFFNESS)),
             "1",
             Default("1.0"),
-            "what keeps it off walls and other systems, in density of the solid times the squared wave speed of the fluid, theory (85); between two systems the smaller one",
+            "stiffness of the contact with walls and other systems, in units of the density of the solid times the squared wave speed of the fluid, theory (85); between two systems the smaller one",
         ),
         key(
             "contact_damping",
             Kind::Number(Interval::between(0.0, MOST_DAMPING)),
             "1",
             Default("0.5"),
-            "what an impact loses, theory (85): 0 for nothing, 1 for nearly all; between two systems the mean",
+            "energy loss of an impact, theory (85): 0 for none, 1 for nearly all; between two systems the mean",
         ),
     ],
 };
@@ -197,7 +194,7 @@ pub(super) static SYSTEM: TableSpec = TableSpec {
 const LINEAR_SOLVERS: Choices = choices(&[
     choice(
         "automatic",
-        "`direct` for bodies that are quick to factorise, `krylov` for larger ones",
+        "`direct` for bodies that are cheap to factorise, `krylov` for larger ones",
     ),
     choice(
         "direct",
@@ -215,25 +212,25 @@ const REACTIONS: Choices = choices(&[
     choice("stop", "the run ends with the last good state"),
     choice(
         "retry",
-        "the run goes back some steps and on with half the step, and stops after too many retries; not for a fixed step of time",
+        "the run goes back some steps and continues with half the step, and stops after too many retries; not with a fixed time step",
     ),
 ]);
 
 pub(super) static COMPUTE: TableSpec = TableSpec {
     title: "[compute]",
-    meaning: "Who computes. Results do not depend on it, but for the last digits with kernels that have an exponential.",
+    meaning: "The device that computes. Results do not depend on it, except for the last digits with kernels that contain an exponential.",
     keys: &[key(
         "device",
         Kind::Text,
         "",
         Default("\"processor\""),
-        "`processor`, or the name of a device as `piola devices` lists them, for example `cuda:0`; `docs/devices.md` says which cases have steps there",
+        "`processor`, or the name of a device as listed by `piola devices`, for example `cuda:0`; `docs/devices.md` lists the supported cases",
     )],
 };
 
 pub(super) static CHECKPOINT: TableSpec = TableSpec {
     title: "[checkpoint]",
-    meaning: "When checkpoints are written, from which `piola run --resume` goes on. Results do not depend on them.",
+    meaning: "When checkpoints are written, from which `piola run --resume` continues. Results do not depend on them.",
     keys: &[
         key(
             "every_steps",
@@ -261,14 +258,14 @@ pub(super) static CHECKPOINT: TableSpec = TableSpec {
             Kind::Integer(Interval::between(1.0, 1e6)),
             "1",
             Default("2"),
-            "how many are kept, the newest",
+            "number of newest checkpoints that are kept",
         ),
         key(
             "at_end",
             Kind::Boolean,
             "",
             Default("false"),
-            "whether one is written at the end, to go on from with a later `time.end`",
+            "whether one is written at the end, to continue with a later `time.end`",
         ),
     ],
 };

@@ -13,13 +13,13 @@ pub(super) static WAVE_MAKER: TaggedSpec = TaggedSpec {
             Kind::Numbers(Length::Dimension, Interval::ANY),
             "1",
             Derived("along x"),
-            "where the waves go, of any length",
+            "direction of the waves, a vector of any length",
         ),
     ],
     kinds: &[
         KindSpec {
             name: "regular",
-            meaning: "regular waves, of second order",
+            meaning: "second-order regular waves",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -27,9 +27,9 @@ pub(super) static WAVE_MAKER: TaggedSpec = TaggedSpec {
                     Kind::Number(Interval::POSITIVE),
                     "m",
                     Required,
-                    "from trough to crest",
+                    "wave height, from trough to crest",
                 ),
-                key("period", Kind::Number(Interval::POSITIVE), "s", Required, "the period"),
+                key("period", Kind::Number(Interval::POSITIVE), "s", Required, "wave period"),
                 key(
                     "ramp",
                     Kind::Number(Interval::NOT_NEGATIVE),
@@ -41,19 +41,19 @@ pub(super) static WAVE_MAKER: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "solitary",
-            meaning: "a solitary wave, by Goring's motion",
+            meaning: "a solitary wave, with Goring's motion",
             dimensions: &[1, 2, 3],
             keys: &[key(
                 "height",
                 Kind::Number(Interval::POSITIVE),
                 "m",
                 Required,
-                "of the crest over the water at rest",
+                "height of the crest above the water at rest",
             )],
         },
         KindSpec {
             name: "spectrum",
-            meaning: "long-crested waves of the spectrum of JONSWAP, each component of linear theory",
+            meaning: "long-crested waves with a JONSWAP spectrum, with components of linear theory",
             dimensions: &[1, 2, 3],
             keys: &[
                 key(
@@ -75,14 +75,14 @@ pub(super) static WAVE_MAKER: TaggedSpec = TaggedSpec {
                     Kind::Number(Interval::between(1.0, 20.0)),
                     "1",
                     Default("3.3"),
-                    "by how much the peak is raised; 1 is the spectrum of Pierson and Moskowitz",
+                    "peak enhancement factor; 1 is the Pierson-Moskowitz spectrum",
                 ),
                 key(
                     "components",
                     Kind::Integer(Interval::between(1.0, 10000.0)),
                     "1",
                     Default("200"),
-                    "number of components, of frequencies from 0.5 to 3 of that of the peak",
+                    "number of components, with frequencies from 0.5 to 3 times the peak frequency",
                 ),
                 key(
                     "seed",

@@ -35,10 +35,10 @@ fn what_is_not_given_is_what_serves_most() {
     assert_eq!(*settings.support, SupportSize::Spacings(2.05));
     assert_eq!((&settings.gradients, settings.hourglass), (&None, None));
     assert_eq!(case.time.integrator.value, "kick_drift_kick");
-    let Material::Hyperelastic { law, plane, .. } = case.bodies[0].material.value else {
+    let Material::Hyperelastic { law, plane, .. } = &case.bodies[0].material.value else {
         panic!("{:?}", case.bodies[0].material)
     };
-    assert_eq!((law.name(), plane), ("neo_hookean", PlaneState::Strain));
+    assert_eq!((law.name(), *plane), ("neo_hookean", PlaneState::Strain));
     assert!((law.small_strain().young_modulus() / 1e6 - 1.0).abs() < 1e-12);
 }
 
@@ -72,7 +72,7 @@ fn every_way_to_give_the_stiffness_is_the_same() {
     let modulus = |keys: &str| {
         let text = GOOD.replace("young_modulus = 1e6, poisson_ratio = 0.3", keys);
         let case = read_with(&text, &[]).unwrap_or_else(|problems| panic!("{problems}"));
-        let Material::Hyperelastic { law, .. } = case.bodies[0].material.value else {
+        let Material::Hyperelastic { law, .. } = &case.bodies[0].material.value else {
             panic!("{keys}")
         };
         law.small_strain()
@@ -104,7 +104,7 @@ fn what_does_not_fit_is_refused_with_what_does() {
         (
             "dual_support\"",
             "dual_support\"\nsupport = 2\nneighbors = 12",
-            ["both say how large", "remove one"],
+            ["both set the size", "remove one"],
         ),
         (
             "spacing = 0.1",
@@ -331,5 +331,47 @@ fn fluids_and_solids_of_one_scheme_show_what_they_have() {
         let other = read(other, field).expect_err(field);
         assert!(other.contains(&format!("has no field `{field}` for ")), "{other}");
         read(own, field).unwrap_or_else(|problems| panic!("{problems}"));
+    }
+}
+
+/// A strain energy of one's own is read with the parameters, and what is none is refused where it stands.
+#[test]
+fn a_strain_energy_can_be_written_out() {
+    let written = |energy: &str| {
+        let start = GOOD.find("material = {").unwrap();
+        let end = start + GOOD[start..].find('\n').unwrap();
+        let material = format!(
+            "material = {{ kind = \"hyperelastic\", density = 1000.0, energy = \"{energy}\" }}"
+        );
+        let text = format!("{}{material}{}", &GOOD[..start], &GOOD[end..]);
+        read_with(&text, &["parameters={ mu = 2e5, kappa = 1e6 }"])
+    };
+    for energy in [
+        "mu/2 * (I1b - 3) + kappa/2 * (J - 1)^2",
+        "kappa/2*(J-1)^2 + mu/2*J^(-2/3)*I1",
+        "mu * exp(ln(I1b) / 2)^2 / 2 + kappa / 2 * (sqrt(J^2) - 1)^2",
+        "-mu*15*ln(1-(I1b-3)/30) + kappa/2 * (J - 1)^(1 + 1) + sin(0)",
+    ] {
+        let case = written(energy).unwrap_or_else(|problems| panic!("{problems}"));
+        let Material::Hyperelastic { law, .. } = &case.bodies[0].material.value else {
+            panic!("{energy}")
+        };
+        let small = law.small_strain();
+        assert!((small.mu / 2e5 - 1.0).abs() < 1e-9, "{energy}: {small:?}");
+        assert!((small.bulk_modulus() / 1e6 - 1.0).abs() < 1e-9, "{energy}: {small:?}");
+    }
+    for (energy, parts) in [
+        ("mu/2 * (I1b - 3) + kapa/2 * (J - 1)^2", ["`kapa` is not known", "did you mean `kappa`?"]),
+        ("mu/2 * (I1 - 3)", ["this cannot be an energy: there is a stress of", "takes it away"]),
+        ("mu/2 * sin(I1b)", ["`sin` cannot be used of an invariant", "exp, ln, log and sqrt"]),
+        ("mu/2 * x", ["`x` cannot be used here: an energy depends on the strain", "I1, I2, J"]),
+        ("-mu/2 * (I1b - 3)", ["the shear modulus of small strains is", "change of shape"]),
+        ("mu/2 * (I1b - 3)", ["nothing resists a change of volume", "add a term"]),
+        ("pow(I1b - 3, 2) + x", ["`x` cannot be used here", "I1, I2, J"]),
+        ("kappa * ln(J - 1)", ["at rest (I1 = I2 = 3, J = 1) the energy is", "J/m^3"]),
+        ("mu * (I1b - 3", ["this bracket is never closed", "add a `)`"]),
+    ] {
+        let problems = written(energy).unwrap_err().to_string();
+        parts.iter().for_each(|part| assert!(problems.contains(part), "{problems}"));
     }
 }

@@ -216,7 +216,7 @@ fn what_does_not_fit_together_is_named_in_its_place() {
         (
             "scheme = { kind = \"elastodynamics\" }",
             "scheme = { kind = \"dual_support\" }\ntime = { integrator = \"static\" }",
-            "nothing moves with this integrator, and a fluid does",
+            "nothing moves with this integrator, but a fluid does",
         ),
         (
             "scheme = { kind = \"elastodynamics\" }",

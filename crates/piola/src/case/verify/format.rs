@@ -39,11 +39,10 @@ pub(super) fn with_unit(value: f64, unit: &str) -> String {
 pub(super) fn expectation(expectation: &Expectation, unit: &str) -> (String, String) {
     match expectation {
         Expectation::Value { expected, tolerance, absolute } => {
-            let tolerance = match absolute {
-                true => with_unit(*tolerance, unit),
-                false => format!("{} %", significant(100.0 * tolerance, DIGITS)),
-            };
-            (with_unit(*expected, unit), tolerance)
+            (with_unit(*expected, unit), tolerance_text(*tolerance, *absolute, unit))
+        }
+        Expectation::EqualTo { other, tolerance, absolute } => {
+            (comparison("equal to", other.as_deref()), tolerance_text(*tolerance, *absolute, unit))
         }
         Expectation::Bounds { at_least, at_most } => {
             let bounds = [("at least", at_least), ("at most", at_most)];
@@ -56,6 +55,13 @@ pub(super) fn expectation(expectation: &Expectation, unit: &str) -> (String, Str
         Expectation::MoreThan(other) => (comparison("more than", other.as_deref()), String::new()),
         Expectation::Outcome(text) => (text.clone(), String::new()),
         Expectation::Trend { trend, .. } => (trend_text(trend), String::new()),
+    }
+}
+
+fn tolerance_text(tolerance: f64, absolute: bool, unit: &str) -> String {
+    match absolute {
+        true => with_unit(tolerance, unit),
+        false => format!("{} %", significant(100.0 * tolerance, DIGITS)),
     }
 }
 

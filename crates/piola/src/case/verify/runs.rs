@@ -100,8 +100,8 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
             None => name.to_owned(),
         });
         let mut names = vec![variant.map(str::to_owned)];
-        if let Expectation::LessThan(other) | Expectation::MoreThan(other) = &check.expectation {
-            names.push(other.as_ref().map(|name| name.value.clone()));
+        if let Some(other) = check.expectation.other() {
+            names.push(other.map(|name| name.value.clone()));
         }
         let mut row = self.blank(index, check, run, names);
         let verdict = found.and_then(|run| {
@@ -216,13 +216,11 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
                     return Err("a tolerance relative to 0 allows nothing: set `absolute = true`"
                         .to_owned());
                 }
-                let allowed = if *absolute { *tolerance } else { tolerance * expected.abs() };
-                let unit = match got {
-                    Got::Number(_, unit) => unit,
-                    Got::Text(_) => "",
-                };
-                row.deviation = format::deviation(number, *expected, *absolute, unit);
-                Ok((number - expected).abs() <= allowed)
+                Ok(is_within(row, number, *expected, (*tolerance, *absolute), got))
+            }
+            Expectation::EqualTo { other, tolerance, absolute } => {
+                let expected = self.other(row, check, "equal to", other.as_deref())?;
+                Ok(is_within(row, number?, expected, (*tolerance, *absolute), got))
             }
             Expectation::Bounds { at_least, at_most } => {
                 let number = number?;
@@ -259,6 +257,23 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
             got => Err(explain(format!("the result is {got}, no finite number"))),
         }
     }
+}
+
+/// Whether `number` is as near to `expected` as it should be; the difference is shown in the row.
+fn is_within(
+    row: &mut CheckRow,
+    number: f64,
+    expected: f64,
+    (tolerance, absolute): (f64, bool),
+    got: &Got,
+) -> bool {
+    let allowed = if absolute { tolerance } else { tolerance * expected.abs() };
+    let unit = match got {
+        Got::Number(_, unit) => unit,
+        Got::Text(_) => "",
+    };
+    row.deviation = format::deviation(number, expected, absolute, unit);
+    (number - expected).abs() <= allowed
 }
 
 /// Members of a sweep along one of its keys.

@@ -213,12 +213,20 @@ fn variants_are_compared_with_each_other() {
         // The same value is neither less nor more.
         ("base", "less_than = \"broken\"", false),
         ("base", "more_than = \"broken\"", false),
+        ("base", "equal_to = \"broken\"\ntolerance = 0.0", true),
+        ("base", "equal_to = \"double\"\ntolerance = 0.49", false),
+        ("base", "equal_to = \"double\"\ntolerance = 0.51", true),
+        ("double", "equal_to = \"base\"\nabsolute = true\ntolerance = 2.0", true),
     ] {
         let row = row(&format!("{X}variant = \"{own}\"\nreduce = \"maximum\"\n{relation}"));
         assert_eq!(row.pass, pass, "{row:?}");
     }
     let row = row(&format!("{X}reduce = \"maximum\"\nless_than = \"double\""));
     assert_eq!(row.expected, "less than double (4 m)");
+    let row =
+        self::row(&format!("{X}reduce = \"maximum\"\nequal_to = \"double\"\ntolerance = 0.1"));
+    assert_eq!((row.expected.as_str(), row.tolerance.as_str()), ("equal to double (4 m)", "10 %"));
+    assert_eq!(row.deviation, "-50 %");
 }
 
 #[test]
@@ -301,7 +309,7 @@ fn what_cannot_be_evaluated_fails_with_a_reason() {
     let row1 = row("quantity = \"energy.kinetic\"\nreduce = \"maximum\"\nat_most = 9.0");
     assert!(!row1.pass && row1.reason.unwrap().contains("energy.kinetic"));
     let row2 = row(&format!("{X}reduce = \"extremum\"\nnumber = 3\nat_most = 9.0"));
-    assert!(!row2.pass && row2.reason.unwrap().contains("number 3: 2 are there"));
+    assert!(!row2.pass && row2.reason.unwrap().contains("number 3: only 2 were found"));
     let row3 = row("quantity = \"run.first_step\"\nat_least = 0.0");
     assert!(!row3.pass && row3.reason.unwrap().contains("NaN"));
     let row4 =

@@ -96,6 +96,41 @@ impl<'a> History<'a> {
         Ok([ends[0]].into_iter().chain(inside).chain([ends[1]]).unzip())
     }
 
+    /// Means over `width` about the rows that have half of it on both sides.
+    pub fn moving_mean(&self, width: f64) -> Result<(Vec<f64>, Vec<f64>), ReduceError> {
+        let [first, last] = self.span();
+        let apart = (last - first) / (self.time.len() - 1).max(1) as f64;
+        if width < apart {
+            return Err(ReduceError::TooNarrow { width, apart });
+        }
+        // From the first row to each.
+        let mut integral = 0.0;
+        let mut integrals = vec![0.0];
+        for (t, v) in self.time.windows(2).zip(self.values.windows(2)) {
+            integral += 0.5 * (t[1] - t[0]) * (v[0] + v[1]);
+            integrals.push(integral);
+        }
+        let until = |time: f64| {
+            let row = self.time.partition_point(|&row| row <= time).max(1) - 1;
+            let rest = time - self.time[row];
+            integrals[row] + 0.5 * rest * (self.values[row] + self.interpolate(time))
+        };
+        let slack = END_SLACK * (last - first);
+        let inside = self.time.iter().filter(|&&time| {
+            time - 0.5 * width >= first - slack && time + 0.5 * width <= last + slack
+        });
+        let mean = |&time: &f64| {
+            let ends = [(time - 0.5 * width).max(first), (time + 0.5 * width).min(last)];
+            (time, (until(ends[1]) - until(ends[0])) / (ends[1] - ends[0]))
+        };
+        match inside.map(mean).unzip() {
+            (times, _) if Vec::is_empty(&times) => {
+                Err(ReduceError::TooWide { width, covered: last - first })
+            }
+            rows => Ok(rows),
+        }
+    }
+
     /// Integrals of the value, and of the value times the time: exact for straight lines.
     pub fn moments(&self) -> [f64; 2] {
         let rows = self.time.windows(2).zip(self.values.windows(2));

@@ -120,6 +120,37 @@ fn an_oscillation_that_sets_in_is_judged_in_a_window() {
 }
 
 #[test]
+fn a_moving_mean_takes_away_what_is_faster() {
+    // A sine of 1.6 per second with noise of 50 per second, whose mean over 0.04 s is zero, in uneven rows.
+    let noise = |t: f64| 0.5 * (TAU * 50.0 * t).sin();
+    let sine = |t: f64| 2.0 + 3.0 * (TAU * 1.6 * t).sin();
+    let (time, values) = sampled(0.0, 5.0, 20_001, |t| sine(t) + noise(t));
+    let keep = |row: usize| row % 7 != 3;
+    let kept = |all: &[f64]| (0..all.len()).filter(|&row| keep(row)).map(|row| all[row]).collect();
+    let history: (Vec<f64>, Vec<f64>) = (kept(&time), kept(&values));
+    let smooth = |width, reduction| Reduction::Smoothed(width, Box::new(reduction));
+    let phase = PI * 1.6 * 0.04;
+    assert_near(
+        reduce(smooth(0.04, Reduction::Amplitude), &history),
+        3.0 * phase.sin() / phase,
+        1e-4,
+    );
+    assert_near(reduce(smooth(0.04, Reduction::Frequency), &history), 1.6, 1e-4);
+    assert!((reduce(Reduction::Maximum, &history) - 5.5).abs() < 0.1);
+    // Straight lines are their own mean, as far as it reaches.
+    let line = (vec![0.0, 1.0, 2.0, 4.0], vec![0.0, 2.0, 4.0, 8.0]);
+    assert_near(reduce(smooth(2.0, Reduction::Initial), &line), 2.0, 1e-14);
+    assert_near(reduce(smooth(2.0, Reduction::Final), &line), 4.0, 1e-14);
+    let narrow = refused(smooth(1.0, Reduction::Mean), &line);
+    assert_eq!(narrow, ReduceError::TooNarrow { width: 1.0, apart: 4.0 / 3.0 });
+    let wide = refused(smooth(4.5, Reduction::Mean), &line);
+    assert_eq!(wide, ReduceError::TooWide { width: 4.5, covered: 4.0 });
+    let windowed = Reduction::<Curve>::Within([0.0, 1.0], Box::new(smooth(0.5, Reduction::Mean)));
+    assert_eq!(windowed.label(), "mean of the moving mean over 0.5 s from 0 to 1 s");
+    assert_eq!((windowed.unit("Pa"), windowed.name()), ("Pa".into(), "mean"));
+}
+
+#[test]
 fn plain_figures_of_a_few_rows() {
     let rows = (vec![0.0, 1.0, 3.0, 4.0], vec![2.0, -1.0, 5.0, 4.0]);
     for (reduction, expected) in [

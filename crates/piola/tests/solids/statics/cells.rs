@@ -105,7 +105,7 @@ fn the_patch_test_holds_on_cell_centres() {
         hourglass: 0.1,
         ..Settings::default()
     };
-    let materials = vec![Material { density: 1.0, law }];
+    let materials = vec![Material { density: 1.0, law: law.clone() }];
     let places = particles.position.clone();
     let body = Discrete::new(particles, support, &settings, materials).unwrap();
     let slope = some_gradient::<2>() + Tensor::<2>::identity() * 0.2;

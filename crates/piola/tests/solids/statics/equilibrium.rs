@@ -26,7 +26,7 @@ struct Uniform<'a, const D: usize> {
 impl<const D: usize> Uniform<'_, D> {
     fn solve(&self) -> Result<Vec<StaticState<D>>, StaticsError> {
         let law = HyperelasticLaw::neo_hookean(constants());
-        let body = body(self.cloud, law, self.state);
+        let body = body(self.cloud, law.clone(), self.state);
         let stress = Reduced::<D>::new(law, self.state).unwrap().stress(&self.slope);
         let loads: Vec<Vector<D>> = self.cloud.areas.iter().map(|area| stress * area).collect();
         let input = StaticsInput {
@@ -359,7 +359,7 @@ fn what_is_wrong_with_supports_is_named() {
 fn a_body_that_is_held_throughout_has_reactions() {
     let cloud = Cloud::block([1.0, 1.0], [4, 4], 0.2);
     let law = HyperelasticLaw::neo_hookean(constants());
-    let body = body(&cloud, law, StressState::PlaneStrain);
+    let body = body(&cloud, law.clone(), StressState::PlaneStrain);
     let slope = some_gradient::<2>();
     let all = select(&cloud, |_| true);
     let prescribed = (0..2).map(|component| {
@@ -372,7 +372,8 @@ fn a_body_that_is_held_throughout_has_reactions() {
         let state =
             Statics::new(body.clone().into(), input).unwrap().solve(&LoadSteps::Given(vec![1.0]));
         let state = state.unwrap().remove(0);
-        let stress = Reduced::<2>::new(law, StressState::PlaneStrain).unwrap().stress(&slope);
+        let stress =
+            Reduced::<2>::new(law.clone(), StressState::PlaneStrain).unwrap().stress(&slope);
         for (force, area) in state.support_force.iter().zip(&cloud.areas) {
             assert!((force - stress * area).amax() < 1e-8 * stress.amax(), "{force}");
         }

@@ -38,14 +38,14 @@ pub use open::{Flow, Nesting, OpenBoundaries, OpenBoundary, Refined};
 
 columns! {
     pub(super) struct Stored, StoredMut, enum Own;
-    evolved opening: Scalar, "1", "open boundary in whose buffer the particle is, counted from 1; 0 in the fluid";
-    evolved birth: Scalar, "1", "how many particles had come in when this one did; 0 if it was there at the start";
-    evolved nesting: Scalar, "1", "part of the particle among levels of resolution: 2 where it follows those of another one, 1 where finer ones stand beside it";
-    derived(1) summed_density: Scalar, "kg/m3", "density as the sum over masses";
-    derived(1) pressure_force: Vector, "N", "of `force` on a wall, that of the pressure";
-    derived(1) viscous_force: Vector, "N", "of `force` on a wall, that of viscosity";
+    evolved opening: Scalar, "1", "number of the open boundary whose buffer contains the particle, from 1; 0 in the fluid";
+    evolved birth: Scalar, "1", "number of particles that had entered when this one did; 0 if it was there at the start";
+    evolved nesting: Scalar, "1", "role of the particle among levels of resolution: 2 where it follows those of another one, 1 where finer ones stand beside it";
+    derived(1) summed_density: Scalar, "kg/m3", "summation density";
+    derived(1) pressure_force: Vector, "N", "part of `force` on a wall due to the pressure";
+    derived(1) viscous_force: Vector, "N", "part of `force` on a wall due to viscosity";
     derived(1) barrier_force: Vector, "N",
-        "what is left of `force` on a wall: that by which it holds off fluid that touches it";
+        "rest of `force` on a wall: the reaction to the repulsion of fluid that touches it";
 }
 
 /// The fields of all matter, then those of fluids.

@@ -28,11 +28,11 @@ use crate::{Tensor, Vector};
 
 columns! {
     pub(super) struct Stored, StoredMut, enum Own;
-    derived(0) displacement: Vector, "m", "x - X; in a periodic box the shorter way";
+    derived(0) displacement: Vector, "m", "x - X; in a periodic box the shortest difference";
     kept deviatoric_stress: Symmetric, "Pa", "deviatoric stress";
     derived(0) cauchy_stress: Tensor, "Pa", "Cauchy stress, positive in tension";
     derived(0) von_mises: Scalar, "Pa",
-        "equivalent stress of von Mises, with the stress across in plane strain";
+        "von Mises equivalent stress, including the out-of-plane stress in plane strain";
     evolved plastic_strain: Scalar, "1", "equivalent plastic strain";
     evolved temperature: Scalar, "K", "temperature";
     kept internal_energy: Scalar, "J/kg", "specific internal energy";
