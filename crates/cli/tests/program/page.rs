@@ -41,9 +41,9 @@ fn a_page_of_a_coarse_case_is_as_expected() {
         &page,
         &[
             "# Validation\n",
-            &format!("as `piola verify --page` of version {version} wrote it."),
+            &format!("as written by `piola verify --page` of version {version}."),
             "**2 of 2 checks against something outside the program are met**: 2 of 2 against an exact",
-            "0 of 1 do not say what they are worth.",
+            "0 of 1 do not say what they compare with.",
             "| T1 | bar | 2 of 2 |  |  |  |  |",
             "## CTVF: Adepu and Ramachandran (2021)",
             "### T1: A tiny bar",

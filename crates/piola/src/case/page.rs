@@ -195,7 +195,7 @@ fn head(page: &mut String, results: &Results) {
     let outside: Vec<_> = outside.collect();
     let unsaid = match results.count(&[None]) {
         [_, 0] => String::new(),
-        [met, all] => format!("; {met} of {all} do not say what they are worth"),
+        [met, all] => format!("; {met} of {all} do not say what they compare with"),
     };
     let not_run = results.cases.iter().flat_map(|case| &case.rows).filter(|row| !row.was_run());
     let not_run = match not_run.count() {
@@ -206,18 +206,19 @@ fn head(page: &mut String, results: &Results) {
         page,
         &format!(
             "# Validation\n\n\
-             Every check of every case with what came of it, as `piola verify --page` of version {} \
-             wrote it. What a check is worth depends on where its expected value comes from.\n\n\
+             Every check of every case with its result, as written by `piola verify --page` of \
+             version {}. How much a check proves depends on where its expected value comes from.\n\n\
              **{} checks against something outside the program are met**: {} against an exact \
-             solution, {} against another method or program, {} against the papers. Besides, {} \
-             balances, symmetries and outcomes are as they have to be, and {} comparisons with \
-             other runs of piola, which are no evidence of correctness{unsaid}.{not_run} \
-             A check that was evaluated at the coarse setting and again in the case as it stands counts once, as the latter.\n\n\
-             Three settings: `coarse` for tests, `case` the case as its file has it, `paper` the \
-             particle numbers, steps and parameters of the publication. A row that stands for a \
-             variant or a sweep says so in front; a sweep's own rows say how its members follow \
-             each other along a key. \"Off by\" is the result minus the expected value, in the \
-             terms of the tolerance. What takes long was run on the day that stands beside its \
+             solution, {} against another method or program, {} against the papers. In addition, {} \
+             balances, symmetries and outcomes are as required, and {} comparisons with other runs \
+             of piola agree (no evidence of correctness){unsaid}.{not_run} A check that was \
+             evaluated both at the coarse setting and in the case as it stands is counted once, as \
+             the latter.\n\n\
+             Three settings: `coarse` for tests, `case` as the case file has it, `paper` with the \
+             particle numbers, steps and parameters of the publication. A row of a variant or a \
+             sweep begins with its name; rows of a whole sweep tell how the results of its \
+             members depend on a key. \"Off by\" is the result minus the expected value, in the \
+             terms of the tolerance. Rows of long runs have the date of the run beside their \
              setting.\n",
             results.version,
             of(&outside),
@@ -271,7 +272,7 @@ fn section(page: &mut String, case: &CaseResults, folder: &str) {
         let run = row.run.as_ref().map(|run| format!("{run}: ")).unwrap_or_default();
         Some(format!("- {}{}\n", cell(&run), cell(row.members.as_ref()?)))
     });
-    list(page, "Behind the orders:", &orders.collect::<Vec<_>>());
+    list(page, "Results behind the orders:", &orders.collect::<Vec<_>>());
     for (name, file) in &case.charts {
         push(page, &format!("\n![{}, {}]({folder}/{file})\n", case.name, cell(name)));
     }

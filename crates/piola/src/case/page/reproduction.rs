@@ -64,9 +64,9 @@ pub(super) fn table(page: &mut String, list: &[Reproduction], results: &Results)
         page,
         &format!(
             "\n## The reproduction list\n\n\
-             {} of {} rows are met as they are asked, {} in part or in a weaker form, {} are not met. \
-             The judgement is a person's; the last column counts what the checks of the cases with \
-             this id say against exact solutions, other methods and the papers.\n\n\
+             {} of {} rows are met as required, {} in part or in a weaker form, {} are not met. \
+             This is judged by hand; the last column counts the checks of the cases with this id \
+             against exact solutions, other methods and the papers.\n\n\
              | id | asked | setting | result | met | why | checks |\n|---|---|---|---|---|---|---|\n",
             count(Met::Yes),
             list.len(),
