@@ -89,9 +89,9 @@ def test_moments_are_those_after_multiples(case):
             simulation.every(interval)
         with pytest.raises(ValueError, match="the interval is a time above 0 in s"):
             simulation.observe(interval, print)
-    with pytest.raises(ValueError, match="until is a time in s, not nan"):
+    with pytest.raises(ValueError, match="until must be a time in s, not nan"):
         simulation.run(until=float("nan"))
-    with pytest.raises(TypeError, match="what observes is a function"):
+    with pytest.raises(TypeError, match="an observer must be a function"):
         simulation.observe(0.1, 3)
 
 
