@@ -341,7 +341,7 @@ fn flow_rates_that_do_not_balance_are_told() {
     let set = ["body.outlet.opening={ normal = [-1.0, 0.0], velocity = ['0.5', '0'] }"];
     let mut session = session(&stream(2), &set).expect("it is built");
     let warnings = session.plan().warnings;
-    assert!(warnings.iter().any(|it| it.contains("2.000e-1 m^D/s more come in")), "{warnings:?}");
+    assert!(warnings.iter().any(|it| it.contains("2.000e-1 m^D/s more flow in")), "{warnings:?}");
 }
 
 /// A stream that swings, under pressure.

@@ -124,7 +124,7 @@ fn says_what_is_wrong_and_where() {
         ("2 ** 3", 2..4, "`**` is not an operator"),
         ("1e999", 0..5, "`1e999` is larger than any number that can be computed with"),
         (".", 0..1, "`.` is not a number"),
-        ("1 / 0", 0..5, "the value of `1 / 0` is inf, which is no finite number"),
+        ("1 / 0", 0..5, "the value of `1 / 0` is inf, which is not a finite number"),
         ("2 * é", 4..6, "`é` is not known"),
     ] {
         let error = parse(text).expect_err(text);

@@ -281,7 +281,7 @@ fn rollers_ties_and_pressures_hold_and_load_the_block() {
         .replace("dual_support\"", "upwind\"\nsmoothing_length = 1.0")
         .replace("integrator = \"static\"", "");
     let message = built(&upwind).err().expect("upwind");
-    assert!(message.contains("knows no load of the kind `pressure`"), "{message}");
+    assert!(message.contains("has no load of the kind `pressure`"), "{message}");
 }
 
 /// A load on a plane is the product of traction and area, wherever the particles lie in their cells,
