@@ -14,7 +14,7 @@ pub fn listen() -> Arc<AtomicBool> {
         if flag.swap(true, Ordering::SeqCst) {
             std::process::exit(i32::from(Exit::Interrupted.code()));
         }
-        terminal::report("\nstopping after this step; once more stops at once\n");
+        terminal::report("\nstopping after this step; press Ctrl-C again to stop at once\n");
     };
     if let Err(error) = ctrlc::set_handler(handler) {
         terminal::report(&format!("warning: Ctrl-C will not write the state: {error}\n"));

@@ -82,7 +82,7 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
     }
     for retry in &summary.retries {
         let text = format!(
-            "{} after step {}: went back to t = {} s and continued with {} of each step",
+            "{} after step {}: went back to t = {} s and continued with steps of {} times their length",
             retry.kind,
             retry.step,
             significant(retry.back_to, 6),

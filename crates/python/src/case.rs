@@ -59,7 +59,7 @@ impl Case {
         let found = Level::ALL.into_iter().find(|known| known.name() == level);
         let level = found.ok_or_else(|| {
             PyValueError::new_err(format!(
-                "level is \"case\", \"coarse\" or \"paper\", not {level:?}"
+                "level must be \"case\", \"coarse\" or \"paper\", not {level:?}"
             ))
         })?;
         let functions = registry.functions.clone();
@@ -115,7 +115,7 @@ impl Case {
     ) -> PyResult<Self> {
         let mut registry = Registry::default();
         let text = ::toml::to_string(&toml::table(table, &mut registry)?)
-            .map_err(|error| PyValueError::new_err(format!("this is no TOML: {error}")))?;
+            .map_err(|error| PyValueError::new_err(format!("this is not TOML: {error}")))?;
         let source = Source::Text { text, folder: folder.unwrap_or_default() };
         Self::of(source, registry, variant, level)
     }
@@ -142,7 +142,7 @@ impl Case {
         value: &Bound<'py, PyAny>,
     ) -> PyResult<PyRefMut<'py, Self>> {
         if path.contains('=') {
-            return Err(PyValueError::new_err(format!("this is no path of a key: {path:?}")));
+            return Err(PyValueError::new_err(format!("this is not the path of a key: {path:?}")));
         }
         let text = match value.is_none() {
             true => String::new(),
@@ -189,7 +189,7 @@ impl Case {
             })?;
             placed.map_err(|error| file_error(py, &error))?;
         } else if resume {
-            return Err(PyValueError::new_err("to resume a run needs the folder of its results"));
+            return Err(PyValueError::new_err("resuming a run needs the folder of its results"));
         }
         Ok(Simulation::new(session, out, Arc::clone(&self.registry.shared)))
     }

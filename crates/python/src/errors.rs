@@ -122,8 +122,8 @@ pub fn column_error(error: &ColumnError) -> PyErr {
 
 /// What is said after a panic, which is a fault of the program.
 pub fn panic_error(py: Python<'_>) -> PyErr {
-    let text = "piola has stopped at a fault of its own, which the standard error output names; please report \
-                it, with the case. What was being done is of no use any more";
+    let text = "piola has stopped because of a bug, which the standard error output names; \
+    please report it, with the case. The objects in use cannot be used any more";
     run_error(py, text.to_owned(), Failed { kind: "panic", ..Failed::default() })
 }
 

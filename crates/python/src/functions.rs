@@ -37,8 +37,8 @@ pub fn refuse_inside() -> PyResult<()> {
     match IS_CALLING.get() {
         false => Ok(()),
         true => Err(PyRuntimeError::new_err(
-            "a load, boundary value or initial field can neither look at a simulation nor start one: its own waits for \
-             the value",
+            "a load, boundary value or initial field can neither access a simulation nor start \
+             one: its own is waiting for the value",
         )),
     }
 }

@@ -13,7 +13,7 @@ pub fn schedule(interval: f64) -> PyResult<Schedule> {
     if interval > 0.0 && interval.is_finite() {
         return Ok(Schedule::Every(interval));
     }
-    Err(PyValueError::new_err(format!("the interval is a time above 0 in s, not {interval}")))
+    Err(PyValueError::new_err(format!("the interval must be a time above 0 in s, not {interval}")))
 }
 
 /// When a schedule is due after `time`, by more than what two times may differ by and be the same.
@@ -50,7 +50,8 @@ pub fn there(simulation: &Simulation, moment: Standing) -> PyResult<&Simulation>
         return Ok(simulation);
     }
     Err(PyRuntimeError::new_err(format!(
-        "this is of t = {} s, and the run has gone on to t = {} s: read what you need, arrays stay",
+        "this is of t = {} s, and the run has continued to t = {} s: read what you need in time; \
+         arrays remain valid",
         moment.progress.time, now.progress.time
     )))
 }

@@ -159,7 +159,7 @@ impl Simulation {
         let goal = match until {
             None => Goal::End,
             Some(time) if time.is_nan() => {
-                return Err(PyValueError::new_err("until is a time in s, not nan"));
+                return Err(PyValueError::new_err("until must be a time in s, not nan"));
             }
             Some(time) => Goal::Until(time),
         };
@@ -184,7 +184,7 @@ impl Simulation {
     /// at the end. Steps are not shortened, so that results do not depend on it. If it raises the run stops.
     fn observe(&self, interval: f64, function: &Bound<'_, PyAny>) -> PyResult<()> {
         if !function.is_callable() {
-            return Err(pyo3::exceptions::PyTypeError::new_err("what observes is a function"));
+            return Err(pyo3::exceptions::PyTypeError::new_err("an observer must be a function"));
         }
         let watcher = Watcher::new(schedule(interval)?, self.standing(), function.clone().unbind());
         inside(&self.watchers).push(watcher);

@@ -35,7 +35,8 @@ fn table_at(
 ) -> PyResult<Table> {
     let entries = dict.iter().map(|(key, value)| {
         let Ok(key) = key.cast::<PyString>() else {
-            let message = format!("keys of a case are texts, not {}: {}", kind(&key), within(path));
+            let message =
+                format!("keys of a case must be strings, not {}: {}", kind(&key), within(path));
             return Err(PyTypeError::new_err(message));
         };
         let key = key.to_str()?.to_owned();
@@ -89,7 +90,7 @@ fn value_at(
         }
     }
     let message = format!(
-        "a case has numbers, texts, booleans, lists, dicts and functions, not {}: {}",
+        "a case has numbers, strings, booleans, lists, dicts and functions, not {}: {}",
         kind(value),
         within(path)
     );

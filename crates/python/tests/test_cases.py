@@ -48,10 +48,10 @@ def test_values_of_numpy_tuples_and_paths_are_values(table, tmp_path):
 @pytest.mark.parametrize(
     ("value", "error", "text"),
     [
-        (object(), TypeError, "a case has numbers, texts, booleans, lists, dicts and functions, not `object`: in `time.end`"),
+        (object(), TypeError, "a case has numbers, strings, booleans, lists, dicts and functions, not `object`: in `time.end`"),
         (None, TypeError, "not `NoneType`: in `time.end`"),
         (1 << 70, ValueError, "the whole number is too large: in `time.end`"),
-        ({1: 2}, TypeError, "keys of a case are texts, not `int`: in `time.end`"),
+        ({1: 2}, TypeError, "keys of a case must be strings, not `int`: in `time.end`"),
         (1j, TypeError, "not `complex`: in `time.end`"),
     ],
 )
@@ -77,7 +77,7 @@ def test_set_is_the_override_of_the_command_line(case):
     assert '[[load]]' not in case.toml
     case.set("body.water.initial.velocity", ["0", "0"])
     assert case.start().energy["kinetic"] == 0.0
-    with pytest.raises(ValueError, match="no path of a key"):
+    with pytest.raises(ValueError, match="not the path of a key"):
         case.set("time.end=1", 2)
 
 
@@ -148,7 +148,7 @@ def test_settings_and_variants(tmp_path):
     file = tmp_path / "mine" / "case.toml"
     fine, coarse = piola.Case.load(file), piola.Case.load(file, level="coarse")
     assert (fine.check().bodies[0]["particles"], coarse.check().bodies[0]["particles"]) == (231, 66)
-    with pytest.raises(ValueError, match='level is "case", "coarse" or "paper", not "rough"'):
+    with pytest.raises(ValueError, match='level must be "case", "coarse" or "paper", not "rough"'):
         piola.Case.load(file, level="rough")
     with pytest.raises(piola.CaseError, match="nothing"):
         piola.Case.load(file, variant="nothing").check()

@@ -147,7 +147,7 @@ def test_a_function_cannot_look_at_the_simulation(table):
         return 0.0
 
     kept.append(pushed(table, ["0", "-1"], ["0", curious], "0").start())
-    with pytest.raises(RuntimeError, match="its own waits for the value"):
+    with pytest.raises(RuntimeError, match="its own is waiting for the value"):
         kept[0].run()
 
 

@@ -75,7 +75,7 @@ fn usable_parent(path: &Path) -> Result<&Path, OutputError> {
         }
         Ok(metadata) if !metadata.is_file() => Err(OutputError::NotAFile {
             path: path.into(),
-            kind: "something that is no plain file",
+            kind: "something that is not a plain file",
         }),
         _ => Ok(parent),
     }

@@ -55,7 +55,7 @@ pub enum CheckpointError {
         source: io::Error,
     },
     /// The file is something else.
-    #[error("{} is no checkpoint of piola", path.display())]
+    #[error("{} is not a checkpoint of piola", path.display())]
     NotACheckpoint {
         /// The file.
         path: PathBuf,

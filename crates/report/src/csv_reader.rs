@@ -25,7 +25,7 @@ pub enum TableError {
     },
     /// The file is too large to be what it should be.
     #[error(
-        "{} is larger than {limit} bytes, the most that is read of a table. Give a shorter one",
+        "{} is larger than {limit} bytes, the limit for a table. Use a shorter one",
         path.display()
     )]
     TooLarge {

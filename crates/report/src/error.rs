@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 pub enum OutputError {
     /// The folder, the file or the whole file system refuses to be written.
     #[error(
-        "cannot write {}: {source}. Choose another folder, or ask for the right to write there",
+        "cannot write {}: {source}. Choose another folder, or ask for permission to write there",
         path.display()
     )]
     NotWritable {
@@ -21,7 +21,7 @@ pub enum OutputError {
     /// The disk or the user's share of it is full.
     #[error(
         "cannot write {}: {source}. The disk is full: free some space or choose a folder on \
-         another disk. Files written before are whole, and nothing is left of this one",
+         another disk. Files written before are complete, and nothing is left of this one",
         path.display()
     )]
     DiskFull {
@@ -38,7 +38,7 @@ pub enum OutputError {
     NotAFile {
         /// The file to be written.
         path: PathBuf,
-        /// What is there: `a folder` or `something that is no plain file`.
+        /// What is there: `a folder` or `something that is not a plain file`.
         kind: &'static str,
     },
     /// The folder of the file does not exist.

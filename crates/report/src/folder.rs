@@ -6,7 +6,7 @@
 //! particles/frame_000012.vtp    one instant
 //! probes.csv energy.csv momentum.csv steps.csv
 //! failure.csv                   where a run failed: the last steps of the first bad particle
-//! checkpoints/step_000000000128 where the run can go on from
+//! checkpoints/step_000000000128 states from which the run can be resumed
 //! pictures/NAME_000012.png      particles coloured by a field
 //! profiles/NAME_000012.csv      fields along a line at one instant
 //! plots/NAME.png                curves

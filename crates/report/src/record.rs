@@ -188,7 +188,7 @@ pub enum RecordError {
         source: io::Error,
     },
     /// The file is no record of a run.
-    #[error("{} is no record of a run: {source}", path.display())]
+    #[error("{} is not a record of a run: {source}", path.display())]
     NotARecord {
         /// The file.
         path: PathBuf,
@@ -196,7 +196,7 @@ pub enum RecordError {
         source: serde_json::Error,
     },
     /// The file is JSON, but of another program.
-    #[error("{} is no record of a run of piola: its key `program` is {got:?}", path.display())]
+    #[error("{} is not a record of a run of piola: its key `program` is {got:?}", path.display())]
     OtherProgram {
         /// The file.
         path: PathBuf,

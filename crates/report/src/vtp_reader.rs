@@ -120,7 +120,7 @@ impl ParticleFile {
         let data = start_of_data(&start)
             .ok_or_else(|| damaged("its description does not end before its data".into()))?;
         let text = std::str::from_utf8(&start[..data - 1])
-            .map_err(|_| damaged("its description is no text".into()))?;
+            .map_err(|_| damaged("its description is not text".into()))?;
         let closed = format!("{text}</AppendedData></VTKFile>");
         let xml = Document::parse(&closed).map_err(|error| damaged(error.to_string()))?;
         let (description, time) = describe(&xml).map_err(damaged)?;
@@ -313,7 +313,7 @@ fn describe(xml: &Document) -> Result<(Description, Option<Array>), String> {
         && is("header_type", "UInt64")
         && [None, Some("vtkZLibDataCompressor")].contains(&root.attribute("compressor"));
     if !ours {
-        return Err("it is not a particle file of piola's".into());
+        return Err("it is not a particle file of piola".into());
     }
     let piece = child(root, "PolyData").and_then(|data| child(data, "Piece"));
     let piece = piece.ok_or("it holds no piece of particles")?;

@@ -96,7 +96,10 @@ pub fn plan_rows(case: &Case, plan: &Plan) -> Vec<[String; 2]> {
     let first = significant(plan.step, 3);
     section("first step", vec![format!("{first} s ({})", plan.limiter)]);
     let end = significant(*case.time.end, 6);
-    section("steps", vec![format!("{} to t = {end} s, if all are as long", plan.steps)]);
+    section(
+        "steps",
+        vec![format!("{} to t = {end} s, if all are as long as the first", plan.steps)],
+    );
     if !plan.own_steps.is_empty() {
         section("own steps", vec![format!("{} in the first step", own_steps(&plan.own_steps))]);
     }
@@ -203,7 +206,7 @@ fn undamped(fastest: &Undamped) -> String {
         |factor: f64| round(100.0 * if (factor - 1.0).abs() < 1e-12 { 0.0 } else { factor - 1.0 });
     format!(
         "the fastest oscillation of the particles has a period of {} s; the integrator changes its \
-         energy by {:+} % a period, to {} of what it was at the end",
+         energy by {:+} % per period, to {} of its initial value at the end",
         significant(fastest.period, 3),
         share(fastest.by_period),
         significant(fastest.by_end, 3)

@@ -67,7 +67,8 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
         Outcome::Failed(failure) => {
             let mut text = format!("the run failed: {failure}");
             if let Some(retries @ 1..) = Some(finished.summary.retries.len()) {
-                let _ = write!(text, "\nit had gone back {} before", count(retries as u64, "time"));
+                let _ =
+                    write!(text, "\nit had already gone back {}", count(retries as u64, "time"));
             }
             let _ = write!(text, "\nthe last good state is in {}", folder.display());
             if finished.summary.trace.is_some() {

@@ -62,7 +62,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     let passed = total - failed - unmet;
     let known = match unmet {
         0 => String::new(),
-        _ => format!("{unmet} not met as their cases say, "),
+        _ => format!("{unmet} known not to be met, "),
     };
     let mut text = format!(
         "{} of {}: {passed} passed, {known}{failed} failed ({})\n",

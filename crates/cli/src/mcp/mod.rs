@@ -95,7 +95,7 @@ fn read(input: &mut impl BufRead, calls: &Sender<Call>, pending: &Pending) {
         }
         let answer = match serde_json::from_slice::<Value>(&line) {
             Ok(message) => take(&message, calls, pending),
-            Err(error) => Some(failure(&Value::Null, PARSE_ERROR, &format!("no JSON: {error}"))),
+            Err(error) => Some(failure(&Value::Null, PARSE_ERROR, &format!("not JSON: {error}"))),
         };
         if answer.is_some_and(|answer| send(&answer).is_err()) {
             return;
@@ -183,7 +183,7 @@ fn answer(id: &Value, params: &Value, tools: &Tools, stop: &Arc<AtomicBool>) -> 
         Ok(Answer::Text(text)) => success(id, &content(&text, false)),
         Ok(Answer::Fault(text)) => success(id, &content(&text, true)),
         Ok(Answer::BadArguments(text)) => failure(id, INVALID_PARAMS, &text),
-        Err(_) => failure(id, INTERNAL_ERROR, "this is a fault of piola; please report it"),
+        Err(_) => failure(id, INTERNAL_ERROR, "this is a bug in piola; please report it"),
     }
 }
 

@@ -182,7 +182,7 @@ impl Tools {
     fn report(&self, results: &str) -> Result<String, String> {
         let name = results.strip_prefix("results/").unwrap_or(results);
         if Path::new(name).components().count() != 1 {
-            return Err(format!("`{results}` is no folder of results: give results/NAME"));
+            return Err(format!("`{results}` is not a folder of results: give results/NAME"));
         }
         let folder = self.results(name)?;
         let page = report::write(&folder).map_err(|error| error.to_string())?;
@@ -196,7 +196,7 @@ impl Tools {
     fn results(&self, name: &str) -> Result<PathBuf, String> {
         let folder = self.within(&Path::new("results").join(name))?;
         if folder.parent() != Some(&self.folder.join("results")) {
-            return Err(format!("`{name}` is no folder of results: give results/NAME"));
+            return Err(format!("`{name}` is not a folder of results: give results/NAME"));
         }
         let mut folders = vec![folder.clone()];
         while let Some(next) = folders.pop() {
@@ -300,7 +300,7 @@ fn fits(arguments: &Value, schema: &Value) -> Result<(), String> {
     let given = match arguments {
         Value::Null => &empty,
         Value::Object(given) => given,
-        _ => return Err("`arguments` are an object".to_owned()),
+        _ => return Err("`arguments` must be an object".to_owned()),
     };
     for (name, value) in given.iter().filter(|(_, value)| !value.is_null()) {
         let known = &schema["properties"][name];
@@ -309,9 +309,11 @@ fn fits(arguments: &Value, schema: &Value) -> Result<(), String> {
         match known["type"].as_str() {
             None => return Err(format!("there is no argument `{name}`")),
             Some("array") if !is_text_list(value) => {
-                return Err(format!("`{name}` is a list of texts"));
+                return Err(format!("`{name}` must be a list of strings"));
             }
-            Some("string") if !value.is_string() => return Err(format!("`{name}` is a text")),
+            Some("string") if !value.is_string() => {
+                return Err(format!("`{name}` must be a string"));
+            }
             _ => {}
         }
     }

@@ -27,7 +27,7 @@ fn check_says_what_will_happen_and_runs_nothing() {
     let (stdout, _) = place.run("check bar/case.toml --set time.end=0.03 --set output.every=1", 0);
     assert_contains(&stdout, &["1 particle file,"]);
     let (_, stderr) = place.run("check bar/case.toml --set time.end=1.5s", 2);
-    assert_contains(&stderr, &["a unit is not written behind a number"]);
+    assert_contains(&stderr, &["numbers have no units"]);
     assert_eq!(fs::read_dir(place.path("")).unwrap().count(), 1);
 }
 

@@ -179,8 +179,8 @@ fn bad_messages_have_errors_and_the_server_goes_on() {
         )
     };
     let lines: [(Vec<u8>, Value, i64, &str); 9] = [
-        (b"no json".to_vec(), Value::Null, -32_700, "no JSON"),
-        (b"{\"method\": \"ping\xff\"}".to_vec(), Value::Null, -32_700, "no JSON"),
+        (b"no json".to_vec(), Value::Null, -32_700, "not JSON"),
+        (b"{\"method\": \"ping\xff\"}".to_vec(), Value::Null, -32_700, "not JSON"),
         (b"{\"id\": 1}".to_vec(), json!(1), -32_600, "`method`"),
         (b"[]".to_vec(), Value::Null, -32_600, "`method`"),
         (b"{\"id\": 2, \"method\": \"tools/lost\"}".to_vec(), json!(2), -32_601, "tools/lost"),

@@ -85,7 +85,7 @@ fn charts_that_are_no_longer_shown_are_removed_and_nothing_else() {
 fn a_page_needs_a_place_to_be() {
     let place = Place::with_bar();
     let (_, stderr) = place.run("verify bar --page page", 2);
-    assert_contains(&stderr, &["needs an ending"]);
+    assert_contains(&stderr, &["needs a file name extension"]);
     place.write("file", "");
     place.run("verify bar --page file/page.md", 4);
     // A case that cannot be read is in the page, as failed.

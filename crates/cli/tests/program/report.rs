@@ -102,7 +102,7 @@ fn a_folder_without_a_run_is_refused() {
     assert_contains(&stderr, &["run.json"]);
     place.write("other/run.json", "{\"program\": \"other\"}");
     let (_, stderr) = place.run("report other", 2);
-    assert_contains(&stderr, &["no record of a run of piola"]);
+    assert_contains(&stderr, &["not a record of a run of piola"]);
 }
 
 #[test]

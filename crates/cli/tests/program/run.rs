@@ -76,7 +76,11 @@ fn a_failed_run_is_told_from_other_faults() {
     let (stdout, stderr) = place.run("run bar/case.toml --set time.max_steps=3", 3);
     assert_contains(
         &stderr,
-        &["the run failed: it took all the steps it may, 3,", "time.max_steps", "results/bar"],
+        &[
+            "the run failed: it took the maximum number of steps, 3,",
+            "time.max_steps",
+            "results/bar",
+        ],
     );
     assert_contains(&stdout, &["failed: too_many_steps", "after 3 steps"]);
     assert!(place.path("results/bar/particles.pvd").exists());

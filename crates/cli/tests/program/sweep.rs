@@ -107,7 +107,10 @@ fn a_failed_member_does_not_stop_the_rest() {
     let place = Place::with_bar();
     let (stdout, stderr) = place.run(&FAILING.replace("1000,3", "3,1000"), 3);
     assert_eq!(stdout, "");
-    assert_contains(&stderr, &["time.max_steps=3: the run failed: it took all the steps it may"]);
+    assert_contains(
+        &stderr,
+        &["time.max_steps=3: the run failed: it took the maximum number of steps"],
+    );
     let table = table(&place, "results/bar-sweep");
     assert_eq!(cell(&table, 1, "outcome"), "failed: too_many_steps");
     assert_eq!(cell(&table, 2, "outcome"), "completed");

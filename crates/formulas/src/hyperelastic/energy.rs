@@ -155,8 +155,8 @@ impl EnergyFunction {
         }
         if stress.abs() > STRESS_AT_REST * along[(0, 0)].abs().max(mu.abs()) {
             return refused(format!(
-                "there is a stress of {stress} Pa at rest, where there must be none; a term in ln(J) or (J - 1) \
-                 takes it away"
+                "there is a stress of {stress} Pa at rest, where there must be none; a term in \
+                 ln(J) or (J - 1) removes it"
             ));
         }
         let kappa = lambda + 2.0 / 3.0 * mu;

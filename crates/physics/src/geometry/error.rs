@@ -62,7 +62,7 @@ pub enum GeometryError {
     /// A polygon is none.
     #[error(
         "sides {first} and {second} of a polygon cross or touch; side 1 goes from the first corner to the second, \
-         expected sides that meet at their corners alone"
+         expected sides that meet only at their corners"
     )]
     CrossingSides {
         /// Number of a side, from 1.
@@ -72,8 +72,9 @@ pub enum GeometryError {
     },
     /// A lattice that is turned meets itself across no periodic bound.
     #[error(
-        "the box around a turned body reaches across the whole of the periodic domain, where its lattice would not \
-         meet itself: leave the body as it is and turn the rest of the case, or make it shorter"
+        "the bounding box of a turned body spans the whole periodic domain, where its lattice \
+         would not match itself: leave the body as it is and turn the rest of the case, or make \
+         it shorter"
     )]
     TurnedPeriodic,
     /// A combination of no shapes.
@@ -98,13 +99,14 @@ pub enum GeometryError {
     },
     /// Concentric layers in what has no centre and no axis.
     #[error(
-        "concentric layers fill a ball, a disc, an annulus or a cylinder, as the whole of a body; lay out the rest as \
-         another body"
+        "concentric layers fill a whole body that is a ball, a disc, an annulus or a cylinder; \
+         define the rest as another body"
     )]
     NotRound,
     /// Concentric layers do not go on beyond a body.
     #[error(
-        "ghosts continue a lattice, and concentric layers are none: expected `square` or `hexagonal`"
+        "ghosts continue a lattice, which concentric layers are not: expected `square` or \
+         `hexagonal`"
     )]
     NoSurroundings,
     /// Particles moved by half a spacing can meet.

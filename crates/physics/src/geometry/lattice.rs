@@ -217,7 +217,7 @@ fn check<const D: usize>(
     }
     let on_faces = spec.kind == LatticeKind::Concentric && spec.placement == Placement::Boundary;
     if on_faces && spec.periodic.contains(&true) {
-        let what = "layers on the ends of a body that goes round a periodic domain";
+        let what = "layers on the ends of a body that spans a periodic domain";
         return Err(GeometryError::Dimension { what, got: D, expected: "layers on cells" });
     }
     if spec.kind == LatticeKind::Hexagonal && D > 1 && spec.periodic.contains(&true) {

@@ -50,7 +50,7 @@ pub enum PointsFault {
     #[error("is larger than {} bytes, expected fewer points", MOST_BYTES)]
     TooLarge,
     /// There is nothing in it.
-    #[error("holds no points, expected a header and one line a point")]
+    #[error("holds no points, expected a header and one line per point")]
     Empty,
     /// The first line does not name the columns.
     #[error("the header is `{got}`, expected `{expected}`")]

@@ -55,7 +55,7 @@ pub enum NeighborError {
     /// The bounds of a periodic axis are not an interval.
     #[error(
         "the domain is periodic in {axis} from {lower} to {upper} m, expected finite bounds, the \
-         lower one first, and a length that is finite, too"
+         lower one first, and a finite length"
     )]
     PeriodicBounds {
         /// `x`, `y` or `z`.

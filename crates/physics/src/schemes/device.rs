@@ -89,7 +89,10 @@ pub enum DeviceRefusal {
         largest: String,
     },
     /// The device has single precision only.
-    #[error("runs take double precision, which this device has not: {0}; choose another, or none")]
+    #[error(
+        "runs need double precision, which this device does not support: {0}; choose another \
+         device, or none"
+    )]
     Single(String),
     /// The device.
     #[error(transparent)]

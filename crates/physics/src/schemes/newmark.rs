@@ -22,7 +22,7 @@ pub struct Newmark {
 /// Weights with which no step is safe, however small, or only small ones are.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
-    "beta = {beta} and gamma = {gamma} do not give steps that are stable at any size: \
+    "beta = {beta} and gamma = {gamma} do not give unconditionally stable steps: \
      2 beta >= gamma >= 1/2 does, and gamma = 1/2 is of second order"
 )]
 pub struct UnstableWeights {

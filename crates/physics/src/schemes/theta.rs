@@ -22,7 +22,7 @@ pub struct Theta {
 /// A share of the end of a step with which no step is safe, however small, or only small ones are.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
-    "theta = {theta} does not give steps that are stable at any size: 1/2 to 1 does, 1/2 is of \
+    "theta = {theta} does not give unconditionally stable steps: 1/2 to 1 does, 1/2 is of \
      second order and 1 damps most"
 )]
 pub struct UnstableTheta {

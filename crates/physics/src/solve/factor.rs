@@ -44,7 +44,7 @@ pub enum FactorError {
         free: u64,
     },
     /// A pivot is zero or not a number.
-    #[error("the matrix is singular: pivot {index} vanishes or is no number")]
+    #[error("the matrix is singular: pivot {index} vanishes or is not a number")]
     Singular {
         /// Number of the unknown.
         index: usize,

@@ -57,8 +57,8 @@ pub enum LoadError {
     /// Equilibrium that the least disturbance leaves.
     #[error(
         "the body is unstable at a load factor of {factor}, and stable at {reached}: energy falls \
-         in {} there; the body buckles, its material softens, or it is held too little; follow the \
-         path by arc length to go on",
+         in {} there; the body buckles, its material softens, or it is not held sufficiently; \
+         follow the path by arc length to continue",
         directions(*negative)
     )]
     Unstable {

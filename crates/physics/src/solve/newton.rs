@@ -132,7 +132,7 @@ pub enum NewtonError {
         residual: f64,
     },
     /// Every step along the direction turns a particle inside out.
-    #[error("particle {particle} is turned inside out; the residual went {}", listed(history, *residual))]
+    #[error("particle {particle} is inverted; the residual went {}", listed(history, *residual))]
     Broken {
         /// Index of the particle in memory.
         particle: usize,

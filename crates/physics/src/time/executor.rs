@@ -329,7 +329,7 @@ impl Executor {
         let Run { clock, tally, .. } = &mut self.run;
         if let (false, Some(warning)) = (tally.warned, self.scheme.warning()) {
             let Clock { step, time, .. } = *clock;
-            tally.warnings.push(format!("{warning}; seen first at t = {time:e} s, step {step}"));
+            tally.warnings.push(format!("{warning}; first seen at t = {time:e} s, step {step}"));
             tally.warned = true;
         }
         clock.health = health;

@@ -58,17 +58,18 @@ pub enum Failure {
         particle.id,
         particle.reference,
         match &escape.behind {
-            Behind::Wall(wall) => format!("has gone through the wall `{wall}`, and is"),
-            Behind::Box => "has left the box around everything, and is".into(),
+            Behind::Wall(wall) => format!("has passed through the wall `{wall}`, and is"),
+            Behind::Box => "has left the bounding box of the case, and is".into(),
             Behind::Reserve(name) => format!(
                 "cannot come in through the open boundary `{name}`, as no particle is left in the reserve to follow it, \
                  and is"
             ),
             Behind::Level => "stands for a finer region whose reserve is used up, so that no particle can be born there, and is"
                 .into(),
-            Behind::Surface => "has gone through the surface that it touches, and is".into(),
+            Behind::Surface => "has passed through the surface that it touches, and is".into(),
             Behind::Neighbors => {
-                "is twice as far from a neighbour of the start as it was, or turned inside out with them, and is"
+                "is twice as far from an initial neighbour as at the start, or inverted together \
+                 with its neighbours, and is"
                     .into()
             }
         },
@@ -94,7 +95,8 @@ pub enum Failure {
          t = {time:.6} s, where at most {limit:.4e} m/s is expected (ten times the sum of the \
          largest speed and the wave speed at the start, unless `time.max_speed` says otherwise): \
          the state has broken up, or the material is far too soft for its loads; check the \
-         numbers of the material and their units, take smaller steps (`time.cfl` or `time.step`) or \
+         parameters of the material and their units, take smaller steps (`time.cfl` or \
+         `time.step`) or \
          {advice}, or raise `time.max_speed` if such speeds are meant",
         particle.id,
         particle.reference
@@ -173,8 +175,8 @@ pub enum Failure {
     Unserved(#[from] Unserved),
     /// A step is less accurate than was asked for. The run takes a shorter one.
     #[error(
-        "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, and may have \
-         {largest:.1e}"
+        "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, where \
+         {largest:.1e} is allowed"
     )]
     Inaccurate {
         /// What its error was estimated to be.
@@ -188,13 +190,14 @@ pub enum Failure {
     },
     /// A device cannot go on.
     #[error(
-        "the device failed: {0}; the run is back at the last state that was kept, and `--resume` goes on \
-         from there, on any device or on the processor"
+        "the device failed: {0}; the run is back at the last saved state, and `--resume` \
+         continues from there, on any device or on the processor"
     )]
     Device(#[from] DeviceError),
     /// The number of steps allowed is used up.
     #[error(
-        "it took all the steps it may, {steps}, and is at t = {time:.6} s, before its end; raise `time.max_steps` to go on"
+        "it took the maximum number of steps, {steps}, and is at t = {time:.6} s, before its end; \
+         raise `time.max_steps` to continue"
     )]
     TooManySteps {
         /// Steps taken.

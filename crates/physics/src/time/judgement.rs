@@ -44,7 +44,9 @@ impl Executor {
                 step,
                 time,
                 advice: match supersonic(start_speeds) {
-                    Some(cause) => format!("{cause}; else {}", self.scheme.collapse_advice(index)),
+                    Some(cause) => {
+                        format!("{cause}; otherwise {}", self.scheme.collapse_advice(index))
+                    }
                     None => self.scheme.collapse_advice(index),
                 },
             });

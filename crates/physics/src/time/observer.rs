@@ -60,7 +60,9 @@ pub trait Observer: Send {
     fn restore(&mut self, saved: &[u8]) -> Result<(), Misfit> {
         match saved {
             [] => Ok(()),
-            _ => Err(Misfit("one of its outputs remembers what this run's does not know".into())),
+            _ => Err(Misfit(
+                "one of its outputs holds data that the output of this run does not know".into(),
+            )),
         }
     }
 

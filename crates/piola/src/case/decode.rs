@@ -234,7 +234,7 @@ impl Context<'_> {
                 problem.help(format!("write `[[{name}]]` with two brackets, once for each"))
             }
             (Kind::Table(_) | Kind::Tagged(_), Value::List(_)) => {
-                problem.help(format!("there is one only: write `[{name}]` with one bracket"))
+                problem.help(format!("there is only one: write `[{name}]` with one bracket"))
             }
             (Kind::List(_), Value::Text(text)) => {
                 problem.help(format!("write brackets around it: [\"{text}\"]"))

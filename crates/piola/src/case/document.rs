@@ -209,7 +209,7 @@ fn whole_number(integer: &DeInteger<'_>) -> Option<i64> {
 }
 
 /// What to do about a unit behind a number.
-const WITHOUT_UNIT: &str = "write the number without a unit, `1.5`: all are of SI";
+const WITHOUT_UNIT: &str = "write the number without a unit, `1.5`: all numbers are in SI units";
 
 /// One problem a line, with the commonest slips in plain words.
 fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Problem> {
@@ -231,7 +231,7 @@ fn syntax_problem(text: &str, span: Range<usize>, message: &str) -> Problem {
     let place = Place::new(0, span.clone());
     let word = &text[span.clone()];
     if message == "duplicate key" {
-        let message = format!("`{word}` is there twice");
+        let message = format!("`{word}` appears twice");
         return Problem::new(place, message, "the second time").help("remove one of the two");
     }
     if message.starts_with("cannot recurse") || message == "recursion limit" {
@@ -245,9 +245,7 @@ fn syntax_problem(text: &str, span: Range<usize>, message: &str) -> Problem {
                 Problem::new(place, format!("there is a unit after a number: {word}"), "a unit")
                     .help(WITHOUT_UNIT)
             }
-            Some(_) => {
-                Problem::new(place, format!("text stands in quotes: \"{word}\""), "no quotes")
-            }
+            Some(_) => Problem::new(place, format!("text needs quotes: \"{word}\""), "no quotes"),
         };
     }
     let problem = Problem::new(place, format!("this is not TOML: {message}"), "");

@@ -42,15 +42,15 @@ pub(super) fn unbalanced(tables: &Tables, time: &model::Time) -> Option<String> 
         IntegratorKind::from_name(&time.integrator).is_some_and(IntegratorKind::is_static);
     let advice = match time.rule.is_some_and(|rule| rule.damps()) {
         _ if is_static => {
-            "the steps of the load are too large for what happens, or one went over a limit of it; lower \
+            "the load steps are too large, or one of them passed a limit point; lower \
              `time.step` and compare"
         }
         true => {
-            "the integrator damps what is short against its steps; if that is more than was meant, \
-             lower `time.step`, or let it damp less"
+            "the integrator damps periods that are short compared with its steps; if that is \
+             more than intended, lower `time.step`, or reduce its damping"
         }
         false => {
-            "the steps are too large for what happens; lower `time.cfl`, or `time.step` where it is \
+            "the steps are too large for this motion; lower `time.cfl`, or `time.step` where it is \
              given, and compare"
         }
     };

@@ -106,7 +106,7 @@ impl<'a> Override<'a> {
                 Some('=') if self.value.is_none() => return Ok((path, end + 1)),
                 None if self.value.is_some() => return Ok((path, end)),
                 _ if self.value.is_some() => {
-                    return Err(self.problem(all, "this is no path of a key", "not a path"));
+                    return Err(self.problem(all, "this is not the path of a key", "not a path"));
                 }
                 _ => {
                     return Err(self
@@ -166,8 +166,8 @@ impl<'a> Override<'a> {
             }
         };
         let message = format!("the {what} cannot be read");
-        Err(self.problem(start..start + text.len(), message, format!("no {what} of TOML")).help(
-            "texts in it stand in quotes, and the shell takes away those outside: write \
+        Err(self.problem(start..start + text.len(), message, format!("not a TOML {what}")).help(
+            "strings in it need quotes, and the shell removes the outer ones: write \
              --set 'path.to.key={ key = \"text\", list = [1, 2] }'",
         ))
     }

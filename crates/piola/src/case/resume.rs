@@ -116,7 +116,7 @@ pub(super) fn find(
                 Ok((Payload { files, checkpoint }, []))
                     if files.iter().all(|file| ResultsFolder::may_hold(file)) =>
                 {
-                    let warnings = refused.iter().map(|error| format!("passed over: {error}"));
+                    let warnings = refused.iter().map(|error| format!("skipped: {error}"));
                     let (time, warnings) = (checkpoint.time(), warnings.collect());
                     return Ok(Some((checkpoint, Resumed { time, files, warnings })));
                 }

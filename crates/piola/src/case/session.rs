@@ -75,7 +75,7 @@ pub enum RunError {
     #[error(transparent)]
     Observe(#[from] ObserveError),
     /// There are checkpoints, and none of them is any good for this run.
-    #[error("{newest}\nno checkpoint of this run is sound; nothing was changed")]
+    #[error("{newest}\nno checkpoint of this run is intact; nothing was changed")]
     NoCheckpoint {
         /// Why the newest was refused.
         newest: CheckpointError,
@@ -302,7 +302,8 @@ impl Session {
         let gone = removed(&tables);
         if gone > 0.0 {
             warnings.push(format!(
-                "{gone} of {particles} particles escaped and were removed: `step.removed` has when"
+                "{gone} of {particles} particles escaped and were removed: `step.removed` shows \
+                 when"
             ));
         }
         let linear = executor.scheme.linear_costs();

@@ -232,7 +232,7 @@ fn excuse(rows: &mut [CheckRow], why: &str) {
     if rows.iter().all(|row| row.pass) {
         for row in rows {
             row.pass = false;
-            row.reason = Some("it is met, and marked as not met: remove `unmet`".to_owned());
+            row.reason = Some("it is met, but marked as not met: remove `unmet`".to_owned());
         }
         return;
     }

@@ -22,7 +22,7 @@ pub(super) fn decode<T: DeserializeOwned>(saved: &[u8], what: &str) -> Result<T,
 /// Refuses files that would lead out of the folder of the results: they may be removed later.
 pub(super) fn inside<'a>(files: impl IntoIterator<Item = &'a String>) -> Result<(), Misfit> {
     match files.into_iter().find(|file| !ResultsFolder::may_hold(file)) {
-        Some(file) => Err(Misfit(format!("{file:?} is no file of a run"))),
+        Some(file) => Err(Misfit(format!("{file:?} is not a file of a run"))),
         None => Ok(()),
     }
 }

@@ -27,15 +27,15 @@ $EndElements
 fn faults_are_named_with_their_line() {
     let square = |from: &str, to: &str| SQUARE.replacen(from, to, 1);
     for (text, parts) in [
-        (String::new(), &["is no mesh"][..]),
-        ("solid cube\nfacet".into(), &["is no mesh"]),
+        (String::new(), &["is not a mesh"][..]),
+        ("solid cube\nfacet".into(), &["is not a mesh"]),
         (square("2.2 0 8", "4 0 8"), &["line 2", "version 4 of Gmsh's format", "4.1 or 2.2"]),
         (square("2.2 0 8", "2.2 1 8"), &["line 2", "binary", "Mesh.Binary = 0"]),
         (square("3 1 1 0", "3 1 x 0"), &["line 8: got `x`, expected a coordinate"]),
         (square("3 1 1 0", "3 1 nan 0"), &["line 8", "got `nan`"]),
-        (square("4 0 1 0", "3 0 1 0"), &["line 9", "node 3 is there twice"]),
-        (square("2 2 2 9 1 1 3 4", "2 2 2 9 1 1 3 7"), &["line 15", "cell 2 has the node 7"]),
-        (square("2 2 2 9 1 1 3 4", "1 2 2 9 1 1 3 4"), &["line 15", "element 1 is there twice"]),
+        (square("4 0 1 0", "3 0 1 0"), &["line 9", "node 3 appears twice"]),
+        (square("2 2 2 9 1 1 3 4", "2 2 2 9 1 1 3 7"), &["line 15", "cell 2 refers to node 7"]),
+        (square("2 2 2 9 1 1 3 4", "1 2 2 9 1 1 3 4"), &["line 15", "element 1 appears twice"]),
         (square("1 2 2 9", "1 9 2 9"), &["line 14", "higher order", "Mesh.ElementOrder"]),
         (square("1 2 2 9", "1 99 2 9"), &["line 14", "type 99 are not known"]),
         (square("$EndElements\n", ""), &["the file ends, expected $EndElements"]),

@@ -299,7 +299,7 @@ fn a_body_that_goes_through_a_floor_is_told() {
         panic!("{:?}", finished.summary.outcome)
     };
     let said = failure.to_string();
-    for part in ["has gone through the surface that it touches", "`contact_stiffness`"] {
+    for part in ["has passed through the surface that it touches", "`contact_stiffness`"] {
         assert!(said.contains(part), "{said}");
     }
 }

@@ -200,7 +200,7 @@ fn what_leaves_the_box_is_named() {
     // The walls end half a spacing below 0 and everything is 2.35 m wide.
     assert_eq!(escape.behind, Behind::Box);
     assert!((2.3..2.6).contains(&escape.position[1]), "{escape:?}");
-    assert!(failure(&finished).to_string().contains("left the box"));
+    assert!(failure(&finished).to_string().contains("left the bounding box"));
 }
 
 #[test]

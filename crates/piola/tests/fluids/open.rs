@@ -164,7 +164,7 @@ fn each_opening_has_its_own_account() {
         assert!(values(&finished, name).iter().all(|mass| *mass == 0.0), "{name}");
     }
     let wrong = session(&[stream(2), probe("water")].concat(), &[]).err().expect("it is refused");
-    assert!(wrong.contains("is of no opening"), "{wrong}");
+    assert!(wrong.contains("belongs to no opening"), "{wrong}");
 }
 
 /// A profile from a file over the height of a channel is what the same one as an expression is, a history over time too.
@@ -320,13 +320,13 @@ fn openings_that_cannot_work_are_refused() {
     );
     refused(&["body.inlet.opening.normal=[1.0, 0.1]"], "points along a periodic axis");
     let no_period = "domain={}";
-    refused(&[no_period, "body.inlet.opening.normal=[1.0, 0.4]"], "does not go straight through");
+    refused(&[no_period, "body.inlet.opening.normal=[1.0, 0.4]"], "does not extend straight");
     refused(
         &[no_period, "body.inlet.shape={ kind = 'ball', center = [-0.2, 0.2], radius = 0.2 }"],
-        "does not go straight through",
+        "does not extend straight",
     );
     refused(&["body.inlet.initial={ pressure = '1' }"], "in the buffer of an opening");
-    refused(&["body.inlet.wall={}"], "a wall is no opening");
+    refused(&["body.inlet.wall={}"], "a wall cannot be an opening");
     let closed = ["body.inlet.opening=", "body.outlet.opening=", "scheme.reserve=4"];
     refused(&closed, "where no body has the key `opening` and nothing is refined");
     let wall = "body+={ name = 'wall', shape = { kind = 'box', min = [-0.1, 0.1], max = [0.0, 0.2] }, spacing = 0.05, \
@@ -341,7 +341,7 @@ fn flow_rates_that_do_not_balance_are_told() {
     let set = ["body.outlet.opening={ normal = [-1.0, 0.0], velocity = ['0.5', '0'] }"];
     let mut session = session(&stream(2), &set).expect("it is built");
     let warnings = session.plan().warnings;
-    assert!(warnings.iter().any(|it| it.contains("2.000e-1 m^D/s more come in")), "{warnings:?}");
+    assert!(warnings.iter().any(|it| it.contains("2.000e-1 m^D/s more flow in")), "{warnings:?}");
 }
 
 /// A stream that swings, under pressure.

@@ -148,7 +148,11 @@ end = 1e-5
     assert!((found[10] - 9810.0 * 0.46).abs() < 1e-6, "{found:?}");
     let misplaced = [
         ("at = [0.43, 0.0]", "at = [0.43, 0.5]", "no particle of the wall is behind this place"),
-        ("normal = [0.0, 2.0]", "normal = [0.0, -2.0]", "the wall goes on in front of the sensor"),
+        (
+            "normal = [0.0, 2.0]",
+            "normal = [0.0, -2.0]",
+            "the wall continues in front of the sensor",
+        ),
         ("body = \"tank\"\nat = [0.43", "body = \"water\"\nat = [0.43", "`floor` is in no wall"),
         ("body = \"tank\"\nat = [0.43", "body = \"box\"\nat = [0.43", "`floor` is in no wall"),
     ];

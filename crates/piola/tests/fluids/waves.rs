@@ -105,7 +105,7 @@ fn waves_that_there_are_none_of_are_refused() {
         ("height = 0.2, period = 20", "too long for waves of second order"),
         ("height = 0.2, period = 0.4", "so steep that they break"),
         ("height = 0.4, period = 1", "break on 0.4 m of water"),
-        ("height = 1e-300, period = 1e-200", "no number"),
+        ("height = 1e-300, period = 1e-200", "is not a number"),
     ] {
         let told = refusal(TANK, &[&regular(rest)]);
         assert!(told.contains(what), "{told}");

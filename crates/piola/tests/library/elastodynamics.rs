@@ -408,7 +408,7 @@ fn what_cannot_be_built_says_why() {
     periodic.domain = Domain::new([Some([0.0, 5.0]), None]).unwrap();
     let mirror = Mirror { axis: 0, place: 0.0, is_upper: false, continuation: Continuation::Odd };
     periodic.mirrors = vec![(mirror, 0)];
-    assert!(refused(periodic).contains("repeats itself along x"));
+    assert!(refused(periodic).contains("is periodic along x"));
     let mut short = input([4, 4], law, cover, plain());
     short.displacement.pop();
     assert!(refused(short).contains("the initial displacement has 24 entries"));

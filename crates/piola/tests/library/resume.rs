@@ -260,7 +260,7 @@ fn a_damaged_checkpoint_is_passed_over_with_a_warning() {
     assert_eq!(finished.summary.resumed.map(|(_, step)| step), Some(30));
     assert_eq!(finished.warnings.len(), 2, "{:?}", finished.warnings);
     assert!(finished.warnings[0].contains("step_000000000045 is damaged: its checksum"));
-    assert!(finished.warnings[1].contains("step_000000000040 is no checkpoint of piola"));
+    assert!(finished.warnings[1].contains("step_000000000040 is not a checkpoint of piola"));
     let whole = bar.folder.path().join("whole");
     run(&case, &whole, false, 1, u64::MAX);
     assert_same(&whole, &bar.out(), "from the third checkpoint");

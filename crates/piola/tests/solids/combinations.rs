@@ -216,9 +216,9 @@ fn every_combination_runs_and_balances_or_is_refused_with_a_reason() {
 /// The letter that the page gives to a reason.
 fn reason(refusal: &str) -> &'static str {
     const REASONS: [(&str, &str); 5] = [
-        ("in the strong form, which has no energy", "a"),
-        ("a follower pressure cannot be had with the strong form", "b"),
-        ("patch-consistent gradients cannot be had with mirror images", "c"),
+        ("in the strong form, whose forces do not derive from an energy", "a"),
+        ("a follower pressure cannot be combined with the strong form", "b"),
+        ("patch-consistent gradients cannot be combined with mirror images", "c"),
         ("has no meaning without the integrator `static`", "d"),
         ("only, and not of particle", "e"),
     ];

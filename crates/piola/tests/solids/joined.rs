@@ -112,7 +112,7 @@ fn a_plane_that_is_no_mirror_is_refused() {
         ),
         (
             plain.replace("0.25 }", "0.25 }\ninitial = { displacement = [\"x\", \"0\"] }"),
-            "initial values cannot be had with statics",
+            "initial values cannot be combined with statics",
         ),
     ] {
         let message = refusal(&text);

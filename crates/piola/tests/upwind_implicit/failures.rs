@@ -27,7 +27,7 @@ fn a_step_without_a_state_is_named() {
         .advance(&Theta::BACKWARD_EULER, 0.0, 1.0, &old, &mut new)
         .expect_err("the wall goes through");
     assert_eq!(error.kind, Missed::Inverted);
-    for part in ["t = 1.000000 s", "particle", "turned inside out", "`time.step`", "retry"] {
+    for part in ["t = 1.000000 s", "particle", "is inverted", "`time.step`", "retry"] {
         assert!(error.message.contains(part), "{part}: {}", error.message);
     }
     scheme.advance(&Theta::BACKWARD_EULER, 0.0, 0.02, &old, &mut new).expect("a state exists");

@@ -125,7 +125,7 @@ fn warnings(report: &Report) -> Markup {
         @for retry in report.record.retries.iter().take(MOST) {
             p .notice {
                 strong { "Retry: " } (retry.failure) " It went back to t = "
-                (number(retry.back_to)) " s, with steps of " (number(retry.factor)) " of the usual."
+                (number(retry.back_to)) " s, with steps of " (number(retry.factor)) " times their usual length."
             }
         }
         @for warning in warnings.take(MOST) {

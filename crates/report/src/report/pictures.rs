@@ -74,7 +74,7 @@ fn embed(path: &Path, left: u64) -> Result<Vec<u8>, Option<String>> {
         return Err(None);
     }
     if !bytes.starts_with(SIGNATURE) {
-        return Err(Some("it is no PNG file".into()));
+        return Err(Some("it is not a PNG file".into()));
     }
     Ok(bytes)
 }

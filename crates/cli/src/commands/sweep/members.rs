@@ -91,12 +91,12 @@ fn of_flags(arguments: &SweepArguments) -> Result<(Vec<String>, Vec<Member>), Fa
             return Err(fault(format!("--over {flag}: a value is empty")));
         }
         if keys.iter().any(|(known, _)| *known == key.trim()) {
-            return Err(fault(format!("--over {flag}: the key is there twice")));
+            return Err(fault(format!("--over {flag}: the key appears twice")));
         }
         keys.push((key.trim(), values));
     }
     if keys.len() > 2 {
-        let message = "--over is there more than twice; a sweep goes over one or two keys";
+        let message = "--over is given more than twice; a sweep varies one or two keys";
         return Err(fault(message.to_owned()));
     }
     let count = keys.iter().fold(1_usize, |count, (_, values)| count.saturating_mul(values.len()));

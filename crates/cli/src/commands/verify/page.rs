@@ -34,7 +34,10 @@ impl Writer {
     /// A page for `file`. The list of what the papers show is looked for above `paths`.
     pub fn new(file: &Path, paths: &[PathBuf]) -> Result<Self, Fault> {
         if file.with_extension("") == file {
-            let message = format!("the page {} needs an ending, for example `.md`", file.display());
+            let message = format!(
+                "the page {} needs a file name extension, for example `.md`",
+                file.display()
+            );
             return Err(Fault::new(Exit::BadCase, message));
         }
         let above = file.parent().filter(|above| !above.as_os_str().is_empty());

@@ -28,7 +28,7 @@ pub enum SurfaceError {
         reason: String,
     },
     /// The end of its name is of no kind that is known.
-    #[error("`{}` is of no kind that is known, expected a name that ends with `.stl`, `.obj` or `.ply`", path.display())]
+    #[error("`{}` is of an unknown kind, expected a file name that ends with `.stl`, `.obj` or `.ply`", path.display())]
     Kind {
         /// The file.
         path: PathBuf,
@@ -82,7 +82,8 @@ fn stl(mut bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
     } else {
         let facets = bytes.len().saturating_sub(STL_HEAD) as f64 / STL_FACET as f64;
         return Err(format!(
-            "it is no text that begins with `solid` and a facet, and has room for {facets} facets where a binary file would have {count}"
+            "it is not text that begins with `solid` and a facet, and has room for {facets} facets \
+             where a binary file would have {count}"
         ));
     }
     let mut source = Cursor::new(bytes);
@@ -146,7 +147,7 @@ fn ply(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
         // Each takes a byte and more.
         if element.count > most || element.properties.is_empty() {
             return Err(format!(
-                "{} of the element `{}` with {} properties are more than there is in it",
+                "{} of the element `{}` with {} properties are more than it can hold",
                 element.count,
                 element.name,
                 element.properties.len()
@@ -211,7 +212,7 @@ fn add(corners: &[Vector<3>], numbers: &[u32], all: &mut Vec<Triangle>) -> Resul
     let corner = |&number: &u32| {
         let found = corners.get(number as usize).copied();
         let count = corners.len();
-        found.ok_or_else(|| format!("a facet has the vertex {number} (from 0) of {count}"))
+        found.ok_or_else(|| format!("a facet refers to the vertex {number} (from 0) of {count}"))
     };
     for facet in numbers.chunks_exact(3) {
         all.push([corner(&facet[0])?, corner(&facet[1])?, corner(&facet[2])?]);

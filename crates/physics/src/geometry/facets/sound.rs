@@ -159,11 +159,11 @@ impl std::fmt::Display for Soundness {
             ));
         }
         if self.flipped > 0 {
-            all.push(format!("{} the other way round were flipped", facets(self.flipped)));
+            all.push(format!("{} with reversed orientation were flipped", facets(self.flipped)));
         }
         if self.left_out > 0 {
             all.push(format!(
-                "{} that are there twice or have no area were left out",
+                "{} that are duplicates or have no area were left out",
                 facets(self.left_out)
             ));
         }

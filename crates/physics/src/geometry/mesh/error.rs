@@ -33,7 +33,7 @@ pub enum MeshFault {
     #[error("is larger than {} bytes, expected a smaller mesh", MOST_BYTES)]
     TooLarge,
     /// It starts like no format that is known.
-    #[error("is no mesh, expected one of Gmsh (.msh) or an unstructured grid of VTK (.vtk, .vtu)")]
+    #[error("is not a mesh, expected a Gmsh mesh (.msh) or a VTK unstructured grid (.vtk, .vtu)")]
     NotAMesh,
     /// A format, or a part of one, that is not read.
     #[error("{what} cannot be read; {help}")]
@@ -82,7 +82,7 @@ pub enum MeshFault {
         why: String,
     },
     /// A number that is used twice.
-    #[error("{what} {number} is there twice")]
+    #[error("{what} {number} appears twice")]
     Twice {
         /// A node, or a cell.
         what: &'static str,
@@ -90,7 +90,7 @@ pub enum MeshFault {
         number: u64,
     },
     /// A cell of a node that is not there.
-    #[error("cell {cell} has the node {node}, which the file does not have")]
+    #[error("cell {cell} refers to node {node}, which the file does not contain")]
     UnknownNode {
         /// Number of the cell.
         cell: u64,
@@ -107,7 +107,7 @@ pub enum MeshFault {
     },
     /// A cell that is no simple one.
     #[error(
-        "cells of the type {number} are not known, expected points, lines, triangles, \
+        "cells of the type {number} are not supported, expected points, lines, triangles, \
          quadrilaterals, tetrahedra, hexahedra, wedges and pyramids"
     )]
     UnknownCell {
@@ -151,7 +151,7 @@ pub enum MeshFault {
         dimension: usize,
     },
     /// A cell of no measure.
-    #[error("cell {cell} at {place:?} is flat: its measure is {measure} m^D; mend the mesh")]
+    #[error("cell {cell} at {place:?} is flat: its measure is {measure} m^D; repair the mesh")]
     Flat {
         /// Number of the cell.
         cell: u64,
@@ -162,8 +162,8 @@ pub enum MeshFault {
     },
     /// A cell that is turned inside out.
     #[error(
-        "cell {cell} at {place:?} is inverted: its measure is {measure} m^D, against the sign of \
-         the others; turn the order of its nodes round, or mend the mesh"
+        "cell {cell} at {place:?} is inverted: its measure is {measure} m^D, opposite in sign to \
+         the others; reverse the order of its nodes, or repair the mesh"
     )]
     Inverted {
         /// Number of the cell.
@@ -174,7 +174,7 @@ pub enum MeshFault {
         measure: f64,
     },
     /// A cell that is partly turned inside out.
-    #[error("cell {cell} at {place:?} is folded: a part of it is inverted; mend the mesh")]
+    #[error("cell {cell} at {place:?} is folded: a part of it is inverted; repair the mesh")]
     Folded {
         /// Number of the cell.
         cell: u64,
@@ -183,8 +183,8 @@ pub enum MeshFault {
     },
     /// Cells that overlap.
     #[error(
-        "cell {cell} at {place:?} has a face that two other cells have; a face lies between two \
-         cells at most: remove the cells that are there twice"
+        "cell {cell} at {place:?} has a face that two other cells share; a face belongs to at \
+         most two cells: remove duplicate cells"
     )]
     Shared {
         /// Number of the cell.

@@ -135,8 +135,8 @@ impl Grid {
             let count = words.number::<u64>("the number of values")?;
             let kind = words.some("the type of numbers")?;
             if kind.eq_ignore_ascii_case("string") {
-                let what = format!("the array `{name}` of texts");
-                return Err(words.fault(MeshFault::Unsupported { what, help: "leave it away" }));
+                let what = format!("the string array `{name}`");
+                return Err(words.fault(MeshFault::Unsupported { what, help: "leave it out" }));
             }
             self.array(name, components, count, words)?;
         }

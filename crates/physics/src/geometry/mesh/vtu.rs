@@ -38,7 +38,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         return unsupported(format!("a VTK file of {kind}"), "write an unstructured grid");
     }
     if root.attribute("byte_order") == Some("BigEndian") {
-        return unsupported("a file with the first byte first".into(), "write LittleEndian");
+        return unsupported("a big-endian file".into(), "write LittleEndian");
     }
     let packing = match root.attribute("compressor") {
         None => false,

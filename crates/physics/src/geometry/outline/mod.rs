@@ -26,7 +26,7 @@ pub enum OutlineError {
         reason: String,
     },
     /// The end of its name is of no kind that is known.
-    #[error("`{}` is of no kind that is known, expected a name that ends with `.svg` or `.csv`", path.display())]
+    #[error("`{}` is of an unknown kind, expected a file name that ends with `.svg` or `.csv`", path.display())]
     Kind {
         /// The file.
         path: PathBuf,
@@ -42,7 +42,7 @@ pub enum OutlineError {
         reason: String,
     },
     /// Two loops have a point in common.
-    #[error("`{}`: loops {first} and {second} cross or touch, expected loops apart from each other", path.display())]
+    #[error("`{}`: loops {first} and {second} cross or touch, expected separate loops", path.display())]
     Crossing {
         /// The file.
         path: PathBuf,
@@ -95,7 +95,7 @@ impl Outline {
             return Err(broken((None, "there is no outline in it".to_owned())).into());
         }
         if count > MOST_CORNERS {
-            let reason = format!("it has {count} corners, at most {MOST_CORNERS} can be looked at");
+            let reason = format!("it has {count} corners, at most {MOST_CORNERS} can be checked");
             return Err(broken((None, reason)).into());
         }
         for corners in &loops {
@@ -159,7 +159,7 @@ fn csv(bytes: &[u8]) -> Result<Vec<Vec<Vector<2>>>, Fault> {
         let number = |index: usize| {
             let text = record.get(index).unwrap_or_default();
             let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-            value.ok_or_else(|| (line, format!("`{text}` is no finite number")))
+            value.ok_or_else(|| (line, format!("`{text}` is not a finite number")))
         };
         let corner = Vector::<2>::new(number(x)?, number(y)?);
         let own = name.and_then(|name| record.get(name)).unwrap_or_default();
@@ -252,9 +252,9 @@ mod tests {
     #[test]
     fn what_is_no_outline_is_refused_where_it_stands() {
         for (name, text, part) in [
-            ("a.dxf", "", "expected a name that ends with `.svg` or `.csv`"),
+            ("a.dxf", "", "expected a file name that ends with `.svg` or `.csv`"),
             ("a.csv", "x,z\n1,2\n", "line 1: expected a header with the columns `x` and `y`"),
-            ("a.csv", "x,y\n0,0\n1,nan\n", "line 3: `nan` is no finite number"),
+            ("a.csv", "x,y\n0,0\n1,nan\n", "line 3: `nan` is not a finite number"),
             ("a.csv", "x,y\n0,0\n1\n", "line"),
             ("a.csv", "x,y\n", "there is no outline in it"),
             ("a.csv", "x,y\n0,0\n1,1\n", "a polygon has 2 corners"),

@@ -16,7 +16,7 @@ const FURTHEST: f64 = 1e30;
 
 /// The loops of the paths and polygons of an SVG.
 pub(super) fn loops(bytes: &[u8]) -> Result<Vec<Vec<Vector<2>>>, Fault> {
-    let text = std::str::from_utf8(bytes).map_err(|_| (None, "it is no text".to_owned()))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| (None, "it is not text".to_owned()))?;
     let document = Document::parse(text)
         .map_err(|error| (Some(u64::from(error.pos().row)), error.to_string()))?;
     let mut all = BezPath::new();
@@ -25,7 +25,7 @@ pub(super) fn loops(bytes: &[u8]) -> Result<Vec<Vec<Vector<2>>>, Fault> {
         let name = node.tag_name().name();
         if node.attribute("transform").is_some() {
             let reason = format!(
-                "`transform` of <{name}> is not followed: apply transforms before the export"
+                "`transform` of <{name}> is not supported: apply transforms before the export"
             );
             return Err((line, reason));
         }
@@ -34,8 +34,9 @@ pub(super) fn loops(bytes: &[u8]) -> Result<Vec<Vec<Vector<2>>>, Fault> {
             "path" => path(of("d")),
             "polygon" => path(&format!("M{}Z", of("points"))),
             "rect" | "circle" | "ellipse" | "line" | "polyline" | "text" | "image" | "use" => {
-                let reason =
-                    format!("<{name}> is not followed: convert objects to paths before the export");
+                let reason = format!(
+                    "<{name}> is not supported: convert objects to paths before the export"
+                );
                 return Err((line, reason));
             }
             _ => continue,

@@ -154,7 +154,7 @@ fn holes_and_facets_that_are_turned_or_there_twice_do_no_harm() {
     let found = mended.soundness();
     assert_eq!((found.flipped, found.left_out, found.open_edges), (turned, count + 1, 0));
     let text = found.to_string();
-    assert!(text.contains("the other way round") && text.contains("left out"), "{text}");
+    assert!(text.contains("reversed orientation") && text.contains("left out"), "{text}");
     // A hole of a facet of 0.13 by 0.08 m.
     let holed = Facets::new(torus(60, 30)[1..].to_vec()).unwrap();
     assert_eq!((holed.soundness().open_edges, holed.volume()), (3, None));

@@ -162,7 +162,7 @@ fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalL
         input.prescribed.iter().any(|it| it.particles.iter().any(|a| is_rigid[own(a)]))
     };
     let strong = "the strong form";
-    let no_energy = "it has no energy of which forces are derivatives; use `form = \"adjoint\"`";
+    let no_energy = "its forces do not derive from an energy; use `form = \"adjoint\"`";
     let faults = [
         (is_strong && is_solved_for, (implicit, strong, no_energy)),
         (
@@ -208,14 +208,14 @@ fn combine<const D: usize>(input: &TotalLagrangianInput<D>) -> Result<(), TotalL
         ),
         (
             is_strong && !input.mirrors.is_empty(),
-            (mirrors, strong, "it makes its ghosts by itself; leave them out"),
+            (mirrors, strong, "it creates its own ghosts; leave them out"),
         ),
         (
             is_patched && !input.mirrors.is_empty(),
             (
                 patched,
                 "mirror images",
-                "the plane of a mirror is no boundary with an area; use `gradients = \"plain\"`",
+                "the plane of a mirror is not a boundary with an area; use `gradients = \"plain\"`",
             ),
         ),
         (

@@ -25,7 +25,7 @@ pub enum TotalLagrangianError {
     #[error(transparent)]
     Statics(#[from] StaticsError),
     /// Parts of which one does not serve the other.
-    #[error("{part} cannot be had with {with}: {why}")]
+    #[error("{part} cannot be combined with {with}: {why}")]
     Combination {
         /// The part that is asked for.
         part: Part,
@@ -87,7 +87,7 @@ pub enum TotalLagrangianError {
     Updated,
     /// A plane or an end across an axis along which the box repeats itself.
     #[error(
-        "the body repeats itself along {axis}, so that it cannot end on a plane across it; remove \
+        "the body is periodic along {axis}, so that it cannot end on a plane across it; remove \
          the plane, or the periodic axis"
     )]
     Periodic {
@@ -96,8 +96,8 @@ pub enum TotalLagrangianError {
     },
     /// Two planes that mirror at one end of an axis.
     #[error(
-        "two mirrors lie across {axis} at the same end of it: there is one for all bodies; remove `mirror` \
-         from one of them"
+        "two mirrors lie across {axis} at the same end of it: one serves all bodies; remove \
+         `mirror` from one of them"
     )]
     TwoPlanes {
         /// The axis.
@@ -105,8 +105,9 @@ pub enum TotalLagrangianError {
     },
     /// A mirror that does not end the bodies, or that is not one plane as it moves.
     #[error(
-        "particle {id} at {position:?} {what}, the mirror across {axis}: it ends all bodies, and what lies on \
-         it moves across it together; move the plane, hold all of it by one condition, or remove `mirror`"
+        "particle {id} at {position:?} {what}, the mirror across {axis}: all bodies end on it, \
+         and particles on it move across it together; move the plane, hold all of it by one \
+         condition, or remove `mirror`"
     )]
     Plane {
         /// The axis that it lies across.

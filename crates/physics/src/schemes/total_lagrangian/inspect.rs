@@ -102,8 +102,8 @@ pub(super) fn convexity_is_lost<const D: usize>(
         [tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain)].map(f64::sqrt);
     format!(
         "the material of particle {} at {:?} m has lost its convexity, at principal stretches from \
-         {:.3} to {:.3}: no waves travel there, strains gather in single layers of particles, and what \
-         follows depends on the lattice; {advice}",
+         {:.3} to {:.3}: no waves travel there, strains localise in single layers of particles, \
+         and further results depend on the lattice; {advice}",
         particle.id, particle.reference, stretches[0], stretches[1]
     )
 }

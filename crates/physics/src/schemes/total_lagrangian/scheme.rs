@@ -80,9 +80,10 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         });
         let jump = self.jumped.map(|[from, to]| {
             format!(
-                "the equilibrium at a load factor of {to} may not belong to the path that led to {from}: the \
-                 tangent was indefinite on the way, or the body moved much farther than it led, as where it \
-                 snaps through; lower `time.step` and compare, or follow the path with \
+                "the equilibrium at a load factor of {to} may not lie on the path that led to \
+                 {from}: the tangent was indefinite on the way, or the body moved much farther \
+                 than extrapolated, as in a snap-through; lower `time.step` and compare, or \
+                 follow the path with \
                  `time.integrator = \"arc_length\"`"
             )
         });
@@ -201,11 +202,11 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         match law {
             _ if least < 0.0 || self.not_convex.is_some() => format!(
                 "the material has lost its convexity at this deformation, which no numerical \
-                 method can follow without a length: {}",
+                 method can follow without a length scale: {}",
                 self.softness_advice()
             ),
             "linear_elastic" | "saint_venant_kirchhoff" => format!(
-                "`{law}` does not resist being turned inside out: use a neo-Hookean law, or a \
+                "`{law}` does not resist inversion: use a neo-Hookean law, or a \
                  smaller load"
             ),
             _ => {

@@ -44,8 +44,8 @@ pub const MOST_RATIO: f64 = 3.0;
 pub enum InterfaceError {
     /// The solid has no particles across which it deforms.
     #[error(
-        "the solid has too few particles around {position:?} m to say how its surface deforms there: two layers \
-         are the least, and three what bends"
+        "the solid has too few particles around {position:?} m to tell how its surface deforms \
+         there: it needs at least two layers, and three where it bends"
     )]
     Thin {
         /// Where, in m.

@@ -84,8 +84,8 @@ pub enum WorldError {
     },
     /// Two bodies are in the same place.
     #[error(
-        "the body of the system `{system}` overlaps another one: particle {id} is at {position:?} m, inside of \
-         it or closer to its particles than two bodies side by side are"
+        "the body of the system `{system}` overlaps another one: particle {id} is at \
+         {position:?} m, inside it or closer to its particles than in two adjacent bodies"
     )]
     Overlap {
         /// Name of the system.

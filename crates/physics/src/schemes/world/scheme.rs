@@ -20,9 +20,10 @@ const THROUGH_ADVICE: &str = "raise the wave speed of the fluid to ten times the
     `contact_stiffness` of the system with a smaller `time.cfl`";
 
 /// What to change where a solid comes apart.
-const TORN_ADVICE: &str = "the fluid follows a hypoelastic solid by what was around a particle at the start, as long \
-    as the solid stays whole: make it stiffer or stronger or its loads smaller, set `shifting = \"none\"` of its \
-    scheme if it is shifting that moves its particles past each other, or end the run before; solids of \
+const TORN_ADVICE: &str = "the fluid follows a hypoelastic solid through the initial neighbours \
+of its particles, as long as the solid stays whole: make it stiffer or stronger, reduce its \
+loads, set `shifting = \"none\"` in its scheme if shifting moves its particles past each other, \
+or end the run earlier; solids of \
     `total_lagrangian` keep their neighbours";
 
 impl<const D: usize> World<D> {

@@ -238,8 +238,9 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         let layers = facets.thickness() / spacing;
         if layers < THIN {
             told.push(format!(
-                "the body `{}` is {layers:.1} spacings thick where it is thinnest, less than {THIN}: make the spacing smaller, or expect \
-                 fluid on one side to feel that on the other",
+                "the body `{}` is {layers:.1} spacings thick where it is thinnest, less than \
+                 {THIN}: make the spacing smaller, or expect fluid on one side to interact with \
+                 that on the other",
                 *body.name
             ));
         }

@@ -125,8 +125,8 @@ pub(super) fn prepare<const D: usize>(
         .any(|(faces, &body)| walls.iter().any(|wall| wall.body == body) && *faces == no_face)
     {
         warnings.push(
-            "some particles of walls have no way to the fluid inside the box around all bodies, \
-             so that they have no normal: they do not hold back what flows through them"
+            "some particles of walls have no path to the fluid inside the bounding box of all \
+             bodies, so that they have no normal: they do not hold back fluid"
                 .into(),
         );
     }
@@ -269,8 +269,8 @@ fn compression<const D: usize>(fluid: &Fluid, initial: &Initial<D>) -> Option<St
     (pressure > COMPRESSION * stiffness).then(|| {
         format!(
             "the pressure at the start, up to {pressure:.3e} Pa, compresses the fluid by {:.1} %, more than the \
-             1 % of a weakly compressible one: pressure and level will be off by as much from those of an \
-             incompressible fluid; raise its wave speed to {:.3e} m/s",
+             1 % of a weakly compressible one: pressure and level will differ by as much from \
+             those of an incompressible fluid; raise its wave speed to {:.3e} m/s",
             100.0 * pressure / stiffness,
             (pressure / (COMPRESSION * fluid.density)).sqrt()
         )

@@ -62,8 +62,9 @@ pub(super) fn build<const D: usize>(
     let poor = scheme.condition().filter(|(condition, _)| *condition > POOR_CONDITION);
     let warnings = poor.map(|(condition, [least, most])| {
         format!(
-            "the modified SPH matrix has a condition number of {condition:.1e}, so that ghosts carry \
-             {least:.3} to {most:.3}: use a narrower cover, in 2D at most 2.5 spacings"
+            "the modified SPH matrix has a condition number of {condition:.1e}, so that ghost \
+             values range from {least:.3} to {most:.3}: use a narrower cover, in 2D at most 2.5 \
+             spacings"
         )
     });
     let (neighbors, poorly_supported) = row_statistics(D, row_sizes(&scheme));

@@ -95,8 +95,9 @@ pub(super) fn build<const D: usize>(
     let off = fluid_volume(case, &built.bodies) - alone;
     if off.abs() > VOLUME * alone {
         built.warnings.push(format!(
-            "what counts is {:+.2} % off the volume of the fluid, as regions of `refine` cut particles of the coarser \
-             spacing: let their bounds lie half way between those, on cells of the lattice before",
+            "the volume of the particles is {:+.2} % off that of the fluid, as regions of \
+             `refine` cut particles of the coarser spacing: place their bounds halfway between \
+             those, on cells of the coarser lattice",
             100.0 * off / alone
         ));
     }
@@ -188,7 +189,8 @@ fn regions<const D: usize>(
             let is_inside = low[axis] >= begin + reach[1] && high[axis] <= end - reach[1];
             if !is_across && !is_inside {
                 let message = format!(
-                    "the region ends within {:.3e} m of a bound of a periodic axis, where its finer particles would go round",
+                    "the region ends within {:.3e} m of a bound of a periodic axis, where its \
+                     finer particles would wrap around",
                     reach[1]
                 );
                 let help =
@@ -250,11 +252,12 @@ fn within<const D: usize>(
         return Ok(());
     };
     let message = format!(
-        "the spacing would be divided by four near {:?} m: the particles of this region, which go {:.3e} m beyond it, have to stay {needed:.3e} m inside of the region before",
+        "the spacing would be divided by four near {:?} m: the particles of this region, which \
+         extend {:.3e} m beyond it, have to stay {needed:.3e} m inside the next coarser region",
         particles.position[out].as_slice(),
         own.reach[1],
     );
-    let help = Some("make this region smaller, or the one before larger".to_owned());
+    let help = Some("make this region smaller, or the coarser one larger".to_owned());
     Err(vec![case.problem_at(settings.refine[level - 1].place, message, "too near", help)])
 }
 

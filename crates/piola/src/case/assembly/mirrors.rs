@@ -37,7 +37,7 @@ pub(super) fn mirrors<const D: usize>(
             problems.push(case.problem_at(mirror.place, message, "this mirror", help));
         };
         if form == Form::Strong && D == 1 {
-            refuse("the strong form makes its ghosts by itself", "remove `mirror`");
+            refuse("the strong form creates its own ghosts", "remove `mirror`");
             continue;
         }
         let model::Region::Plane { point, normal } = &boundary.region.value else {

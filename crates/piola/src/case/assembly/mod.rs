@@ -105,8 +105,9 @@ fn uneven_steps(case: &Case) -> Option<String> {
     let is_split = integrator_kind(case) == IntegratorKind::KickDriftKick;
     let follows = matches!(*case.time.step, model::StepControl::Cfl(number) if number > 0.5);
     (is_split && follows && !fits).then(|| {
-        "`output.every` is no multiple of `output.table_every`, so that longer and shorter steps take turns, \
-         which lets short waves grow near the stable step: make it one, or lower `time.cfl` to 0.5"
+        "`output.every` is not a multiple of `output.table_every`, so that longer and shorter \
+         steps alternate, which lets short waves grow near the stable step: make it a multiple, \
+         or lower `time.cfl` to 0.5"
             .to_owned()
     })
 }

@@ -152,7 +152,8 @@ fn boundary<const D: usize>(
     if let Some(a) = own().find(leaves) {
         let place = particles.position[a].as_slice();
         let message = format!(
-            "the buffer `{name}` does not go straight through along its normal, for one at {place:?} m"
+            "the buffer `{name}` does not extend straight along its normal, for example at \
+             {place:?} m"
         );
         let help = "make it a box, or a `turned` one, whose sides are along the normal";
         return refuse(message, "not straight", help);
@@ -262,8 +263,9 @@ fn unbalanced(rates: &[Option<f64>], has_surface: bool) -> Option<String> {
     let (sum, size): (f64, f64) = (all.iter().sum(), all.iter().map(|rate| rate.abs()).sum());
     (sum.abs() > UNBALANCED * size).then(|| {
         format!(
-            "velocities or flow rates are prescribed at all openings, and {sum:.3e} m^D/s more come in than go out at the \
-             start: the pressure will rise or fall without end; prescribe the pressure at one of them"
+            "velocities or flow rates are prescribed at all openings, and {sum:.3e} m^D/s more \
+             flow in than out at the start: the pressure will rise or fall without bound; \
+             prescribe the pressure at one of them"
         )
     })
 }

@@ -16,7 +16,7 @@ pub fn strengths(case: &Case, settings: &Upwind) -> Result<[f64; 2], Vec<Problem
     let kind = settings.dissipation.value;
     let density = case.bodies[0].material.density();
     if kind.lacks_density() && case.bodies.iter().any(|body| body.material.density() != density) {
-        let message = "the printed (3.38) is served for bodies of one density only";
+        let message = "the printed (3.38) is available only for bodies of one density";
         let help = "use `dissipation = \"corrected\"`".to_owned();
         let place = settings.dissipation.place;
         return Err(vec![case.problem_at(place, message, "as printed", Some(help))]);
@@ -32,14 +32,14 @@ pub fn warning(settings: &Upwind) -> Option<String> {
     let what = match settings.dissipation.value {
         Dissipation::Corrected => return None,
         Dissipation::WithoutDensity => {
-            "(3.38) as printed lacks the density, so that next to nothing dissipates"
+            "(3.38) as printed lacks the density, so that almost nothing dissipates"
         }
         Dissipation::TurnedArea => {
             "(3.42) as printed has the wrong sign, so that the dissipation of pressure feeds energy in"
         }
         Dissipation::AsPrinted => {
-            "(3.38) as printed lacks the density and (3.42) has the wrong sign, so that next to nothing \
-             dissipates and the dissipation of pressure feeds energy in"
+            "(3.38) as printed lacks the density and (3.42) has the wrong sign, so that almost \
+             nothing dissipates and the dissipation of pressure feeds energy in"
         }
     };
     Some(format!(

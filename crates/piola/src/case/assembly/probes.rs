@@ -140,7 +140,7 @@ fn sensor<const D: usize>(
             continue;
         }
         if depth < FIRST_LAYER.start * spacing {
-            return Err(refuse("the wall goes on in front of the sensor", "inside of the wall"));
+            return Err(refuse("the wall continues in front of the sensor", "inside of the wall"));
         }
         behind.push((a, share));
         if depth < FIRST_LAYER.end * spacing {

@@ -46,7 +46,8 @@ pub(super) fn warnings<const D: usize>(
     if let Some((a, thickness)) = thin {
         warnings.push(format!(
             "the wall `{}` is about {thickness:.3e} m thick at {:?} m, thinner than the support of the \
-             kernel, {support:.3e} m: fluid may go through it; make it {} layers of particles thick",
+             kernel, {support:.3e} m: fluid may pass through it; make it {} layers of particles \
+             thick",
             name(a),
             place(a),
             (support / particles.spacing[a] - 0.01).ceil()
@@ -55,7 +56,7 @@ pub(super) fn warnings<const D: usize>(
     if let Some((a, width)) = gap {
         warnings.push(format!(
             "the wall `{}` has a gap of about {width:.3e} m at {:?} m, narrower than the support of \
-             the kernel, {support:.3e} m: what is on its two sides feels each other, and fluid may \
+             the kernel, {support:.3e} m: particles on its two sides interact, and fluid may \
              leak; close it, or resolve it with smaller particles",
             name(a),
             place(a),

@@ -61,12 +61,12 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
         };
         let help = match &error {
             WorldError::Overlap { .. } => {
-                "take the space of the one out of the other, with a shape of the kind `difference`"
+                "cut one out of the other, with a shape of the kind `difference`"
             }
             WorldError::Interface { error: InterfaceError::Spacings { .. }, .. } => {
-                "bring the spacings of the two closer to each other"
+                "make the two spacings more alike"
             }
-            WorldError::Interface { .. } => "take a smaller spacing for the solid",
+            WorldError::Interface { .. } => "use a smaller spacing for the solid",
             WorldError::Motion { .. } => "use `total_lagrangian`",
         };
         vec![case.problem_at(place, error.to_string(), "of this system", Some(help.to_owned()))]

@@ -15,8 +15,8 @@ pub fn energy(text: &str, scope: &Scope<'_>) -> Result<Vec<Instruction>, Express
     let tree = syntax::parse(text, &Scope { invariants: true, ..*scope })?;
     let mut instructions = Vec::new();
     lower(&tree, &mut instructions).map_err(|name| {
-        let message = format!("`{name}` cannot be used of an invariant");
-        ExpressionError::new(0..text.len(), message, "has no instruction")
+        let message = format!("`{name}` cannot be applied to an invariant");
+        ExpressionError::new(0..text.len(), message, "not supported in an energy")
             .help("an energy may use + - * / ^, exp, ln, log and sqrt")
     })?;
     Ok(instructions)

@@ -169,7 +169,7 @@ impl Expression {
             Some(value) if value.is_finite() => Form::Constant(value),
             Some(value) => {
                 let message =
-                    format!("the value of `{text}` is {value}, which is no finite number");
+                    format!("the value of `{text}` is {value}, which is not a finite number");
                 return Err(ExpressionError::new(0..text.len(), message, "not finite"));
             }
         };

@@ -225,7 +225,7 @@ impl<'a> Parser<'a> {
         if let Some(name) = self.scope.invariant(name) {
             if self.scope.parameter(name).is_some() {
                 let message =
-                    format!("`{name}` is an invariant of the strain, and a parameter too");
+                    format!("`{name}` is an invariant of the strain and also a parameter");
                 let error = ExpressionError::new(span.clone(), message, "which of the two?");
                 return Err(error.help("give the parameter another name"));
             }
@@ -288,7 +288,7 @@ impl<'a> Parser<'a> {
     fn suggest(&self, error: ExpressionError, name: &str) -> ExpressionError {
         match nearest(name, self.scope.names()) {
             Some(near) => error.help(format!("did you mean `{near}`?")),
-            None => error.help("numbers that are used by name stand in [parameters]"),
+            None => error.help("define numbers with a name in [parameters]"),
         }
     }
 
@@ -317,13 +317,11 @@ impl<'a> Parser<'a> {
                     .help("remove this `)`")
             }
             TokenKind::Comma => {
-                ExpressionError::new(span, "a comma separates the arguments of a function only", "")
+                ExpressionError::new(span, "a comma only separates arguments of a function", "")
                     .help("write a point in numbers: `0.5`")
             }
             _ => ExpressionError::new(span, "an operator is missing here", "missing operator")
-                .help(
-                    "write `*` for a product; a unit is not written behind a number, all are of SI",
-                ),
+                .help("write `*` for a product; numbers have no units, all are in SI units"),
         }
     }
 }

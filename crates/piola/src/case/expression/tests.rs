@@ -115,7 +115,7 @@ fn says_what_is_wrong_and_where() {
         ("2 + * 3", 4..5, "expected a number, a name or a bracket here"),
         ("(1 + 2", 0..1, "this bracket is never closed"),
         ("1 + 2)", 5..6, "no bracket is open here"),
-        ("1,5", 1..2, "a comma separates the arguments of a function only"),
+        ("1,5", 1..2, "a comma only separates arguments of a function"),
         ("sin x", 0..3, "the function `sin` needs its argument in brackets"),
         ("sin(x, y)", 0..9, "`sin` takes 1 argument(s), got 2"),
         ("min(x)", 0..6, "`min` takes 2 argument(s), got 1"),
@@ -124,7 +124,7 @@ fn says_what_is_wrong_and_where() {
         ("2 ** 3", 2..4, "`**` is not an operator"),
         ("1e999", 0..5, "`1e999` is larger than any number that can be computed with"),
         (".", 0..1, "`.` is not a number"),
-        ("1 / 0", 0..5, "the value of `1 / 0` is inf, which is no finite number"),
+        ("1 / 0", 0..5, "the value of `1 / 0` is inf, which is not a finite number"),
         ("2 * é", 4..6, "`é` is not known"),
     ] {
         let error = parse(text).expect_err(text);

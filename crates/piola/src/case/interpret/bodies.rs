@@ -304,7 +304,7 @@ impl Reader<'_, '_> {
         let modulus = material.bulk_modulus(self.dimension);
         if !(modulus > 0.0 && modulus.is_finite()) {
             let message =
-                format!("these values make a modulus of {modulus} Pa, which is impossible");
+                format!("these values give a modulus of {modulus} Pa, which is impossible");
             let place = first_place(record, &STIFFNESSES);
             return self.refuse(Problem::new(place, message, "out of range"));
         }
@@ -375,7 +375,8 @@ impl Reader<'_, '_> {
             let message =
                 "with `poisson_ratio` 0.5 the material is incompressible and its modulus infinite";
             let problem = Problem::new(ratio.place, message, "must be below 0.5");
-            return self.refuse(problem.help("take a value below, like 0.49, or `bulk_modulus`"));
+            return self
+                .refuse(problem.help("use a smaller value, for example 0.49, or `bulk_modulus`"));
         }
         let upper = if is_free { "at most" } else { "below" };
         let message = format!("`poisson_ratio` must be above -1 and {upper} 0.5, got {value}");

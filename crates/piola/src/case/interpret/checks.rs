@@ -179,7 +179,7 @@ impl Reader<'_, '_> {
     fn over_time(&mut self, record: &Record, end: Option<f64>) -> Option<Reduction> {
         let name = record.text("reduce")?;
         if name.as_str() == "zero_place" {
-            let message = "the reduction `zero_place` is of a line, and this is a history";
+            let message = "the reduction `zero_place` is for a line, and this is a history";
             let problem = Problem::new(name.place, message, "no place here");
             return self.refuse(problem.help("against time it is `zero_time`"));
         }
@@ -326,7 +326,7 @@ impl Reader<'_, '_> {
         let (tolerance, absolute) = self.tolerance(record, "expected")?;
         let expected = expected?;
         if expected == 0.0 && !absolute {
-            let message = "a share of 0 is 0: `tolerance` must be absolute here";
+            let message = "a tolerance relative to 0 is 0: `tolerance` must be absolute here";
             let problem = Problem::new(tolerance.place, message, "relative to 0");
             return self.refuse(problem.help("add `absolute = true`"));
         }

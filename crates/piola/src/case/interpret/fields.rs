@@ -76,7 +76,7 @@ impl Reader<'_, '_> {
         probes: Option<&[Probe]>,
     ) -> Option<Located<Quantity>> {
         let Some((table, column)) = text.split_once('.') else {
-            let message = format!("`{}` is no column of a table", text.value);
+            let message = format!("`{}` is not a column of a table", text.value);
             let help = "expected PROBE.FIELD, PROBE.FIELD.COMPONENT, energy.NAME, momentum.NAME, step.NAME or run.NAME";
             return self.refuse(Problem::new(text.place, message, "no column").help(help));
         };

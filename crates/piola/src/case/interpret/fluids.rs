@@ -223,8 +223,10 @@ impl Reader<'_, '_> {
                 });
             }
             if (is_elastic || is_solid) && body.initial.pressure.as_constant() != Some(0.0) {
-                let message =
-                    format!("body `{}` starts with a pressure, which no strain makes", *body.name);
+                let message = format!(
+                    "body `{}` starts with a pressure that corresponds to no strain",
+                    *body.name
+                );
                 let problem = Problem::new(body.name.place, message, "no meaning in this scheme");
                 self.report(problem.help("remove `initial.pressure`"));
             }
@@ -232,7 +234,7 @@ impl Reader<'_, '_> {
                 let is_of_fluid = is_fluid && !is_solid && system.is_none();
                 let message = match (is_of_fluid, &body.wall) {
                     (true, None) => None,
-                    (true, Some(_)) => Some("a wall is no opening"),
+                    (true, Some(_)) => Some("a wall cannot be an opening"),
                     _ => {
                         Some("only a fluid of the scheme `transport_velocity` has open boundaries")
                     }
@@ -290,7 +292,7 @@ impl Reader<'_, '_> {
             let number = boundary.body.as_ref().map(|body| body.value);
             let of = number.and_then(|number| bodies.get(number));
             if let (Some(maker), true) = (&boundary.wave_maker, of.is_some_and(is_rigid)) {
-                let message = "a rigid body is no wall that makes waves";
+                let message = "a rigid body cannot be a wall that makes waves";
                 let problem = Problem::new(maker.place, message, "of a rigid body");
                 self.report(
                     problem.help("make it a wall of the fluid, or prescribe its `velocity`"),

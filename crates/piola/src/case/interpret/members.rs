@@ -75,7 +75,7 @@ impl Reader<'_, '_> {
         let keys = sweeps[*sweep].keys(level);
         let key_called = |path: &str| keys.iter().position(|key| *key.path == path);
         let unknown_key = |path: &Located<String>| {
-            let message = format!("the sweep does not go over `{}`", path.value);
+            let message = format!("the sweep does not vary `{}`", path.value);
             let help = suggestion(path, keys.iter().map(|key| key.path.as_str()));
             Problem::new(path.place, message, "no key of the sweep").help(help)
         };
@@ -112,7 +112,11 @@ impl Reader<'_, '_> {
                 None => return self.refuse(unknown_key(&path)),
                 Some(key) if fixed[key].is_some() => {
                     let message = format!("`member` leaves a single value of `{}`", path.value);
-                    return self.refuse(Problem::new(path.place, message, "nothing to go along"));
+                    return self.refuse(Problem::new(
+                        path.place,
+                        message,
+                        "no key left to compare along",
+                    ));
                 }
                 key => key,
             },
@@ -131,7 +135,8 @@ impl Reader<'_, '_> {
                         Problem::new(place, message, "of a single member")
                     }
                     false => {
-                        let message = format!("`{trend}` needs a key to go along");
+                        let message =
+                            format!("`{trend}` needs a key along which members are compared");
                         let names = free.iter().map(|key| keys[*key].path.as_str());
                         Problem::new(place, message, "along which key?")
                             .help(format!("add `along`: {}", one_of(names)))

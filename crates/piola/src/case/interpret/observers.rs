@@ -112,7 +112,7 @@ impl Reader<'_, '_> {
                 let field = self.field(&name, name.place)?;
                 if field.kind != FieldKind::Vector {
                     let message =
-                        format!("`{}` is no vector, and has no components x, y, z", name.value);
+                        format!("`{}` is not a vector and has no components x, y, z", name.value);
                     let problem = Problem::new(name.place, message, "no vector");
                     return self.refuse(problem.help("give `exact` instead of `components`"));
                 }
@@ -177,10 +177,10 @@ impl Reader<'_, '_> {
             let is_open = its.is_none_or(|body| body.opening.is_some());
             let (what, help) = match probe.kind {
                 ProbeKind::Opening if !is_open => {
-                    ("is of no opening", "name a body that has the key `opening`")
+                    ("belongs to no opening", "name a body that has the key `opening`")
                 }
                 ProbeKind::Force { .. } if !is_wall && !is_solid => (
-                    "looks at no wall and no solid",
+                    "observes neither a wall nor a solid",
                     "name a wall or the body of a system, or use the kind `sum`",
                 ),
                 ProbeKind::Sensor { .. } if !is_wall => {
@@ -236,7 +236,8 @@ impl Reader<'_, '_> {
         let field = Located::new(self.field(&name, name.place)?, name.place);
         let region = record.record("where").and_then(|region| self.region(region))?;
         if (field.kind, field.unit) != (FieldKind::Vector, "N") {
-            let message = format!("`{}` is no force: it has the unit {}", field.name, field.unit);
+            let message =
+                format!("`{}` is not a force: it has the unit {}", field.name, field.unit);
             let known = self.fields();
             let forces = known.iter().filter(|it| (it.kind, it.unit) == (FieldKind::Vector, "N"));
             let help = format!("expected {}", one_of(forces.map(|field| field.name)));

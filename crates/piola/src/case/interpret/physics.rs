@@ -120,7 +120,7 @@ impl Reader<'_, '_> {
             _ => scheme != "transport_velocity",
         };
         if !knows {
-            let message = format!("the scheme `{scheme}` knows no load of the kind `{kind}`");
+            let message = format!("the scheme `{scheme}` has no load of the kind `{kind}`");
             let help = match scheme {
                 "transport_velocity" => "fluids are moved by body forces and by walls",
                 _ => "use `traction`, or the scheme `total_lagrangian`",

@@ -23,7 +23,7 @@ impl Reader<'_, '_> {
         let bulk_modulus = constants.bulk_modulus();
         if !(bulk_modulus > 0.0 && bulk_modulus.is_finite()) {
             let message = format!(
-                "these values make a bulk modulus of {bulk_modulus} Pa, which is impossible"
+                "these values give a bulk modulus of {bulk_modulus} Pa, which is impossible"
             );
             return self.refuse(Problem::new(record.place, message, "out of range"));
         }

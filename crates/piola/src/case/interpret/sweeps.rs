@@ -17,7 +17,7 @@ impl Reader<'_, '_> {
         let variant = record.text("variant").map(|name| self.variant_called(name));
         let full = self.sweep_keys(record.keys("over"));
         if let Some((path, _)) = record.keys("over").get(2) {
-            let message = "a sweep goes over one or two keys, and this is the third";
+            let message = "a sweep varies one or two keys, and this is the third";
             self.report(
                 Problem::new(path.place, message, "one too many")
                     .help("make another sweep of it, or set several keys by one parameter"),
@@ -26,7 +26,7 @@ impl Reader<'_, '_> {
         let instead = self.sweep_keys(record.keys("coarse"));
         for key in &instead {
             if full.iter().all(|known| *known.path != *key.path) {
-                let message = format!("the sweep does not go over `{}`", key.path.value);
+                let message = format!("the sweep does not vary `{}`", key.path.value);
                 let known = full.iter().map(|key| key.path.as_str());
                 let help = suggestion(&key.path, known);
                 self.report(Problem::new(key.path.place, message, "not in `over`").help(help));
@@ -70,14 +70,14 @@ impl Reader<'_, '_> {
                 );
             }
             if found.iter().any(|known| known.path.value == path.value) {
-                let message = format!("the key `{}` is there twice", path.value);
+                let message = format!("the key `{}` appears twice", path.value);
                 self.report(Problem::new(path.place, message, "the second time"));
                 continue;
             }
             let mut kept: Vec<(Located<SweepValue>, &Value)> = Vec::new();
             for node in values.iter().take(MAX_MEMBERS + 1) {
                 if kept.iter().any(|(_, known)| same(known, &node.value)) {
-                    let message = format!("the value {} is there twice", text_of(&node.value));
+                    let message = format!("the value {} appears twice", text_of(&node.value));
                     self.report(Problem::new(node.place, message, "the second time"));
                     continue;
                 }

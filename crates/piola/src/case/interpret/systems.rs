@@ -69,7 +69,7 @@ impl Known {
             }
             Some(Scheme::TotalLagrangian(solid)) if *solid.form == Form::Strong => Some(Without {
                 capabilities: &[Capability::Rates, Capability::Newmark, Capability::Statics],
-                why: " in the strong form, which has no energy of which forces are derivatives",
+                why: " in the strong form, whose forces do not derive from an energy",
                 remedy: "set `scheme.form` to \"adjoint\"",
             }),
             _ => None,

@@ -70,7 +70,7 @@ impl Reader<'_, '_> {
             }
         };
         if !maker.is_finite() {
-            let message = "the motion of the piston is no number with these heights and periods";
+            let message = "the motion of the piston is not a number with these heights and periods";
             let problem = Problem::new(record.place, message, "not finite");
             return self.refuse(problem.help("correct the period, the depth or the gravity"));
         }

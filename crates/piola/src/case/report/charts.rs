@@ -51,11 +51,15 @@ pub(super) fn groups(case: Option<&Case>, tables: &Tables) -> Vec<ChartGroup> {
         .filter(|name| is_of(name, "energy.") && !is_stored(name) && moves(name))
         .cloned()
         .collect();
-    energy.push(chart("work of each mechanism so far, and what is left over", &work, case, tables));
+    energy.push(chart("work of each mechanism so far, and the balance", &work, case, tables));
     let momentum: Vec<String> =
         names.iter().filter(|name| is_of(name, "momentum.") && moves(name)).cloned().collect();
-    let momentum =
-        vec![chart("momentum, and what each way in has brought", &momentum, case, tables)];
+    let momentum = vec![chart(
+        "momentum, and the impulse of every load and boundary so far",
+        &momentum,
+        case,
+        tables,
+    )];
     let steps = ["step.size", "step.smallest_ratio", "step.largest_speed"];
     let steps = steps.iter().map(|name| chart(&name[5..], &[(*name).to_owned()], case, tables));
     let groups = [

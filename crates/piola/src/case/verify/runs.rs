@@ -161,7 +161,7 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
             let check = run.case.checks.get(index).ok_or_else(|| explain("no check".to_owned()))?;
             let (value, unit) = match measure(run, check).map_err(explain)? {
                 Got::Number(value, unit) if value.is_finite() => (value, unit),
-                got => return Err(explain(format!("the result is {got}, no finite number"))),
+                got => return Err(explain(format!("the result is {got}, not a finite number"))),
             };
             let expected = match &check.expectation {
                 Expectation::Trend { expected, .. } => *expected,
@@ -196,13 +196,13 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
     ) -> Result<bool, String> {
         let number = match got {
             Got::Number(value, _) if value.is_finite() => Ok(*value),
-            Got::Number(value, _) => Err(format!("the result is {value}, no finite number")),
-            Got::Text(_) => Err("the quantity is a text, and a number is expected".to_owned()),
+            Got::Number(value, _) => Err(format!("the result is {value}, not a finite number")),
+            Got::Text(_) => Err("the quantity is text, and a number is expected".to_owned()),
         };
         match &check.expectation {
             Expectation::Outcome(expected) => {
                 let Got::Text(text) = got else {
-                    return Err("the quantity is a number, and a text is expected".to_owned());
+                    return Err("the quantity is a number, and text is expected".to_owned());
                 };
                 let pass = text == expected;
                 if !pass {
@@ -227,7 +227,7 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
                 Ok(at_least.is_none_or(|least| number >= least)
                     && at_most.is_none_or(|most| number <= most))
             }
-            Expectation::Trend { .. } => Err("a single run follows no other".to_owned()),
+            Expectation::Trend { .. } => Err("a single run has no trend".to_owned()),
             Expectation::LessThan(other) => {
                 Ok(number? < self.other(row, check, "less than", other.as_deref())?)
             }
@@ -254,7 +254,7 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
                 row.expected = format!("{relation} {name} ({})", format::with_unit(value, &unit));
                 Ok(value)
             }
-            got => Err(explain(format!("the result is {got}, no finite number"))),
+            got => Err(explain(format!("the result is {got}, not a finite number"))),
         }
     }
 }

@@ -38,7 +38,8 @@ pub(super) fn judge(trend: Trend, data: &TrendData) -> Result<Verdict, String> {
         Trend::Order(bounds) => {
             let keys = data.points.iter().map(|point| {
                 let number = point.key.filter(|key| *key > 0.0 && key.is_finite());
-                number.ok_or_else(|| format!("{} = {} is no number above 0", data.key, point.text))
+                number
+                    .ok_or_else(|| format!("{} = {} is not a number above 0", data.key, point.text))
             });
             let keys = keys.collect::<Result<Vec<f64>, _>>()?;
             let order = match data.of_error {
@@ -126,7 +127,7 @@ pub fn order_of_differences(keys: &[f64], values: &[f64]) -> Result<f64, String>
     let best = (-steps..=steps)
         .min_by(|one, other| misfit(order_at(*one)).total_cmp(&misfit(order_at(*other))))
         .filter(|number| number.abs() < steps)
-        .ok_or_else(|| format!("the differences follow no order below {STEEPEST}"))?;
+        .ok_or_else(|| format!("the differences show no order below {STEEPEST}"))?;
     let (mut low, mut high) = (order_at(best - 1), order_at(best + 1));
     for _ in 0..100 {
         let third = (high - low) / 3.0;

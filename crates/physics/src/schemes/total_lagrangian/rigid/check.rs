@@ -56,7 +56,8 @@ pub(in super::super) fn check<const D: usize>(
         });
         let fault = match () {
             () if shares => {
-                "has a particle twice, or one that belongs to another rigid body; make one body of them"
+                "has a particle twice, or one that belongs to another rigid body; merge them into \
+                 one body"
             }
             () if !has_inertia => {
                 "lies on a line, about which it has no inertia; give it more than one particle across"

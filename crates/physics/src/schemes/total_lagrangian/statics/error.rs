@@ -21,7 +21,7 @@ pub enum StaticsError {
     },
     /// Directions of one particle that depend on each other.
     #[error(
-        "particle {id} at {position:?} is held in directions that depend on each other; remove \
+        "particle {id} at {position:?} is held in linearly dependent directions; remove \
          `{name}` there"
     )]
     Overconstrained {
@@ -64,7 +64,7 @@ pub enum StaticsError {
     Linear(#[from] LinearError),
     /// A particle is turned inside out at a load.
     #[error(
-        "particle {id} at {position:?} is turned inside out at a load factor of {factor}; an \
+        "particle {id} at {position:?} is inverted at a load factor of {factor}; an \
          equilibrium was found up to {reached}: take smaller load steps, or a law that resists \
          compression"
     )]
@@ -80,7 +80,7 @@ pub enum StaticsError {
     },
     /// Newton's method has not arrived.
     #[error(
-        "{source}; the largest force that is left, {force:.1e} N, is at particle {id} at {position:?}"
+        "{source}; the largest residual force, {force:.1e} N, is at particle {id} at {position:?}"
     )]
     Residual {
         /// Number of the particle in the order of creation.
@@ -94,8 +94,8 @@ pub enum StaticsError {
     },
     /// An implicit step of a body in motion without an end.
     #[error(
-        "no state was found at t = {time:.6} s, after {reached:.6} s: {source}; the largest force \
-         that is left, {force:.1e} N, is at particle {id} at {position:?}"
+        "no state was found at t = {time:.6} s, after {reached:.6} s: {source}; the largest \
+         residual force, {force:.1e} N, is at particle {id} at {position:?}"
     )]
     Step {
         /// Number of the particle in the order of creation.
@@ -113,7 +113,7 @@ pub enum StaticsError {
     },
     /// A particle is turned inside out in an implicit step of a body in motion.
     #[error(
-        "particle {id} at {position:?} is turned inside out at t = {time:.6} s; a state was found up \
+        "particle {id} at {position:?} is inverted at t = {time:.6} s; a state was found up \
          to {reached:.6} s: take smaller steps, or a law that resists compression"
     )]
     Collapsed {

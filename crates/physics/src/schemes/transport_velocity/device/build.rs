@@ -85,10 +85,10 @@ impl<const D: usize> TransportVelocity<D> {
             return refuse("a pressure by the law of state", instead);
         }
         if self.matter.is_open() {
-            return refuse("an open boundary", "run it on processors");
+            return refuse("an open boundary", "run it on the processor");
         }
         if self.matter.is_damped() {
-            return refuse("damping", "run it on processors");
+            return refuse("damping", "run it on the processor");
         }
         if common.motion.iter().next().is_some() {
             return refuse("a wall that moves", "let it slide or rest");
@@ -101,8 +101,8 @@ impl<const D: usize> TransportVelocity<D> {
             return refuse("the removal of particles that escape", instead);
         }
         if !common.body_forces.iter().all(BodyForce::is_uniform) {
-            let instead = "take one that is the same everywhere";
-            return refuse("a body force that depends on places", instead);
+            let instead = "use one that is the same everywhere";
+            return refuse("a body force that depends on position", instead);
         }
         let list = common.support.list();
         let periods = *list.domain().periodic();

@@ -241,8 +241,8 @@ impl<const D: usize> StepEquations<'_, D> {
         let particle = self.scheme.particle(broken.unwrap_or_else(|| self.worst()));
         let kind = if broken.is_some() { Missed::Inverted } else { Missed::NoConvergence };
         let what = match broken {
-            Some(_) => "is turned inside out by every way there".to_owned(),
-            None => format!("has most left to meet: {error}"),
+            Some(_) => "is inverted on every attempt".to_owned(),
+            None => format!("has the largest residual: {error}"),
         };
         NoSolution {
             kind,
