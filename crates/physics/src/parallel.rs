@@ -93,13 +93,20 @@ fn hand_out<P: Parts>(count: usize, grain: usize, parts: P, body: impl Fn(usize,
         Some((first, length, own))
     };
     on_threads(count.div_ceil(grain), &|| {
-        while let Some((mut first, mut length, mut parts)) = take() {
-            while length > grain {
-                let (own, later) = parts.split(grain);
+        while let Some((mut first, length, parts)) = take() {
+            let (end, mut rest) = (first + length, Some(parts));
+            // One call: what is inlined into it is the body of every loop of a step.
+            while let Some(parts) = rest.take() {
+                let own = if end - first > grain {
+                    let (own, later) = parts.split(grain);
+                    rest = Some(later);
+                    own
+                } else {
+                    parts
+                };
                 body(first, own);
-                (first, length, parts) = (first + grain, length - grain, later);
+                first += grain;
             }
-            body(first, parts);
         }
     });
 }

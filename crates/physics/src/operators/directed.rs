@@ -33,6 +33,7 @@ impl<const D: usize> DirectedSupport<D> {
     ///
     /// # Errors
     /// When the search refuses positions or radii.
+    #[inline(never)]
     pub fn new(
         particles: &Particles<D>,
         kernel: Kernel,

@@ -66,6 +66,7 @@ impl<const D: usize> GradientOperator<D> {
     /// # Errors
     /// [`OperatorError::PoorSupport`] names the first particle whose correction does not exist,
     /// [`OperatorError::Coincident`] two at one place.
+    #[inline(never)]
     pub fn new(
         particles: &Particles<D>,
         support: &Support<D>,

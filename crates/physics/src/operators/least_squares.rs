@@ -23,6 +23,7 @@ impl<const D: usize> LeastSquares<D> {
     /// # Errors
     /// [`OperatorError`] for a particle whose neighbours do not span the space, or that shares
     /// its place with another.
+    #[inline(never)]
     pub fn new(particles: &Particles<D>, support: &Support<D>) -> Result<Self, OperatorError> {
         let inverse =
             parallel::try_map(particles.len(), |a| inverse_moment(particles, support, a))?;

@@ -47,6 +47,7 @@ impl<const D: usize> MovingSupport<D> {
     ///
     /// # Errors
     /// When the search refuses the positions or the support.
+    #[inline(never)]
     pub fn new(
         positions: &[Vector<D>],
         passive: Vec<bool>,

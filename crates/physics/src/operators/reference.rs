@@ -86,6 +86,7 @@ impl<const D: usize> Strained<D> {
 
 impl<const D: usize> ReferenceGradient<D> {
     /// The gradient of `gradient` on its support, with hourglass coefficients in J.
+    #[inline(never)]
     pub fn new(
         (particles, images): (&Particles<D>, &[Image<D>]),
         support: &DirectedSupport<D>,

@@ -31,6 +31,7 @@ impl<const D: usize> Support<D> {
     ///
     /// # Errors
     /// When the search refuses the positions or the supports.
+    #[inline(never)]
     pub fn new(
         particles: &Particles<D>,
         kernel: Kernel,

@@ -35,6 +35,7 @@ pub struct Trace<const D: usize> {
 impl<const D: usize> Trace<D> {
     /// Coefficients of all faces, with plain gradients: the patch-consistent ones are made from the
     /// areas that these give. Faces whose owner does not exist are left out.
+    #[inline(never)]
     pub fn new(
         faces: Vec<Face<D>>,
         particles: &Particles<D>,

@@ -1,5 +1,8 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
+// The tests of this crate compile what they use.
+#[cfg(not(test))]
+mod compiled;
 pub(crate) mod coupled;
 mod description;
 mod device;

@@ -96,6 +96,7 @@ impl<const D: usize> Interpolation<D> {
     /// # Errors
     /// [`InterpolationError`] for a cloud without matrices, a function that is not finite, and
     /// boundary values that cannot be met.
+    #[inline(never)]
     pub fn new(input: InterpolationInput<'_, D>) -> Result<Self, InterpolationError> {
         let InterpolationInput { particles, ghosts, kernel, radius, form, domain, .. } = input;
         let count = particles.len();

@@ -48,10 +48,12 @@ impl<const D: usize> Scheme for Interpolation<D> {
         self.particles.len()
     }
 
+    #[inline(never)]
     fn initial_state(&self) -> Vec<f64> {
         Vec::new()
     }
 
+    #[inline(never)]
     fn rates(&mut self, _time: f64, _state: &[f64], _rate: &mut [f64]) {}
 
     fn has_rates(&self) -> bool {
@@ -62,25 +64,31 @@ impl<const D: usize> Scheme for Interpolation<D> {
         &[]
     }
 
+    #[inline(never)]
     fn constrain(&self, _time: f64, _state: &mut [f64]) {}
 
+    #[inline(never)]
     fn inspect(&mut self, _state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         limits.clear();
         Health { smallest_ratio: 1.0, ..Health::NEUTRAL }
     }
 
+    #[inline(never)]
     fn figures(&self, _state: &[f64], figures: &mut Vec<f64>) {
         let outcome = &self.outcome;
         let [smallest, largest] = outcome.ghosts;
         figures.extend([outcome.count, smallest, largest, outcome.condition, outcome.error]);
     }
 
+    #[inline(never)]
     fn energies(&self, _state: &[f64], _energies: &mut [f64]) {}
 
+    #[inline(never)]
     fn momentum(&self, _state: &[f64], momentum: &mut [f64]) {
         momentum.fill(0.0);
     }
 
+    #[inline(never)]
     fn derive(
         &self,
         _state: &[f64],
@@ -136,6 +144,7 @@ impl<const D: usize> Scheme for Interpolation<D> {
         "nothing moves here".to_owned()
     }
 
+    #[inline(never)]
     fn memory(&self) -> usize {
         self.value.memory()
             + size_of_val(self.particles.position.as_slice())

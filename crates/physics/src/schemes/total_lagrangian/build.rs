@@ -116,6 +116,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// [`TotalLagrangianError`] for arrays that do not fit together, particles without mass or
     /// gradient, impossible values, loads on what does not exist, and parts that do not serve each
     /// other.
+    #[inline(never)]
     pub fn new(input: TotalLagrangianInput<D>) -> Result<Self, TotalLagrangianError> {
         check(&input)?;
         let TotalLagrangianInput { kernel, radius, group, domain, settings, .. } = input;

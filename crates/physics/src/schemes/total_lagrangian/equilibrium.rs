@@ -16,6 +16,7 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
     /// Rows hold the rate of the displacement by the load factor in place of a velocity: with it a
     /// step starts where the last two states lead. Work is added up by the trapezoidal rule, exact
     /// where the material is linear, of second order in the steps elsewhere.
+    #[inline(never)]
     fn equilibrate(
         &mut self,
         from: f64,
@@ -34,6 +35,7 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
     }
 
     /// Rows hold the rate of the displacement by the arc length.
+    #[inline(never)]
     fn follow(
         &mut self,
         from: f64,

@@ -14,6 +14,7 @@ impl<const D: usize> NewmarkScheme for TotalLagrangian<D> {
     ///
     /// Work is the mean of the forces at both ends times the displacement, and impulses are the mean
     /// times the step.
+    #[inline(never)]
     fn advance(
         &mut self,
         rule: &Newmark,

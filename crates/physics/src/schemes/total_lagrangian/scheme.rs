@@ -46,25 +46,30 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         self.solid.len()
     }
 
+    #[inline(never)]
     fn initial_state(&self) -> Vec<f64> {
         self.initial.clone()
     }
 
+    #[inline(never)]
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let totals = self.evaluate(time, state, rate);
         LEDGER.write(D, &totals, ColumnsMut::<D>::of(rate, self.solid.len()).1);
     }
 
+    #[inline(never)]
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let (own, _) = ColumnsMut::<D>::of(state, self.solid.len());
         self.prescribed.impose(time, own.velocity);
         self.rigid.constrain(time, &self.solid, own.displacement, own.velocity);
     }
 
+    #[inline(never)]
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.look(state, limits)
     }
 
+    #[inline(never)]
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let kept = LEDGER.behind(D, self.columns(state).tail);
         figures.extend_from_slice(&kept[..=LOAD_FACTOR]);
@@ -74,6 +79,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         self.statics.as_ref().map(|statics| statics.costs())
     }
 
+    #[inline(never)]
     fn warning(&self) -> Option<String> {
         let soft = self.not_convex.as_ref().map(|(index, gradient)| {
             convexity_is_lost(&self.particle(*index), gradient, self.softness_advice())
@@ -93,6 +99,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         }
     }
 
+    #[inline(never)]
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         let (at, solid) = (self.columns(state), &*self.solid);
         let displacement = self.continued(at.displacement, at.tail);
@@ -109,6 +116,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         energies.copy_from_slice(&sums);
     }
 
+    #[inline(never)]
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
         let at = self.columns(state);
         // Nothing moves in statics: the column holds another rate.
@@ -117,10 +125,12 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         of_particles(self.solid.len(), of, momentum);
     }
 
+    #[inline(never)]
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
         self.make_fields(stage, time, state);
     }
 
+    #[inline(never)]
     fn derive(
         &self,
         state: &[f64],
@@ -226,6 +236,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         }
     }
 
+    #[inline(never)]
     fn memory(&self) -> usize {
         let vectors =
             [&self.displacement, &self.velocity, &self.acceleration, &self.force, &self.reaction];

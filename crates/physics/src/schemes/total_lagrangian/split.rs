@@ -8,12 +8,14 @@ use crate::schemes::split::advance;
 
 impl<const D: usize> SplitScheme for TotalLagrangian<D> {
     /// Two halves with the drift between are Elastodynamics (4.4), whose velocities are half way.
+    #[inline(never)]
     fn kick(&mut self, duration: f64, state: &mut [f64]) {
         let (own, tail) = ColumnsMut::<D>::of(state, self.solid.len());
         advance(own.velocity, own.kick, duration);
         LEDGER.kick(D, duration, tail);
     }
 
+    #[inline(never)]
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
         let (own, tail) = ColumnsMut::<D>::of(state, self.solid.len());
         self.rigid.advance(step, own.displacement, own.velocity);
@@ -36,6 +38,7 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
         }
     }
 
+    #[inline(never)]
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
         let mut rate = std::mem::take(&mut self.rate);
         let totals = self.evaluate(time, state, &mut rate);
@@ -45,6 +48,7 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
 
     /// Without viscosity the forces between particles are those of the displacements, and at hand; damping, springs,
     /// rigid bodies and the powers of loads take velocities where they act from outside.
+    #[inline(never)]
     fn settle(&mut self, time: f64, state: &mut [f64]) {
         let at = self.columns(state);
         let is_at_hand = self.velocity.is_empty() && !self.dissipation.is_viscous();

@@ -148,6 +148,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     ///
     /// # Errors
     /// [`TransportVelocityError`] for parts that do not fit together.
+    #[inline(never)]
     pub fn new(
         input: TransportVelocityInput<D>,
         matter: M::Input,

@@ -25,15 +25,18 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         self.common.particles.len()
     }
 
+    #[inline(never)]
     fn initial_state(&self) -> Vec<f64> {
         self.start.clone()
     }
 
     /// None: it is moved by kicks and drifts alone.
+    #[inline(never)]
     fn rates(&mut self, _time: f64, _state: &[f64], rate: &mut [f64]) {
         rate.fill(0.0);
     }
 
+    #[inline(never)]
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let common = &self.common;
         let mut totals = Totals::default();
@@ -46,10 +49,12 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         }
     }
 
+    #[inline(never)]
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.look(state, limits)
     }
 
+    #[inline(never)]
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
         match self.matter.starved(&self.common, state) {
             Some((number, name)) if number == index => {
@@ -65,6 +70,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         }
     }
 
+    #[inline(never)]
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let tail = &state[self.particle_count() * self.width()..];
         let waiting = self.matter.waiting(&self.common, state);
@@ -79,11 +85,13 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         self.matter.passed(&self.common, state, body)
     }
 
+    #[inline(never)]
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         energies[0] = self.common.kinetic_energy(state);
         self.matter.energies(&self.common, state, &mut energies[1..]);
     }
 
+    #[inline(never)]
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
         let common = &self.common;
         let at = common.columns(state);
@@ -94,10 +102,12 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         of_particles(common.particles.len(), of, momentum);
     }
 
+    #[inline(never)]
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
         self.make_fields(stage, time, state);
     }
 
+    #[inline(never)]
     fn derive(
         &self,
         state: &[f64],
@@ -167,6 +177,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
             .into()
     }
 
+    #[inline(never)]
     fn memory(&self) -> usize {
         let matter = self.particle_count() * M::memory();
         self.common.memory() + matter + size_of_val(self.start.as_slice())
@@ -181,6 +192,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         false
     }
 
+    #[inline(never)]
     fn on_device(&self, device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         M::to_device(self, device)
     }

@@ -9,11 +9,13 @@ use crate::schemes::ledger::Totals;
 use crate::{Vector, parallel};
 
 impl<const D: usize, M: Continuum<D>> SplitScheme for TransportVelocity<D, M> {
+    #[inline(never)]
     fn kick(&mut self, duration: f64, state: &mut [f64]) {
         self.common.kick(duration, state);
         M::DESCRIPTION.ledger.kick(D, duration, self.tail(state));
     }
 
+    #[inline(never)]
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
         let middle = Instant { time: time + 0.5 * step, step };
         let mut stages = std::mem::take(&mut self.drift);
@@ -22,6 +24,7 @@ impl<const D: usize, M: Continuum<D>> SplitScheme for TransportVelocity<D, M> {
         M::DESCRIPTION.ledger.add(D, &totals, self.tail(state));
     }
 
+    #[inline(never)]
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
         let end = Instant { time, step: 0.0 };
         let mut stages = std::mem::take(&mut self.accelerate);

@@ -78,6 +78,7 @@ impl<const D: usize> Upwind<D> {
     /// # Errors
     /// [`UpwindError`] for arrays that do not fit together, particles without mass or gradient,
     /// and impossible initial values.
+    #[inline(never)]
     pub fn new(input: UpwindInput<D>) -> Result<Self, UpwindError> {
         check_particles(&input.particles)?;
         check_materials(&input.particles, input.materials.len())?;

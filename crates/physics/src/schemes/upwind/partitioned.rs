@@ -76,6 +76,7 @@ impl<const D: usize> Upwind<D> {
 }
 
 impl<const D: usize> PartitionedScheme for Upwind<D> {
+    #[inline(never)]
     fn kick(&self, duration: f64, rate: &[f64], state: &mut [f64]) {
         let rate = self.columns(rate);
         let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
@@ -84,6 +85,7 @@ impl<const D: usize> PartitionedScheme for Upwind<D> {
 
     /// x and F are linear in time then, and J follows F: `dJ/dt = cof F : dF/dt` is the rate of the
     /// determinant, so that J takes its whole change without any error of the step.
+    #[inline(never)]
     fn drift(&self, duration: f64, rate: &[f64], state: &mut [f64]) {
         let (count, rate) = (self.particles.len(), self.columns(rate));
         let (own, _) = ColumnsMut::<D>::of(state, count);

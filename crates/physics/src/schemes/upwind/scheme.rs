@@ -37,6 +37,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         self.particles.len()
     }
 
+    #[inline(never)]
     fn initial_state(&self) -> Vec<f64> {
         let length = self.particles.len() * self.width() + LEDGER.length(D) + KEPT;
         let mut state = vec![0.0; length];
@@ -48,6 +49,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         state
     }
 
+    #[inline(never)]
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         let mut stages = std::mem::take(&mut self.stages);
         let totals = stages.run(|pass, totals| self.run(pass, time, state, (rate, totals)));
@@ -55,15 +57,18 @@ impl<const D: usize> Scheme for Upwind<D> {
         LEDGER.write(D, &totals, ColumnsMut::<D>::of(rate, self.particles.len()).1);
     }
 
+    #[inline(never)]
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let (own, _) = ColumnsMut::<D>::of(state, self.particles.len());
         self.prescribed.impose(time, own.velocity);
     }
 
+    #[inline(never)]
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.look(state, limits)
     }
 
+    #[inline(never)]
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         figures.extend_from_slice(LEDGER.behind(D, self.columns(state).tail));
         figures.push(self.least_corner(state));
@@ -73,6 +78,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         self.implicit.as_ref().map(|parts| parts.costs())
     }
 
+    #[inline(never)]
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         let at = self.columns(state);
         energies[0] = parallel::sum(self.particles.len(), |a| {
@@ -83,16 +89,19 @@ impl<const D: usize> Scheme for Upwind<D> {
         });
     }
 
+    #[inline(never)]
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
         let at = self.columns(state);
         let of = |a: usize| [at.position[a], at.velocity[a] * self.mass(a)];
         of_particles(self.particles.len(), of, momentum);
     }
 
+    #[inline(never)]
     fn observe(&mut self, _stage: usize, time: f64, state: &[f64]) {
         self.make_fields(time, state);
     }
 
+    #[inline(never)]
     fn derive(
         &self,
         state: &[f64],
@@ -143,6 +152,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         }
     }
 
+    #[inline(never)]
     fn memory(&self) -> usize {
         let (particles, support) = (&self.particles, &self.support);
         let inverse = self.least_squares.as_ref().map_or(0, |_| size_of::<crate::Tensor<D>>());
@@ -170,6 +180,7 @@ impl<const D: usize> Scheme for Upwind<D> {
         self.is_conservative().then_some(self as &mut dyn PartitionedScheme)
     }
 
+    #[inline(never)]
     fn undamped_frequency(&mut self, state: &[f64]) -> Option<f64> {
         self.is_conservative().then(|| self.largest_frequency(state))
     }

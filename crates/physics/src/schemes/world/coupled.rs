@@ -205,6 +205,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         self.solids.len()
     }
 
+    #[inline(never)]
     fn solid(&mut self, number: usize) -> (&mut dyn Scheme, Range<usize>) {
         (self.solids[number].scheme.as_mut(), self.parts.all[number + 1].state.clone())
     }
@@ -219,12 +220,14 @@ impl<const D: usize> CoupledScheme for World<D> {
         cfl.map_or(1, |cfl| steps_within(step, shortest(limits, cfl), MOST_STEPS))
     }
 
+    #[inline(never)]
     fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {
         self.rest.clear();
         self.follow(state);
         self.push_on(time, duration, state);
     }
 
+    #[inline(never)]
     fn repay(&mut self, [time, duration]: [f64; 2], count: u64, state: &mut [f64]) {
         // Its last step has turned the walls.
         self.meet(state);
@@ -236,6 +239,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         state[entry] -= duration / count as f64 * power;
     }
 
+    #[inline(never)]
     fn settle(&mut self, time: f64, state: &mut [f64]) {
         for (solid, part) in self.solids.iter_mut().zip(&self.parts.all[1..]) {
             // What implicit steps keep is of their own making.
@@ -245,6 +249,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         }
     }
 
+    #[inline(never)]
     fn flow(&mut self, [time, step]: [f64; 2], count: u64, old: &[f64], new: &mut [f64]) {
         // Walls turn on the way.
         self.known.clear();
@@ -252,6 +257,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         self.flow_along(time, step, count, new);
     }
 
+    #[inline(never)]
     fn add_up(&mut self, counts: &[u64], state: &mut [f64]) {
         let behind = self.counts_at();
         for (kept, &count) in state[behind..].chunks_exact_mut(2).zip(counts) {
@@ -276,6 +282,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         }
     }
 
+    #[inline(never)]
     fn refresh(&mut self, time: f64, state: &mut [f64]) {
         self.carry_walls(state);
         self.guide(state);

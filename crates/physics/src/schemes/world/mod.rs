@@ -168,6 +168,7 @@ impl<const D: usize> World<D> {
     ///
     /// # Errors
     /// [`WorldError`] for systems that do not fit together.
+    #[inline(never)]
     pub fn new(
         mut fluid: TransportVelocity<D>,
         cfl: Option<f64>,

@@ -68,11 +68,13 @@ impl<const D: usize> Scheme for World<D> {
         self.ledger_at()
     }
 
+    #[inline(never)]
     fn initial_state(&self) -> Vec<f64> {
         self.start.clone()
     }
 
     /// The rates of each system alone.
+    #[inline(never)]
     fn rates(&mut self, time: f64, state: &[f64], rate: &mut [f64]) {
         rate.fill(0.0);
         let own = |k: usize| self.parts.all[k].state.clone();
@@ -83,6 +85,7 @@ impl<const D: usize> Scheme for World<D> {
         }
     }
 
+    #[inline(never)]
     fn constrain(&self, time: f64, state: &mut [f64]) {
         for (k, part) in self.parts.all.iter().enumerate() {
             self.system(k).constrain(time, &mut state[part.state.clone()]);
@@ -91,6 +94,7 @@ impl<const D: usize> Scheme for World<D> {
 
     /// The bounds on the step are those of the fluid, of as many of its steps as are one of all, and of each solid that
     /// of so many of its own steps that no run would end.
+    #[inline(never)]
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         // After a retry the last pass was of a state that has failed.
         self.follow(state);
@@ -135,6 +139,7 @@ impl<const D: usize> Scheme for World<D> {
         (0..self.parts.all.len()).find_map(|k| self.system(k).warning())
     }
 
+    #[inline(never)]
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
         let (k, own) = self.local(index);
         let part = &state[self.parts.all[k].state.clone()];
@@ -150,6 +155,7 @@ impl<const D: usize> Scheme for World<D> {
         })
     }
 
+    #[inline(never)]
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let counts = state[self.counts_at()..].chunks_exact(2);
         for ((k, part), count) in self.parts.all.iter().enumerate().zip(counts) {
@@ -163,6 +169,7 @@ impl<const D: usize> Scheme for World<D> {
         self.system(0).passed(&state[part.state.clone()], body)
     }
 
+    #[inline(never)]
     fn energies(&self, state: &[f64], mut energies: &mut [f64]) {
         for (k, part) in self.parts.all.iter().enumerate() {
             let system = self.system(k);
@@ -172,6 +179,7 @@ impl<const D: usize> Scheme for World<D> {
         }
     }
 
+    #[inline(never)]
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
         momentum.fill(0.0);
         for (k, part) in self.parts.all.iter().enumerate() {
@@ -182,6 +190,7 @@ impl<const D: usize> Scheme for World<D> {
         }
     }
 
+    #[inline(never)]
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
         self.guide(state);
         self.meet(state);
@@ -193,6 +202,7 @@ impl<const D: usize> Scheme for World<D> {
     }
 
     /// Of a field that a system does not have its particles show [`ABSENT`].
+    #[inline(never)]
     fn derive(
         &self,
         state: &[f64],
@@ -280,6 +290,7 @@ impl<const D: usize> Scheme for World<D> {
         self.system(k).collapse_advice(own)
     }
 
+    #[inline(never)]
     fn memory(&self) -> usize {
         let systems: usize = (0..self.parts.all.len()).map(|k| self.system(k).memory()).sum();
         let interfaces: usize = self.solids.iter().map(|solid| solid.interface.memory()).sum();
@@ -296,6 +307,7 @@ impl<const D: usize> Scheme for World<D> {
         false
     }
 
+    #[inline(never)]
     fn own_steps(&self, state: &[f64]) -> Vec<(String, u64)> {
         let names = self.solids.iter().map(|solid| solid.name.clone());
         let names = std::iter::once("fluid".to_owned()).chain(names);

@@ -238,6 +238,7 @@ impl<const D: usize> OnDevice<D> {
 }
 
 impl<const D: usize> DeviceSteps for OnDevice<D> {
+    #[inline(never)]
     fn put(&mut self, state: &[f64]) -> Result<(), DeviceError> {
         for &(start, (name, _, width)) in &self.columns {
             self.machine.write(name, &state[start..][..self.count * width])?;
@@ -248,6 +249,7 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         Ok(())
     }
 
+    #[inline(never)]
     fn step(&mut self, time: f64, step: f64) -> Result<(), DeviceError> {
         for &(_, (name, before, _)) in &self.columns {
             self.machine.copy(name, before)?;
@@ -267,6 +269,7 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         self.kick(0.5 * step)
     }
 
+    #[inline(never)]
     fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, DeviceError> {
         if self.plan.bounds.is_some() {
             if !self.is_picked {

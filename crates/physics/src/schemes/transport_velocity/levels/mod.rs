@@ -75,6 +75,7 @@ impl<const D: usize> Levels<D> {
     ///
     /// # Errors
     /// When neighbours of one level in another cannot be found.
+    #[inline(never)]
     pub fn new(levels: Vec<TransportVelocity<D>>) -> Result<Self, TransportVelocityError> {
         let (mut parts, mut start) = (Parts::default(), Vec::new());
         for level in &levels {

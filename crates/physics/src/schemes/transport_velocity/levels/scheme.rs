@@ -37,15 +37,18 @@ impl<const D: usize> Scheme for Levels<D> {
         self.parts.end()
     }
 
+    #[inline(never)]
     fn initial_state(&self) -> Vec<f64> {
         self.start.clone()
     }
 
     /// None: it is moved by kicks and drifts alone.
+    #[inline(never)]
     fn rates(&mut self, _time: f64, _state: &[f64], rate: &mut [f64]) {
         rate.fill(0.0);
     }
 
+    #[inline(never)]
     fn constrain(&self, time: f64, state: &mut [f64]) {
         for (level, part) in self.levels.iter().zip(&self.parts.all) {
             level.constrain(time, &mut state[part.state.clone()]);
@@ -53,6 +56,7 @@ impl<const D: usize> Scheme for Levels<D> {
     }
 
     /// The bounds on the step are the smallest of all levels.
+    #[inline(never)]
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         limits.clear();
         let (mut all, mut own) = (Health::NEUTRAL, Vec::new());
@@ -77,6 +81,7 @@ impl<const D: usize> Scheme for Levels<D> {
         self.levels[k].escape(own, &state[self.parts.all[k].state.clone()])
     }
 
+    #[inline(never)]
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let first = figures.len();
         let (mut mass, mut present, mut own) = (0.0, 0.0, Vec::new());
@@ -96,6 +101,7 @@ impl<const D: usize> Scheme for Levels<D> {
         self.each(state).find_map(|(level, part)| level.passed(part, body))
     }
 
+    #[inline(never)]
     fn energies(&self, state: &[f64], energies: &mut [f64]) {
         energies.fill(0.0);
         let mut own = vec![0.0; energies.len()];
@@ -105,6 +111,7 @@ impl<const D: usize> Scheme for Levels<D> {
         }
     }
 
+    #[inline(never)]
     fn momentum(&self, state: &[f64], momentum: &mut [f64]) {
         momentum.fill(0.0);
         for (level, part) in self.each(state) {
@@ -115,12 +122,14 @@ impl<const D: usize> Scheme for Levels<D> {
         }
     }
 
+    #[inline(never)]
     fn observe(&mut self, stage: usize, time: f64, state: &[f64]) {
         for (level, part) in self.levels.iter_mut().zip(&self.parts.all) {
             level.observe(stage, time, &state[part.state.clone()]);
         }
     }
 
+    #[inline(never)]
     fn derive(
         &self,
         state: &[f64],
@@ -203,6 +212,7 @@ impl<const D: usize> Scheme for Levels<D> {
         self.levels[k].collapse_advice(own)
     }
 
+    #[inline(never)]
     fn memory(&self) -> usize {
         let levels: usize = self.levels.iter().map(|level| level.memory()).sum();
         let transfers = self.transfers.iter().flatten();
@@ -219,6 +229,7 @@ impl<const D: usize> Scheme for Levels<D> {
         false
     }
 
+    #[inline(never)]
     fn on_device(&self, _device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         let (what, instead) =
             ("a fluid with regions of finer spacing", "leave out `scheme.refine`");
@@ -235,6 +246,7 @@ impl<const D: usize> Scheme for Levels<D> {
 }
 
 impl<const D: usize> SplitScheme for Levels<D> {
+    #[inline(never)]
     fn kick(&mut self, duration: f64, state: &mut [f64]) {
         for (level, part) in self.levels.iter_mut().zip(&self.parts.all) {
             level.kick(duration, &mut state[part.state.clone()]);
@@ -242,6 +254,7 @@ impl<const D: usize> SplitScheme for Levels<D> {
         self.sum_up(state);
     }
 
+    #[inline(never)]
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
         self.exchange(state);
         for (level, part) in self.levels.iter_mut().zip(&self.parts.all) {
@@ -250,6 +263,7 @@ impl<const D: usize> SplitScheme for Levels<D> {
         self.sum_up(state);
     }
 
+    #[inline(never)]
     fn accelerate(&mut self, time: f64, state: &mut [f64]) {
         self.regroup(state);
         self.exchange(state);

@@ -260,6 +260,7 @@ impl<const D: usize> StepEquations<'_, D> {
 
 impl<const D: usize> ThetaScheme for Upwind<D> {
     /// Prescribed components have their values at the instant of the stage, and at the end.
+    #[inline(never)]
     fn advance(
         &mut self,
         rule: &Theta,
@@ -293,6 +294,7 @@ impl<const D: usize> ThetaScheme for Upwind<D> {
         Ok(())
     }
 
+    #[inline(never)]
     fn remainders(
         &mut self,
         rule: &Theta,
