@@ -341,3 +341,17 @@ def test_the_command_is_the_program(tmp_path):
     beside = os.path.join(os.path.dirname(sys.executable), script)
     shown = subprocess.run([beside, "--version"], capture_output=True, text=True, check=True)
     assert shown.stdout.startswith(f"piola {piola.__version__} (commit ")
+
+
+def test_a_panic_is_an_exception_and_the_end_of_its_simulation(case, capfd):
+    simulation, other = case.start(), case.start()
+    before = simulation.bodies["water"]["velocity"]
+    copy = before.copy()
+    for ask in (simulation._panic, simulation.step, simulation.run, lambda: simulation.energy, simulation.finish):
+        with pytest.raises(piola.RunError, match="stopped at a fault of its own") as caught:
+            ask()
+        assert caught.value.kind == "panic"
+    assert "a test has asked for it" in capfd.readouterr().err
+    # What was read before stays, and others are not concerned.
+    assert (before == copy).all()
+    assert other.run().outcome == "completed"
