@@ -76,7 +76,10 @@ impl Simulation {
             title: case.title.clone(),
             end: *case.time.end,
             bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
-            standing_now: Arc::new(Mutex::new(Standing { progress: session.progress(), changes: 0 })),
+            standing_now: Arc::new(Mutex::new(Standing {
+                progress: session.progress(),
+                changes: 0,
+            })),
             waiting: AtomicUsize::new(0),
             is_stepping: AtomicBool::new(false),
             is_broken: AtomicBool::new(false),
@@ -123,6 +126,9 @@ impl Simulation {
             std::thread::yield_now();
         }
         let mut session = self.session.lock().ok()?;
+        if self.is_broken.load(Ordering::SeqCst) {
+            return None;
+        }
         let result = work(&mut session);
         self.note(&session);
         Some(result)

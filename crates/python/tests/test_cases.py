@@ -208,7 +208,7 @@ def test_all_that_is_public_has_a_docstring():
             continue
         member = getattr(piola, name)
         assert member.__doc__, name
-        for attribute, value in vars(member).items():
+        for attribute, value in getattr(member, "__dict__", {}).items():
             if not attribute.startswith("_"):
                 assert value.__doc__, f"{name}.{attribute}"
 

@@ -30,7 +30,9 @@ pub enum PointCloudError {
         got: usize,
     },
     /// Numbers do not make up as many points as there are volumes.
-    #[error("{coordinates} coordinates in {dimension}D and {volumes} volumes, expected {dimension} for each volume")]
+    #[error(
+        "{coordinates} coordinates in {dimension}D and {volumes} volumes, expected {dimension} for each volume"
+    )]
     Length {
         /// Coordinates of a point.
         dimension: usize,

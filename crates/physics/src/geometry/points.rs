@@ -189,11 +189,7 @@ pub(super) fn place(x: f64) -> u64 {
 }
 
 /// Appends a particle with the volume of a point.
-pub(super) fn push<const D: usize>(
-    particles: &mut Particles<D>,
-    position: Vector<D>,
-    volume: f64,
-) {
+pub(super) fn push<const D: usize>(particles: &mut Particles<D>, position: Vector<D>, volume: f64) {
     particles.id.push(particles.len() as u32);
     particles.position.push(position);
     particles.volume.push(volume);

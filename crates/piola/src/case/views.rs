@@ -133,7 +133,8 @@ impl Session {
         }
         let find = |body: Option<usize>| {
             let of = |a: &u32| scheme.body_of(state, *a as usize);
-            let is_there = |a: &u32| of(a).is_some_and(|of| body.is_none_or(|it| of as usize == it));
+            let is_there =
+                |a: &u32| of(a).is_some_and(|of| body.is_none_or(|it| of as usize == it));
             Rows::of(all.clone().filter(is_there).collect())
         };
         match body {

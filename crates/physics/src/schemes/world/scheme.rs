@@ -74,7 +74,8 @@ impl<const D: usize> Scheme for World<D> {
             return None;
         }
         let own = own_field(self.system(k), field)?;
-        let (start, own) = (self.parts.all[k].state.start, self.system(k).stretch(&own, &particles)?);
+        let (start, own) =
+            (self.parts.all[k].state.start, self.system(k).stretch(&own, &particles)?);
         Some(start + own.start..start + own.end)
     }
 

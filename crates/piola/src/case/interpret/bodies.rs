@@ -198,12 +198,14 @@ impl Reader<'_, '_> {
         let Some(cloud) = known.get(own).cloned() else {
             let message = format!("there is no cloud `{}`", name.value);
             let problem = Problem::new(name.place, message, "unknown cloud");
-            let help = "write the name of a CSV file; clouds are given by a program that uses the library";
+            let help =
+                "write the name of a CSV file; clouds are given by a program that uses the library";
             return self.refuse(problem.help(help));
         };
         if cloud.dimension() != self.dimension {
             let (got, expected) = (cloud.dimension(), self.dimension);
-            let message = format!("the cloud `{}` is in {got}D and the case in {expected}D", name.value);
+            let message =
+                format!("the cloud `{}` is in {got}D and the case in {expected}D", name.value);
             return self.refuse(Problem::new(name.place, message, "not of this dimension"));
         }
         Some(Shape::Cloud { name, cloud: Some(cloud) })

@@ -14,7 +14,8 @@ fn text(file: &str) -> String {
 
 fn options(dimension: usize) -> LoadOptions {
     let mut clouds = Clouds::default();
-    let sites = (0..5).flat_map(|i| (0..9).map(move |j| [0.25 * f64::from(i), 0.25 * f64::from(j), 0.0]));
+    let sites =
+        (0..5).flat_map(|i| (0..9).map(move |j| [0.25 * f64::from(i), 0.25 * f64::from(j), 0.0]));
     let positions: Vec<f64> = sites.flat_map(|site| site.into_iter().take(dimension)).collect();
     let cloud = PointCloud::new(dimension, positions, vec![0.0625; 45]).unwrap();
     clouds.insert("sites", Arc::new(cloud));
