@@ -254,13 +254,16 @@ def test_threads_go_on_while_steps_are_taken(long):
 
     thread = threading.Thread(target=run)
     thread.start()
-    turns, times = 0, set()
+    turns, times, held = 0, set(), []
     try:
         while len(times) < 20 and not done.is_set():
             turns += 1
             times.add(simulation.time)
             # A state between two steps, while the other thread takes them.
-            assert np.isfinite(simulation.bodies["water"]["velocity"]).all()
+            velocity = simulation.bodies["water"]["velocity"]
+            assert np.isfinite(velocity).all()
+            if len(held) < len(times):
+                held.append((velocity, velocity.copy()))
         # This thread has seen the time of the other go on, and never waited for its end.
         assert len(times) == 20 and not done.is_set()
         with pytest.raises(RuntimeError, match="another thread"):
@@ -269,6 +272,8 @@ def test_threads_go_on_while_steps_are_taken(long):
         simulation.observe(1e-6, _stop)
         thread.join(60)
     assert [type(problem) for problem in problems] == [StopIteration]
+    # None of them was written to meanwhile.
+    assert all(np.array_equal(array, copy) for array, copy in held)
 
 
 def _stop(moment):
