@@ -1,33 +1,15 @@
 """What Python functions cost: the times that `docs/python.md` has. The best of some runs, as other processes disturb."""
 
-import copy
-import pathlib
-import sys
 import time
 
-import piola
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests"))
-
-from conftest import COLUMN  # noqa: E402
-
-
-def case(push, spacing, end):
-    """The column of the tests in free fall, with a body force along y."""
-    table = copy.deepcopy(COLUMN)
-    table["body"][0]["spacing"] = spacing
-    del table["body"][0]["initial"], table["scheme"]["tau_velocity"], table["boundary"], table["probe"]
-    table["load"] = [{"kind": "body_force", "acceleration": ["0", push]}]
-    table["time"]["end"] = end
-    table["output"] = {"every": end, "table_every": end}
-    return piola.Case(table)
+from column import case
 
 
 def seconds(push="-9.81", spacing=0.02, end=0.02, interval=None):
     """Wall time of a step, and the number of particles."""
     best = float("inf")
     for _ in range(10):
-        simulation = case(push, spacing, end).start()
+        simulation = case(spacing, end, push).start()
         if interval:
             simulation.observe(interval, lambda moment: None)
         start = time.perf_counter()
