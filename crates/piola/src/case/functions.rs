@@ -18,7 +18,9 @@ pub type Functions = Named<dyn SpaceTime>;
 pub type Clouds = Named<PointCloud>;
 
 /// Things by name.
-pub struct Named<T: ?Sized>(Vec<(String, Arc<T>)>);
+pub struct Named<T: ?Sized>(Vec<Entry<T>>);
+
+type Entry<T> = (String, Arc<T>);
 
 impl<T: ?Sized> Named<T> {
     /// Adds one, in place of what had its name.
@@ -60,7 +62,7 @@ impl<T: ?Sized> fmt::Debug for Named<T> {
 /// The same things, not such that are alike.
 impl<T: ?Sized> PartialEq for Named<T> {
     fn eq(&self, other: &Self) -> bool {
-        let is_same = |(one, other): (&(String, Arc<T>), &(String, Arc<T>))| {
+        let is_same = |(one, other): (&Entry<T>, &Entry<T>)| {
             one.0 == other.0 && Arc::ptr_eq(&one.1, &other.1)
         };
         self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(is_same)
