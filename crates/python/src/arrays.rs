@@ -1,22 +1,11 @@
 //! NumPy arrays from numbers, and numbers from arrays.
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use piola::fields::{FieldDescription, FieldKind};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::toml::kind;
-
-/// The shape of a field of `count` particles.
-pub fn shape(field: &FieldDescription, count: usize, dimension: usize) -> Vec<usize> {
-    match field.kind {
-        FieldKind::Scalar => vec![count],
-        FieldKind::Vector => vec![count, dimension],
-        FieldKind::Tensor => vec![count, dimension, dimension],
-        FieldKind::Symmetric => vec![count, 6],
-    }
-}
 
 /// An array that owns its numbers.
 pub fn array<'py>(
@@ -27,11 +16,11 @@ pub fn array<'py>(
     Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any())
 }
 
-/// The numbers of whatever NumPy takes for an array, last axis first, however they lie in memory.
+/// The numbers of whatever NumPy takes for an array, last axis first, however they lie in memory, with its shape.
 ///
 /// # Errors
-/// It is no array of numbers that fit 64-bit floats, or has another shape than `expected`.
-pub fn numbers(what: &str, given: &Bound<'_, PyAny>, expected: &[usize]) -> PyResult<Vec<f64>> {
+/// It is no array of numbers that fit 64-bit floats.
+pub fn floats(what: &str, given: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     let py = given.py();
     let numpy = py.import("numpy")?;
     let array = numpy.call_method1("asarray", (given,))?;
@@ -46,15 +35,24 @@ pub fn numbers(what: &str, given: &Bound<'_, PyAny>, expected: &[usize]) -> PyRe
     options.set_item("dtype", float)?;
     let array = numpy.call_method("asarray", (array,), Some(&options))?;
     let array = array.cast_into::<PyArrayDyn<f64>>()?;
-    if array.shape() != expected {
-        let [expected, got] = [expected, array.shape()].map(shape_text);
+    Ok((array.readonly().as_array().iter().copied().collect(), array.shape().to_vec()))
+}
+
+/// As [`floats`], of a known shape.
+///
+/// # Errors
+/// As there, and if it has another shape than `expected`.
+pub fn numbers(what: &str, given: &Bound<'_, PyAny>, expected: &[usize]) -> PyResult<Vec<f64>> {
+    let (numbers, shape) = floats(what, given)?;
+    if shape != expected {
+        let [expected, got] = [expected, &shape].map(shape_text);
         return Err(PyValueError::new_err(format!("{what} has the shape {expected}, not {got}")));
     }
-    Ok(array.readonly().as_array().iter().copied().collect())
+    Ok(numbers)
 }
 
 /// A shape as Python writes it.
-fn shape_text(shape: &[usize]) -> String {
+pub fn shape_text(shape: &[usize]) -> String {
     match shape {
         [one] => format!("({one},)"),
         more => format!("({})", more.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),

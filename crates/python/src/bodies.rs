@@ -1,12 +1,16 @@
 //! Bodies and their fields.
 
+use std::sync::Arc;
+
+use numpy::PyArray1;
 use piola::case::{ColumnError, Session};
-use piola::fields::{FieldDescription, FieldValues, Life};
+use piola::fields::{FieldDescription, Life};
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
 
-use crate::arrays::{array, numbers, shape};
+use crate::arrays::numbers;
 use crate::errors::column_error;
+use crate::field::Field;
 use crate::moment::there;
 use crate::simulation::{Simulation, Standing};
 
@@ -33,7 +37,8 @@ impl Bodies {
             PyKeyError::new_err(format!("there is no body `{name}`; there are `{known}`"))
         })?;
         let simulation = self.simulation.clone_ref(py);
-        Ok(Body { simulation, moment: self.moment, number, name: name.to_owned() })
+        let name = Some(name.to_owned());
+        Ok(Body { simulation, moment: self.moment, number: Some(number), name })
     }
 
     fn __len__(&self) -> usize {
@@ -63,10 +68,11 @@ impl Bodies {
 /// An array has a row for each particle, in the order of particle files, which is the same at all moments (where
 /// particles come in or go out, of those that are there). Its shape is (particles,) for a scalar, (particles, D) for a
 /// vector, (particles, D, D) for a tensor, (particles, 6) for xx, yy, zz, yz, xz, xy of symmetric tensors; its unit is SI,
-/// as `fields()` says. It is a copy: `body["velocity"][:, 0] = 0` changes nothing in the simulation.
+/// as `fields()` says. It is read-only and does not change when the run continues: `array.base` is a `Field`, which says
+/// whether the simulation is still at that state, and whether the array looks at its memory or is a copy.
 ///
-/// `body["velocity"] = values` does, before the first step or between two: an array of the shape that reading it gives, of
-/// numbers that fit 64-bit floats, in any order in memory. What is prescribed stays as it is.
+/// `body["velocity"] = values` sets a field, before the first step or between two: an array of the shape that reading it
+/// gives, of numbers that fit 64-bit floats, in any order in memory. What is prescribed stays as it is.
 ///
 /// To read or write raises KeyError if the scheme has no such field, RuntimeError if it is of a moment that is over; to
 /// write, ValueError for a wrong shape, NaN, infinity, or a field that cannot be set, and TypeError for other types. Then
@@ -75,34 +81,40 @@ impl Bodies {
 pub struct Body {
     simulation: Py<Simulation>,
     moment: Option<Standing>,
-    number: usize,
-    /// Its name in the case.
+    /// Its number in the case, or all particles.
+    number: Option<usize>,
+    /// Its name in the case, or None for all particles.
     #[pyo3(get)]
-    name: String,
+    name: Option<String>,
 }
 
 impl Body {
+    /// All particles.
+    pub fn of_all(simulation: Py<Simulation>, moment: Option<Standing>) -> Self {
+        Self { simulation, moment, number: None, name: None }
+    }
+
+    /// Works on the session, if that is still at the moment.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut Session) -> T + Send,
     ) -> PyResult<T> {
-        let simulation = self.simulation.get();
-        if let Some(moment) = self.moment {
-            there(simulation, moment)?;
-        }
-        simulation.with(py, work)
+        let (simulation, moment) = (self.simulation.get(), self.moment);
+        simulation.with(py, move |session| {
+            moment.map_or(Ok(simulation), |moment| there(simulation, moment))?;
+            Ok(work(session))
+        })?
     }
 
-    /// A column with the indices of the particles of this body.
-    fn read(&self, py: Python<'_>, name: &str) -> PyResult<(FieldValues, Vec<usize>, usize)> {
+    /// Its particles, by index in the columns.
+    fn rows(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
         let number = self.number;
-        let found = self.with(py, |session| {
-            let column = session.column(name)?;
-            let dimension = session.case().dimension;
-            Ok((column, session.particles_of(number), dimension))
-        })?;
-        found.map_err(|error: ColumnError| column_error(&error))
+        self.with(py, |session| session.particles_of(number))
+    }
+
+    fn label(&self) -> String {
+        self.name.as_ref().map_or_else(|| "all particles".to_owned(), |name| format!("`{name}`"))
     }
 }
 
@@ -110,22 +122,25 @@ impl Body {
 impl Body {
     /// The values of a field at the moment.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let (column, particles, dimension) = self.read(py, name)?;
-        let shape = shape(&column.description, particles.len(), dimension);
-        let width = shape[1..].iter().product::<usize>();
-        let mut values = Vec::with_capacity(particles.len() * width);
-        for particle in particles {
-            values.extend_from_slice(&column.values[particle * width..(particle + 1) * width]);
-        }
-        array(py, values, &shape)
+        let (number, simulation) = (self.number, self.simulation.get());
+        let (view, read) =
+            self.with(py, |session| (session.view(name, number), simulation.standing()))?;
+        let view = view.map_err(|error| column_error(&error))?;
+        let standing = (read, Arc::clone(&simulation.standing_now));
+        Field::array(py, view, standing, self.name.clone())
     }
 
     /// Gives a field other values.
     fn __setitem__(&self, py: Python<'_>, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
-        let (mut column, particles, dimension) = self.read(py, name)?;
-        let shape = shape(&column.description, particles.len(), dimension);
-        let what = format!("`{name}` of `{}`", self.name);
-        let given = numbers(&what, values, &shape)?;
+        let number = self.number;
+        let read = self.with(py, |session| {
+            let column = session.column(name)?;
+            Ok((column, session.particles_of(number), session.case().dimension))
+        })?;
+        let (mut column, particles, dimension) =
+            read.map_err(|error: ColumnError| column_error(&error))?;
+        let shape = column.description.kind.shape(particles.len(), dimension);
+        let given = numbers(&format!("`{name}` of {}", self.label()), values, &shape)?;
         let width = shape[1..].iter().product::<usize>();
         for (particle, row) in particles.iter().zip(given.chunks_exact(width)) {
             column.values[particle * width..(particle + 1) * width].copy_from_slice(row);
@@ -177,15 +192,22 @@ impl Body {
             let particles = session.particles_of(number);
             particles.iter().map(|&particle| session.ids()[particle]).collect()
         })?;
-        Ok(numpy::PyArray1::from_vec(py, ids).into_any())
+        Ok(PyArray1::from_vec(py, ids).into_any())
+    }
+
+    /// Where its particles are among all of them: `simulation.particles[field][body.rows]` is `body[field]`, if no
+    /// particle has come in or gone out.
+    #[getter(rows)]
+    fn all_rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(PyArray1::from_vec(py, self.rows(py)?).into_any())
     }
 
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        let number = self.number;
-        self.with(py, |session| session.particles_of(number).len())
+        Ok(self.rows(py)?.len())
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!("<Body {} of {} particles>", self.name, self.__len__(py)?))
+        let name = self.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
+        Ok(format!("<Body{name} of {} particles>", self.__len__(py)?))
     }
 }

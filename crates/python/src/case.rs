@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::display::{preformatted, table};
 use crate::errors::{Fault, case_error, faults, file_error, guard};
-use crate::functions::{Registry, make_threads, refuse_inside};
+use crate::functions::{Registry, Shared, make_threads, refuse_inside};
 use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::toml;
@@ -30,8 +30,8 @@ enum Source {
 /// Case(table, *, folder=".", variant=None, level="case")
 ///
 /// table: a dict with the keys of a case file (docs/case-file.md). NumPy arrays and numbers, tuples and paths
-/// may stand in it, and functions of some of x, y, z and t where a case has an expression. It becomes the text of a
-/// case file, which `case.toml` shows and messages point into.
+/// may stand in it, functions of some of x, y, z and t where a case has an expression, and a `Cloud` where a body has a
+/// shape. It becomes the text of a case file, which `case.toml` shows and messages point into.
 /// folder: where files that the case names are looked for.
 /// variant: name of a variant, or of a member of a sweep (`NAME.3`).
 /// level: "case", or the settings "coarse" or "paper" of the case.
@@ -62,45 +62,48 @@ impl Case {
                 "level must be \"case\", \"coarse\" or \"paper\", not {level:?}"
             ))
         })?;
-        let functions = registry.functions.clone();
-        let options = LoadOptions { variant, level, functions, ..LoadOptions::default() };
+        let options = LoadOptions { variant, level, ..LoadOptions::default() };
         Ok(Self { source, options, registry })
     }
 
-    /// Reads the case as it is now, without the GIL.
-    fn read(&self, py: Python<'_>) -> PyResult<Result<case::Case, Problems>> {
-        guard(py, || match &self.source {
-            Source::File(path) => load(path, &self.options),
-            Source::Text { text, folder } => parse_in(folder, text, DICT, &self.options),
-        })
-    }
-
-    fn model(&self, py: Python<'_>) -> PyResult<case::Case> {
-        self.read(py)?.map_err(|problems| case_error(py, &problems))
-    }
-
-    fn build(&self, py: Python<'_>) -> PyResult<Session> {
-        let case = self.model(py)?;
-        self.built(py, &case)?.map_err(|problems| case_error(py, &problems))
-    }
-
-    /// Makes the particles. Functions are asked for values of the start.
-    fn built(&self, py: Python<'_>, case: &case::Case) -> PyResult<Result<Session, Problems>> {
-        refuse_inside()?;
-        self.registry.shared.set_end(*case.time.end);
-        self.registry.shared.take();
-        let session = guard(py, || {
-            make_threads();
-            Session::new(case)
+    /// Reads the case as it is now, without the GIL, and what the functions of its run share.
+    fn read(&self, py: Python<'_>) -> PyResult<(Result<case::Case, Problems>, Arc<Shared>)> {
+        let (functions, shared) = self.registry.for_a_run();
+        let clouds = self.registry.clouds.clone();
+        let options = LoadOptions { functions, clouds, ..self.options.clone() };
+        let read = guard(py, || match &self.source {
+            Source::File(path) => load(path, &options),
+            Source::Text { text, folder } => parse_in(folder, text, DICT, &options),
         })?;
-        self.sound()?;
-        Ok(session)
+        Ok((read, shared))
     }
 
-    /// Raises what a function has raised.
-    fn sound(&self) -> PyResult<()> {
-        self.registry.shared.take().map_or(Ok(()), Err)
+    fn model(&self, py: Python<'_>) -> PyResult<(case::Case, Arc<Shared>)> {
+        let (case, shared) = self.read(py)?;
+        Ok((case.map_err(|problems| case_error(py, &problems))?, shared))
     }
+
+    fn build(&self, py: Python<'_>) -> PyResult<(Session, Arc<Shared>)> {
+        let (case, shared) = self.model(py)?;
+        let session = built(py, &case, &shared)?.map_err(|problems| case_error(py, &problems))?;
+        Ok((session, shared))
+    }
+}
+
+/// Makes the particles. Functions are asked for values of the start.
+fn built(
+    py: Python<'_>,
+    case: &case::Case,
+    shared: &Shared,
+) -> PyResult<Result<Session, Problems>> {
+    refuse_inside()?;
+    shared.set_end(*case.time.end);
+    let session = guard(py, || {
+        make_threads();
+        Session::new(case)
+    })?;
+    shared.sound()?;
+    Ok(session)
 }
 
 #[pymethods]
@@ -127,14 +130,14 @@ impl Case {
     #[pyo3(signature = (path, *, variant=None, level="case"))]
     fn load(py: Python<'_>, path: PathBuf, variant: Option<String>, level: &str) -> PyResult<Self> {
         let case = Self::of(Source::File(path), Registry::default(), variant, level)?;
-        match case.read(py)? {
+        match case.read(py)?.0 {
             Err(problems) if problems.is_io() => Err(case_error(py, &problems)),
             _ => Ok(case),
         }
     }
 
     /// Sets the key that `path` leads to, as `--set` does: `body.water.spacing`, `load.0.acceleration`. A path
-    /// with `+` at its end appends to a list, the value None removes the key. A value may hold functions, as in
+    /// with `+` at its end appends to a list, the value None removes the key. A value may hold functions and clouds, as in
     /// `Case`. Returns the case itself.
     fn set<'py>(
         mut slf: PyRefMut<'py, Self>,
@@ -148,7 +151,6 @@ impl Case {
             true => String::new(),
             false => toml::value(value, path, &mut slf.registry)?.to_string(),
         };
-        slf.options.functions = slf.registry.functions.clone();
         slf.options.overrides.push(format!("{path}={text}"));
         Ok(slf)
     }
@@ -157,8 +159,8 @@ impl Case {
     /// particles are made for it.
     fn faults(&self, py: Python<'_>) -> PyResult<Vec<Fault>> {
         let built = match self.read(py)? {
-            Ok(case) => self.built(py, &case)?.map(|_| ()),
-            Err(problems) => Err(problems),
+            (Ok(case), shared) => built(py, &case, &shared)?.map(|_| ()),
+            (Err(problems), _) => Err(problems),
         };
         Ok(built.err().map(|problems| faults(&problems)).unwrap_or_default())
     }
@@ -167,9 +169,9 @@ impl Case {
     ///
     /// Raises CaseError.
     fn check(&self, py: Python<'_>) -> PyResult<Plan> {
-        let mut session = self.build(py)?;
+        let (mut session, shared) = self.build(py)?;
         let plan = guard(py, || session.plan())?;
-        self.sound()?;
+        shared.sound()?;
         Ok(Plan::new(session.case(), plan))
     }
 
@@ -181,7 +183,7 @@ impl Case {
     /// Raises CaseError; RunError if there is nothing to resume from.
     #[pyo3(signature = (out=None, *, resume=false))]
     fn start(&self, py: Python<'_>, out: Option<PathBuf>, resume: bool) -> PyResult<Simulation> {
-        let mut session = self.build(py)?;
+        let (mut session, shared) = self.build(py)?;
         if let Some(folder) = &out {
             let placed = guard(py, || match resume {
                 true => session.resume_from(folder),
@@ -191,7 +193,7 @@ impl Case {
         } else if resume {
             return Err(PyValueError::new_err("resuming a run needs the folder of its results"));
         }
-        Ok(Simulation::new(session, out, Arc::clone(&self.registry.shared)))
+        Ok(Simulation::new(session, out, shared))
     }
 
     /// The text that the case is read from, into which messages point: of the file, or what the dict has become.
@@ -208,13 +210,13 @@ impl Case {
     /// The text of the case with all that was set. Raises CaseError.
     #[getter]
     fn toml(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(self.model(py)?.as_run)
+        Ok(self.model(py)?.0.as_run)
     }
 
     /// What the case shows, in one line. Raises CaseError.
     #[getter]
     fn title(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(self.model(py)?.title)
+        Ok(self.model(py)?.0.title)
     }
 
     fn __repr__(&self) -> String {
@@ -227,7 +229,7 @@ impl Case {
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        let case = match self.read(py)? {
+        let case = match self.read(py)?.0 {
             Ok(case) => case,
             Err(problems) => return Ok(preformatted(&problems.to_string())),
         };

@@ -10,7 +10,8 @@ use std::sync::{Arc, Mutex, Once, PoisonError, RwLock};
 use std::thread;
 
 use piola::boundaries::SpaceTime;
-use piola::case::Functions;
+use piola::case::{Clouds, Functions};
+use piola::geometry::PointCloud;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -57,7 +58,7 @@ pub fn make_threads() {
     });
 }
 
-/// What the functions of a case share.
+/// What the functions of one run share.
 #[derive(Default)]
 pub struct Shared {
     /// Whether one has raised.
@@ -84,17 +85,30 @@ impl Shared {
         inside(&self.raised).take()
     }
 
+    /// Raises what a function has raised.
+    pub fn sound(&self) -> PyResult<()> {
+        self.take().map_or(Ok(()), Err)
+    }
+
     fn keep(&self, error: PyErr) {
         inside(&self.raised).get_or_insert(error);
         self.has_raised.store(true, Ordering::SeqCst);
     }
 }
 
-/// The functions of a case, in the order in which they came.
-#[derive(Clone, Default)]
+/// The functions and the clouds of a case, in the order in which they came.
+#[derive(Default)]
 pub struct Registry {
-    pub shared: Arc<Shared>,
-    pub functions: Functions,
+    functions: Vec<Arc<Given>>,
+    pub clouds: Clouds,
+}
+
+/// A function as it was given.
+struct Given {
+    name: String,
+    /// The variables that it takes, in its order.
+    takes: Vec<usize>,
+    function: Py<PyAny>,
 }
 
 impl Registry {
@@ -120,26 +134,37 @@ impl Registry {
         let name = function.getattr_opt("__name__")?.and_then(|name| name.extract::<String>().ok());
         let name = name.unwrap_or_else(|| "function".to_owned());
         let plain: String = name.chars().filter(|c| c.is_alphanumeric() || *c == '_').collect();
-        let name = format!("{plain}_{}", self.functions.names().count());
-        self.functions.insert(
-            name.as_str(),
-            Arc::new(Function {
-                name: name.clone(),
-                takes,
-                function: function.clone().unbind(),
-                shared: Arc::clone(&self.shared),
+        let name = format!("{plain}_{}", self.functions.len());
+        let text = format!("@{name}");
+        self.functions.push(Arc::new(Given { name, takes, function: function.clone().unbind() }));
+        Ok(text)
+    }
+
+    /// The functions as one run has them: what they raise there, and the values that they are remembered to have, are
+    /// nothing to other runs of the case.
+    pub fn for_a_run(&self) -> (Functions, Arc<Shared>) {
+        let (mut functions, shared) = (Functions::default(), Arc::<Shared>::default());
+        for given in &self.functions {
+            let function = Function {
+                given: Arc::clone(given),
+                shared: Arc::clone(&shared),
                 known: RwLock::default(),
-            }),
-        );
-        Ok(format!("@{name}"))
+            };
+            functions.insert(given.name.as_str(), Arc::new(function));
+        }
+        (functions, shared)
+    }
+
+    /// Takes points in, and returns what stands for them.
+    pub fn add_cloud(&mut self, cloud: &Arc<PointCloud>) -> String {
+        let name = format!("cloud_{}", self.clouds.names().count());
+        self.clouds.insert(name.as_str(), Arc::clone(cloud));
+        format!("@{name}")
     }
 }
 
 struct Function {
-    name: String,
-    /// The variables that it takes, in its order.
-    takes: Vec<usize>,
-    function: Py<PyAny>,
+    given: Arc<Given>,
     shared: Arc<Shared>,
     /// Values by the bits of what they are of.
     known: RwLock<HashMap<[u64; 4], f64>>,
@@ -147,29 +172,30 @@ struct Function {
 
 impl Function {
     fn takes_place(&self) -> bool {
-        self.takes.iter().any(|variable| *variable != TIME)
+        self.given.takes.iter().any(|variable| *variable != TIME)
     }
 
     fn takes_time(&self) -> bool {
-        self.takes.contains(&TIME)
+        self.given.takes.contains(&TIME)
     }
 
     /// Calls it.
     fn call(&self, variables: [f64; 4]) -> PyResult<f64> {
         Python::attach(|py| {
             let outer = IS_CALLING.replace(true);
-            let given = self.takes.iter().map(|variable| variables[*variable]);
+            let Given { name, takes, function } = &*self.given;
+            let given = takes.iter().map(|variable| variables[*variable]);
             let value = PyTuple::new(py, given)
-                .and_then(|given| self.function.bind(py).call1(given))
+                .and_then(|given| function.bind(py).call1(given))
                 .and_then(|value| value.extract::<f64>());
             IS_CALLING.set(outer);
             let value = value?;
             if !value.is_finite() {
-                let given = self.takes.iter().map(|&variable| {
+                let given = takes.iter().map(|&variable| {
                     format!("{} = {:?}", VARIABLES[variable], variables[variable])
                 });
                 let given = given.collect::<Vec<_>>().join(", ");
-                let message = format!("the function `{}` returned {value} for {given}", self.name);
+                let message = format!("the function `{name}` returned {value} for {given}");
                 return Err(PyValueError::new_err(message));
             }
             Ok(value)
@@ -179,7 +205,7 @@ impl Function {
     fn at(&self, variables: [f64; 4]) -> f64 {
         let is_remembered = !(self.takes_place() && self.takes_time());
         let mut key = [0; 4];
-        self.takes.iter().for_each(|&variable| key[variable] = variables[variable].to_bits());
+        self.given.takes.iter().for_each(|&variable| key[variable] = variables[variable].to_bits());
         if is_remembered {
             let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
             if let Some(value) = known.get(&key) {

@@ -4,7 +4,7 @@ use piola::time::{Progress, Schedule};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Body};
 use crate::simulation::{Simulation, Standing};
 use crate::stepping::Goal;
 
@@ -81,6 +81,19 @@ impl Moment {
     fn bodies(&self, py: Python<'_>) -> PyResult<Bodies> {
         self.still_there()?;
         Ok(Bodies::new(self.simulation.clone_ref(py), Some(self.standing)))
+    }
+
+    /// All particles.
+    #[getter]
+    fn particles(&self, py: Python<'_>) -> PyResult<Body> {
+        self.still_there()?;
+        Ok(Body::of_all(self.simulation.clone_ref(py), Some(self.standing)))
+    }
+
+    /// Whether the simulation has still this state.
+    #[getter]
+    fn is_current(&self) -> bool {
+        self.still_there().is_ok()
     }
 
     /// The energies in J, by name, with their sum `total`.

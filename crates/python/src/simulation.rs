@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Body};
 use crate::display::table;
 use crate::errors::{guard, panic_error};
 use crate::functions::{Shared, refuse_inside};
@@ -36,12 +36,13 @@ pub struct Standing {
 
 /// A run of a case, from its particles at the start to its results.
 ///
-/// Steps are taken without the GIL. Fields, energies and tables are copies, of the moment at which they are asked
-/// for. A simulation may be read from any thread, and is stepped by one at a time.
+/// Steps are taken without the GIL. Fields, energies and tables are of the moment at which they are asked for, and stay
+/// as they are when the run continues. A simulation may be read from any thread, and is stepped by one at a time.
 #[pyclass(module = "piola", frozen)]
 pub struct Simulation {
     session: Mutex<Session>,
-    standing: Mutex<Standing>,
+    /// Shared with the arrays that look at its states.
+    pub standing_now: Arc<Mutex<Standing>>,
     /// Threads that wait for the session.
     waiting: AtomicUsize,
     /// Whether a thread takes steps.
@@ -75,7 +76,10 @@ impl Simulation {
             title: case.title.clone(),
             end: *case.time.end,
             bodies: case.bodies.iter().map(|body| body.name.value.clone()).collect(),
-            standing: Mutex::new(Standing { progress: session.progress(), changes: 0 }),
+            standing_now: Arc::new(Mutex::new(Standing {
+                progress: session.progress(),
+                changes: 0,
+            })),
             waiting: AtomicUsize::new(0),
             is_stepping: AtomicBool::new(false),
             is_broken: AtomicBool::new(false),
@@ -87,7 +91,7 @@ impl Simulation {
 
     /// Where it stands.
     pub fn standing(&self) -> Standing {
-        *inside(&self.standing)
+        *inside(&self.standing_now)
     }
 
     /// The session, for a thread that holds the GIL. After a panic there is none.
@@ -122,6 +126,9 @@ impl Simulation {
             std::thread::yield_now();
         }
         let mut session = self.session.lock().ok()?;
+        if self.is_broken.load(Ordering::SeqCst) {
+            return None;
+        }
         let result = work(&mut session);
         self.note(&session);
         Some(result)
@@ -129,7 +136,7 @@ impl Simulation {
 
     /// Notes that the state is another one.
     pub fn note(&self, session: &Session) {
-        let mut standing = inside(&self.standing);
+        let mut standing = inside(&self.standing_now);
         standing.progress = session.progress();
         standing.changes += 1;
     }
@@ -250,6 +257,12 @@ impl Simulation {
         Bodies::new(slf.clone().unbind(), None)
     }
 
+    /// All particles, with their fields as they are when they are read: as a body, with a row for each particle there is.
+    #[getter]
+    fn particles(slf: &Bound<'_, Self>) -> Body {
+        Body::of_all(slf.clone().unbind(), None)
+    }
+
     /// What has been recorded so far: a copy.
     #[getter]
     fn tables(&self, py: Python<'_>) -> PyResult<Tables> {
@@ -265,6 +278,11 @@ impl Simulation {
     /// The moment as it is.
     fn now(slf: &Bound<'_, Self>) -> Moment {
         Moment::of(slf)
+    }
+
+    /// Panics, so that the tests see what comes of that.
+    fn _panic(&self, py: Python<'_>) -> PyResult<()> {
+        self.with(py, |_| panic!("a test has asked for it"))
     }
 
     fn __enter__(slf: Bound<'_, Self>) -> Bound<'_, Self> {

@@ -5,13 +5,14 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
+use crate::cloud::Cloud;
 use crate::functions::Registry;
 
 /// How deep values may be nested; the deepest key of a case file is far above.
 const MAX_DEPTH: usize = 64;
 
-/// A dict as a table. What is wrong with keys and values of a case is left to the reader of cases. Functions go to
-/// `functions`, and leave their names in the table.
+/// A dict as a table. What is wrong with keys and values of a case is left to the reader of cases. Functions and
+/// clouds go to `functions`, and leave their names in the table.
 ///
 /// # Errors
 /// A key is no text, or a value is none that a case file can have.
@@ -80,6 +81,12 @@ fn value_at(
         };
         return Ok(Value::Array(items.map(item).collect::<PyResult<_>>()?));
     }
+    if let Ok(cloud) = value.cast::<Cloud>() {
+        let name = functions.add_cloud(&cloud.get().cloud);
+        let entries = [("kind", "points".to_owned()), ("file", name)];
+        let entry = |(key, text): (&str, String)| (key.to_owned(), Value::String(text));
+        return Ok(Value::Table(entries.map(entry).into_iter().collect()));
+    }
     if value.is_callable() {
         return functions.add(value).map(Value::String);
     }
@@ -90,7 +97,7 @@ fn value_at(
         }
     }
     let message = format!(
-        "a case has numbers, strings, booleans, lists, dicts and functions, not {}: {}",
+        "a case has numbers, strings, booleans, lists, dicts, functions and clouds, not {}: {}",
         kind(value),
         within(path)
     );

@@ -48,7 +48,7 @@ def test_values_of_numpy_tuples_and_paths_are_values(table, tmp_path):
 @pytest.mark.parametrize(
     ("value", "error", "text"),
     [
-        (object(), TypeError, "a case has numbers, strings, booleans, lists, dicts and functions, not `object`: in `time.end`"),
+        (object(), TypeError, "a case has numbers, strings, booleans, lists, dicts, functions and clouds, not `object`: in `time.end`"),
         (None, TypeError, "not `NoneType`: in `time.end`"),
         (1 << 70, ValueError, "the whole number is too large: in `time.end`"),
         ({1: 2}, TypeError, "keys of a case must be strings, not `int`: in `time.end`"),
@@ -208,7 +208,7 @@ def test_all_that_is_public_has_a_docstring():
             continue
         member = getattr(piola, name)
         assert member.__doc__, name
-        for attribute, value in vars(member).items():
+        for attribute, value in getattr(member, "__dict__", {}).items():
             if not attribute.startswith("_"):
                 assert value.__doc__, f"{name}.{attribute}"
 

@@ -1,5 +1,8 @@
 """Fields, tables and pictures as arrays."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -36,15 +39,139 @@ def test_bodies_are_a_mapping(case):
         bodies["air"]
 
 
-def test_arrays_are_copies(case):
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+def test_arrays_look_at_the_memory_of_the_state(case):
     simulation = case.start()
     body = simulation.bodies["water"]
-    array = body["velocity"]
-    array[:] = 7.0
-    assert body["velocity"].max() <= 0.0
-    body["velocity"] = array
-    array[:] = 9.0
+    velocity, again = body["velocity"], body["velocity"]
+    assert np.shares_memory(velocity, again) and address(velocity) == address(again)
+    assert np.shares_memory(velocity, simulation.particles["velocity"])
+    assert not np.shares_memory(velocity, body["position"])
+    field = velocity.base
+    assert isinstance(field, piola.Field) and field is not again.base
+    assert (field.name, field.unit, field.body, field.steps, field.time) == ("velocity", "m/s", "water", 0, 0.0)
+    assert not field.is_copy and field.is_current
+    # What is computed of the state is a copy, which says so.
+    pressure = body["pressure"]
+    assert pressure.base.is_copy and pressure.base.is_current
+    assert not np.shares_memory(pressure, body["pressure"])
+    assert repr(field) == "<Field velocity of water at t = 0 s>"
+    assert repr(simulation.particles["pressure"].base) == "<Field pressure at t = 0 s, a copy>"
+
+
+def test_arrays_stay_as_they_are_and_say_that_they_are_past(case):
+    simulation = case.start()
+    body = simulation.bodies["water"]
+    held = {name: body[name] for name in ("velocity", "deformation_gradient", "pressure")}
+    copies = {name: array.copy() for name, array in held.items()}
+    moment = simulation.now()
+    assert moment.is_current
+    for _ in range(5):
+        simulation.step()
+        # Two states ago was elsewhere: the buffers take turns.
+        later = body["velocity"]
+        assert not np.shares_memory(held["velocity"], later)
+        assert not np.array_equal(held["velocity"], later)
+    assert not moment.is_current
+    for name, array in held.items():
+        assert np.array_equal(array, copies[name])
+        assert not array.base.is_current and array.base.time == 0.0 and array.base.steps == 0
+    assert repr(held["velocity"].base).endswith("at t = 0 s, past>")
+    current = body["velocity"]
+    assert current.base.is_current and current.base.time == simulation.time
+    # A field that is set is another state.
+    body["velocity"] = 2.0 * current
+    assert not current.base.is_current and body["velocity"].base.is_current
+    before = body["velocity"]
+    kept = before.copy()
+    body["velocity"] = 0.5 * before
+    assert np.array_equal(before, kept) and np.array_equal(body["velocity"][:, 0], 0.5 * kept[:, 0])
+
+
+def test_slices_are_traced_to_their_field(case):
+    simulation = case.start()
+    velocity = simulation.bodies["water"]["velocity"]
+    for part in (velocity, velocity[3:, 1], velocity.T[::-1], np.asarray(velocity)):
+        assert piola.field_of(part) is velocity.base
+    assert piola.field_of(velocity.copy()) is None and piola.field_of(np.zeros(3)) is None
+    assert piola.field_of(2.0 * velocity) is None
+
+
+def test_arrays_are_read_only(case):
+    body = case.start().bodies["water"]
+    for name in ("velocity", "pressure"):
+        array = body[name]
+        before = array.copy()
+        for part in (array, array[:3], array.T):
+            assert not part.flags.writeable
+            with pytest.raises(ValueError, match="read-only"):
+                part[...] = 7.0
+            with pytest.raises(ValueError, match="WRITEABLE"):
+                part.flags.writeable = True
+        assert np.array_equal(body[name], before)
+    # To work with numbers of one's own, and to set them.
+    own = body["velocity"].copy()
+    own[:] = 7.0
+    body["velocity"] = own
+    own[:] = 9.0
     assert body["velocity"].max() == 7.0
+
+
+def test_memory_is_given_back(case):
+    """Of a hundred states that were looked at, those are in memory that an array is left of."""
+    simulation = case.set("time.end", 2.0).start()
+    body = simulation.bodies["water"]
+    array = body["velocity"]
+    gone = weakref.ref(array.base)
+    part = array[3:]
+    del array
+    assert gone() is not None
+    del part
+    gc.collect()
+    assert gone() is None
+    # Without an array of it the memory of a state serves a later one: three take turns.
+    places = {address(body["velocity"]) for _ in range(30) if simulation.step()}
+    assert len(places) == 3
+    held = [body["velocity"] for _ in range(30) if simulation.step()]
+    assert len({address(array) for array in held}) == 30
+
+
+def test_an_array_outlives_its_simulation(case):
+    simulation = case.start()
+    array = simulation.bodies["water"]["velocity"]
+    copy = array.copy()
+    del simulation
+    gc.collect()
+    junk = [np.full((45, 2), 3.0) for _ in range(1000)]
+    assert np.array_equal(array, copy) and len(junk) == 1000
+
+
+def test_what_looks_at_a_run_changes_no_bit_of_it(case):
+    plain, seen, held = case.start(), case.start(), []
+    plain.run()
+    for moment in seen.every(0.01):
+        held.append((moment.bodies["water"]["position"], moment.bodies["water"]["position"].copy()))
+    assert all(np.array_equal(array, copy) for array, copy in held)
+    for name in ("position", "velocity", "deformation_gradient", "pressure"):
+        assert np.array_equal(seen.bodies["water"][name], plain.bodies["water"][name])
+    assert np.array_equal(seen.tables["energy"].array, plain.tables["energy"].array)
+
+
+def test_tensors_have_their_axes(table):
+    """States have tensors column by column."""
+    table["body"][0]["initial"]["velocity"] = ["0.3 * y", "0"]
+    table["boundary"] = []
+    simulation = piola.Case(table).start()
+    simulation.step()
+    body = simulation.bodies["water"]
+    tensor = body["deformation_gradient"]
+    assert tensor.shape == (45, 2, 2) and not tensor.base.is_copy
+    # F_xy is dv_x/dy times the time, and dv_y/dx is 0, to the first order in the step.
+    middle = np.argmin(np.linalg.norm(body["position"] - [0.5, 1.0], axis=1))
+    assert tensor[middle, 0, 1] > 10 * abs(tensor[middle, 1, 0])
 
 
 def test_initial_fields_from_arrays(case):
@@ -139,6 +266,37 @@ def test_one_body_of_two_is_set_alone(table):
     second["velocity"] = np.full((45, 2), 0.5)
     assert np.array_equal(first["velocity"], before)
     assert second["velocity"][:, 0].min() == 0.5
+
+
+def test_bodies_among_all_particles(table):
+    """Two bodies that touch share cells: rows of one do not follow each other, and it is copied."""
+    table["body"][0]["initial"]["velocity"] = ["0.3 * y", "0"]
+    upper = {**table["body"][0], "name": "upper"}
+    table["body"][0]["shape"] = {"kind": "box", "min": [0.0, 0.0], "max": [1.0, 0.75]}
+    upper["shape"] = {"kind": "box", "min": [0.0, 1.0], "max": [1.0, 2.0]}
+    table["body"].append(upper)
+    simulation = piola.Case(table).start()
+    every = simulation.particles
+    assert every.name is None and repr(every) == "<Body of 45 particles>" and len(every) == 45
+    rows = [simulation.bodies[name].rows for name in ("water", "upper")]
+    assert sorted(np.concatenate(rows)) == list(range(45)) and np.array_equal(every.rows, np.arange(45))
+    simulation.step()
+    for name, own in zip(("water", "upper"), rows, strict=True):
+        body = simulation.bodies[name]
+        for field in ("velocity", "deformation_gradient", "pressure"):
+            array = body[field]
+            assert np.array_equal(array, every[field][own])
+            is_stretch = np.array_equal(own, np.arange(own[0], own[-1] + 1))
+            assert array.base.is_copy == (field == "pressure" or not is_stretch)
+        assert np.array_equal(body.ids, every.ids[own])
+    assert not every["velocity"].base.is_copy
+    gradient = every["deformation_gradient"]
+    assert not np.array_equal(gradient, gradient.transpose(0, 2, 1))
+    # All of them are set at once.
+    every["velocity"] = np.full((45, 2), 0.25)
+    assert simulation.bodies["upper"]["velocity"].max() == 0.25
+    with pytest.raises(ValueError, match="`velocity` of all particles has the shape"):
+        every["velocity"] = np.zeros((44, 2))
 
 
 def test_energy_limits_and_tables_agree(case):

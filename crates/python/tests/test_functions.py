@@ -171,3 +171,26 @@ def test_a_run_with_functions_is_resumed_with_the_same_bits(table, tmp_path):
 
     assert program("report", tmp_path / "out").returncode == 0
     assert "cannot be read" not in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_runs_of_a_case_do_not_know_of_each_other(table):
+    """What a function gives, or raises, in one run is nothing to another."""
+    strength = [-9.81]
+
+    def gravity(t):
+        if strength[0] is None:
+            raise LookupError("no gravity")
+        return strength[0]
+
+    case = pushed(table, ["0", "-1"], ["0", gravity], "0")
+    first, second = case.start(), case.start()
+    first.run(until=0.1)
+    strength[0] = None
+    with pytest.raises(LookupError, match="no gravity"):
+        second.run()
+    # The first goes on, and a third begins with the function as it is now.
+    strength[0] = 9.81
+    third = case.start()
+    assert first.run().outcome == "completed" and third.run().outcome == "completed"
+    plain = run(pushed(table, ["0", "-1"], ["0", "9.81"], "0"))
+    assert np.array_equal(third.bodies["water"]["position"], plain)

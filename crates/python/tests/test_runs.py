@@ -254,13 +254,16 @@ def test_threads_go_on_while_steps_are_taken(long):
 
     thread = threading.Thread(target=run)
     thread.start()
-    turns, times = 0, set()
+    turns, times, held = 0, set(), []
     try:
         while len(times) < 20 and not done.is_set():
             turns += 1
             times.add(simulation.time)
             # A state between two steps, while the other thread takes them.
-            assert np.isfinite(simulation.bodies["water"]["velocity"]).all()
+            velocity = simulation.bodies["water"]["velocity"]
+            assert np.isfinite(velocity).all()
+            if len(held) < len(times):
+                held.append((velocity, velocity.copy()))
         # This thread has seen the time of the other go on, and never waited for its end.
         assert len(times) == 20 and not done.is_set()
         with pytest.raises(RuntimeError, match="another thread"):
@@ -269,6 +272,8 @@ def test_threads_go_on_while_steps_are_taken(long):
         simulation.observe(1e-6, _stop)
         thread.join(60)
     assert [type(problem) for problem in problems] == [StopIteration]
+    # None of them was written to meanwhile.
+    assert all(np.array_equal(array, copy) for array, copy in held)
 
 
 def _stop(moment):
@@ -341,3 +346,17 @@ def test_the_command_is_the_program(tmp_path):
     beside = os.path.join(os.path.dirname(sys.executable), script)
     shown = subprocess.run([beside, "--version"], capture_output=True, text=True, check=True)
     assert shown.stdout.startswith(f"piola {piola.__version__} (commit ")
+
+
+def test_a_panic_is_an_exception_and_the_end_of_its_simulation(case, capfd):
+    simulation, other = case.start(), case.start()
+    before = simulation.bodies["water"]["velocity"]
+    copy = before.copy()
+    for ask in (simulation._panic, simulation.step, simulation.run, lambda: simulation.energy, simulation.finish):
+        with pytest.raises(piola.RunError, match="stopped at a fault of its own") as caught:
+            ask()
+        assert caught.value.kind == "panic"
+    assert "a test has asked for it" in capfd.readouterr().err
+    # What was read before stays, and others are not concerned.
+    assert (before == copy).all()
+    assert other.run().outcome == "completed"

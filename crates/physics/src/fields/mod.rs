@@ -118,6 +118,16 @@ impl FieldKind {
         }
     }
 
+    /// The shape of an array of a field: one number, D, D x D or 6 for each particle.
+    pub fn shape(self, particles: usize, dimension: usize) -> Vec<usize> {
+        match self {
+            Self::Scalar => vec![particles],
+            Self::Vector => vec![particles, dimension],
+            Self::Tensor => vec![particles, dimension, dimension],
+            Self::Symmetric => vec![particles, 6],
+        }
+    }
+
     /// Number of components a particle in `dimension` dimensions.
     pub fn components(self, dimension: usize) -> usize {
         match self {

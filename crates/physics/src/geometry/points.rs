@@ -171,8 +171,7 @@ fn parse<const D: usize>(bytes: &[u8]) -> Result<Particles<D>, Fault> {
         if !(volume > 0.0) {
             return Err((line, Some("volume"), PointsFault::NotPositive { got: volume }));
         }
-        // Adding 0 turns -0 into 0, which is the same place.
-        match known.entry(position.map(|x| (x + 0.0).to_bits())) {
+        match known.entry(position.map(place)) {
             Entry::Vacant(free) => free.insert(line),
             Entry::Occupied(first) => {
                 let (point, first) = (position.as_slice().to_vec(), *first.get());
@@ -184,7 +183,13 @@ fn parse<const D: usize>(bytes: &[u8]) -> Result<Particles<D>, Fault> {
     Ok(particles)
 }
 
-fn push<const D: usize>(particles: &mut Particles<D>, position: Vector<D>, volume: f64) {
+/// A coordinate as what tells places apart. Adding 0 turns -0 into 0, which is the same place.
+pub(super) fn place(x: f64) -> u64 {
+    (x + 0.0).to_bits()
+}
+
+/// Appends a particle with the volume of a point.
+pub(super) fn push<const D: usize>(particles: &mut Particles<D>, position: Vector<D>, volume: f64) {
     particles.id.push(particles.len() as u32);
     particles.position.push(position);
     particles.volume.push(volume);

@@ -61,6 +61,14 @@ impl Parts {
         part.shown.binary_search(&particle).ok().map(|number| (part.first + number) as u32)
     }
 
+    /// The system and the indices there of particles of the run that follow each other, if they do so in one system.
+    pub fn run_of(&self, particles: &Range<usize>) -> Option<(usize, Range<usize>)> {
+        let last = particles.end.checked_sub(1).filter(|last| *last < self.bodies.len())?;
+        let [(system, first), (other, last)] = [particles.start, last].map(|a| self.local(a));
+        let is_whole = system == other && last.checked_sub(first)? + 1 == particles.len();
+        is_whole.then_some((system, first..last + 1))
+    }
+
     /// The index in the run of a particle of a system, or of who stands for it.
     pub fn named(&self, system: usize, particle: usize) -> usize {
         self.all[system].index[particle] as usize

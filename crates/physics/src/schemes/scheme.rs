@@ -42,6 +42,16 @@ pub trait Scheme: Send + Sync {
         fields::column(fields, self.dimension(), self.particle_count(), field)
     }
 
+    /// Where the values of a field of particles that follow each other in memory stand in a state, as in
+    /// [`column`](Self::column), if they stand there in one stretch.
+    fn stretch(&self, field: &FieldDescription, particles: &Range<usize>) -> Option<Range<usize>> {
+        let column = self.column(field);
+        let components = field.kind.components(self.dimension());
+        let is_there = !column.is_empty() && particles.end <= self.particle_count();
+        let [start, end] = [particles.start, particles.end].map(|a| column.start + a * components);
+        is_there.then_some(start..end)
+    }
+
     /// Where the ledger begins in a state.
     fn ledger_start(&self) -> usize {
         self.particle_count() * self.width()

@@ -3,6 +3,7 @@
 mod device;
 mod kept;
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::checkpoint::Checkpoints;
@@ -43,9 +44,9 @@ pub struct Executor {
     /// Evaluations of the rates times particles a step.
     evaluations: u64,
     /// Where the next state is made.
-    next: Vec<f64>,
+    next: Arc<Vec<f64>>,
     /// The state before the last step, which a run that fails ends with.
-    previous: (Clock, Vec<f64>),
+    previous: (Clock, Arc<Vec<f64>>),
     limits: Vec<StepLimit>,
     /// Whether the state has been judged, shown and saved where that was due.
     is_seen: bool,
@@ -96,8 +97,8 @@ impl Executor {
             observers: Vec::new(),
             checkpoints: None,
             evaluations,
-            next: state.clone(),
-            previous: (Clock::START, state.clone()),
+            next: Arc::new(state.clone()),
+            previous: (Clock::START, Arc::new(state.clone())),
             limits: Vec::with_capacity(8),
             is_seen: false,
             outcome: None,
@@ -119,6 +120,12 @@ impl Executor {
     pub fn state(&mut self) -> &[f64] {
         self.bring();
         &self.run.state
+    }
+
+    /// The state as it is between two steps, for as long as it is held: what comes next goes to other memory.
+    pub fn shared_state(&mut self) -> Arc<Vec<f64>> {
+        self.bring();
+        Arc::clone(&self.run.state)
     }
 
     /// How many steps of its own each system of the run has taken, by name; nothing where there is one system.
@@ -170,6 +177,7 @@ impl Executor {
     pub fn change(&mut self, change: impl FnOnce(&mut [f64])) {
         self.bring();
         let Run { clock, tally, state, due, history, .. } = &mut self.run;
+        let state = Arc::make_mut(state);
         change(state);
         self.scheme.constrain(clock.time, state);
         if let Some(scheme) = self.scheme.split() {
@@ -237,7 +245,7 @@ impl Executor {
             Outcome::Failed(failure) => failure.particle().map(|index| {
                 if let (Some(_), Some(scheme)) = (&self.device, self.scheme.split()) {
                     // Who is near is asked of the formulation, which has not seen this state yet.
-                    scheme.accelerate(self.run.clock.time, &mut self.run.state.clone());
+                    scheme.accelerate(self.run.clock.time, &mut self.run.state.to_vec());
                 }
                 let (scheme, integrator) = (self.scheme.as_mut(), self.integrator.as_mut());
                 self.run.history.trace(scheme, integrator, index)
@@ -360,7 +368,10 @@ impl Executor {
         integrator.shorten(run.tally.factor);
         let taken = run.tally.watches.step.time(|| match device {
             Some(device) => device.step(run.clock.time, met.step).map_err(Failure::from),
-            None => integrator.step(scheme.as_mut(), run.clock.time, met.step, &run.state, next),
+            None => {
+                let next = Arc::make_mut(next);
+                integrator.step(scheme.as_mut(), run.clock.time, met.step, &run.state, next)
+            }
         });
         let growth = integrator.growth();
         if let Err(failure) = taken {

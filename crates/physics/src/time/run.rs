@@ -1,5 +1,7 @@
 //! A run between two steps, and what a step makes of it.
 
+use std::sync::Arc;
+
 use super::clock::{Clock, Tally};
 use super::executor::Executor;
 use super::failure::Failure;
@@ -13,7 +15,8 @@ use crate::schemes::Scheme;
 pub(super) struct Run {
     pub clock: Clock,
     pub tally: Tally,
-    pub state: Vec<f64>,
+    /// Written to only while nobody else holds it; else a copy takes its place.
+    pub state: Arc<Vec<f64>>,
     /// When each observer is due next.
     pub due: Vec<Option<f64>>,
     pub history: History,
@@ -24,7 +27,7 @@ impl Run {
     /// A run at an instant, which it cannot go back beyond.
     pub fn at(clock: Clock, tally: Tally, state: Vec<f64>, due: Vec<Option<f64>>) -> Self {
         let history = History::new(Mark::of(&clock, &tally, &due, &state));
-        Self { clock, tally, state, due, history, resumed: None }
+        Self { clock, tally, state: Arc::new(state), due, history, resumed: None }
     }
 
     /// Halves the steps from here on, after one that did not end anywhere.

@@ -76,13 +76,10 @@ impl Session {
         Ok(FieldValues { description: *description, values })
     }
 
-    /// The particles that are parts of the body with a number in the case at the moment, in the order of
+    /// The particles that are parts of the body with a number in the case, or of any, at the moment, in the order of
     /// all columns.
-    pub fn particles_of(&mut self, body: usize) -> Vec<usize> {
-        let now = self.executor.now();
-        let (scheme, state) = (now.scheme(), now.state());
-        let is_there = |&a: &usize| scheme.body_of(state, a).is_some_and(|of| of as usize == body);
-        (0..scheme.particle_count()).filter(is_there).collect()
+    pub fn particles_of(&mut self, body: Option<usize>) -> Vec<usize> {
+        self.rows(body).list().into_iter().map(|particle| particle as usize).collect()
     }
 
     /// The energies at the moment in J, by name; the last is their sum, `total`.
@@ -128,7 +125,7 @@ impl Session {
         Ok(())
     }
 
-    fn described(&self, name: &str) -> Result<&'static FieldDescription, ColumnError> {
+    pub(super) fn described(&self, name: &str) -> Result<&'static FieldDescription, ColumnError> {
         let scheme = self.executor.scheme.description();
         scheme.field(name).ok_or_else(|| ColumnError::Unknown {
             name: name.to_owned(),

@@ -1,29 +1,38 @@
-//! Functions from outside in place of expressions.
+//! What a program gives to a case under a name: functions in place of expressions, points in place of files.
 
 use std::fmt;
 use std::sync::Arc;
 
 use crate::boundaries::SpaceTime;
+use crate::geometry::PointCloud;
 
-/// What stands before the name of a function where a case has an expression.
+/// What stands before the name of a function where a case has an expression, and of points where it has a file.
 pub(super) const MARK: char = '@';
 
 /// Functions of place and time by name. Where a case has an expression, `"@NAME"` is the one of that name. What a run
 /// with functions does is not in its record: whoever resumes it has to give the same ones.
-#[derive(Clone, Default)]
-pub struct Functions(Vec<(String, Arc<dyn SpaceTime>)>);
+pub type Functions = Named<dyn SpaceTime>;
 
-impl Functions {
+/// Clouds of points by name. Where a shape of the kind `points` has a file, `"@NAME"` is the cloud of that name.
+/// Whoever resumes a run with clouds has to give the same ones; others are refused.
+pub type Clouds = Named<PointCloud>;
+
+/// Things by name.
+pub struct Named<T: ?Sized>(Vec<Entry<T>>);
+
+type Entry<T> = (String, Arc<T>);
+
+impl<T: ?Sized> Named<T> {
     /// Adds one, in place of what had its name.
-    pub fn insert(&mut self, name: impl Into<String>, function: Arc<dyn SpaceTime>) {
+    pub fn insert(&mut self, name: impl Into<String>, one: Arc<T>) {
         let name = name.into();
         self.0.retain(|(known, _)| *known != name);
-        self.0.push((name, function));
+        self.0.push((name, one));
     }
 
     /// The one of a name.
-    pub fn get(&self, name: &str) -> Option<&Arc<dyn SpaceTime>> {
-        self.0.iter().find(|(known, _)| known == name).map(|(_, function)| function)
+    pub fn get(&self, name: &str) -> Option<&Arc<T>> {
+        self.0.iter().find(|(known, _)| known == name).map(|(_, one)| one)
     }
 
     /// All names.
@@ -32,20 +41,32 @@ impl Functions {
     }
 }
 
-impl fmt::Debug for Functions {
+impl<T: ?Sized> Clone for Named<T> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<T: ?Sized> Default for Named<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T: ?Sized> fmt::Debug for Named<T> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_list().entries(self.names()).finish()
     }
 }
 
-/// The same functions, not such that do the same.
-impl PartialEq for Functions {
+/// The same things, not such that are alike.
+impl<T: ?Sized> PartialEq for Named<T> {
     fn eq(&self, other: &Self) -> bool {
-        let is_same = |(one, other): (&(String, Arc<dyn SpaceTime>), &(String, _))| {
+        let is_same = |(one, other): (&Entry<T>, &Entry<T>)| {
             one.0 == other.0 && Arc::ptr_eq(&one.1, &other.1)
         };
         self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(is_same)
     }
 }
 
-impl Eq for Functions {}
+impl<T: ?Sized> Eq for Named<T> {}

@@ -7,7 +7,7 @@ use self::sweeps::run_traits;
 use super::catalogue;
 use super::decode::{AXES, Context};
 use super::diagnostics::Problem;
-use super::functions::Functions;
+use super::functions::{Clouds, Functions, MARK};
 use super::model::{
     Body, Case, Checkpoint, Domain, Level, PaperSetting, Parameter, Preset, Scheme, StepControl,
     Time, Variant,
@@ -47,6 +47,8 @@ pub(super) struct Setting<'a> {
     /// Functions that the case may name. `None` in a record, which does not hold them: any name will do there, and
     /// nothing is run.
     pub functions: Option<&'a Functions>,
+    /// Clouds of points that the case may name, as functions.
+    pub clouds: Option<&'a Clouds>,
 }
 
 impl Setting<'_> {

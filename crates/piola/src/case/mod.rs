@@ -37,6 +37,7 @@ pub mod sweep;
 pub mod tables;
 pub mod template;
 pub mod verify;
+mod views;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -47,13 +48,14 @@ pub use diagnostics::{Problem, Problems};
 use document::{Node, Table, Value};
 pub use expression::Expression;
 pub use finished::Finished;
-pub use functions::Functions;
+pub use functions::{Clouds, Functions, Named};
 use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
 pub use plan::{Plan, PlannedLimit, Undamped};
 pub use session::{RunError, Session};
 pub use source::{Located, Place, SourceText};
+pub use views::FieldView;
 
 /// What is said on the command line in front of an override.
 const FLAG: &str = "--set ";
@@ -72,6 +74,8 @@ pub struct LoadOptions {
     pub level: Level,
     /// What `"@NAME"` stands for in place of an expression.
     pub functions: Functions,
+    /// What `"@NAME"` stands for in place of the file of a shape of the kind `points`.
+    pub clouds: Clouds,
 }
 
 /// Reads the case file at `path`.
@@ -122,8 +126,8 @@ fn assemble(
     let tree = parsed.map_err(|problems| Problems::new(sources.clone(), problems))?;
     let variant = options.variant.as_deref().filter(|name| *name != "base");
     let is_changed = !options.overrides.is_empty();
-    let functions = Some(&options.functions);
-    let wanted = Setting { variant, level: options.level, folder, is_changed, functions };
+    let (functions, clouds) = (Some(&options.functions), Some(&options.clouds));
+    let wanted = Setting { variant, level: options.level, folder, is_changed, functions, clouds };
     let case = read(&tree, &sources, options, wanted).and_then(|(case, changed)| {
         if !is_changed {
             others(&tree, &sources, options, wanted, &case)?;
@@ -154,8 +158,8 @@ fn read(
 fn recorded(text: &str, variant: Option<&str>) -> Result<Case, Problems> {
     let sources: Arc<[SourceText]> =
         Arc::new([SourceText { name: "the case as run".to_owned(), text: text.to_owned() }]);
-    let (level, folder, functions) = (Level::Case, None, None);
-    let setting = Setting { variant, level, folder, is_changed: true, functions };
+    let (level, folder, functions, clouds) = (Level::Case, None, None, None);
+    let setting = Setting { variant, level, folder, is_changed: true, functions, clouds };
     let tree = document::parse(text);
     let case = tree.and_then(|tree| check(&tree, &sources, setting, Vec::new()));
     let case = case.map_err(|problems| Problems::new(sources, problems))?;

@@ -14,6 +14,7 @@ use super::model::Case;
 use super::outputs::Outputs;
 use super::resume::{self, Resumed};
 use super::source::Located;
+use super::views::Rows;
 use super::{Problems, report};
 use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
@@ -62,6 +63,8 @@ pub struct Session {
     resumed: Option<Resumed>,
     /// Whether the folder of the results is this run's.
     has_begun: bool,
+    /// The particles of each body, where they are the same at all times and have been asked for.
+    pub(super) rows_of_bodies: Vec<Rows>,
 }
 
 /// A fault of files or folders, or of a checkpoint. A run that fails is a [`crate::time::Outcome`].
@@ -124,6 +127,7 @@ impl Session {
             own,
             resumed: None,
             has_begun: false,
+            rows_of_bodies: Vec::new(),
         })
     }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::model::*;
 use super::*;
 
+mod clouds;
 mod devices;
 mod faults;
 mod functions;

@@ -4,7 +4,10 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
-use piola::case::{self, Case, ColumnError, Finished, Level, LoadOptions, RunError, Session};
+use piola::case::{
+    self, Case, ColumnError, FieldView, Finished, Level, LoadOptions, RunError, Session,
+};
+use piola::fields::Life;
 use piola::time::{Moment, ObserveError, Observer, Outcome, Schedule};
 
 fn load(name: &str, set: &[&str]) -> Case {
@@ -266,6 +269,55 @@ fn a_moment_is_what_the_tables_say() {
     }
     assert_eq!(*session.tables().lock(), finished.tables);
     let all: Vec<usize> = (0..session.ids().len()).collect();
-    assert_eq!(session.particles_of(0), all);
-    assert!(session.particles_of(1).is_empty());
+    assert_eq!(session.particles_of(Some(0)), all);
+    assert!(session.particles_of(Some(1)).is_empty());
+}
+
+/// The bits of a view, in the order of its shape.
+fn bits(view: &FieldView) -> Vec<u64> {
+    let mut places = vec![0];
+    for (count, stride) in view.shape().into_iter().zip(view.strides()) {
+        let along = |start: usize| (0..count).map(move |k| start + k * stride);
+        places = places.into_iter().flat_map(along).collect();
+    }
+    places.into_iter().map(|place| view.numbers()[place].to_bits()).collect()
+}
+
+/// A view of a body has the rows of the column, and keeps them when the run continues: in all formulations, with
+/// several systems, and where particles come and go.
+#[test]
+fn views_are_columns_and_stay_as_they_are() {
+    let mut all = cases();
+    all.push(load("coupled/floating-box", &[]));
+    all.push(load("open/channel", &[]));
+    for case in all {
+        let mut session = session(&case);
+        session.step().unwrap();
+        let (dimension, mut held, mut looks) = (case.dimension, Vec::new(), Vec::new());
+        let shown = session.columns().iter().filter(|field| field.life != Life::Kept);
+        for field in shown.copied().collect::<Vec<_>>() {
+            let (column, components) =
+                (session.column(field.name).unwrap().values, field.kind.components(dimension));
+            for body in (0..case.bodies.len()).map(Some).chain([None]) {
+                let particles = session.particles_of(body);
+                let view = session.view(field.name, body).unwrap();
+                let rows = particles.iter().flat_map(|a| &column[a * components..][..components]);
+                let rows: Vec<u64> = rows.map(|number| number.to_bits()).collect();
+                assert_eq!(bits(&view), rows, "{} of {body:?}", field.name);
+                assert_eq!(view.particles(), particles.len());
+                looks.push(view.is_copy());
+                held.push((view, rows));
+            }
+        }
+        session.step().unwrap();
+        session.step().unwrap();
+        assert!(held.iter().all(|(view, rows)| bits(view) == *rows), "{}", case.title);
+        // Particles that enter are scattered over memory.
+        let scheme = session.scheme();
+        if scheme.is_closed() && !scheme.initial_state().is_empty() {
+            assert!(looks.contains(&false), "{}", case.title);
+        }
+        assert!(matches!(session.view("none", None), Err(ColumnError::Unknown { .. })));
+        assert_eq!(session.view("position", Some(99)).unwrap().particles(), 0);
+    }
 }

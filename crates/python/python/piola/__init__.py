@@ -33,8 +33,10 @@ from ._piola import (
     Body,
     Case,
     CaseError,
+    Cloud,
     Every,
     Fault,
+    Field,
     Moment,
     Plan,
     Run,
@@ -43,6 +45,7 @@ from ._piola import (
     Table,
     Tables,
     __version__,
+    field_of,
 )
 
 __all__ = [
@@ -50,8 +53,10 @@ __all__ = [
     "Body",
     "Case",
     "CaseError",
+    "Cloud",
     "Every",
     "Fault",
+    "Field",
     "Moment",
     "Picture",
     "Plan",
@@ -61,4 +66,5 @@ __all__ = [
     "Table",
     "Tables",
     "__version__",
+    "field_of",
 ]

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::Vector;
-use crate::geometry::{GeometryError, Particles, PointsFault, from_points};
+use crate::geometry::{GeometryError, Particles, PointCloud, PointsFault, from_points};
 use proptest::prelude::*;
 
 fn read<const D: usize>(bytes: &[u8]) -> Result<Particles<D>, GeometryError> {
@@ -106,4 +106,48 @@ proptest! {
             prop_assert_eq!(particles.volume[a], v);
         }
     }
+}
+
+/// Numbers of a program become the particles that a file of them does.
+#[test]
+fn clouds_are_what_files_are() {
+    let numbers = [[0.0, 0.0, 4.0], [1.0, -2.5, 0.25], [0.1, 1e-3, 1.0 / 3.0]];
+    let lines = numbers.map(|[x, y, volume]| format!("{x:?},{y:?},{volume:?}\n"));
+    let file = read::<2>(format!("x,y,volume\n{}", lines.concat()).as_bytes()).unwrap();
+    let positions = numbers.iter().flat_map(|[x, y, _]| [*x, *y]).collect();
+    let volumes = numbers.iter().map(|[.., volume]| *volume).collect();
+    let cloud = PointCloud::new(2, positions, volumes).unwrap();
+    let given = cloud.particles::<2>().unwrap();
+    assert_eq!((given.position, given.volume), (file.position, file.volume));
+    assert_eq!((given.weight, given.spacing), (file.weight, file.spacing));
+    assert_eq!((given.id, given.body), (file.id, file.body));
+    assert!(cloud.particles::<1>().is_none() && cloud.particles::<3>().is_none());
+}
+
+#[test]
+fn faults_of_clouds_are_named_with_their_particle() {
+    let refused = |dimension, positions: &[f64], volumes: &[f64]| {
+        PointCloud::new(dimension, positions.to_vec(), volumes.to_vec()).unwrap_err().to_string()
+    };
+    let found = [
+        refused(2, &[0.0, 0.0, 1.0, f64::NAN], &[1.0, 1.0]),
+        refused(1, &[0.0, f64::NEG_INFINITY], &[1.0, 1.0]),
+        refused(1, &[0.0, 1.0], &[1.0, f64::NAN]),
+        refused(1, &[0.0, 1.0], &[1.0, -0.0]),
+        refused(1, &[0.0, 2.0, -0.0], &[1.0; 3]),
+        refused(3, &[0.0; 4], &[1.0]),
+        refused(4, &[0.0; 4], &[1.0]),
+        refused(2, &[], &[]),
+    ];
+    let expected = [
+        "particle 1: y is NaN, expected a finite number of m",
+        "particle 1: x is -inf, expected a finite number of m",
+        "particle 1: the volume is NaN, expected a finite number above 0",
+        "particle 1: the volume is -0, expected a finite number above 0",
+        "particles 0 and 2 are both at [-0.0], expected each place once",
+        "4 coordinates in 3D and 1 volumes, expected 3 for each volume",
+        "particles have 4 coordinates, expected 1 to 3",
+        "a cloud needs at least one particle",
+    ];
+    assert_eq!(found, expected);
 }

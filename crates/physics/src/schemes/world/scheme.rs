@@ -64,6 +64,22 @@ impl<const D: usize> Scheme for World<D> {
         0..0
     }
 
+    /// One of a system, unless the field is of what others do to it.
+    fn stretch(
+        &self,
+        field: &FieldDescription,
+        particles: &std::ops::Range<usize>,
+    ) -> Option<std::ops::Range<usize>> {
+        let (k, particles) = self.parts.run_of(particles)?;
+        if k > 0 && BORNE.contains(&field.name) {
+            return None;
+        }
+        let own = own_field(self.system(k), field)?;
+        let (start, own) =
+            (self.parts.all[k].state.start, self.system(k).stretch(&own, &particles)?);
+        Some(start + own.start..start + own.end)
+    }
+
     fn ledger_start(&self) -> usize {
         self.ledger_at()
     }

@@ -3,6 +3,8 @@
 //! Their state is there, and brought here where it is looked at. The formulation here knows a state once
 //! it has looked at that.
 
+use std::sync::Arc;
+
 use piola_device::{Device, DeviceError};
 
 use super::Executor;
@@ -39,7 +41,7 @@ impl Executor {
     /// Brings the state of the moment here, if a device is ahead.
     pub(super) fn bring(&mut self) {
         if let (false, Some(device)) = (self.is_here, &self.device) {
-            let fetched = device.fetch(&mut self.run.state);
+            let fetched = device.fetch(Arc::make_mut(&mut self.run.state).as_mut_slice());
             self.is_here = true;
             if let Err(error) = fetched {
                 self.lose(error.into());
@@ -74,9 +76,9 @@ impl Executor {
     /// cannot: then the run is at the last mark.
     pub(super) fn step_back(&mut self) -> Option<Failure> {
         let fetched = match &self.device {
-            Some(device) => device.fetch_before(&mut self.run.state),
+            Some(device) => device.fetch_before(Arc::make_mut(&mut self.run.state).as_mut_slice()),
             None => {
-                self.run.state.copy_from_slice(&self.previous.1);
+                self.run.state = Arc::clone(&self.previous.1);
                 Ok(())
             }
         };
@@ -89,7 +91,7 @@ impl Executor {
     /// Ends the run without its device, at the last mark.
     pub(super) fn lose(&mut self, failure: Failure) {
         let Run { clock, tally, state, due, history, .. } = &mut self.run;
-        history.last().restore(clock, tally, due, state);
+        history.last().restore(clock, tally, due, Arc::make_mut(state).as_mut_slice());
         for observer in &mut self.observers {
             // What cannot be taken back is too much, and the rest is sound.
             tally.warnings.extend(observer.rewind(clock.time).err().map(|error| error.to_string()));

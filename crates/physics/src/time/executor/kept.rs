@@ -1,5 +1,7 @@
 //! Moments of a run that are kept: checkpoints, and marks to go back to.
 
+use std::sync::Arc;
+
 use super::Executor;
 use crate::time::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use crate::time::failure::Failure;
@@ -21,7 +23,7 @@ impl Executor {
         Checkpoint {
             clock: *clock,
             tally: tally.clone(),
-            state: state.clone(),
+            state: state.to_vec(),
             due: due.clone(),
             observers: self.observers.iter().map(|observer| observer.save()).collect(),
             history: (self.retries > 0).then(|| history.clone()),
@@ -59,7 +61,7 @@ impl Executor {
         let Run { clock, tally, state, due, history, .. } = &mut self.run;
         let (step, time) = (clock.step, clock.time);
         let (kind, factor) = (failure.kind().to_owned(), tally.factor * Self::RETRY_FACTOR);
-        history.go_back().restore(clock, tally, due, state);
+        history.go_back().restore(clock, tally, due, Arc::make_mut(state).as_mut_slice());
         let (failure, back_to) = (failure.to_string(), clock.time);
         tally.retries.push(Retry { kind, failure, step, time, back_to, factor });
         tally.factor = factor;

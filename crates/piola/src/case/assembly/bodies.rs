@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Body, Case};
-use crate::case::source::Located;
+use crate::case::source::{Located, Place};
 use crate::geometry::{
     Facets, FillReport, GeometryError, LatticeKind, LatticeSpec, Outline, Particles, Placement,
     Shape, fill, from_mesh, from_points, surroundings,
@@ -49,9 +49,16 @@ pub(super) fn particles<const D: usize>(
     let mut problems = Vec::new();
     for (number, body) in (0u32..).zip(&case.bodies) {
         let made = match &body.shape.value {
-            model::Shape::Points { file } => cloud(case, domain, file, from_points::<D>(file)),
+            model::Shape::Points { file } => {
+                cloud(case, domain, (file.place, "this file"), from_points::<D>(file))
+            }
+            model::Shape::Cloud { name, cloud: given } => {
+                // The reader has checked that they are of this dimension.
+                let given = given.as_ref().and_then(|given| given.particles::<D>());
+                cloud(case, domain, (name.place, "this cloud"), Ok(given.unwrap_or_default()))
+            }
             model::Shape::Mesh { file, spec } => {
-                cloud(case, domain, file, from_mesh::<D>(file, spec))
+                cloud(case, domain, (file.place, "this file"), from_mesh::<D>(file, spec))
             }
             _ => lattice(case, body, domain, body.lattice.jitter)
                 .and_then(|made| relaxed(case, body, domain, made)),
@@ -82,24 +89,24 @@ fn refuse(case: &Case, body: &Body, error: &GeometryError) -> Problem {
     case.problem_at(body.shape.place, error.to_string(), label, None)
 }
 
-/// A body of what has been read from a file.
+/// A body of what a file has, or a program, at a place in the case.
 fn cloud<const D: usize>(
     case: &Case,
     domain: &Domain<D>,
-    file: &Located<std::path::PathBuf>,
+    (place, label): (Place, &str),
     read: Result<Particles<D>, GeometryError>,
 ) -> Result<FillReport<D>, Problem> {
-    let particles =
-        read.map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
+    let refuse = |message: String| case.problem_at(place, message, label, None);
+    let particles = read.map_err(|error| refuse(error.to_string()))?;
     let (count, total_volume) = (particles.len(), particles.volume.iter().sum::<f64>());
     if count == 0 {
-        return Err(case.problem_at(file.place, "the file holds no point", "this file", None));
+        return Err(refuse("there are no points".to_owned()));
     }
     let mean = (total_volume / count as f64).powf(1.0 / D as f64);
     // The reader refuses points that are equal; nearly equal ones have no direction between them
     // either, and would make the step vanish.
     refuse_coincident(&particles.position, COINCIDENT * mean, domain)
-        .map_err(|error| case.problem_at(file.place, error.to_string(), "this file", None))?;
+        .map_err(|error| refuse(error.to_string()))?;
     let actual_spacing = [mean; D];
     let rotation = Tensor::identity();
     Ok(FillReport { particles, total_volume, exact_volume: None, actual_spacing, rotation })
@@ -281,11 +288,11 @@ pub(super) fn shape<const D: usize>(
         model::Shape::Difference { from, remove } => {
             Shape::difference(shape(case, body, from)?, all(remove)?)
         }
-        model::Shape::Points { .. } | model::Shape::Mesh { .. } => {
+        model::Shape::Points { .. } | model::Shape::Cloud { .. } | model::Shape::Mesh { .. } => {
             let help = "make it a body of its own".to_owned();
             return Err(case.problem_at(
                 located.place,
-                "points from a file cannot be combined with other shapes",
+                "points cannot be combined with other shapes",
                 "inside another shape",
                 Some(help),
             ));

@@ -110,7 +110,7 @@ pub(super) fn build<const D: usize>(
     }
     // On lattices plain gradients need no more than others.
     let is_rough = !particles.surface.faces.is_empty()
-        || case.bodies.iter().any(|body| matches!(*body.shape, model::Shape::Points { .. }));
+        || case.bodies.iter().any(|body| body.shape.is_points());
     let is_plain = gradients == Gradients::Plain;
     let scheme = TotalLagrangian::new(TotalLagrangianInput {
         description: settings.preset.description(),
@@ -279,7 +279,7 @@ fn areas<const D: usize>(
     let of_meshes = particles.surface.areas(particles.len());
     for (number, body) in (0u32..).zip(&case.bodies) {
         match body.shape.value {
-            model::Shape::Points { .. } => return Ok(None),
+            model::Shape::Points { .. } | model::Shape::Cloud { .. } => return Ok(None),
             model::Shape::Mesh { .. } => {
                 let own = particles.body.iter().filter(|&&other| other == number).count();
                 all.extend(&of_meshes[all.len()..][..own]);

@@ -179,11 +179,36 @@ impl Reader<'_, '_> {
                 let remove = self.shapes(record, "remove");
                 Shape::Difference { from: Box::new(from?), remove: remove? }
             }
-            "points" => Shape::Points { file: self.file(record, "file")? },
+            "points" => self.points(record)?,
             "mesh" => self.mesh(record)?,
             _ => return None,
         };
         Some(Located::new(shape, record.place))
+    }
+
+    /// The points of a file, or those that stand for a name.
+    fn points(&mut self, record: &Record) -> Option<Shape> {
+        let name = record.text("file")?;
+        let Some(own) = name.value.strip_prefix(MARK) else {
+            return Some(Shape::Points { file: self.file(record, "file")? });
+        };
+        let Some(known) = self.setting.clouds else {
+            return Some(Shape::Cloud { name, cloud: None });
+        };
+        let Some(cloud) = known.get(own).cloned() else {
+            let message = format!("there is no cloud `{}`", name.value);
+            let problem = Problem::new(name.place, message, "unknown cloud");
+            let help =
+                "write the name of a CSV file; clouds are given by a program that uses the library";
+            return self.refuse(problem.help(help));
+        };
+        if cloud.dimension() != self.dimension {
+            let (got, expected) = (cloud.dimension(), self.dimension);
+            let message =
+                format!("the cloud `{}` is in {got}D and the case in {expected}D", name.value);
+            return self.refuse(Problem::new(name.place, message, "not of this dimension"));
+        }
+        Some(Shape::Cloud { name, cloud: Some(cloud) })
     }
 
     /// The ends along z of what is drawn in the plane: in 3D two, in 2D none.

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use super::{Material, Opening, Wall};
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::geometry::{Arrangement, CloudSpec, Facets};
+use crate::geometry::{Arrangement, CloudSpec, Facets, PointCloud};
 
 /// The space that the particles live in.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,6 +131,13 @@ pub enum Shape {
         /// The file, relative paths resolved against the folder of the case file.
         file: Located<PathBuf>,
     },
+    /// Points that a program has given, with their volumes.
+    Cloud {
+        /// What stands for them in the text, with its mark.
+        name: Located<String>,
+        /// The points; none in a record, which does not hold them.
+        cloud: Option<Arc<PointCloud>>,
+    },
     /// The nodes or the cells of a mesh.
     Mesh {
         /// The file, relative paths resolved against the folder of the case file.
@@ -141,9 +148,14 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Whether a file has the particles, so that no lattice is laid out.
+    /// Whether a file or a program has the particles, so that no lattice is laid out.
     pub fn is_from_file(&self) -> bool {
-        matches!(self, Self::Points { .. } | Self::Mesh { .. })
+        self.is_points() || matches!(self, Self::Mesh { .. })
+    }
+
+    /// Whether it is points and their volumes, without any faces.
+    pub fn is_points(&self) -> bool {
+        matches!(self, Self::Points { .. } | Self::Cloud { .. })
     }
 
     /// The surfaces from files in it.
