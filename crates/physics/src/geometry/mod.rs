@@ -15,6 +15,7 @@ mod outline;
 mod particles;
 mod points;
 mod polygon;
+mod probe;
 mod region;
 mod shape;
 mod surface;

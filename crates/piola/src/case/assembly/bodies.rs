@@ -235,8 +235,8 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         let model::Shape::Surface(surface) = &body.shape.value else { continue };
         let Some(facets) = surface.facets.get() else { continue };
         let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
-        let layers = facets.thickness() / spacing;
-        if layers < THIN {
+        if let Some(thickness) = facets.thinner_than(THIN * spacing) {
+            let layers = thickness / spacing;
             told.push(format!(
                 "the body `{}` is {layers:.1} spacings thick where it is thinnest, less than {THIN}: make the spacing smaller, or expect \
                  fluid on one side to feel that on the other",
