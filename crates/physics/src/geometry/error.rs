@@ -102,9 +102,9 @@ pub enum GeometryError {
          another body"
     )]
     NotRound,
-    /// Concentric layers do not go on beyond a body.
+    /// Concentric layers and packed particles do not go on beyond a body.
     #[error(
-        "ghosts continue a lattice, and concentric layers are none: expected `square` or `hexagonal`"
+        "ghosts continue a lattice, which concentric layers and packed particles are not: expected `square` or `hexagonal`"
     )]
     NoSurroundings,
     /// Particles moved by half a spacing can meet.

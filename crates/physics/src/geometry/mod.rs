@@ -36,6 +36,7 @@ pub use mesh::{Cell, CellKind, Mesh, MeshError, MeshFault, MeshSet};
 pub use outline::{Outline, OutlineError};
 pub use particles::Particles;
 pub use points::{PointsError, PointsFault, from_points};
+pub(crate) use probe::Probe;
 pub use region::Region;
 pub use shape::{Shape, ball_volume};
 pub use surface::Surface;

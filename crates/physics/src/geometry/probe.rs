@@ -6,7 +6,7 @@ use crate::Vector;
 
 /// Depths in a shape at one place after another. On which side of a surface of facets a place is takes time to tell; from a
 /// place nearby where that is known, what lies between is enough.
-pub(super) struct Probe<'a, const D: usize> {
+pub(crate) struct Probe<'a, const D: usize> {
     shape: &'a Shape<D>,
     known: Vec<Known<'a>>,
 }
