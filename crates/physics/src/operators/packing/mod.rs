@@ -1,5 +1,6 @@
 //! Particles packed into a shape: all of one mass, even, and half a spacing below its boundary.
 
+mod lower;
 mod outside;
 mod settle;
 

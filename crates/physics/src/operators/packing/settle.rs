@@ -1,8 +1,9 @@
 //! Particles that move until they are even.
 
+use super::lower::Depth;
 use super::outside::Outside;
 use super::{KERNEL, Packing, smoothing};
-use crate::geometry::{Probe, Shape};
+use crate::geometry::Shape;
 use crate::neighbors::{Domain, NeighborError, NeighborList, search};
 use crate::{Vector, parallel};
 
@@ -15,16 +16,6 @@ const SKIN: f64 = 0.5;
 
 /// Most spacings that a particle moves in a step.
 const LONGEST: f64 = 0.1;
-
-/// Most attempts to move a particle below the boundary.
-const ATTEMPTS: usize = 12;
-
-/// How deep it is looked for the boundary, and how far apart depths are of which slopes are made, in spacings.
-const FAR: f64 = 4.0;
-const OFF: f64 = 1e-3;
-
-/// A particle is low enough up to this part of a spacing.
-const ENOUGH: f64 = 1e-9;
 
 /// By how much a step is made longer after so many downhill, and shorter after one uphill; how much of velocities is turned
 /// towards the forces at first, and what remains of that part after each step: those of Bitzek2006.
@@ -43,6 +34,25 @@ struct Moving<const D: usize> {
     force: Vector<D>,
     /// By how much it is deeper than it has to be, at least, in m.
     clear: f64,
+}
+
+/// Neighbours, and the places at which they were found.
+struct Pairs<const D: usize> {
+    list: NeighborList,
+    found_at: Vec<Vector<D>>,
+}
+
+impl<const D: usize> Pairs<D> {
+    fn of(position: &[Vector<D>], reach: f64) -> Result<Self, NeighborError> {
+        let list = search(position, &vec![reach; position.len()], &Domain::open())?;
+        Ok(Self { list, found_at: position.to_vec() })
+    }
+
+    /// Whether no particle has moved by more than so many m.
+    fn hold(&self, position: &[Vector<D>], most: f64) -> bool {
+        let moved = |a: usize| (position[a] - self.found_at[a]).norm();
+        parallel::maximum(position.len(), 0.0, moved) <= most
+    }
 }
 
 /// What is added up over particles.
@@ -74,21 +84,15 @@ pub(super) fn settle<const D: usize>(
     let stiffness = stiffness::<D>(outside, own);
     let longest = 1.0 / stiffness.sqrt();
     let (mut step, mut turned, mut downhill) = (0.5 * longest, TURNED, 0);
-    let mut listed: Vec<Vector<D>> = Vec::new();
-    let mut list = None;
+    let mut pairs: Option<Pairs<D>> = None;
     let mut taken = 0;
     let push = loop {
         position.iter_mut().zip(&all).for_each(|(x, own)| *x = own.at);
-        let moved = |a: usize| (position[a] - listed[a]).norm();
-        let is_old =
-            list.is_none() || parallel::maximum(position.len(), 0.0, moved) > 0.5 * SKIN * width;
-        if is_old {
-            let reach = outside.reach() + SKIN * width;
-            list = Some(search(position, &vec![reach; position.len()], &Domain::open())?);
-            listed = position.to_vec();
-        }
-        let Some(list) = &list else { break 0.0 };
-        forces(&mut all, position, list, outside, own);
+        let known = pairs.take().filter(|pairs| pairs.hold(position, 0.5 * SKIN * width));
+        let known =
+            known.map_or_else(|| Pairs::of(position, outside.reach() + SKIN * width), Ok)?;
+        forces(&mut all, position, &known.list, outside, own);
+        pairs = Some(known);
         confine(&mut all, shape, width, stiffness);
         let totals = totals(&all);
         let push = totals.push / stiffness;
@@ -216,54 +220,4 @@ fn shift<const D: usize>(all: &mut [Moving<D>], shape: &Shape<D>, width: f64, st
             }
         }
     });
-}
-
-/// Depths in a shape whose particles are so many m apart.
-struct Depth<'a, const D: usize> {
-    shape: Probe<'a, D>,
-    width: f64,
-}
-
-impl<'a, const D: usize> Depth<'a, D> {
-    fn of(shape: &'a Shape<D>, width: f64) -> Self {
-        Self { shape: Probe::of(shape), width }
-    }
-
-    /// A place moved down to half a spacing below the boundary if it is higher, as far as the shape is thick enough, and by how
-    /// much it is then lower than that, in m, as far as that is looked at.
-    fn lower(&mut self, mut at: Vector<D>) -> (Vector<D>, f64) {
-        let (wanted, reach) = (0.5 * self.width, FAR * self.width);
-        let mut clear = self.shape.depth(&at, reach) - wanted;
-        let mut part = 1.0;
-        for _ in 0..ATTEMPTS {
-            if clear >= -ENOUGH * self.width {
-                break;
-            }
-            let Some(normal) = outwards(&mut self.shape, &at, OFF * self.width, reach) else {
-                break;
-            };
-            let tried = at + normal * (part * clear);
-            let found = self.shape.depth(&tried, reach) - wanted;
-            // Beyond the middle of what is thin it is higher again.
-            match found > clear {
-                true => (at, clear) = (tried, found),
-                false => part *= 0.5,
-            }
-        }
-        (at, clear)
-    }
-}
-
-/// The direction in which the depth falls, by differences over `off` m on both sides.
-fn outwards<const D: usize>(
-    shape: &mut Probe<'_, D>,
-    at: &Vector<D>,
-    off: f64,
-    reach: f64,
-) -> Option<Vector<D>> {
-    let slope: Vector<D> = Vector::from_fn(|axis, _| {
-        let aside = Vector::from_fn(|i, _| if i == axis { off } else { 0.0 });
-        shape.depth(&(at - aside), reach) - shape.depth(&(at + aside), reach)
-    });
-    slope.try_normalize(0.1 * off)
 }
