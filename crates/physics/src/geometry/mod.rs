@@ -29,6 +29,7 @@ pub use error::GeometryError;
 pub use faces::Faces;
 pub(crate) use faces::turned_normal;
 pub use facets::{Arrangement, Facets, Soundness, SurfaceError};
+pub(crate) use fill::MOST_SITES;
 pub use fill::{FillReport, fill, turns};
 pub(crate) use jitter::uniform;
 pub use lattice::{LatticeKind, LatticeSpec, Placement};

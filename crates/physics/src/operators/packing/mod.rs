@@ -62,7 +62,7 @@ impl Packing {
 /// are equally deep are taken together. The same shape gives the same particles, whatever the threads.
 ///
 /// # Errors
-/// Those of [`fill`](crate::geometry::fill()) and of [`search`].
+/// Those of [`fill`](crate::geometry::fill()) and of [`search`], and a shape that is far too thin for its extent.
 pub fn pack<const D: usize>(
     shape: &Shape<D>,
     spacing: f64,
@@ -83,7 +83,7 @@ pub fn pack<const D: usize>(
     let count = position.len();
     let own = volume / count as f64;
     let width = own.powf(1.0 / D as f64);
-    let outside = Outside::new(shape, width);
+    let outside = Outside::new(shape, width)?;
     let (steps, push) = settle::settle(&mut position, shape, &outside, own)?;
     let (largest, rms) = deviation(&position, shape, &outside, own)?;
     let particles = Particles {

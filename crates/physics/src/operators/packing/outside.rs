@@ -1,7 +1,7 @@
 //! What completes the support of particles beyond the boundary of a shape.
 
 use super::{KERNEL, REACH, smoothing};
-use crate::geometry::{Probe, Shape};
+use crate::geometry::{GeometryError, MOST_SITES, Probe, Shape};
 use crate::{Vector, parallel};
 
 /// Cells of the grid along a spacing.
@@ -24,14 +24,21 @@ pub(super) struct Outside<const D: usize> {
 
 impl<const D: usize> Outside<D> {
     /// Outside of a shape, for particles `width` m apart.
-    pub fn new(shape: &Shape<D>, width: f64) -> Self {
+    ///
+    /// # Errors
+    /// A shape that is so thin for its extent that the grid has too many cells.
+    pub fn new(shape: &Shape<D>, width: f64) -> Result<Self, GeometryError> {
         let (edge, reach) = (width / FINER, REACH * width);
         let margin = reach + BEYOND * width + edge;
         let (min, max) = shape.bounding_box();
         let origin = min.add_scalar(-margin);
-        let counts = std::array::from_fn(|axis| {
-            ((max[axis] - min[axis] + 2.0 * margin) / edge).ceil() as usize + 1
-        });
+        let extent = (max - min).add_scalar(2.0 * margin);
+        let estimate: f64 = extent.iter().map(|extent| extent / edge + 2.0).product();
+        if !(estimate <= MOST_SITES as f64) {
+            let extent = extent.as_slice().to_vec();
+            return Err(GeometryError::TooManySites { spacing: edge, extent, estimate });
+        }
+        let counts = std::array::from_fn(|axis| (extent[axis] / edge).ceil() as usize + 1);
         let mut own = Self { origin, edge, counts, sums: Vec::new(), width };
         let known = reach + edge;
         let mut depths = vec![0.0; counts.iter().product()];
@@ -62,7 +69,7 @@ impl<const D: usize> Outside<D> {
             }
         });
         own.sums = sums;
-        own
+        Ok(own)
     }
 
     /// Distance of particles in m.

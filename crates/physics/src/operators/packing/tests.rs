@@ -106,7 +106,7 @@ fn the_outside_of_a_face_is_what_a_lattice_would_be() {
         let shape = Shape::<D>::cuboid(Vector::zeros(), end).unwrap();
         let spec = LatticeSpec { placement: Placement::Cells, ..LatticeSpec::square([spacing; D]) };
         let sites = fill(&shape, &spec).unwrap().particles;
-        let outside = Outside::new(&shape, spacing);
+        let outside = Outside::new(&shape, spacing).unwrap();
         let density = |near: &Vector<D>| {
             let distance = |x: &&Vector<D>| (*x - near).norm();
             let at = sites.position.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -143,6 +143,17 @@ fn threads_and_turns_change_nothing() {
     for (x, y) in still.particles.position.iter().zip(&turned.particles.position) {
         assert!((turn * x - y).norm() < 1e-14);
     }
+}
+
+/// A sliver is one particle, of a width that fits a million times into its length: refused before a grid of such cells is laid out.
+#[test]
+fn a_grid_of_a_sliver_is_refused() {
+    let corners = [[0.0, 0.0], [1.0, 1e-10], [0.0, 1e-10]].map(Vector::<2>::from).to_vec();
+    let sliver = Shape::<2>::polygon(corners, None).unwrap();
+    let sliver =
+        Shape::union(vec![sliver.turned(0.7, Vector::zeros(), Vector3::z()).unwrap()]).unwrap();
+    let error = pack(&sliver, 0.3).unwrap_err().to_string();
+    assert!(error.contains("make the spacing larger") || error.contains("no particles"), "{error}");
 }
 
 proptest! {
