@@ -1,6 +1,7 @@
 //! `piola check`: what a run will do.
 
 use piola::case::{Case, Plan, Undamped};
+use piola::operators::Packing;
 use piola::schemes::{Particle, Phase};
 
 use super::{assemble, read, use_threads};
@@ -154,6 +155,7 @@ fn bodies(plan: &Plan) -> Vec<String> {
                     significant(body.volume, 6),
                     exact.unwrap_or_default()
                 ),
+                body.packing.as_ref().map(packed).unwrap_or_default(),
             ]
         })
         .collect();
@@ -163,6 +165,16 @@ fn bodies(plan: &Plan) -> Vec<String> {
         lines.push(format!("{all} particles in all"));
     }
     lines
+}
+
+/// What is said of packed particles.
+fn packed(packing: &Packing) -> String {
+    format!(
+        "packed in {}; density within {} % near the surface, rms {} %",
+        count(packing.steps as u64, "step"),
+        significant(100.0 * packing.largest, 3),
+        significant(100.0 * packing.rms, 3)
+    )
 }
 
 /// What is said of regions of finer spacing.

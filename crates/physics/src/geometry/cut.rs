@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::fill::ON_BOUNDARY;
 use super::lattice::Lattice;
-use super::shape::Probe;
+use super::probe::Probe;
 use super::{Placement, Shape};
 use crate::Vector;
 use crate::parallel::for_each_chunk;
@@ -19,6 +19,9 @@ enum Cell {
     Cut,
     Inside,
 }
+
+/// Depths are found as far as they are compared, and a little further.
+const FURTHER: f64 = 1.1;
 
 /// No particle.
 const NONE: u32 = u32::MAX;
@@ -77,9 +80,10 @@ fn classify<const D: usize>(
     };
     let mut cells = vec![Cell::Outside; lattice.len()];
     for_each_chunk(&mut cells, |first, cells| {
-        let mut shape = shape.probe();
+        let mut shape = Probe::of(shape);
         for (i, cell) in cells.iter_mut().enumerate() {
-            let depth = shape.depth(&lattice.fold(&lattice.position(lattice.place(first + i))));
+            let site = lattice.fold(&lattice.position(lattice.place(first + i)));
+            let depth = shape.depth(&site, FURTHER * radius);
             *cell = if depth >= radius {
                 Cell::Inside
             } else if depth >= least {
@@ -117,7 +121,14 @@ fn owners<const D: usize>(
             center[axis] + fraction * lattice.edges[axis]
         })
     };
-    within(&mut shape.probe(), lattice, &midpoint, ([0; D], divisions::<D>()), &mut |point| {
+    let (reach, corner) = (0.5 * lattice.edges.norm(), 0.5 * lattice.edges);
+    // Across a periodic bound what is beside each other is not.
+    let is_whole = [center - corner, center + corner].iter().all(|end| lattice.fold(end) == *end);
+    let mut probe = match is_whole {
+        true => Probe::around(shape, &center, reach),
+        false => Probe::of(shape),
+    };
+    within(&mut probe, lattice, &midpoint, ([0; D], divisions::<D>()), &mut |point| {
         let distances = around.iter().map(|(owner, at)| (*owner, (at - point).norm_squared()));
         let least = distances.clone().map(|(_, distance)| distance).fold(f64::INFINITY, f64::min);
         let nearest = distances.filter(|(_, distance)| *distance <= least + equal);
@@ -146,12 +157,12 @@ fn within<const D: usize>(
     // Across a periodic bound what is beside each other is not.
     let is_whole = ends.iter().all(|end| lattice.fold(end) == *end);
     if count == 1 {
-        if shape.depth(&lattice.fold(&middle)) >= 0.0 {
+        if shape.contains(&lattice.fold(&middle)) {
             see(middle);
         }
         return;
     }
-    let depth = if is_whole { shape.depth(&middle) } else { 0.0 };
+    let depth = if is_whole { shape.depth(&middle, FURTHER * radius) } else { 0.0 };
     if depth < -radius {
         return;
     }

@@ -103,10 +103,10 @@ pub enum GeometryError {
          define the rest as another body"
     )]
     NotRound,
-    /// Concentric layers do not go on beyond a body.
+    /// Concentric layers and packed particles do not go on beyond a body.
     #[error(
-        "ghosts continue a lattice, which concentric layers are not: expected `square` or \
-         `hexagonal`"
+        "ghosts continue a lattice, which concentric layers and packed particles are not: expected \
+         `square` or `hexagonal`"
     )]
     NoSurroundings,
     /// Particles moved by half a spacing can meet.

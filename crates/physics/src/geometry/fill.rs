@@ -9,7 +9,7 @@ use crate::parallel::sum;
 use crate::{Tensor, Vector};
 
 /// Most sites of the lattice around a body. A run needs a kilobyte a particle and more.
-pub(super) const MOST_SITES: usize = 100_000_000;
+pub(crate) const MOST_SITES: usize = 100_000_000;
 
 /// Points as near to a boundary as this, in spacings, lie on it.
 pub(super) const ON_BOUNDARY: f64 = 1e-9;

@@ -225,13 +225,8 @@ impl<const D: usize> Shape<D> {
         self.depth_by(point, &mut |facets, place| facets.depth(place))
     }
 
-    /// The same at one place after another, see [`Probe`].
-    pub(super) fn probe(&self) -> Probe<'_, D> {
-        Probe { shape: self, known: Vec::new() }
-    }
-
     /// The depth with that in surfaces of facets from outside.
-    fn depth_by<'a>(
+    pub(super) fn depth_by<'a>(
         &'a self,
         point: &Vector<D>,
         of_surface: &mut dyn FnMut(&'a Facets, &Vector<3>) -> f64,
@@ -352,7 +347,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// What was turned, the point and the rotation, where the shape is one that was turned as a whole.
-    pub(super) fn as_turned(&self) -> Option<(&Self, &Vector<D>, &Tensor<D>)> {
+    pub(crate) fn as_turned(&self) -> Option<(&Self, &Vector<D>, &Tensor<D>)> {
         match &self.0 {
             Kind::Turned { of, about, rotation } => Some((of, about, rotation)),
             _ => None,
@@ -404,41 +399,6 @@ pub(super) struct Round<const D: usize> {
     pub radii: [f64; 2],
     /// Unit vector along the axis of a cylinder, and its length in m.
     pub axis: Option<(Vector<D>, f64)>,
-}
-
-/// Depths at places that follow each other closely: a place that is nearer to the one before than a closed surface was there
-/// is on the same side of it, and the side is what takes time to tell.
-pub(super) struct Probe<'a, const D: usize> {
-    shape: &'a Shape<D>,
-    /// The last place in each surface, and the depth there.
-    known: Vec<(&'a Facets, Vector<3>, f64)>,
-}
-
-impl<const D: usize> Probe<'_, D> {
-    /// As [`Shape::depth`].
-    pub fn depth(&mut self, point: &Vector<D>) -> f64 {
-        let known = &mut self.known;
-        self.shape.depth_by(point, &mut |facets, place| {
-            let last = known.iter_mut().find(|(other, ..)| std::ptr::eq(*other, facets));
-            match last {
-                Some((_, at, depth)) => {
-                    let is_beside = facets.soundness().is_closed()
-                        && (place - *at).norm() < (1.0 - 1e-9) * depth.abs();
-                    *depth = match is_beside {
-                        true => facets.distance(place).copysign(*depth),
-                        false => facets.depth(place),
-                    };
-                    *at = *place;
-                    *depth
-                }
-                None => {
-                    let depth = facets.depth(place);
-                    known.push((facets, *place, depth));
-                    depth
-                }
-            }
-        })
-    }
 }
 
 /// A point of a surface, which is in 3D.

@@ -2,6 +2,7 @@
 
 use super::fill::{ON_BOUNDARY, turn, unturned};
 use super::lattice::Lattice;
+use super::probe::Probe;
 use super::{GeometryError, LatticeKind, LatticeSpec, Particles, Placement, Shape, Surface};
 use crate::Vector;
 use crate::parallel::for_each_chunk;
@@ -42,9 +43,10 @@ pub fn surroundings<const D: usize>(
     };
     let mut is_ghost = vec![false; lattice.len()];
     for_each_chunk(&mut is_ghost, |first, sites| {
+        let mut shape = Probe::of(shape);
         for (offset, is_ghost) in sites.iter_mut().enumerate() {
             let site = lattice.position(lattice.place(first + offset));
-            let depth = shape.depth(&lattice.fold(&site));
+            let depth = shape.depth(&lattice.fold(&site), 1.1 * reach);
             *is_ghost = depth < least && depth > tolerance - reach;
         }
     });

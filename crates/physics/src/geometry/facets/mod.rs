@@ -1,5 +1,6 @@
 //! Closed surfaces of triangles, as files of drawings have them.
 
+mod local;
 mod read;
 mod sound;
 mod tree;
@@ -11,6 +12,8 @@ use nalgebra::Rotation3;
 
 pub use read::SurfaceError;
 pub use sound::Soundness;
+
+pub(super) use local::Local;
 
 use crate::Vector;
 use tree::Tree;
@@ -93,9 +96,25 @@ impl Facets {
         self.tree.winding(point)
     }
 
+    /// By how much [`Self::winding`] changes on the straight way between two points, if the surface is closed and no edge of a
+    /// facet is in the way.
+    pub(super) fn change(&self, from: &Vector<3>, to: &Vector<3>) -> Option<i32> {
+        self.soundness.is_closed().then(|| self.tree.change(from, to)).flatten()
+    }
+
+    /// The facets that may be less than `reach` m away from a point.
+    pub(super) fn around(&self, point: &Vector<3>, reach: f64) -> Local {
+        self.tree.around(point, reach)
+    }
+
     /// The distance in m from the nearest facet.
     pub fn distance(&self, point: &Vector<3>) -> f64 {
-        (self.tree.nearest(point).0 - point).norm()
+        self.distance_within(point, f64::INFINITY).unwrap_or(f64::INFINITY)
+    }
+
+    /// The same if it is less than `reach` m.
+    pub(super) fn distance_within(&self, point: &Vector<3>, reach: f64) -> Option<f64> {
+        self.tree.nearest(point, reach).map(|(place, _)| (place - point).norm())
     }
 
     /// The same, less than zero outside. Through a hole it jumps.
@@ -107,7 +126,7 @@ impl Facets {
     /// The nearest places on facets, with the unit normals of these, that are no more than `reach` times as far from a point as
     /// the nearest of all, which comes first.
     pub fn nearest(&self, point: &Vector<3>, reach: f64) -> Vec<(Vector<3>, Vector<3>)> {
-        let first = self.tree.nearest(point);
+        let Some(first) = self.tree.nearest(point, f64::INFINITY) else { return Vec::new() };
         let mut all = vec![first];
         all.extend(self.tree.within(point, reach * (first.0 - point).norm()));
         let normal = |number: usize| triangle::area(&self.tree.triangles()[number]).normalize();
@@ -120,8 +139,9 @@ impl Facets {
         self.tree.crossings(most)
     }
 
-    /// The thinnest part in m: the shortest way from the middle of a facet straight through to the other side.
-    pub fn thickness(&self) -> f64 {
-        self.tree.thickness()
+    /// The thinnest part in m, if it is thinner than `most` m: the shortest way from the middle of a facet straight through to the
+    /// other side.
+    pub fn thinner_than(&self, most: f64) -> Option<f64> {
+        Some(self.tree.thickness(most)).filter(|thickness| *thickness < most)
     }
 }

@@ -75,7 +75,7 @@ pub(super) fn mended(
         kept.push(triangle);
         corners.push(own);
     }
-    orient(&mut kept, &mut corners, &mut soundness);
+    orient(&mut kept, &corners, &mut soundness);
     // Facets whose corners are in line have edges that others need.
     let count = kept.len();
     kept.retain(|triangle| area(triangle).norm() > 0.0);
@@ -96,15 +96,27 @@ pub(super) fn mended(
 }
 
 /// Flips the facets that are the other way round than those beside them, and counts pieces and open edges.
-fn orient(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Soundness) {
-    let mut beside = HashMap::<(u32, u32), Vec<(u32, bool)>>::new();
-    for (facet, own) in (0u32..).zip(&*corners) {
-        for (edge, way) in edges(*own) {
-            beside.entry(edge).or_default().push((facet, way));
+fn orient(kept: &mut [Triangle], corners: &[[u32; 3]], soundness: &mut Soundness) {
+    // What goes along each edge: the numbers of a facet and of the edge in it, together for each edge.
+    let mut along: Vec<((u32, u32), u32, usize, bool)> = (0u32..)
+        .zip(corners)
+        .flat_map(|(facet, own)| {
+            let edges = edges(*own).into_iter().enumerate();
+            edges.map(move |(k, (edge, way))| (edge, facet, k, way))
+        })
+        .collect();
+    along.sort_unstable();
+    // Of each edge of a facet the facet on its other side, if there is one, and whether both go along it the same way.
+    let mut beside = vec![[None; 3]; corners.len()];
+    for group in along.chunk_by(|one, other| one.0 == other.0) {
+        if let [(_, one, i, its_way), (_, two, j, way)] = *group {
+            beside[one as usize][i] = Some((two as usize, its_way == way));
+            beside[two as usize][j] = Some((one as usize, its_way == way));
         }
     }
     // Of each facet, whether it goes the other way round than the first one of its piece.
     let mut is_other = vec![None; corners.len()];
+    let mut is_flipped = vec![false; corners.len()];
     for first in 0..corners.len() {
         if is_other[first].is_some() {
             continue;
@@ -115,13 +127,10 @@ fn orient(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Sound
         while let Some(&facet) = piece.get(next) {
             next += 1;
             let own = is_other[facet] == Some(true);
-            for (edge, way) in edges(corners[facet]) {
-                let [one, two] = beside[&edge][..] else { continue };
-                let (other, its_way) = if one.0 as usize == facet { two } else { one };
-                let other = other as usize;
+            for (other, is_same) in beside[facet].into_iter().flatten() {
                 if is_other[other].is_none() {
                     // Neighbours go along their common edge in opposite ways.
-                    is_other[other] = Some(own != (its_way == way));
+                    is_other[other] = Some(own != is_same);
                     piece.push(other);
                 }
             }
@@ -133,15 +142,16 @@ fn orient(kept: &mut [Triangle], corners: &mut [[u32; 3]], soundness: &mut Sound
         let wrong = area_of(true) <= area_of(false);
         for &facet in piece.iter().filter(|&&facet| is_other[facet] == Some(wrong)) {
             kept[facet].swap(1, 2);
-            corners[facet].swap(1, 2);
+            is_flipped[facet] = true;
             soundness.flipped += 1;
         }
     }
-    let mut balance = HashMap::<(u32, u32), i64>::new();
-    for (edge, way) in corners.iter().flat_map(|own| edges(*own)) {
-        *balance.entry(edge).or_default() += if way { 1 } else { -1 };
-    }
-    soundness.open_edges = balance.values().filter(|both| **both != 0).count();
+    let is_open = |group: &&[((u32, u32), u32, usize, bool)]| {
+        let ways = group.iter().map(|(_, facet, _, way)| *way != is_flipped[*facet as usize]);
+        2 * ways.filter(|way| *way).count() != group.len()
+    };
+    let all = along.chunk_by(|one, other| one.0 == other.0);
+    soundness.open_edges = all.filter(is_open).count();
 }
 
 /// A number of facets in words.

@@ -1,12 +1,13 @@
 //! A tree of boxes around triangles, and what is asked of it.
 
 use std::f64::consts::PI;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
 use super::Triangle;
-use super::triangle::{area, cross, meets, nearest_of, solid_angle};
+use super::local::Local;
+use super::triangle::{area, cross, ends, meets, nearest_of, passage, solid_angle};
 use crate::{Tensor, Vector};
 
 /// Most triangles of a leaf.
@@ -95,9 +96,9 @@ impl Tree {
         }
     }
 
-    /// The place on a triangle that is nearest to a point, and the number of the triangle.
-    pub fn nearest(&self, point: &Vector<3>) -> (Vector<3>, usize) {
-        let (mut best, mut square) = ((self.triangles[0][0], 0), f64::INFINITY);
+    /// The place on a triangle that is nearest to a point, and the number of the triangle, if one is nearer than `reach` m.
+    pub fn nearest(&self, point: &Vector<3>, reach: f64) -> Option<(Vector<3>, usize)> {
+        let (mut best, mut square) = (None, reach * reach);
         let (mut open, mut count) = ([(0u32, 0.0); DEEPEST], 1);
         while count > 0 {
             count -= 1;
@@ -119,7 +120,7 @@ impl Tree {
                         let found = nearest_of(&self.triangles[triangle], point);
                         let distance = (found - point).norm_squared();
                         if distance < square {
-                            (best, square) = ((found, triangle), distance);
+                            (best, square) = (Some((found, triangle)), distance);
                         }
                     }
                 }
@@ -165,9 +166,29 @@ impl Tree {
         (far + near) / (4.0 * PI)
     }
 
-    /// How far it is from a point along a unit direction to the nearest triangle, beyond `least`.
-    fn along(&self, point: &Vector<3>, direction: &Vector<3>, least: f64) -> f64 {
-        let best = std::cell::Cell::new(f64::INFINITY);
+    /// By how much the winding number changes on the straight way from one point to another: less by one where the way
+    /// leads out through a triangle, more by one where it leads in. `None` where round-off does not tell whether it leads
+    /// through one.
+    pub fn change(&self, from: &Vector<3>, to: &Vector<3>) -> Option<i32> {
+        let (way, mut change) = (to - from, Some(0));
+        self.visit(
+            |node| node.entry(from, &way) <= 1.0,
+            |_, triangle| change = change.zip(passage(triangle, from, to)).map(|(a, b)| a + b),
+        );
+        change
+    }
+
+    /// The triangles of which parts may be less than `reach` m away from a point.
+    pub fn around(&self, point: &Vector<3>, reach: f64) -> Local {
+        let mut local = Local::default();
+        let square = reach * reach;
+        self.visit(|node| node.square(point) <= square, |_, triangle| local.push(triangle));
+        local
+    }
+
+    /// How far it is from a point along a unit direction to the nearest triangle, between `least` and `most`; `most` if there is none.
+    fn along(&self, point: &Vector<3>, direction: &Vector<3>, [least, most]: [f64; 2]) -> f64 {
+        let best = std::cell::Cell::new(most);
         self.visit(
             |node| node.entry(point, direction) < best.get(),
             |_, triangle| {
@@ -181,16 +202,20 @@ impl Tree {
         best.get()
     }
 
-    /// See [`super::Facets::thickness`].
-    pub fn thickness(&self) -> f64 {
+    /// See [`super::Facets::thinner_than`]; `most` if there is no such part.
+    pub fn thickness(&self, most: f64) -> f64 {
         let (low, high) = self.bounds();
         let least = 1e-9 * (high - low).norm();
-        let through = |triangle: &Triangle| {
-            let [a, b, c] = triangle;
+        // Nothing is asked beyond the thinnest part so far, so that the least is the same whatever the order. Numbers that
+        // are not negative have the order of their bits.
+        let best = AtomicU64::new(most.max(0.0).to_bits());
+        self.triangles.par_iter().for_each(|triangle| {
             let inwards = -area(triangle).normalize();
-            self.along(&((a + b + c) / 3.0), &inwards, least)
-        };
-        self.triangles.par_iter().map(through).reduce(|| f64::INFINITY, f64::min)
+            let most = f64::from_bits(best.load(Ordering::Relaxed));
+            let found = self.along(&(thrice_centre(triangle) / 3.0), &inwards, [least, most]);
+            best.fetch_min(found.to_bits(), Ordering::Relaxed);
+        });
+        f64::from_bits(best.into_inner())
     }
 
     /// See [`super::Facets::crossings`].
@@ -200,11 +225,7 @@ impl Tree {
             if found.load(Ordering::Relaxed) >= most {
                 return;
             }
-            let [low, high] = [Vector::inf, Vector::sup].map(
-                |choose: fn(&Vector<3>, &Vector<3>) -> Vector<3>| {
-                    triangle[1..].iter().fold(triangle[0], |end, corner| choose(&end, corner))
-                },
-            );
+            let [low, high] = ends(triangle);
             let mut count = 0;
             self.visit(
                 |node| {

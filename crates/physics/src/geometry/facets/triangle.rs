@@ -8,6 +8,11 @@ pub(super) fn area([a, b, c]: &Triangle) -> Vector<3> {
     (b - a).cross(&(c - a)) * 0.5
 }
 
+/// Lower and upper corner of the box around a triangle.
+pub(super) fn ends([a, b, c]: &Triangle) -> [Vector<3>; 2] {
+    [a.inf(b).inf(c), a.sup(b).sup(c)]
+}
+
 /// The solid angle of a triangle as seen from a point, more than zero from behind.
 pub(super) fn solid_angle(triangle: &Triangle, point: &Vector<3>) -> f64 {
     let (a, b, c) = (triangle[0] - point, triangle[1] - point, triangle[2] - point);
@@ -65,6 +70,38 @@ pub(super) fn meets([a, b, c]: &Triangle, point: &Vector<3>, direction: &Vector<
     let second = direction.dot(&turned) / volume;
     let is_on = first >= 0.0 && second >= 0.0 && first + second <= 1.0;
     is_on.then(|| ac.dot(&turned) / volume)
+}
+
+/// What is smaller than this part of the lengths that it is made of may be round-off.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// The change of the winding number on the straight way from one point to another through a triangle: -1 out of it, 1 into
+/// it, 0 beside it. `None` for a way through its boundary or one that ends on it, as far as round-off tells.
+pub(super) fn passage(triangle: &Triangle, from: &Vector<3>, to: &Vector<3>) -> Option<i32> {
+    let [a, b, c] = triangle.map(|corner| corner - from);
+    let (way, sides) = (to - from, [b - a, c - a]);
+    let normal = sides[0].cross(&sides[1]);
+    let size = sides[0].norm() * sides[1].norm();
+    let sure = |value: f64, scale: f64| match value.abs() > ROUND_OFF * scale {
+        true => value.signum() as i32,
+        false => 0,
+    };
+    // The sides of its plane on which the ends of the way are.
+    let beyond = a - way;
+    let ends =
+        [sure(-normal.dot(&a), size * a.norm()), sure(-normal.dot(&beyond), size * beyond.norm())];
+    if ends[0] * ends[1] > 0 {
+        return Some(0);
+    }
+    // The sides of its edges on which the line of the way passes.
+    let square = a.norm_squared().max(b.norm_squared()).max(c.norm_squared());
+    let passes = [(a, b), (b, c), (c, a)]
+        .map(|(one, other)| sure(way.dot(&one.cross(&other)), way.norm() * square));
+    if passes.contains(&1) && passes.contains(&-1) {
+        return Some(0);
+    }
+    let is_sure = !ends.contains(&0) && !passes.contains(&0);
+    is_sure.then_some(ends[0])
 }
 
 /// Whether two triangles without a common corner cross: a side of one goes through the other. Those that lie in one plane do

@@ -11,10 +11,10 @@ use crate::geometry::{
     Arrangement, Facets, GeometryError, LatticeSpec, Placement, Shape, SurfaceError, fill,
 };
 
-type Triangle = [Vector<3>; 3];
+pub(super) type Triangle = [Vector<3>; 3];
 
 /// A torus about z with radii of 1 and 0.4 m, its outside facing out.
-fn torus(around: usize, along: usize) -> Vec<Triangle> {
+pub(super) fn torus(around: usize, along: usize) -> Vec<Triangle> {
     let place = |i: usize, j: usize| {
         let [a, b] = [i as f64 / around as f64, j as f64 / along as f64].map(|x| 2.0 * PI * x);
         let radius = 1.0 + 0.4 * b.cos();
@@ -37,7 +37,7 @@ fn depth_of_torus(x: &Vector<3>) -> f64 {
 }
 
 /// The box from 0 to `end`.
-fn cuboid(end: [f64; 3]) -> Vec<Triangle> {
+pub(super) fn cuboid(end: [f64; 3]) -> Vec<Triangle> {
     let corner = |bits: usize| {
         Vector::<3>::from_fn(|axis, _| if bits >> axis & 1 == 1 { end[axis] } else { 0.0 })
     };
@@ -83,7 +83,8 @@ fn a_box_of_facets_is_a_box() {
     let facets = Facets::new(cuboid(end)).unwrap();
     assert_eq!(facets.volume(), Some(6.0));
     assert_eq!(facets.bounding_box(), (Vector::zeros(), Vector::from(end)));
-    assert!((facets.thickness() - 1.0).abs() < 1e-12);
+    assert!(facets.thinner_than(2.0).is_some_and(|it| (it - 1.0).abs() < 1e-12));
+    assert_eq!(facets.thinner_than(0.9), None);
     assert_eq!(facets.crossings(9), 0);
     let surface = Shape::surface(facets.into()).unwrap();
     let plain = Shape::cuboid(Vector::zeros(), Vector::<3>::from(end)).unwrap();

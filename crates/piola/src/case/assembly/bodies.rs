@@ -10,7 +10,7 @@ use crate::geometry::{
     Shape, fill, from_mesh, from_points, surroundings,
 };
 use crate::neighbors::{Domain, refuse_coincident};
-use crate::operators::relax;
+use crate::operators::{Packing, pack, relax};
 use crate::{Tensor, Vector};
 
 /// Points of a cloud that are closer than this fraction of the mean spacing are one point.
@@ -31,6 +31,8 @@ pub struct BodyReport {
     pub spacing: Vec<f64>,
     /// How many times smaller it is where that is finest: 1, but for regions of finer spacing.
     pub finest: f64,
+    /// How well its particles are packed, if they are.
+    pub packing: Option<Packing>,
 }
 
 /// A vector of a case as one of `D` components; the reader has checked its length.
@@ -48,22 +50,14 @@ pub(super) fn particles<const D: usize>(
     let mut reports = Vec::new();
     let mut problems = Vec::new();
     for (number, body) in (0u32..).zip(&case.bodies) {
+        let is_packed = body.lattice.kind == model::LatticeKind::Packed;
         let made = match &body.shape.value {
-            model::Shape::Points { file } => {
-                cloud(case, domain, (file.place, "this file"), from_points::<D>(file))
+            shape if is_packed && !shape.is_from_file() => {
+                packed(case, body, domain).map(|(made, packing)| (made, Some(packing)))
             }
-            model::Shape::Cloud { name, cloud: given } => {
-                // The reader has checked that they are of this dimension.
-                let given = given.as_ref().and_then(|given| given.particles::<D>());
-                cloud(case, domain, (name.place, "this cloud"), Ok(given.unwrap_or_default()))
-            }
-            model::Shape::Mesh { file, spec } => {
-                cloud(case, domain, (file.place, "this file"), from_mesh::<D>(file, spec))
-            }
-            _ => lattice(case, body, domain, body.lattice.jitter)
-                .and_then(|made| relaxed(case, body, domain, made)),
+            shape => unpacked(case, body, domain, shape).map(|made| (made, None)),
         };
-        let added = made.and_then(|report| {
+        let added = made.and_then(|(report, packing)| {
             let (particles, volume) = (report.particles.len(), report.total_volume);
             all.append(report.particles, number).map_err(|error| refuse(case, body, &error)).map(
                 |()| BodyReport {
@@ -73,6 +67,7 @@ pub(super) fn particles<const D: usize>(
                     exact_volume: report.exact_volume,
                     spacing: report.actual_spacing.to_vec(),
                     finest: 1.0,
+                    packing,
                 },
             )
         });
@@ -124,6 +119,76 @@ pub(super) fn lattice<const D: usize>(
         .map_err(|error| refuse_spacing(case, body, &error))
 }
 
+/// A body from a file, of points at hand, or on a lattice.
+fn unpacked<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+    shape: &model::Shape,
+) -> Result<FillReport<D>, Problem> {
+    match shape {
+        model::Shape::Points { file } => {
+            cloud(case, domain, (file.place, "this file"), from_points::<D>(file))
+        }
+        model::Shape::Cloud { name, cloud: given } => {
+            // The reader has checked that they are of this dimension.
+            let given = given.as_ref().and_then(|given| given.particles::<D>());
+            cloud(case, domain, (name.place, "this cloud"), Ok(given.unwrap_or_default()))
+        }
+        model::Shape::Mesh { file, spec } => {
+            cloud(case, domain, (file.place, "this file"), from_mesh::<D>(file, spec))
+        }
+        _ => lattice(case, body, domain, body.lattice.jitter)
+            .and_then(|made| relaxed(case, body, domain, made)),
+    }
+}
+
+/// A body whose particles are packed, and how well.
+fn packed<const D: usize>(
+    case: &Case,
+    body: &Body,
+    domain: &Domain<D>,
+) -> Result<(FillReport<D>, Packing), Problem> {
+    let (shape, spec) = lattice_of(case, body, domain)?;
+    if spec.periodic.contains(&true) {
+        let message = "packed particles do not go round a periodic domain; use a lattice";
+        let label = format!("body `{}`", *body.name);
+        return Err(case.problem_at(body.shape.place, message, label, None));
+    }
+    if spec.spacing.iter().any(|spacing| *spacing != spec.spacing[0]) {
+        let (what, value) = ("packed particles have", spec.spacing.to_vec());
+        return Err(refuse_spacing(case, body, &GeometryError::Uneven { what, value }));
+    }
+    pack(&shape, spec.spacing[0]).map_err(|error| {
+        let label = format!("spacing of body `{}`", *body.name);
+        case.problem_at(body.spacing.place, error.to_string(), label, None)
+    })
+}
+
+/// What the user should know of packed bodies.
+pub(super) fn packings(bodies: &[BodyReport]) -> Vec<String> {
+    let told = |report: &BodyReport| {
+        let packing = report.packing?;
+        let Packing { steps, push, largest, rms, .. } = packing;
+        let name = &report.name;
+        if !packing.is_settled {
+            return Some(format!(
+                "the particles of the body `{name}` have not settled after {steps} steps of packing, the next of which would move one \
+                 by {push:.1e} spacings: change the spacing a little, or use a lattice"
+            ));
+        }
+        (largest > Packing::UNEVEN).then(|| {
+            format!(
+                "the density of the packed body `{name}` is up to {:.1} % off near its surface ({:.1} % in the mean square): \
+                 make the spacing smaller, or round off what is sharper or thinner than three spacings",
+                100.0 * largest,
+                100.0 * rms
+            )
+        })
+    };
+    bodies.iter().filter_map(told).collect()
+}
+
 /// The sites of the lattice of a body that lie around it, at most `reach` m away.
 pub(super) fn around<const D: usize>(
     case: &Case,
@@ -132,6 +197,9 @@ pub(super) fn around<const D: usize>(
     reach: f64,
 ) -> Result<Particles<D>, Problem> {
     let (shape, spec) = lattice_of(case, body, domain)?;
+    if body.lattice.kind == model::LatticeKind::Packed {
+        return Err(refuse_spacing(case, body, &GeometryError::NoSurroundings));
+    }
     surroundings(&shape, &spec, reach).map_err(|error| refuse_spacing(case, body, &error))
 }
 
@@ -161,7 +229,8 @@ fn lattice_of<const D: usize>(
     let spec = LatticeSpec {
         spacing: std::array::from_fn(|axis| body.spacing[axis]),
         kind: match body.lattice.kind {
-            model::LatticeKind::Square => LatticeKind::Square,
+            // What is packed starts from a square lattice.
+            model::LatticeKind::Square | model::LatticeKind::Packed => LatticeKind::Square,
             model::LatticeKind::Hexagonal => LatticeKind::Hexagonal,
             model::LatticeKind::Concentric => LatticeKind::Concentric,
         },
@@ -242,8 +311,8 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         let model::Shape::Surface(surface) = &body.shape.value else { continue };
         let Some(facets) = surface.facets.get() else { continue };
         let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
-        let layers = facets.thickness() / spacing;
-        if layers < THIN {
+        if let Some(thickness) = facets.thinner_than(THIN * spacing) {
+            let layers = thickness / spacing;
             told.push(format!(
                 "the body `{}` is {layers:.1} spacings thick where it is thinnest, less than \
                  {THIN}: make the spacing smaller, or expect fluid on one side to interact with \

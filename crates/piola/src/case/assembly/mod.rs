@@ -71,6 +71,7 @@ fn build_in<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
         false => world::build::<D>(case)?,
     };
     built.warnings.splice(0..0, case.remarks.iter().cloned().chain(bodies::surfaces(case)));
+    built.warnings.extend(bodies::packings(&built.bodies));
     built.warnings.extend(uneven_steps(case));
     built.warnings.extend(beyond_stable(case));
     Ok((scheme, integrator, built))

@@ -86,7 +86,7 @@ pub(super) fn build<const D: usize>(
     let mirrors = mirrors(case, *settings.form, &particles, &mut problems);
     let known = || {
         areas.clone().ok_or_else(|| {
-            "a load on a surface needs the areas of the particles, which are not known of points from a file and of concentric layers"
+            "a load on a surface needs the areas of the particles, which are known of lattices and meshes alone"
                 .to_owned()
         })
     };
@@ -269,7 +269,7 @@ fn trace<const D: usize>(
 
 /// The boundary area vectors of all particles in m^(D-1), of the lattices before they are displaced;
 /// particles that have one go back to their site. Of meshes those of nodes, and zero of cells, which
-/// get theirs from the trace. `None` if there is a body of points or of concentric layers.
+/// get theirs from the trace. `None` if there is a body of points, of concentric layers or of packed particles.
 fn areas<const D: usize>(
     case: &Case,
     particles: &mut Particles<D>,
@@ -285,7 +285,13 @@ fn areas<const D: usize>(
                 all.extend(&of_meshes[all.len()..][..own]);
                 continue;
             }
-            _ if body.lattice.kind == model::LatticeKind::Concentric => return Ok(None),
+            _ if matches!(
+                body.lattice.kind,
+                model::LatticeKind::Concentric | model::LatticeKind::Packed
+            ) =>
+            {
+                return Ok(None);
+            }
             _ => (),
         }
         let still = bodies::lattice(case, body, domain, 0.0).map_err(|problem| vec![problem])?;
@@ -323,14 +329,12 @@ fn gradients<const D: usize>(
         (None, _) if is_plain => (Gradients::Plain, Vec::new()),
         (_, Some(areas)) => (Gradients::PatchConsistent { areas }, Vec::new()),
         (None, None) => {
-            let warning = "gradients are plain, as the boundary areas of points from a file and of concentric \
-                           layers are not known: a constant stress is not in equilibrium there";
+            let warning = "gradients are plain, as boundary areas are known of lattices and meshes alone: a constant stress is not in equilibrium there";
             (Gradients::Plain, vec![warning.to_owned()])
         }
         (Some(GradientKind::PatchConsistent), None) => {
             let place = wanted.map_or(case.scheme.place, |kind| kind.place);
-            let message =
-                "the boundary areas of points from a file and of concentric layers are not known";
+            let message = "boundary areas are known of bodies on lattices and from meshes alone";
             let help = "use `gradients = \"plain\"`, or shapes that a lattice fills".to_owned();
             problems.push(case.problem_at(place, message, "needs boundary areas", Some(help)));
             (Gradients::Plain, Vec::new())

@@ -20,7 +20,7 @@ impl Reader<'_, '_> {
     pub(super) fn body(&mut self, record: &Record) -> Option<Body> {
         let shape = record.record("shape").and_then(|shape| self.shape(shape));
         let material = self.body_material(record);
-        let lattice = record.record("lattice").and_then(lattice);
+        let lattice = record.record("lattice").and_then(|lattice| self.lattice(lattice));
         let initial = record.record("initial").and_then(|initial| self.initial(initial));
         let spacing = self.spacing(record, shape.as_ref());
         Some(Body {
@@ -89,6 +89,30 @@ impl Reader<'_, '_> {
         let part = record.text("part").map(|name| name.value);
         let file = self.file(record, "file")?;
         Some(Shape::Mesh { file, spec: CloudSpec { points, volumes, spacings, part } })
+    }
+
+    fn lattice(&mut self, record: &Record) -> Option<Lattice> {
+        let kind = record.text("kind")?;
+        if kind.as_str() == "packed" {
+            for key in ["on", "jitter", "seed", "relax"] {
+                self.meaningless(record, key, "for packed particles");
+            }
+        }
+        Some(Lattice {
+            kind: match kind.as_str() {
+                "hexagonal" => LatticeKind::Hexagonal,
+                "concentric" => LatticeKind::Concentric,
+                "packed" => LatticeKind::Packed,
+                _ => LatticeKind::Square,
+            },
+            on: match record.text("on")?.as_str() {
+                "cells" => LatticeOrigin::Cells,
+                _ => LatticeOrigin::Boundary,
+            },
+            jitter: number(record, "jitter")?,
+            seed: record.whole("seed")?.value,
+            relax: record.whole("relax")?.value,
+        })
     }
 
     fn shape(&mut self, record: &Record) -> Option<Located<Shape>> {
@@ -414,23 +438,6 @@ pub(super) fn plane(record: &Record) -> Option<PlaneState> {
     Some(match record.text("plane")?.as_str() {
         "strain" => PlaneState::Strain,
         _ => PlaneState::Stress,
-    })
-}
-
-fn lattice(record: &Record) -> Option<Lattice> {
-    Some(Lattice {
-        kind: match record.text("kind")?.as_str() {
-            "hexagonal" => LatticeKind::Hexagonal,
-            "concentric" => LatticeKind::Concentric,
-            _ => LatticeKind::Square,
-        },
-        on: match record.text("on")?.as_str() {
-            "cells" => LatticeOrigin::Cells,
-            _ => LatticeOrigin::Boundary,
-        },
-        jitter: number(record, "jitter")?,
-        seed: record.whole("seed")?.value,
-        relax: record.whole("relax")?.value,
     })
 }
 

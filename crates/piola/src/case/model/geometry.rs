@@ -215,6 +215,8 @@ pub enum LatticeKind {
     Hexagonal,
     /// In layers around a centre or an axis.
     Concentric,
+    /// Moved until they are even, and half a spacing below the surface.
+    Packed,
 }
 
 /// Where the first particle of a lattice lies.

@@ -86,7 +86,10 @@ impl Case {
             material: fluid.material.clone(),
             spacing: fluid.spacing.clone(),
             lattice: Lattice {
-                kind: LatticeKind::Square,
+                kind: match body.lattice.kind {
+                    LatticeKind::Packed => LatticeKind::Packed,
+                    _ => LatticeKind::Square,
+                },
                 on: LatticeOrigin::Cells,
                 jitter: 0.0,
                 seed: 0,

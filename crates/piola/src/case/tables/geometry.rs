@@ -105,6 +105,10 @@ const LATTICES: Choices = choices(&[
         "concentric",
         "in layers that follow a round face: rings in a disc or an annulus and around the axis of a cylinder, shells in a ball; without ghosts and boundary areas",
     ),
+    choice(
+        "packed",
+        "moved apart until they are even, the outermost half a spacing below the surface, in a shape of any kind; all have the same volume. `piola check` shows how even their density is near the surface. Not around a periodic domain; without ghosts and boundary areas",
+    ),
 ]);
 const ORIGINS: Choices = choices(&[
     choice("boundary", "particles on the faces of the shape's box"),
