@@ -2,9 +2,9 @@
 //!
 //! Generic code is compiled in the crate that names its types, and again in each crate above it; only functions that
 //! are never inlined are shared with those above, where this crate has them for the same types. So the ways into
-//! formulations are `#[inline(never)]`, and this module names them: the library above, its tests and the
-//! program find them compiled, and are compiled while this crate still is. Each is called
-//! once for a run or a step, so that nothing is lost.
+//! formulations are `#[inline(never)]`, and this module names them: the library above, its tests and the program find
+//! them compiled, and are compiled while this crate still is. Each is called once for a run or a step, so that nothing is
+//! lost.
 
 use super::Scheme;
 use super::interpolation::Interpolation;
