@@ -67,14 +67,18 @@ impl<const D: usize> Shape<D> {
         let most = layer.max(least * (1.0 + TIE));
         for start in starts {
             // A way that ends on the plane of a face already found leads to the same face.
-            let on_plane =
-                |face: &(f64, Vector<D>)| start.0 * start.1.dot(&face.1) >= face.0 * (1.0 - TIE);
-            if start.0 > 1.5 * most || faces.iter().any(on_plane) {
+            let on_plane = |way: &(f64, Vector<D>), face: &(f64, Vector<D>)| {
+                way.0 * way.1.dot(&face.1) >= face.0 * (1.0 - TIE)
+            };
+            if start.0 > 1.5 * most || faces.iter().any(|face| on_plane(&start, face)) {
                 continue;
             }
             let found = refine(start, &length);
             let is_other = faces.iter().all(|face| face.1.dot(&found.1) < 1.0 - TIE);
-            if is_other && found.0 <= most {
+            // What is longer may have been refined to on the way to the same face, if that is curved.
+            let is_same =
+                found.0 > least * (1.0 + TIE) && faces.iter().any(|face| on_plane(&found, face));
+            if is_other && found.0 <= most && !is_same {
                 faces.push(found);
             }
         }
@@ -413,9 +417,27 @@ mod tests {
         let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
         for angle in [0.1_f64, 0.9, 2.0, 4.0] {
             let radial = Vector::<2>::new(angle.cos(), angle.sin());
-            let way = ball.ways_out(&(center + radial * 0.4), 0.0, &bounds).between();
-            // Lengths are found to 1e-8 m of 0.1 m, and grow with the square of the turn.
-            assert!((way - radial).norm() < 2e-3, "{way} for {radial}");
+            for layer in [0.0, 0.2] {
+                let faces = ball.ways_out(&(center + radial * 0.4), layer, &bounds);
+                // Lengths are found to 1e-8 m of 0.1 m, and grow with the square of the turn.
+                let way = faces.between();
+                assert!((way - radial).norm() < 2e-3, "{way} for {radial}");
+                assert_eq!(faces.normals().len(), 1, "{faces:?}");
+            }
+        }
+        // Two and a half, five and ten spacings of 0.1 m in radius, in the first layer and in the next.
+        let bounds = (Vector::<3>::repeat(-3.0), Vector::<3>::repeat(3.0));
+        for (radius, number) in
+            [0.25, 0.5, 1.0].into_iter().flat_map(|r| (0..40).map(move |n| (r, n)))
+        {
+            let ball = Shape::ball(Vector::<3>::zeros(), radius).unwrap();
+            let [turn, up] = [0.7 * f64::from(number), 0.05 * f64::from(number) - 0.975];
+            let around = (1.0 - up * up).sqrt();
+            let radial = Vector::<3>::new(around * turn.cos(), around * turn.sin(), up);
+            for depth in [0.02, 0.05, 0.09, 0.15] {
+                let faces = ball.ways_out(&(radial * (radius - depth)), 0.099, &bounds);
+                assert_eq!(faces.normals().len(), 1, "{depth} in {radius} at {radial}: {faces:?}");
+            }
         }
         // On the bounds there is no way out.
         assert_eq!(ball.ways_out(&center, 0.0, &(center, center)), Faces::default());
