@@ -1,9 +1,10 @@
 //! Steps of a fluid with a solid in it, and of the two by themselves: `cargo bench -p piola --bench coupled`.
 //!
 //! Water over a soft plate in a tank, in 2D and 3D. By itself the fluid has the plate as a wall that stands still, with the same
-//! particles, and the solid has none around it. The plate is soft enough to take one step a step of the fluid, and thicker
-//! than the support, so that its two sides need no particles of their own. All take the same steps, with the look at each
-//! state that runs take. Best of some steps in turns, on all threads.
+//! particles, and the solid has none around it. The plate is soft enough to take one step a step of the fluid. One of eight
+//! layers is thicker than the support, so that its two sides need no particles of their own; those of three and four layers
+//! have half of the water under them, and two wall particles of the fluid for each one. All take the same steps, with the
+//! look at each state that runs take. Best of some steps in turns, on all threads.
 //!
 //! Then a thick gel of fine particles on shallow water with fast waves, which is most of the work: in steps of the water, and
 //! in as many of them as the gel may take at once.
@@ -26,14 +27,21 @@ enum Part {
     Solid,
 }
 
-/// The case, with `across` particles over the width of the tank.
-fn case(dimension: usize, across: usize, part: Part) -> String {
+/// The layers of a plate that is thicker than the support.
+const THICK: usize = 8;
+
+/// The case, with `across` particles over the width of the tank and `layers` of them in the plate.
+fn case([dimension, across, layers]: [usize; 3], part: Part) -> String {
     let vector = |x: f64, y: f64, z: f64| match dimension {
         2 => format!("[{x}, {z}]"),
         _ => format!("[{x}, {y}, {z}]"),
     };
     let (dx, up) = (1.0 / across as f64, if dimension == 2 { "y" } else { "z" });
-    let (slab, shell) = (8.0 * dx, 4.0 * dx);
+    let (slab, shell) = (layers as f64 * dx, 4.0 * dx);
+    // How high water is over the plate and under it, and where the tank ends.
+    let is_thick = layers >= THICK;
+    let [over, under] = if is_thick { [0.5, 0.0] } else { [0.25, 0.25] };
+    let (floor, bottom) = (-slab - under, if is_thick { -slab } else { -slab - under - shell });
     let lattice = format!("spacing = {dx}\nlattice = {{ on = 'cells' }}\n");
     let water =
         "material = { kind = 'weakly_compressible', density = 1000.0, wave_speed = 10.0 }\n";
@@ -47,16 +55,19 @@ fn case(dimension: usize, across: usize, part: Part) -> String {
     let held = ["x = '0'", "y = '0'", "z = '0'"][..dimension].join(", ");
     let mut text = format!("version = 1\ntitle = 'Water on a plate'\ndimension = {dimension}\n");
     if part != Part::Solid {
-        text += &format!(
-            "{}{water}initial = {{ pressure = '500 - 1000 * {up}' }}\n",
-            shape("water", vector(0.0, 0.0, 0.0), vector(1.0, 1.0, 0.5))
-        );
+        let pressure = format!("{water}initial = {{ pressure = '500 - 1000 * {up}' }}\n");
+        text += &shape("water", vector(0.0, 0.0, 0.0), vector(1.0, 1.0, over));
+        text += &pressure;
+        if !is_thick {
+            text += &shape("below", vector(0.0, 0.0, floor), vector(1.0, 1.0, -slab));
+            text += &pressure;
+        }
         text += &format!(
             "[[body]]\nname = 'tank'\nshape = {{ kind = 'difference', from = {{ kind = 'box', min = {}, max = {} }}, \
              remove = [{{ kind = 'box', min = {}, max = {} }}] }}\n{lattice}{water}wall = {{ slip = 'free' }}\n",
-            vector(-shell, -shell, -slab),
+            vector(-shell, -shell, bottom),
             vector(1.0 + shell, 1.0 + shell, 0.75),
-            vector(0.0, 0.0, -1.0),
+            vector(0.0, 0.0, if is_thick { -1.0 } else { floor }),
             vector(1.0, 1.0, 1.0),
         );
     }
@@ -75,8 +86,8 @@ fn case(dimension: usize, across: usize, part: Part) -> String {
         text += &format!(
             "[[boundary]]\nname = 'held'\nbody = 'plate'\n\
              where = {{ kind = 'plane', point = {}, normal = {} }}\nvelocity = {{ {held} }}\n",
-            vector(0.0, 0.0, -slab + 0.5 * dx),
-            vector(0.0, 0.0, -1.0)
+            if is_thick { vector(0.0, 0.0, -slab + 0.5 * dx) } else { vector(0.5 * dx, 0.0, 0.0) },
+            if is_thick { vector(0.0, 0.0, -1.0) } else { vector(-1.0, 0.0, 0.0) }
         );
     }
     // As long as the stable step of the fluid, with 1.3 spacings as its smoothing length.
@@ -131,11 +142,14 @@ fn session(text: &str) -> Session {
 }
 
 fn main() {
-    println!("| D | particles | both, ms | fluid, ms | solid, ms | both over the sum |");
-    println!("|--:|--:|--:|--:|--:|--:|");
-    for (dimension, across) in [(2, 100), (2, 200), (3, 40)] {
+    println!("| D | layers | particles | both, ms | fluid, ms | solid, ms | both over the sum |");
+    println!("|--:|--:|--:|--:|--:|--:|--:|");
+    let sizes = [[2, 100], [2, 200], [3, 40]];
+    let all =
+        [THICK, 4, 3].map(|layers| sizes.map(|[dimension, across]| [dimension, across, layers]));
+    for of @ [dimension, _, layers] in all.into_iter().flatten() {
         let parts = [Part::Both, Part::Fluid, Part::Solid];
-        let mut sessions = parts.map(|part| session(&case(dimension, across, part)));
+        let mut sessions = parts.map(|part| session(&case(of, part)));
         let plan = sessions[0].plan();
         assert!(plan.own_steps.iter().all(|(_, count)| *count == 1), "{:?}", plan.own_steps);
         let particles: usize = plan.bodies.iter().map(|body| body.particles).sum();
@@ -149,7 +163,7 @@ fn main() {
         }
         let [both, fluid, solid] = best;
         println!(
-            "| {dimension} | {particles} | {both:.2} | {fluid:.2} | {solid:.2} | {:.2} |",
+            "| {dimension} | {layers} | {particles} | {both:.2} | {fluid:.2} | {solid:.2} | {:.2} |",
             both / (fluid + solid)
         );
     }

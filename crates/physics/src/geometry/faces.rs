@@ -9,14 +9,23 @@ use crate::{Tensor, Vector};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faces<const D: usize> {
     normals: Vec<Vector<D>>,
-    /// How far the point is behind them in m.
-    depth: f64,
+    /// How far the point is behind each of them in m.
+    depths: Vec<f64>,
+}
+
+impl<const D: usize> FromIterator<(Vector<D>, f64)> for Faces<D> {
+    /// Faces with unit normals, each with how far the point is behind it in m.
+    fn from_iter<I: IntoIterator<Item = (Vector<D>, f64)>>(faces: I) -> Self {
+        let (normals, depths) = faces.into_iter().unzip();
+        Self { normals, depths }
+    }
 }
 
 impl<const D: usize> Faces<D> {
     /// Faces with these unit normals, that a point is so deep behind, in m.
     pub fn new(normals: Vec<Vector<D>>, depth: f64) -> Self {
-        Self { normals, depth }
+        let depths = vec![depth; normals.len()];
+        Self { normals, depths }
     }
 
     /// The normals.
@@ -24,9 +33,14 @@ impl<const D: usize> Faces<D> {
         &self.normals
     }
 
-    /// How far the point is behind the faces in m.
+    /// How far the point is behind the nearest face in m; 0 without a face.
     pub fn depth(&self) -> f64 {
-        self.depth
+        self.depths.iter().copied().reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// How far the point is behind each of the faces in m.
+    pub fn depths(&self) -> &[f64] {
+        &self.depths
     }
 
     /// Becomes those faces at `rest` as a deformation gradient leaves them: planes turn to
@@ -41,7 +55,9 @@ impl<const D: usize> Faces<D> {
             thinned = thinned.min(1.0 / stretched);
             turned
         }));
-        self.depth = if thinned.is_finite() { rest.depth * thinned } else { rest.depth };
+        let thinned = if thinned.is_finite() { thinned } else { 1.0 };
+        self.depths.clear();
+        self.depths.extend(rest.depths.iter().map(|depth| depth * thinned));
     }
 
     /// The unit normal between those of the faces; zero if there is none.
@@ -67,7 +83,8 @@ impl<const D: usize> Faces<D> {
     /// How far a place is in front of the faces, in m, for the way to there from the point behind them, with the
     /// normal of that face which it is most in front of; nothing without a face.
     pub fn in_front(&self, way: &Vector<D>) -> Option<(f64, &Vector<D>)> {
-        let heights = self.normals.iter().map(|normal| (way.dot(normal) - self.depth, normal));
+        let faces = self.normals.iter().zip(&self.depths);
+        let heights = faces.map(|(normal, depth)| (way.dot(normal) - depth, normal));
         heights.reduce(|best, other| if other.0 > best.0 { other } else { best })
     }
 }
@@ -98,9 +115,9 @@ mod tests {
         let mut faces = rest.clone();
         // Sheared along the face it stays where it is, and pulled across it is twice as thick.
         faces.follow(&rest, &Tensor::from([[1.0, 0.0], [0.7, 1.0]]));
-        assert!((faces.normals[0] - rest.normals[0]).norm() < 1e-15 && faces.depth == 0.1);
+        assert!((faces.normals[0] - rest.normals[0]).norm() < 1e-15 && faces.depth() == 0.1);
         faces.follow(&rest, &Tensor::from([[1.0, 0.0], [0.0, 2.0]]));
-        assert_eq!((faces.normals[0], faces.depth), (rest.normals[0], 0.2));
+        assert_eq!((faces.normals[0], faces.depth()), (rest.normals[0], 0.2));
         // A quarter turn to the left.
         faces.follow(&rest, &Tensor::from([[0.0, 1.0], [-1.0, 0.0]]));
         assert!((faces.normals[0] - Vector::<2>::new(-1.0, 0.0)).norm() < 1e-15);
@@ -122,6 +139,11 @@ mod tests {
         assert!(edge.in_front(&Vector::<2>::new(-0.1, -0.2)).is_some_and(|found| found.0 < -0.05));
         assert_eq!(edge.in_front(&Vector::<2>::new(0.15, -0.2)), Some((0.15 - 0.05, &x)));
         assert_eq!(Faces::<2>::default().in_front(&x), None);
+        // Each face is as far away as it is.
+        let uneven: Faces<2> = [(x, 0.05), (y, 0.1)].into_iter().collect();
+        assert_eq!((uneven.depth(), uneven.depths()), (0.05, &[0.05, 0.1][..]));
+        let found = uneven.in_front(&Vector::<2>::new(0.0, 0.25)).expect("two faces");
+        assert!((found.0 - 0.15).abs() < 1e-15 && *found.1 == y);
         assert_eq!(Faces::new(vec![x], 0.0).towards(&y), x);
         assert_eq!(Faces::new(vec![x, -x], 0.0).between(), x);
         assert_eq!(Faces::<2>::default().towards(&x), Vector::<2>::zeros());

@@ -20,11 +20,16 @@ const TIE: f64 = 0.05;
 impl<const D: usize> Shape<D> {
     /// The directions of the shortest ways from `point` inside the shape to space outside of it that
     /// lies between the corners `bounds` in m: the outward normal of the nearest face that is not
-    /// on these bounds, and behind an edge of all that are equally near. None where every way leads
-    /// beyond the bounds.
+    /// on these bounds, and behind an edge of all that are equally near, or nearer than `layer` m: those that a particle of the
+    /// first layer is behind. None where every way leads beyond the bounds. In surfaces of facets `layer` has no meaning.
     ///
     /// Directions are searched from those to the faces, edges and corners of a cube.
-    pub fn ways_out(&self, point: &Vector<D>, bounds: &(Vector<D>, Vector<D>)) -> Faces<D> {
+    pub fn ways_out(
+        &self,
+        point: &Vector<D>,
+        layer: f64,
+        bounds: &(Vector<D>, Vector<D>),
+    ) -> Faces<D> {
         if let Some(faces) = self.nearest_facets(point, bounds) {
             return faces;
         }
@@ -35,10 +40,10 @@ impl<const D: usize> Shape<D> {
         {
             let shift = inward * (SHIFT * extent);
             if self.depth(&(point + shift)) > ON_FACET * extent {
-                let faces = self.ways_out(&(point + shift), bounds);
+                let faces = self.ways_out(&(point + shift), layer, bounds);
                 let back = faces.normals().first().map_or(0.0, |normal| shift.dot(normal));
-                let depth = (faces.depth() + back).max(0.0);
-                return Faces::new(faces.normals().to_vec(), depth);
+                let faces = faces.normals().iter().zip(faces.depths());
+                return faces.map(|(normal, depth)| (*normal, (depth + back).max(0.0))).collect();
             }
         }
         let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
@@ -58,21 +63,27 @@ impl<const D: usize> Shape<D> {
         // The straight ways to faces before those between them, which are refined to them less well.
         starts.sort_by_key(|start| start.0 > first.0 * (1.0 + TIE));
         let mut faces = vec![refine(first, &length)];
+        let least = faces[0].0;
+        let most = layer.max(least * (1.0 + TIE));
         for start in starts {
             // A way that ends on the plane of a face already found leads to the same face.
-            let on_plane =
-                |face: &(f64, Vector<D>)| start.0 * start.1.dot(&face.1) >= face.0 * (1.0 - TIE);
-            if start.0 > 1.5 * faces[0].0 || faces.iter().any(on_plane) {
+            let on_plane = |way: &(f64, Vector<D>), face: &(f64, Vector<D>)| {
+                way.0 * way.1.dot(&face.1) >= face.0 * (1.0 - TIE)
+            };
+            if start.0 > 1.5 * most || faces.iter().any(|face| on_plane(&start, face)) {
                 continue;
             }
             let found = refine(start, &length);
             let is_other = faces.iter().all(|face| face.1.dot(&found.1) < 1.0 - TIE);
-            if is_other && found.0 <= faces[0].0 * (1.0 + TIE) {
+            // What is longer may have been refined to on the way to the same face, if that is curved.
+            let is_same =
+                found.0 > least * (1.0 + TIE) && faces.iter().any(|face| on_plane(&found, face));
+            if is_other && found.0 <= most && !is_same {
                 faces.push(found);
             }
         }
-        let depth = faces[0].0;
-        Faces::new(faces.into_iter().map(|face| face.1).collect(), depth)
+        let depth = |length: f64| if length <= least * (1.0 + TIE) { least } else { length };
+        faces.into_iter().map(|(length, normal)| (normal, depth(length))).collect()
     }
 
     /// The direction in which the depth grows about a point, by differences over `step` m on both sides.
@@ -136,18 +147,18 @@ impl<const D: usize> Shape<D> {
     }
 
     /// The faces on the two sides of a point inside a thin part of the shape, where the face opposite to the
-    /// nearest is less than `reach` m away: those that [`Self::ways_out`] finds but the opposite, and that one.
+    /// nearest is less than `reach` m away, for a `layer` in m: those that [`Self::ways_out`] finds but the opposite, and that one.
     /// The first of each are the two of the thin part. `None` in thick parts and within `reach` of a free end, round
     /// which what is on both sides is one.
     pub fn sides(
         &self,
         point: &Vector<D>,
-        reach: f64,
+        [reach, layer]: [f64; 2],
         bounds: &(Vector<D>, Vector<D>),
     ) -> Option<[Faces<D>; 2]> {
         let extent = (bounds.1 - bounds.0).norm();
         let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);
-        let nearest = self.ways_out(point, bounds);
+        let nearest = self.ways_out(point, layer, bounds);
         let across = nearest.normals().iter().find(|normal| length(&-**normal) < reach)?;
         let along = |axis: usize| {
             let unit = Vector::from_fn(|i, _| f64::from(u8::from(i == axis)));
@@ -157,10 +168,12 @@ impl<const D: usize> Shape<D> {
         if ends.map(|way| length(&way)).any(|length| length < reach) {
             return None;
         }
-        let others = nearest.normals().iter().filter(|normal| normal.dot(across).abs() < 0.5);
-        let front = std::iter::once(across).chain(others).copied().collect();
+        let all = || nearest.normals().iter().copied().zip(nearest.depths().iter().copied());
+        let own = all().filter(|face| face.0 == *across);
+        let others = all().filter(|face| face.0.dot(across).abs() < 0.5);
+        let front = own.chain(others).collect();
         let back = Faces::new(vec![-across], length(&-across));
-        Some([Faces::new(front, nearest.depth()), back])
+        Some([front, back])
     }
 
     /// Length of the way out along a direction, infinite if it leaves the bounds.
@@ -284,7 +297,7 @@ mod tests {
     #[test]
     fn the_walls_of_a_tank_face_its_inside() {
         let (tank, bounds) = tank();
-        let way = |x, y| tank.ways_out(&Vector::<2>::new(x, y), &bounds).between();
+        let way = |x, y| tank.ways_out(&Vector::<2>::new(x, y), 0.0, &bounds).between();
         let close = |way: Vector<2>, x, y| (way - Vector::<2>::new(x, y)).norm() < 1e-4;
         assert!(close(way(0.5, -0.05), 0.0, 1.0));
         assert!(close(way(0.05, -0.25), 0.0, 1.0), "deep in the floor, close to a corner");
@@ -303,17 +316,17 @@ mod tests {
             let normal = Vector::<2>::new(angle.cos(), angle.sin());
             for depth in [-1e-16, 0.0, 1e-16] {
                 let at = Vector::<2>::new(0.2, 0.1) + normal * (0.5 - depth);
-                let faces = ball.ways_out(&at, &bounds);
+                let faces = ball.ways_out(&at, 0.0, &bounds);
                 assert!((faces.between() - normal).norm() < 1e-3, "{angle} {faces:?}");
                 assert!(faces.depth() < 1e-9, "{faces:?}");
             }
         }
         let (tank, bounds) = tank();
-        let floor = tank.ways_out(&Vector::<2>::new(0.3, 0.0), &bounds);
+        let floor = tank.ways_out(&Vector::<2>::new(0.3, 0.0), 0.0, &bounds);
         assert_eq!(floor.normals(), [Vector::<2>::new(0.0, 1.0)]);
         assert!(floor.depth() < 1e-9);
         // On the outer bounds, where the way leads through the floor.
-        let below = tank.ways_out(&Vector::<2>::new(0.3, -0.3), &bounds);
+        let below = tank.ways_out(&Vector::<2>::new(0.3, -0.3), 0.0, &bounds);
         assert_eq!(below.normals(), [Vector::<2>::new(0.0, 1.0)]);
         assert!((below.depth() - 0.3).abs() < 1e-9, "{below:?}");
     }
@@ -323,13 +336,17 @@ mod tests {
         let corner = |x, y| Vector::<2>::new(x, y);
         let plate = Shape::cuboid(corner(0.0, 0.0), corner(0.3, 4.0)).unwrap();
         let bounds = (Vector::<2>::repeat(-5.0), Vector::<2>::repeat(9.0));
-        let sides = |x, y| plate.sides(&corner(x, y), 0.29, &bounds);
+        let sides = |x, y| plate.sides(&corner(x, y), [0.29, 0.1], &bounds);
         let [left, right] = sides(0.05, 2.0).expect("seen from the right, too");
         assert!((left.between() + right.between()).norm() < 1e-9);
         assert!((left.between() - corner(-1.0, 0.0)).norm() < 1e-4);
         assert!((left.depth() - 0.05).abs() < 1e-6 && (right.depth() - 0.25).abs() < 1e-6);
         assert!(sides(0.15, 2.0).is_some() && sides(0.15, 0.2).is_none(), "the end is 0.2 away");
-        assert_eq!(plate.sides(&corner(0.05, 2.0), 0.24, &bounds), None, "thicker than the reach");
+        assert_eq!(
+            plate.sides(&corner(0.05, 2.0), [0.24, 0.1], &bounds),
+            None,
+            "thicker than the reach"
+        );
     }
 
     #[test]
@@ -337,7 +354,7 @@ mod tests {
         let low = Vector::<3>::new(1.0, 0.0, -1.0);
         let pillar = Shape::cuboid(low, low + Vector::<3>::new(0.5, 0.5, 3.0)).unwrap();
         let bounds = (Vector::<3>::repeat(-3.0), Vector::<3>::repeat(5.0));
-        let way = |x, y| pillar.ways_out(&Vector::<3>::new(x, y, 0.5), &bounds).between();
+        let way = |x, y| pillar.ways_out(&Vector::<3>::new(x, y, 0.5), 0.0, &bounds).between();
         let diagonal = 0.5_f64.sqrt();
         for (x, y, sign_x, sign_y) in
             [(1.1, 0.1, -1.0, -1.0), (1.4, 0.1, 1.0, -1.0), (1.4, 0.4, 1.0, 1.0)]
@@ -349,6 +366,28 @@ mod tests {
         assert!((way(1.1, 0.2) - side).norm() < 2e-3, "on a side");
     }
 
+    /// A lattice of cells that are not as high as long, or that does not fit the shape: in the first layer behind a face is what is
+    /// less than a spacing behind it.
+    #[test]
+    fn in_the_first_layer_behind_two_faces_both_count() {
+        let block = Shape::cuboid(Vector::<2>::zeros(), Vector::<2>::new(1.0, 2.0)).unwrap();
+        let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
+        let faces = |x, y| block.ways_out(&Vector::<2>::new(x, y), 0.2, &bounds);
+        for [x, y] in [[0.1, 0.115], [0.115, 0.1], [0.1, 0.104], [0.02, 0.19], [0.19, 0.02]] {
+            let faces = faces(x, y);
+            assert_eq!(faces.normals().len(), 2, "{faces:?}");
+            for (normal, depth) in faces.normals().iter().zip(faces.depths()) {
+                let exact = if normal[0] < -0.5 { x } else { y };
+                // What is longer by less than 5 % counts as equally short.
+                let shared = if exact < 1.05 * x.min(y) { x.min(y) } else { exact };
+                assert!((depth - shared).abs() < 1e-9, "{depth} at {x}, {y}");
+            }
+        }
+        for [x, y] in [[0.1, 0.21], [0.3, 0.1], [0.3, 0.4]] {
+            assert_eq!(faces(x, y).normals().len(), 1, "{x}, {y}");
+        }
+    }
+
     /// Ways that differ by less than 1e-12 of their length count as equal: directions are off by the root of that.
     #[test]
     fn behind_the_corners_of_a_box_there_are_the_normals_of_its_sides() {
@@ -358,7 +397,7 @@ mod tests {
             let block = block.turned(angle, Vector::<2>::zeros(), nalgebra::Vector3::z()).unwrap();
             let turn = nalgebra::Rotation2::new(angle);
             for [x, y] in [[0.1, 0.1], [0.9, 0.1], [0.1, 1.9], [0.9, 1.9]] {
-                let faces = block.ways_out(&(turn * Vector::<2>::new(x, y)), &bounds);
+                let faces = block.ways_out(&(turn * Vector::<2>::new(x, y)), 0.0, &bounds);
                 assert_eq!(faces.normals().len(), 2, "{faces:?}");
                 let out = Vector::<2>::new(2.0 * x - 1.0, y - 1.0).map(f64::signum);
                 for normal in faces.normals() {
@@ -378,11 +417,29 @@ mod tests {
         let bounds = (Vector::<2>::repeat(-3.0), Vector::<2>::repeat(5.0));
         for angle in [0.1_f64, 0.9, 2.0, 4.0] {
             let radial = Vector::<2>::new(angle.cos(), angle.sin());
-            let way = ball.ways_out(&(center + radial * 0.4), &bounds).between();
-            // Lengths are found to 1e-8 m of 0.1 m, and grow with the square of the turn.
-            assert!((way - radial).norm() < 2e-3, "{way} for {radial}");
+            for layer in [0.0, 0.2] {
+                let faces = ball.ways_out(&(center + radial * 0.4), layer, &bounds);
+                // Lengths are found to 1e-8 m of 0.1 m, and grow with the square of the turn.
+                let way = faces.between();
+                assert!((way - radial).norm() < 2e-3, "{way} for {radial}");
+                assert_eq!(faces.normals().len(), 1, "{faces:?}");
+            }
+        }
+        // Two and a half, five and ten spacings of 0.1 m in radius, in the first layer and in the next.
+        let bounds = (Vector::<3>::repeat(-3.0), Vector::<3>::repeat(3.0));
+        for (radius, number) in
+            [0.25, 0.5, 1.0].into_iter().flat_map(|r| (0..40).map(move |n| (r, n)))
+        {
+            let ball = Shape::ball(Vector::<3>::zeros(), radius).unwrap();
+            let [turn, up] = [0.7 * f64::from(number), 0.05 * f64::from(number) - 0.975];
+            let around = (1.0 - up * up).sqrt();
+            let radial = Vector::<3>::new(around * turn.cos(), around * turn.sin(), up);
+            for depth in [0.02, 0.05, 0.09, 0.15] {
+                let faces = ball.ways_out(&(radial * (radius - depth)), 0.099, &bounds);
+                assert_eq!(faces.normals().len(), 1, "{depth} in {radius} at {radial}: {faces:?}");
+            }
         }
         // On the bounds there is no way out.
-        assert_eq!(ball.ways_out(&center, &(center, center)), Faces::default());
+        assert_eq!(ball.ways_out(&center, 0.0, &(center, center)), Faces::default());
     }
 }

@@ -271,6 +271,8 @@ pub struct Escape {
 pub enum Behind {
     /// The wall of this name, which it has gone through.
     Wall(String),
+    /// The end of the wall of this name, which has no face there, and which it has come over.
+    End(String),
     /// The box around everything.
     Box,
     /// The surface of a wall or a solid that it touches.

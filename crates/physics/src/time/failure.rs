@@ -59,6 +59,9 @@ pub enum Failure {
         particle.reference,
         match &escape.behind {
             Behind::Wall(wall) => format!("has passed through the wall `{wall}`, and is"),
+            Behind::End(wall) => {
+                format!("has come over the end of the wall `{wall}`, which has no face there, and is")
+            }
             Behind::Box => "has left the bounding box of the case, and is".into(),
             Behind::Reserve(name) => format!(
                 "cannot come in through the open boundary `{name}`, as no particle is left in the reserve to follow it, \

@@ -190,6 +190,88 @@ fn what_goes_round_a_wall_has_not_gone_through_it() {
     assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0));
 }
 
+/// Water that hits a wall next to its upper edge. The lattice of the wall is fitted to it: as 0.43 m are 8.6 spacings and
+/// 0.315 m are 6.3, its cells are 0.0478 m high and 0.0525 m long, and the particle at the edge is nearer to one of its
+/// faces.
+const EDGE: &str = r#"
+version = 1
+title = "Next to an edge"
+dimension = 2
+
+[[body]]
+name = "water"
+shape = { kind = "box", min = [0.35, "0.2 - below"], max = [0.75, "0.6 - below"] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 40.0, viscosity = 0.0 }
+initial = { velocity = ["-4", "0"] }
+
+[[body]]
+name = "wall"
+shape = { kind = "box", min = [0.0, 0.0], max = [0.315, 0.43] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 40.0, viscosity = 0.0 }
+wall = { slip = "free" }
+
+[[body]]
+name = "ground"
+shape = { kind = "union", of = [
+  { kind = "box", min = [-0.5, -0.2], max = [1.0, 0.0] },
+  { kind = "box", min = [0.8, 0.0], max = [1.0, 0.8] },
+] }
+spacing = 0.05
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 40.0, viscosity = 0.0 }
+wall = { slip = "free" }
+
+[parameters]
+below = 0.0
+
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+
+[time]
+end = 0.2
+
+[output]
+every = 0.2
+table_every = 0.002
+"#;
+
+#[test]
+fn both_faces_of_an_edge_hold_where_cells_are_longer_than_high() {
+    for below in [0.0, 0.01, 0.02, 0.03, 0.04] {
+        let finished = run(EDGE, &[&format!("parameters.below={below}")]);
+        assert_eq!(finished.summary.outcome, Outcome::Completed, "{below}");
+        assert!(values(&finished, "step.behind").iter().all(|count| *count == 0.0), "{below}");
+    }
+}
+
+/// The wall ends where everything does, and has no face there: what falls on its end is told as that, once it is in the
+/// wall and not before.
+#[test]
+fn what_falls_on_the_end_of_a_wall_has_not_gone_through_it() {
+    // It is back at the height of the rim after 0.65 s, in the middle of the wall.
+    let falls = "body.block.initial.velocity=['0.845', '3.5']";
+    let finished = run(RIM, &[falls]);
+    let Failure::Escaped { escape, .. } = failure(&finished) else {
+        panic!("{:?}", finished.summary.outcome)
+    };
+    assert_eq!(escape.behind, Behind::End("wall".into()));
+    // In a step it falls by 2.9 m/s * 0.25 * 1.3 * 0.05 m / 40 m/s.
+    assert!((-0.0012..0.0).contains(&escape.position[1]), "{escape:?}");
+    let message = failure(&finished).to_string();
+    for part in ["over the end of the wall `wall`", "longer", "scheme.escaped"] {
+        assert!(message.contains(part), "{message}");
+    }
+    let finished = run(RIM, &[falls, "scheme.escaped='remove'"]);
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    assert_eq!(values(&finished, "run.removed"), [8.0]);
+    assert!(values(&finished, "top.position.y").iter().any(|y| *y > 0.1));
+}
+
 #[test]
 fn what_leaves_the_box_is_named() {
     let set = ["body.block.initial.velocity=['0', '20']", "time.end=1", "time.max_speed=100"];

@@ -110,7 +110,7 @@ fn walls_of_facets_have_their_normals() {
     for shape in [surface.clone(), Shape::union(vec![far, surface]).unwrap()] {
         for x in places().filter(|x| (0.02..0.3).contains(&depth_of_torus(x))).take(200) {
             let ring = Vector::<3>::new(x.x, x.y, 0.0).normalize();
-            let faces = shape.ways_out(&x, &bounds);
+            let faces = shape.ways_out(&x, 0.0, &bounds);
             // A facet is an eightieth of a turn.
             let turned = faces.between().dot(&(x - ring).normalize());
             assert!(turned > (PI / 80.0_f64).cos() - 1e-3, "{turned} at {x}");
@@ -118,7 +118,7 @@ fn walls_of_facets_have_their_normals() {
         }
     }
     let cuboid = Shape::surface(Facets::new(cuboid([1.0; 3])).unwrap().into()).unwrap();
-    let faces = cuboid.ways_out(&Vector::<3>::new(0.1, 0.1, 0.5), &bounds);
+    let faces = cuboid.ways_out(&Vector::<3>::new(0.1, 0.1, 0.5), 0.0, &bounds);
     assert_eq!(faces.normals().len(), 2, "behind an edge: {faces:?}");
     // A tank has the walls of what is cut out of it, and on a facet there is its normal.
     let block = Shape::cuboid(Vector::<3>::repeat(-1.0), Vector::<3>::repeat(2.0)).unwrap();
@@ -126,15 +126,15 @@ fn walls_of_facets_have_their_normals() {
     for (x, shape, sign) in
         [(-0.2, &tank, 1.0), (0.0, &tank, 1.0), (0.0, &cuboid, -1.0), (0.2, &cuboid, -1.0)]
     {
-        let faces = shape.ways_out(&Vector::<3>::new(x, 0.45, 0.55), &bounds);
+        let faces = shape.ways_out(&Vector::<3>::new(x, 0.45, 0.55), 0.0, &bounds);
         assert_eq!(faces.normals().len(), 1, "{faces:?}");
         assert!((faces.between() - Vector::x() * sign).norm() < 1e-9, "{faces:?} at {x}");
         assert!((faces.depth() - x.abs()).abs() < 1e-9);
     }
     let askew = cuboid.clone().turned(0.3, Vector::zeros(), Vector::<3>::z()).unwrap();
-    let faces = askew.ways_out(&Vector::<3>::new(0.1, 0.4, 0.5), &bounds);
+    let faces = askew.ways_out(&Vector::<3>::new(0.1, 0.4, 0.5), 0.0, &bounds);
     assert!((faces.between() + Vector::<3>::new(0.3_f64.cos(), 0.3_f64.sin(), 0.0)).norm() < 1e-9);
-    let side = cuboid.ways_out(&Vector::<3>::new(0.1, 0.3, 0.5), &bounds);
+    let side = cuboid.ways_out(&Vector::<3>::new(0.1, 0.3, 0.5), 0.0, &bounds);
     assert_eq!(side.normals().len(), 1);
     assert!((side.between() + Vector::x()).norm() < 1e-12, "{side:?}");
 }

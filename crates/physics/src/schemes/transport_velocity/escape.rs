@@ -1,6 +1,7 @@
 //! Particles that leave the others: through a wall, or out of the box around everything.
 
 use super::Common;
+use super::extent::Extent;
 use crate::Vector;
 use crate::parallel;
 use crate::schemes::ledger::Total;
@@ -28,17 +29,41 @@ const ADVICE: &str = "if a few lost drops do not matter, `scheme.escaped = \"rem
     out and counts them; otherwise make the wall thicker than the support of the kernel and without \
     holes, raise the wave speed of the fluid, or lower `time.cfl`";
 
+/// What to change where particles come over the end of a wall.
+const END_ADVICE: &str = "if a few lost drops do not matter, `scheme.escaped = \"remove\"` takes them \
+    out and counts them; otherwise make the wall longer, so that nothing flies over its end, or close what it \
+    encloses";
+
+/// Where particles may be.
+pub(super) struct Room<const D: usize> {
+    /// Inside of this.
+    pub bounds: Extent<D>,
+    /// Beyond this is no wall.
+    pub walls: Extent<D>,
+}
+
+/// Where a particle has escaped to.
+enum Place<const D: usize> {
+    /// Out of the bounds.
+    Outside,
+    /// Into a wall, at the wall particle of this number.
+    Wall {
+        number: u32,
+        /// How far it is in front of the face of that in m, less than zero, and the normal.
+        height: f64,
+        normal: Vector<D>,
+    },
+}
+
 impl<const D: usize> Common<D> {
     /// See [`TransportVelocity::guard`](super::TransportVelocity::guard).
     pub(super) fn guard(&mut self, guard: Guard) {
-        let position = &self.particles.position;
-        let Some(&first) = position.first().filter(|_| !self.walls.is_empty()) else { return };
-        let low = position.iter().fold(first, |low, x| low.inf(x));
-        let high = position.iter().fold(first, |high, x| high.sup(x));
+        let all = Extent::around(self.particles.position.iter().copied());
+        let Some(all) = all.filter(|_| !self.walls.is_empty()) else { return };
         if guard.removes && self.removed.is_empty() {
-            self.removed = vec![false; position.len()];
+            self.removed = vec![false; self.particles.len()];
         }
-        self.guard = Some((guard, (high - low).max()));
+        self.guard = Some((guard, all.length()));
     }
 
     /// Whether a density is that of a particle that has been removed.
@@ -65,71 +90,76 @@ impl<const D: usize> Common<D> {
 
     /// The particles that have escaped in `state`, which has been loaded, by number.
     pub(super) fn escaped(&self, state: &[f64]) -> Vec<usize> {
-        let Some(bounds) = self.bounds(state).filter(|_| self.lost.is_none()) else {
+        let Some(room) = self.room(state).filter(|_| self.lost.is_none()) else {
             return Vec::new();
         };
         let count = self.particles.len();
         let any = parallel::maximum(count, 0.0, |place| {
-            f64::from(self.escape_at(place, &bounds).is_some())
+            f64::from(self.escape_at(place, &room).is_some())
         });
         if any == 0.0 {
             return Vec::new();
         }
         let places = self.support.list().places().iter().enumerate();
-        let escaped =
-            places.filter(|(_, place)| self.escape_at(**place as usize, &bounds).is_some());
+        let escaped = places.filter(|(_, place)| self.escape_at(**place as usize, &room).is_some());
         escaped.map(|(number, _)| number).collect()
     }
 
     /// What is known of a particle that has escaped in `state`, which has been loaded.
     pub(super) fn escape_of(&self, number: usize, state: &[f64]) -> Option<Escape> {
-        let (guard, bounds) = (&self.guard.as_ref()?.0, self.bounds(state)?);
-        let wall = self.escape_at(self.support.list().places()[number] as usize, &bounds)?;
-        let at = self.columns(state);
-        let name = |wall: u32| guard.bodies.get(self.particles.body[wall as usize] as usize);
-        Some(Escape {
-            position: at.position[number].iter().copied().collect(),
-            speed: at.velocity[number].norm(),
-            behind: wall
-                .map_or(Behind::Box, |wall| Behind::Wall(name(wall).cloned().unwrap_or_default())),
-            advice: ADVICE,
-        })
+        let (guard, room) = (&self.guard.as_ref()?.0, self.room(state)?);
+        let (list, at) = (self.support.list(), self.columns(state));
+        let (position, velocity) = (&at.position[number], &at.velocity[number]);
+        let (behind, advice) = match self.escape_at(list.places()[number] as usize, &room)? {
+            Place::Outside => (Behind::Box, ADVICE),
+            Place::Wall { number, height, normal } => {
+                let body = self.particles.body[number as usize] as usize;
+                let name = guard.bodies.get(body).cloned().unwrap_or_default();
+                // What moves into the wall has come through that of its planes which it has passed last.
+                let (inwards, all) = (-velocity.dot(&normal), list.domain());
+                let through = if inwards > 0.0 { -height / inwards } else { f64::INFINITY };
+                match room.walls.since(position, velocity, all) < through {
+                    true => (Behind::End(name), END_ADVICE),
+                    false => (Behind::Wall(name), ADVICE),
+                }
+            }
+        };
+        let (position, speed) = (position.iter().copied().collect(), velocity.norm());
+        Some(Escape { position, speed, behind, advice })
     }
 
-    /// The box that the fluid may be in, if anybody asks.
-    pub(super) fn bounds(&self, state: &[f64]) -> Option<(Vector<D>, Vector<D>)> {
-        let reach = Vector::repeat(self.guard.as_ref()?.1);
-        let mut bounds: Option<(Vector<D>, Vector<D>)> = None;
-        let at = self.columns(state);
-        for wall in &self.walls {
-            let position = at.position[wall.number as usize];
-            let (low, high) = bounds.unwrap_or((position, position));
-            bounds = Some((low.inf(&position), high.sup(&position)));
-        }
-        bounds.map(|(low, high)| (low - reach, high + reach))
+    /// Where particles may be in `state`, if anybody asks.
+    pub(super) fn room(&self, state: &[f64]) -> Option<Room<D>> {
+        let (_, reach) = self.guard.as_ref()?;
+        let walls = self.extent_of_walls(state)?;
+        let half = 0.5 * self.particles.spacing[0];
+        Some(Room { bounds: walls.widened(reach - half), walls })
     }
 
-    /// The number of the wall particle behind which the one at `place` is, or `Some(None)` if it
-    /// has left the bounds.
-    fn escape_at(&self, place: usize, bounds: &(Vector<D>, Vector<D>)) -> Option<Option<u32>> {
+    /// The box around the cells of all particles of walls in `state`.
+    pub(super) fn extent_of_walls(&self, state: &[f64]) -> Option<Extent<D>> {
+        let at = self.columns(state);
+        let places = self.walls.iter().map(|wall| at.position[wall.number as usize]);
+        Extent::around(places).map(|all| all.widened(0.5 * self.particles.spacing[0]))
+    }
+
+    /// Where the particle at `place` has escaped to, if it has.
+    fn escape_at(&self, place: usize, room: &Room<D>) -> Option<Place<D>> {
         let list = self.support.list();
         // Of those that follow another level that one sees whether they are where they must not be.
         if list.is_passive(place) || self.is_wall[list.numbers()[place] as usize] {
             return None;
         }
         let position = &list.positions()[place];
-        let periodic = list.domain().periodic();
-        if (0..D).any(|axis| {
-            let inside = bounds.0[axis]..=bounds.1[axis];
-            periodic[axis].is_none() && !inside.contains(&position[axis])
-        }) {
-            return Some(None);
+        if !room.bounds.contains(position, list.domain()) {
+            return Some(Place::Outside);
         }
         let depth = -TOLERANCE * self.particles.spacing[0];
         let reach = self.support.kernel().support_radius(self.support.smoothing_length());
         let (number, way) = self.wall_behind(place, reach, |place| list.positions()[place])?;
-        let (_, normal) = self.inside(self.wall_of(number)?, &way)?;
-        (way.dot(normal) < depth).then_some(Some(number))
+        let (height, normal) = self.inside(self.wall_of(number)?, &way)?;
+        let is_in = way.dot(normal) < depth && room.walls.contains(position, list.domain());
+        is_in.then_some(Place::Wall { number, height, normal: *normal })
     }
 
     /// The number of the wall particle that is nearest to the one at `place`, with the way from there; nothing

@@ -35,6 +35,7 @@ mod continua;
 mod continuum;
 mod device;
 mod escape;
+mod extent;
 mod fields;
 mod fluid;
 mod forces;

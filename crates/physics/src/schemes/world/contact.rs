@@ -162,10 +162,11 @@ impl<const D: usize> Contact<D> {
                 return;
             };
             let first = made.origins.len();
-            for (face, normal) in faces.normals().iter().enumerate() {
+            let all = faces.normals().iter().zip(faces.depths());
+            for (face, (normal, depth)) in all.enumerate() {
                 made.together.push([first, first + faces.normals().len()]);
                 made.origins.push(origin(face));
-                made.offsets.push(normal * faces.depth());
+                made.offsets.push(normal * *depth);
                 made.normals.push(*normal);
                 made.densities.push(density);
             }

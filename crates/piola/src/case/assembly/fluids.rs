@@ -329,6 +329,9 @@ fn walls(case: &Case) -> Vec<Wall> {
     bodies.filter_map(wall).collect()
 }
 
+/// How deep behind a face in spacings particles are its first layer: where that is on the face, the next is a spacing behind it.
+const FIRST: f64 = 0.99;
+
 /// The shape of all walls together, and the faces that their particles are behind: the shortest ways
 /// out of all walls together, inside the box around all bodies, so that the outer faces of a tank do
 /// not count. In a periodic box the box itself is no wall either. Bodies of other systems come away from the walls:
@@ -375,10 +378,11 @@ fn faces<const D: usize>(
     crate::parallel::for_each_chunk(&mut faces, |first, rows| {
         for (offset, row) in rows.iter_mut().enumerate() {
             let (x, body) = (&particles.position[first + offset], particles.body[first + offset]);
+            let layer = FIRST * particles.spacing[first + offset];
             if let Some((_, shape)) = moving.iter().find(|(number, _)| *number == body) {
                 let bounds = everywhere(case, shape);
                 let is_first = particles.id[first + offset] < first_twin;
-                *row = match shape.sides(x, support, &bounds) {
+                *row = match shape.sides(x, [support, layer], &bounds) {
                     Some([front, back]) => {
                         if is_first {
                             front
@@ -386,10 +390,10 @@ fn faces<const D: usize>(
                             back
                         }
                     }
-                    None => shape.ways_out(x, &bounds),
+                    None => shape.ways_out(x, layer, &bounds),
                 };
             } else if let (Some(walls), true) = (&walls, is_wall[body as usize]) {
-                *row = walls.ways_out(x, &bounds);
+                *row = walls.ways_out(x, layer, &bounds);
             }
         }
     });
@@ -408,7 +412,9 @@ fn double_thin<const D: usize>(
     for (number, shape) in moving(case)? {
         let bounds = everywhere(case, &shape);
         let own = (0..first).filter(|&a| particles.body[a] == number);
-        let is_thin = |a: &usize| shape.sides(&particles.position[*a], support, &bounds).is_some();
+        let reach = |a: usize| [support, FIRST * particles.spacing[a]];
+        let is_thin =
+            |a: &usize| shape.sides(&particles.position[*a], reach(*a), &bounds).is_some();
         let thin: Vec<usize> = own.filter(is_thin).collect();
         thin.into_iter().for_each(|a| particles.repeat(a, number));
     }

@@ -23,7 +23,8 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
         return Err(vec![case.problem_at(region.place, message, "no meaning here", help)]);
     }
     let (fluid, built) = fluids::build_fluid(&main, settings, particles, reports, domain)?;
-    let mut all = vec![Built { warnings: [built.warnings, far].concat(), ..built }];
+    let warnings = [built.warnings, far, unheld(&main).into_iter().collect()].concat();
+    let mut all = vec![Built { warnings, ..built }];
     let (mut solids, mut integrators) = (Vec::new(), Vec::<Box<dyn Integrator>>::new());
     for (number, named) in case.systems.iter().enumerate() {
         let part = case.part(Some(number));
@@ -73,6 +74,23 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
     })?;
     let built = together(case, all, &world);
     Ok((Box::new(world), Box::new(Coupled::new(integrators)), built))
+}
+
+/// A warning of a fluid that only solids could hold or move.
+fn unheld(main: &Case) -> Option<String> {
+    let bounds = |body: &model::Body| body.wall.is_some() || body.opening.is_some();
+    let fluid = main.bodies.iter().find(|body| !bounds(body))?;
+    let is_held = main.bodies.iter().any(|body| body.system.is_none() && bounds(body))
+        || main.domain.periodic.iter().any(Option::is_some)
+        || main.loads.iter().any(|load| matches!(load.kind, model::LoadKind::BodyForce { .. }));
+    (!is_held).then(|| {
+        format!(
+            "nothing holds the fluid `{}`: there is no wall, no opening, no periodic axis and no body force, so that it \
+             goes on as it starts but for what solids do to it; add a wall, make the domain periodic, or add a \
+             `[[load]]` of the kind `body_force`",
+            fluid.name.value
+        )
+    })
 }
 
 /// What has been built of all systems, with particles by their index in the run.

@@ -152,7 +152,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Kind::Name(ESCAPES),
             "",
             Default("\"stop\""),
-            "what happens to a particle that passes through a wall or leaves the bounding box; no meaning for solids in a fluid",
+            "what happens to a particle that passes through a wall, falls on the end of one or leaves the bounding box; no meaning for solids in a fluid",
         ),
         key(
             "reserve",

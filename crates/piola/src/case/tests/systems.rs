@@ -251,9 +251,33 @@ fn what_does_not_fit_together_is_named_in_its_place() {
             "min = [0.0, 0.4], max = [1.0, 0.7]",
             "overlaps another",
         ),
+        ("max = [1.0, 0.8]", "max = [1.0, 0.6]", "the solid has too few particles around"),
     ];
     for (from, to, expected) in faults {
         let said = said(from, to);
         assert!(said.contains(expected) && said.contains("case.toml:"), "for {to}\n{said}");
+    }
+}
+
+/// A wall, a periodic axis, or gravity.
+#[test]
+fn a_fluid_that_nothing_holds_is_warned_of() {
+    let warns = |text: &str| {
+        let case = read_with(text, &[]).unwrap_or_else(|problems| panic!("{problems}"));
+        let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+        let warnings = session.plan().warnings;
+        warnings.iter().any(|text| text.starts_with("nothing holds the fluid `water`"))
+    };
+    assert!(warns(GOOD), "a solid does not");
+    let wall = GOOD[GOOD.find("[[body]]").expect("water")
+        ..GOOD.find("[[body]]\nname = \"block\"").expect("block")]
+        .replace("water", "floor")
+        .replace("min = [0.0, 0.0], max = [1.0, 0.5]", "min = [0.0, -0.3], max = [1.0, 0.0]");
+    for more in [
+        format!("{wall}wall = {{ slip = \"no\" }}\n"),
+        "[domain]\nperiodic = { x = [0.0, 1.0] }\n".to_owned(),
+        "[[load]]\nkind = \"body_force\"\nacceleration = [\"0\", \"-9.81\"]\n".to_owned(),
+    ] {
+        assert!(!warns(&format!("{GOOD}{more}")), "{more}");
     }
 }

@@ -131,7 +131,7 @@ impl<const D: usize> TransportVelocity<D> {
             falls: !common.body_forces.is_empty(),
             normals: self.most_normals(),
             spacing: common.particles.spacing[0],
-            bounds: common.bounds(&self.start).map(|(low, high)| [low.into(), high.into()]),
+            room: common.room(&self.start),
         };
         let count = common.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
@@ -211,10 +211,12 @@ impl<const D: usize> TransportVelocity<D> {
             let normals = faces.normals();
             row[0] = normals.len() as f64;
             row[1] = f64::from(u8::from(wall.slip == Slip::Free));
-            row[2] = faces.depth();
-            row[3..][..D].copy_from_slice(faces.between().as_slice());
-            let own = normals.iter().take(most).flat_map(|normal| normal.iter());
-            row[3 + D..].iter_mut().zip(own).for_each(|(to, component)| *to = *component);
+            row[2..][..D].copy_from_slice(faces.between().as_slice());
+            let own = normals.iter().zip(faces.depths()).take(most);
+            for (to, (normal, depth)) in row[2 + D..].chunks_exact_mut(1 + D).zip(own) {
+                to[0] = *depth;
+                to[1..].copy_from_slice(normal.as_slice());
+            }
         }
         all
     }

@@ -16,6 +16,7 @@ use piola_formulas::pairs::fluid::{ForceConstants, RateConstants};
 
 use self::passes::{FIGURES, drift_terms, kick_terms};
 use super::Fluid;
+use super::escape::Room;
 use super::fluid::{ACCELERATING, Barrier, DRIFTING, LEDGER};
 use super::inspect::step_limits;
 use super::ledger::{Drift, Kick};
@@ -58,8 +59,8 @@ struct Plan<const D: usize> {
     /// Most normals of a wall particle; 0 without walls.
     normals: usize,
     spacing: f64,
-    /// Least and largest coordinates in m of particles that have not escaped, if anybody asks.
-    bounds: Option<[[f64; D]; 2]>,
+    /// Where particles may be, if anybody asks.
+    room: Option<Room<D>>,
     compliance: f64,
 }
 
@@ -271,7 +272,7 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
 
     #[inline(never)]
     fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, DeviceError> {
-        if self.plan.bounds.is_some() {
+        if self.plan.room.is_some() {
             if !self.is_picked {
                 self.load()?;
             }

@@ -6,25 +6,24 @@ use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
 use piola_formulas::pairs::{Components, One};
 use piola_formulas::{Number, fluid};
 
-use super::super::escape::TOLERANCE;
+use super::super::escape::{Room, TOLERANCE};
 use super::super::fluid::{ACCELERATING, TOUCH};
 use super::super::walls::{BESIDE, is_in_cell};
 use super::Plan;
 use super::passes::{FORCES, Vector, flat, one, side, side_width, square, take};
 
-/// The faces of a wall particle as numbers: how many they are, whether the wall lets slip, how deep it
-/// is behind them, the normal between them, and all normals.
+/// The faces of a wall particle as numbers: how many they are, whether the wall lets slip, the normal between
+/// them, and how deep it is behind each, with its normal.
 struct Faces<const D: usize> {
     count: Traced,
     slips: Traced,
-    depth: Traced,
     between: Vector<D>,
-    normals: Vec<Vector<D>>,
+    all: Vec<(Traced, Vector<D>)>,
 }
 
 /// Numbers of the faces of a wall particle with so many normals.
 pub(super) const fn faces_width(dimension: usize, normals: usize) -> usize {
-    3 + dimension * (1 + normals)
+    2 + dimension + normals * (1 + dimension)
 }
 
 impl<const D: usize> Faces<D> {
@@ -32,9 +31,8 @@ impl<const D: usize> Faces<D> {
         Self {
             count: one(numbers),
             slips: one(numbers),
-            depth: one(numbers),
             between: take(numbers),
-            normals: (0..count).map(|_| take(numbers)).collect(),
+            all: (0..count).map(|_| (one(numbers), take(numbers))).collect(),
         }
     }
 
@@ -42,7 +40,7 @@ impl<const D: usize> Faces<D> {
     fn towards(&self, direction: &Vector<D>) -> Vector<D> {
         let zero = Traced::from(0.0);
         let mut sum = Vector::<D>::repeat(zero);
-        for (k, normal) in self.normals.iter().enumerate() {
+        for (k, (_, normal)) in self.all.iter().enumerate() {
             let along = direction.dot(normal);
             let part = normal * Traced::select(along.above(0.0), along, zero);
             let is_face = self.count.above(k as f64 + 0.5);
@@ -59,10 +57,10 @@ impl<const D: usize> Faces<D> {
     /// As [`super::super::Common::over`]: whether a place is over a face, how far in front of
     /// it, and the normal.
     fn over(&self, way: &Vector<D>, spacing: f64) -> (<Traced as Number>::Mask, Traced, Vector<D>) {
-        let height = |normal: &Vector<D>| way.dot(normal) - self.depth;
-        let mut best = (height(&self.normals[0]), self.normals[0]);
-        for (k, normal) in self.normals.iter().enumerate().skip(1) {
-            let other = height(normal);
+        let height = |(depth, normal): &(Traced, Vector<D>)| way.dot(normal) - *depth;
+        let mut best = (height(&self.all[0]), self.all[0].1);
+        for (k, face) in self.all.iter().enumerate().skip(1) {
+            let (other, normal) = (height(face), &face.1);
             let is_better = self.count.above(k as f64 + 0.5) & best.0.less(other);
             best = (Traced::select(is_better, other, best.0), pick(is_better, normal, &best.1));
         }
@@ -101,7 +99,7 @@ impl<const D: usize> Plan<D> {
             self.add_holds(language),
             self.bear(language, space),
         ];
-        all.extend(self.bounds.map(|bounds| self.escape(language, space, bounds)));
+        all.extend(self.room.as_ref().map(|room| self.escape(language, space, room)));
         all
     }
 
@@ -257,10 +255,9 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Which particles have gone through a wall, or out of the box around everything.
-    fn escape(&self, language: Language, space: &Space<D>, bounds: [[f64; D]; 2]) -> Pass {
+    fn escape(&self, language: Language, space: &Space<D>, room: &Room<D>) -> Pass {
         let others = [through("numbers", "faces", self.faces_width())];
         let spacing = self.spacing;
-        let [low, high] = bounds;
         Gather::<(One, One), D>::new(language, "escape", space, Among::Active, Order::Fold)
             .start(&[], |_| (Traced::from(f64::INFINITY), Traced::from(0.0)))
             .fold(&[], &others, Among::Passive, |meeting, (nearest, is_through)| {
@@ -279,10 +276,12 @@ impl<const D: usize> Plan<D> {
             })
             .close(&[], &[own("place", D)], &[own("escaped", 1)], |(_, is_through), x| {
                 let mut escaped = *is_through;
-                for axis in (0..D).filter(|axis| self.periods[*axis].is_none()) {
-                    let (low, high) = (Traced::from(low[axis]), Traced::from(high[axis]));
-                    let is_inside = low.at_most(x[axis]) & x[axis].at_most(high);
-                    escaped = Traced::select(is_inside, escaped, Traced::from(1.0));
+                for (extent, outside) in [(&room.walls, 0.0), (&room.bounds, 1.0)] {
+                    for axis in (0..D).filter(|axis| self.periods[*axis].is_none()) {
+                        let [low, high] = [extent.low[axis], extent.high[axis]].map(Traced::from);
+                        let is_inside = low.at_most(x[axis]) & x[axis].at_most(high);
+                        escaped = Traced::select(is_inside, escaped, Traced::from(outside));
+                    }
                 }
                 vec![escaped]
             })

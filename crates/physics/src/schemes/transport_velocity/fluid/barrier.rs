@@ -4,6 +4,7 @@ use piola_formulas::kernels::Needs;
 
 use super::WeaklyCompressible;
 use crate::operators::{Among, NeighborBlock, visit};
+use crate::schemes::transport_velocity::extent::Extent;
 use crate::schemes::transport_velocity::{Common, Shifting};
 use crate::{Vector, parallel};
 
@@ -149,16 +150,23 @@ impl<const D: usize> WeaklyCompressible<D> {
         if self.holds.is_empty() {
             return 0.0;
         }
-        let list = common.support.list();
+        let (list, Some(walls)) = (common.support.list(), common.extent_of_walls(state)) else {
+            return 0.0;
+        };
         parallel::sum(list.numbers().len(), |place| {
             let counts = !common.is_wall[list.numbers()[place] as usize];
-            f64::from(u8::from(counts && is_behind(common, place, state)))
+            f64::from(u8::from(counts && is_behind(common, place, state, &walls)))
         })
     }
 }
 
-/// Whether the particle at `place` is behind the face of the wall particle that is nearest.
-fn is_behind<const D: usize>(common: &Common<D>, place: usize, state: &[f64]) -> bool {
+/// Whether the particle at `place` is behind the face of the wall particle that is nearest, in the box around walls.
+fn is_behind<const D: usize>(
+    common: &Common<D>,
+    place: usize,
+    state: &[f64],
+    walls: &Extent<D>,
+) -> bool {
     let list = common.support.list();
     let at = common.columns(state);
     let position = |place: usize| at.position[list.numbers()[place] as usize];
@@ -166,5 +174,6 @@ fn is_behind<const D: usize>(common: &Common<D>, place: usize, state: &[f64]) ->
     common.wall_behind(place, f64::INFINITY, position).is_some_and(|(number, way)| {
         let inside = common.wall_of(number).and_then(|index| common.inside(index, &way));
         inside.is_some_and(|(height, _)| height < -BEHIND * common.particles.spacing[0])
+            && walls.contains(&position(place), list.domain())
     })
 }
