@@ -133,20 +133,22 @@ impl Body {
     /// Gives a field other values.
     fn __setitem__(&self, py: Python<'_>, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let number = self.number;
-        let read = self.with(py, |session| {
+        let shape = self.with(py, |session| {
             let column = session.column(name)?;
-            Ok((column, session.particles_of(number), session.case().dimension))
+            let count = session.particles_of(number).len();
+            Ok(column.description.kind.shape(count, session.case().dimension))
         })?;
-        let (mut column, particles, dimension) =
-            read.map_err(|error: ColumnError| column_error(&error))?;
-        let shape = column.description.kind.shape(particles.len(), dimension);
+        let shape = shape.map_err(|error: ColumnError| column_error(&error))?;
         let given = numbers(&format!("`{name}` of {}", self.label()), values, &shape)?;
         let width = shape[1..].iter().product::<usize>();
-        for (particle, row) in particles.iter().zip(given.chunks_exact(width)) {
-            column.values[particle * width..(particle + 1) * width].copy_from_slice(row);
-        }
         let simulation = self.simulation.get();
+        // Another thread may have taken steps since: the values of all others are read here, not before.
         let set = self.with(py, |session| {
+            let mut column = session.column(name)?;
+            let particles = session.particles_of(number);
+            for (particle, row) in particles.iter().zip(given.chunks_exact(width)) {
+                column.values[particle * width..(particle + 1) * width].copy_from_slice(row);
+            }
             let set = session.set(name, &column.values);
             if set.is_ok() {
                 simulation.note(session);

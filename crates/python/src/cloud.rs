@@ -16,7 +16,8 @@ use crate::arrays::{array, floats, numbers, shape_text};
 /// volumes: array of shape (particles,) in m^D, or one number for all.
 ///
 /// Arrays are copied: integers and 32-bit floats are converted, in any order in memory. A body made of a cloud has no key
-/// `spacing`. Its particles are reordered in memory: `body.ids - body.ids.min()` has the row of each in these arrays.
+/// `spacing`. Its particles are reordered in memory: `body.ids - body.ids.min()`, taken at the start, has the row of each in
+/// these arrays.
 ///
 /// Raises ValueError for a wrong shape, NaN or infinity, a volume that is not above 0 and points that are equal, with the
 /// number of the particle, and TypeError for other types.

@@ -157,9 +157,7 @@ impl Registry {
 
     /// Takes points in, and returns what stands for them.
     pub fn add_cloud(&mut self, cloud: &Arc<PointCloud>) -> String {
-        let name = format!("cloud_{}", self.clouds.names().count());
-        self.clouds.insert(name.as_str(), Arc::clone(cloud));
-        format!("@{name}")
+        format!("@{}", self.clouds.add(cloud))
     }
 }
 

@@ -50,8 +50,8 @@ pub fn there(simulation: &Simulation, moment: Standing) -> PyResult<&Simulation>
         return Ok(simulation);
     }
     Err(PyRuntimeError::new_err(format!(
-        "this is of t = {} s, and the run has continued to t = {} s: read what you need in time; \
-         arrays remain valid",
+        "this is of t = {} s, and the state has changed since (it is at t = {} s now): read what \
+         you need before a step or a new value; arrays remain valid",
         moment.progress.time, now.progress.time
     )))
 }

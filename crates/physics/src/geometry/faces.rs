@@ -48,16 +48,13 @@ impl<const D: usize> Faces<D> {
     /// has no inverse leaves them as they are.
     pub fn follow(&mut self, rest: &Self, deformation: &Tensor<D>) {
         let Some(inverse) = tensor::inverse(deformation) else { return };
-        let mut thinned = f64::INFINITY;
         self.normals.clear();
-        self.normals.extend(rest.normals.iter().map(|normal| {
-            let (turned, stretched) = turned(&inverse, normal);
-            thinned = thinned.min(1.0 / stretched);
-            turned
-        }));
-        let thinned = if thinned.is_finite() { thinned } else { 1.0 };
         self.depths.clear();
-        self.depths.extend(rest.depths.iter().map(|depth| depth * thinned));
+        for (normal, depth) in rest.normals.iter().zip(&rest.depths) {
+            let (turned, stretched) = turned(&inverse, normal);
+            self.normals.push(turned);
+            self.depths.push(depth / stretched);
+        }
     }
 
     /// The unit normal between those of the faces; zero if there is none.
@@ -118,6 +115,12 @@ mod tests {
         assert!((faces.normals[0] - rest.normals[0]).norm() < 1e-15 && faces.depth() == 0.1);
         faces.follow(&rest, &Tensor::from([[1.0, 0.0], [0.0, 2.0]]));
         assert_eq!((faces.normals[0], faces.depth()), (rest.normals[0], 0.2));
+        // What is pulled along one face is as thin as before behind that, and thicker behind the other.
+        let (x, y) = (Vector::<2>::new(1.0, 0.0), Vector::<2>::new(0.0, 1.0));
+        let edge: Faces<2> = [(x, 0.1), (y, 0.3)].into_iter().collect();
+        let mut pulled = edge.clone();
+        pulled.follow(&edge, &Tensor::from([[0.5, 0.0], [0.0, 2.0]]));
+        assert_eq!((pulled.normals(), pulled.depths()), (&[x, y][..], &[0.05, 0.6][..]));
         // A quarter turn to the left.
         faces.follow(&rest, &Tensor::from([[0.0, 1.0], [-1.0, 0.0]]));
         assert!((faces.normals[0] - Vector::<2>::new(-1.0, 0.0)).norm() < 1e-15);

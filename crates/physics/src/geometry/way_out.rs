@@ -41,9 +41,10 @@ impl<const D: usize> Shape<D> {
             let shift = inward * (SHIFT * extent);
             if self.depth(&(point + shift)) > ON_FACET * extent {
                 let faces = self.ways_out(&(point + shift), layer, bounds);
-                let back = faces.normals().first().map_or(0.0, |normal| shift.dot(normal));
                 let faces = faces.normals().iter().zip(faces.depths());
-                return faces.map(|(normal, depth)| (*normal, (depth + back).max(0.0))).collect();
+                let back =
+                    |(normal, depth): (&Vector<D>, &f64)| (depth + shift.dot(normal)).max(0.0);
+                return faces.map(|face| (*face.0, back(face))).collect();
             }
         }
         let length = |direction: &Vector<D>| self.walk(point, direction, bounds, extent);

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use sha2::{Digest, Sha256};
+
 use crate::boundaries::SpaceTime;
 use crate::geometry::PointCloud;
 
@@ -39,6 +41,23 @@ impl<T: ?Sized> Named<T> {
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(|(name, _)| name.as_str())
     }
+}
+
+impl Clouds {
+    /// Adds a cloud by a name that tells its numbers from others, and returns that.
+    pub fn add(&mut self, cloud: &Arc<PointCloud>) -> String {
+        let sum = numbers_of(cloud, Sha256::new()).finalize();
+        let digits: String = sum.iter().take(6).map(|byte| format!("{byte:02x}")).collect();
+        let name = format!("cloud_{digits}");
+        self.insert(name.as_str(), Arc::clone(cloud));
+        name
+    }
+}
+
+/// A sum that knows of the positions and volumes of a cloud.
+pub(super) fn numbers_of(cloud: &PointCloud, sum: Sha256) -> Sha256 {
+    let numbers = cloud.positions().iter().chain(cloud.volumes());
+    numbers.fold(sum, |sum, number| sum.chain_update(number.to_le_bytes()))
 }
 
 impl<T: ?Sized> Clone for Named<T> {

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::document::{self, Node, Table, Value};
-use super::model::Case;
+use super::functions::numbers_of;
+use super::model::{Case, Shape};
 use super::session::RunError;
 use crate::observe::{Tables, WrittenFiles};
 use crate::output::ResultsFolder;
@@ -57,6 +58,11 @@ pub(super) fn identity(case: &Case, scheme: &dyn Scheme) -> Identity {
     let mut sum = Sha256::new().chain_update(document::write(&without_free(tree)));
     // Their defaults depend on the end.
     outputs.iter().for_each(|interval| sum.update(interval.to_le_bytes()));
+    for body in &case.bodies {
+        if let Shape::Cloud { cloud: Some(cloud), .. } = &body.shape.value {
+            sum = numbers_of(cloud, sum);
+        }
+    }
     scheme.ids().iter().for_each(|id| sum.update(id.to_le_bytes()));
     scheme.initial_state().iter().for_each(|number| sum.update(number.to_le_bytes()));
     sum.finalize().into()

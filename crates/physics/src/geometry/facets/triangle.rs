@@ -88,8 +88,10 @@ pub(super) fn passage(triangle: &Triangle, from: &Vector<3>, to: &Vector<3>) -> 
     };
     // The sides of its plane on which the ends of the way are.
     let beyond = a - way;
-    let ends =
-        [sure(-normal.dot(&a), size * a.norm()), sure(-normal.dot(&beyond), size * beyond.norm())];
+    let ends = [
+        sure(-normal.dot(&a), size * a.norm()),
+        sure(-normal.dot(&beyond), size * (a.norm() + way.norm())),
+    ];
     if ends[0] * ends[1] > 0 {
         return Some(0);
     }

@@ -8,7 +8,8 @@ use piola_formulas::kernels::Kernel;
 use thiserror::Error;
 
 use crate::geometry::{
-    FillReport, GeometryError, LatticeSpec, Particles, Placement, Probe, Shape, Surface, fill,
+    FillReport, GeometryError, LatticeSpec, MOST_SITES, Particles, Placement, Probe, Shape,
+    Surface, fill,
 };
 use crate::neighbors::{Domain, NeighborError, search};
 use crate::{Tensor, Vector, parallel};
@@ -28,6 +29,20 @@ pub enum PackingError {
     /// No lattice fills it either.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// It is so thin for its extent, or its particles are so small, that the grid around it has too many cells.
+    #[error(
+        "particles {width:.1e} m apart in a body of {extent:.1?} m need a grid of about \
+         {estimate:.0e} cells around it, expected at most {:.0e}: the body is too thin for its \
+         extent, or the spacing too small, for packed particles; use a lattice", MOST_SITES as f64
+    )]
+    TooThin {
+        /// Distance of particles in m.
+        width: f64,
+        /// Extent of the body in m.
+        extent: Vec<f64>,
+        /// Number of cells.
+        estimate: f64,
+    },
     /// Its particles have too many neighbours, or are too many.
     #[error(transparent)]
     Neighbors(#[from] NeighborError),

@@ -1,7 +1,7 @@
 //! What completes the support of particles beyond the boundary of a shape.
 
-use super::{KERNEL, REACH, smoothing};
-use crate::geometry::{GeometryError, MOST_SITES, Probe, Shape};
+use super::{KERNEL, PackingError, REACH, smoothing};
+use crate::geometry::{MOST_SITES, Probe, Shape};
 use crate::{Vector, parallel};
 
 /// Cells of the grid along a spacing.
@@ -27,7 +27,7 @@ impl<const D: usize> Outside<D> {
     ///
     /// # Errors
     /// A shape that is so thin for its extent that the grid has too many cells.
-    pub fn new(shape: &Shape<D>, width: f64) -> Result<Self, GeometryError> {
+    pub fn new(shape: &Shape<D>, width: f64) -> Result<Self, PackingError> {
         let (edge, reach) = (width / FINER, REACH * width);
         let margin = reach + BEYOND * width + edge;
         let (min, max) = shape.bounding_box();
@@ -35,8 +35,8 @@ impl<const D: usize> Outside<D> {
         let extent = (max - min).add_scalar(2.0 * margin);
         let estimate: f64 = extent.iter().map(|extent| extent / edge + 2.0).product();
         if !(estimate <= MOST_SITES as f64) {
-            let extent = extent.as_slice().to_vec();
-            return Err(GeometryError::TooManySites { spacing: edge, extent, estimate });
+            let extent = (max - min).as_slice().to_vec();
+            return Err(PackingError::TooThin { width, extent, estimate });
         }
         let counts = std::array::from_fn(|axis| (extent[axis] / edge).ceil() as usize + 1);
         let mut own = Self { origin, edge, counts, sums: Vec::new(), width };

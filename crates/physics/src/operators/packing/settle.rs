@@ -24,6 +24,8 @@ const AFTER: usize = 5;
 const SHORTER: f64 = 0.5;
 const TURNED: f64 = 0.1;
 const LESS: f64 = 0.99;
+/// The shortest step, of the longest.
+const SHORTEST: f64 = 1e-3;
 
 /// A particle on its way.
 #[derive(Clone, Copy)]
@@ -111,7 +113,7 @@ pub(super) fn settle<const D: usize>(
             }
         } else {
             all.iter_mut().for_each(|own| own.velocity.fill(0.0));
-            (step, turned, downhill) = (SHORTER * step, TURNED, 0);
+            (step, turned, downhill) = ((SHORTER * step).max(SHORTEST * longest), TURNED, 0);
         }
         all.iter_mut().for_each(|own| own.velocity += own.force * step);
         shift(&mut all, shape, width, step);

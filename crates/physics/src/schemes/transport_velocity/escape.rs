@@ -117,8 +117,8 @@ impl<const D: usize> Common<D> {
                 let name = guard.bodies.get(body).cloned().unwrap_or_default();
                 // What moves into the wall has come through that of its planes which it has passed last.
                 let (inwards, all) = (-velocity.dot(&normal), list.domain());
-                let through = if inwards > 0.0 { -height / inwards } else { f64::INFINITY };
-                match room.walls.since(position, velocity, all) < through {
+                let is_later = room.walls.since(position, velocity, all) < -height / inwards;
+                match inwards > 0.0 && is_later {
                     true => (Behind::End(name), END_ADVICE),
                     false => (Behind::Wall(name), ADVICE),
                 }

@@ -155,6 +155,12 @@ fn packed<const D: usize>(
         let label = format!("body `{}`", *body.name);
         return Err(case.problem_at(body.shape.place, message, label, None));
     }
+    if body.shape.has_seams() {
+        let message = "packed particles stay away from all faces, also from those inside a union, where \
+             its shapes meet; use a lattice, or one outline or surface around all of it";
+        let label = format!("body `{}`", *body.name);
+        return Err(case.problem_at(body.shape.place, message, label, None));
+    }
     if spec.spacing.iter().any(|spacing| *spacing != spec.spacing[0]) {
         let (what, value) = ("packed particles have", spec.spacing.to_vec());
         return Err(refuse_spacing(case, body, &GeometryError::Uneven { what, value }));

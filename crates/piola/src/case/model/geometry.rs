@@ -158,6 +158,15 @@ impl Shape {
         matches!(self, Self::Points { .. } | Self::Cloud { .. })
     }
 
+    /// Whether shapes meet inside of it. What is cut away may be a union: its inside is outside.
+    pub fn has_seams(&self) -> bool {
+        match self {
+            Self::Union(shapes) => shapes.len() > 1,
+            Self::Difference { from, .. } => from.has_seams(),
+            _ => self.parts().into_iter().any(Self::has_seams),
+        }
+    }
+
     /// The surfaces from files in it.
     pub fn surfaces(&self) -> Vec<&Surface> {
         match self {

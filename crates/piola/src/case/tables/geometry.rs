@@ -107,7 +107,7 @@ const LATTICES: Choices = choices(&[
     ),
     choice(
         "packed",
-        "moved apart until they are even, the outermost half a spacing below the surface, in a shape of any kind; all have the same volume. `piola check` shows how even their density is near the surface. Not around a periodic domain; without ghosts and boundary areas",
+        "moved apart until they are even, the outermost half a spacing below the surface, in a shape of any kind but a union; all have the same volume. `piola check` shows how even their density is near the surface. Not around a periodic domain; without ghosts and boundary areas",
     ),
 ]);
 const ORIGINS: Choices = choices(&[
