@@ -16,6 +16,9 @@ const ON_FACET: f64 = 1e-9;
 const SHIFT: f64 = 1e-6;
 /// Ways whose lengths differ by less than this part count as equally short.
 const TIE: f64 = 0.05;
+/// Most normals that are followed to a curved face, and how little the last one turns.
+const MOST_TURNS: usize = 30;
+const STRAIGHT: f64 = 1e-6;
 
 impl<const D: usize> Shape<D> {
     /// The directions of the shortest ways from `point` inside the shape to space outside of it that
@@ -65,35 +68,67 @@ impl<const D: usize> Shape<D> {
         starts.sort_by_key(|start| start.0 > first.0 * (1.0 + TIE));
         let mut faces = vec![refine(first, &length)];
         let least = faces[0].0;
-        let most = layer.max(least * (1.0 + TIE));
-        for start in starts {
+        let most = least * (1.0 + TIE);
+        let is_other = |way: &Vector<D>, faces: &[(f64, Vector<D>)]| {
+            faces.iter().all(|face| face.1.dot(way) < 1.0 - TIE)
+        };
+        for start in &starts {
             // A way that ends on the plane of a face already found leads to the same face.
-            let on_plane = |way: &(f64, Vector<D>), face: &(f64, Vector<D>)| {
-                way.0 * way.1.dot(&face.1) >= face.0 * (1.0 - TIE)
-            };
-            if start.0 > 1.5 * most || faces.iter().any(|face| on_plane(&start, face)) {
+            let on_plane =
+                |face: &(f64, Vector<D>)| start.0 * start.1.dot(&face.1) >= face.0 * (1.0 - TIE);
+            if start.0 > 1.5 * least || faces.iter().any(on_plane) {
                 continue;
             }
-            let found = refine(start, &length);
-            let is_other = faces.iter().all(|face| face.1.dot(&found.1) < 1.0 - TIE);
-            // What is longer may have been refined to on the way to the same face, if that is curved.
-            let is_same =
-                found.0 > least * (1.0 + TIE) && faces.iter().any(|face| on_plane(&found, face));
-            if is_other && found.0 <= most && !is_same {
+            let found = refine(*start, &length);
+            if is_other(&found.1, &faces) && found.0 <= most {
                 faces.push(found);
             }
         }
-        let depth = |length: f64| if length <= least * (1.0 + TIE) { least } else { length };
-        faces.into_iter().map(|(length, normal)| (normal, depth(length))).collect()
+        for face in &mut faces {
+            face.0 = least;
+        }
+        for start in starts.iter().filter(|start| start.0 <= 2.0 * layer) {
+            let found = self.face_along(point, &start.1, SHIFT * extent, &length);
+            let found = found.filter(|face| face.0 <= layer && is_other(&face.1, &faces));
+            faces.extend(found);
+        }
+        faces.into_iter().map(|(length, normal)| (normal, length)).collect()
+    }
+
+    /// The face that a ray leaves the shape through, or on a curved one that to which its normal leads, with the length of the
+    /// straight way there in m; slopes are taken over `step` m. `None` at an edge and where that does not end.
+    fn face_along(
+        &self,
+        point: &Vector<D>,
+        direction: &Vector<D>,
+        step: f64,
+        length: &impl Fn(&Vector<D>) -> f64,
+    ) -> Option<(f64, Vector<D>)> {
+        let mut way = *direction;
+        for _ in 0..MOST_TURNS {
+            let found = Some(length(&way)).filter(|length| length.is_finite())?;
+            let slope = self.slope(&(point + way * found), step);
+            // Across an edge the depth does not grow by all of the step.
+            let normal = -slope.try_normalize(1.9 * step)?;
+            if (normal - way).norm() < STRAIGHT {
+                return Some((found, normal));
+            }
+            way = normal;
+        }
+        None
     }
 
     /// The direction in which the depth grows about a point, by differences over `step` m on both sides.
     fn inward(&self, point: &Vector<D>, step: f64) -> Option<Vector<D>> {
-        let slope: Vector<D> = Vector::from_fn(|axis, _| {
+        self.slope(point, step).try_normalize(0.1 * step)
+    }
+
+    /// How much deeper it is `step` m ahead of a point than as much behind it, in m along each axis.
+    fn slope(&self, point: &Vector<D>, step: f64) -> Vector<D> {
+        Vector::from_fn(|axis, _| {
             let aside = Vector::from_fn(|i, _| if i == axis { step } else { 0.0 });
             self.depth(&(point + aside)) - self.depth(&(point - aside))
-        });
-        slope.try_normalize(0.1 * step)
+        })
     }
 
     /// The ways to the nearest facets, where the nearest part of the boundary is one of facets, and within the bounds. A point on
@@ -436,8 +471,10 @@ mod tests {
             let around = (1.0 - up * up).sqrt();
             let radial = Vector::<3>::new(around * turn.cos(), around * turn.sin(), up);
             for depth in [0.02, 0.05, 0.09, 0.15] {
-                let faces = ball.ways_out(&(radial * (radius - depth)), 0.099, &bounds);
-                assert_eq!(faces.normals().len(), 1, "{depth} in {radius} at {radial}: {faces:?}");
+                let faces = |layer| ball.ways_out(&(radial * (radius - depth)), layer, &bounds);
+                // Ways within 5 % of the shortest may be told apart on the smallest ball; a layer adds none.
+                let [alone, layer] = [0.0, 0.099].map(faces);
+                assert_eq!(alone, layer, "{depth} in {radius} at {radial}");
             }
         }
         // On the bounds there is no way out.
