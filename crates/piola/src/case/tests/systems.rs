@@ -251,7 +251,7 @@ fn what_does_not_fit_together_is_named_in_its_place() {
             "min = [0.0, 0.4], max = [1.0, 0.7]",
             "overlaps another",
         ),
-        ("max = [1.0, 0.8]", "max = [1.0, 0.6]", "the solid has too few particles around"),
+        ("max = [1.0, 0.8]", "max = [1.0, 0.6]", "refine the spacing"),
     ];
     for (from, to, expected) in faults {
         let said = said(from, to);
