@@ -37,7 +37,7 @@ fn faults_are_named_with_their_line() {
         (square("2 2 2 9 1 1 3 4", "2 2 2 9 1 1 3 7"), &["line 15", "cell 2 refers to node 7"]),
         (square("2 2 2 9 1 1 3 4", "1 2 2 9 1 1 3 4"), &["line 15", "element 1 appears twice"]),
         (square("1 2 2 9", "1 9 2 9"), &["line 14", "higher order", "Mesh.ElementOrder"]),
-        (square("1 2 2 9", "1 99 2 9"), &["line 14", "type 99 are not known"]),
+        (square("1 2 2 9", "1 99 2 9"), &["line 14", "type 99 are not supported"]),
         (square("$EndElements\n", ""), &["the file ends, expected $EndElements"]),
         (square("\n5\n", "\n4\n"), &["line 10", "got `5`, expected $EndNodes"]),
         (square("$Nodes", "$Notes"), &["the file ends, expected the end of a section"]),
