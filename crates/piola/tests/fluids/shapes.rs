@@ -168,7 +168,7 @@ fn a_body_is_cut_to_a_drawing() {
     // Squares of a sixteenth of a spacing that a circle cuts count as inside or outside, about half of them each.
     assert!((body.volume / exact - 1.0).abs() < 1e-3, "{} of {exact}", body.volume);
     for (shape, drawing, said) in [
-        ("scale = 0.001", "<svg><rect width=\"3\"/></svg>", "<rect> is not followed"),
+        ("scale = 0.001", "<svg><rect width=\"3\"/></svg>", "<rect> is not supported"),
         ("scale = 0.0", drawing, "above 0"),
         ("z = [0, 1]", drawing, "no meaning in 2D"),
         ("move = [1]", drawing, "2 entries"),
