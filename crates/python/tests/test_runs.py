@@ -353,7 +353,7 @@ def test_a_panic_is_an_exception_and_the_end_of_its_simulation(case, capfd):
     before = simulation.bodies["water"]["velocity"]
     copy = before.copy()
     for ask in (simulation._panic, simulation.step, simulation.run, lambda: simulation.energy, simulation.finish):
-        with pytest.raises(piola.RunError, match="stopped at a fault of its own") as caught:
+        with pytest.raises(piola.RunError, match="piola has stopped because of a bug") as caught:
             ask()
         assert caught.value.kind == "panic"
     assert "a test has asked for it" in capfd.readouterr().err
