@@ -189,7 +189,7 @@ fn bad_messages_have_errors_and_the_server_goes_on() {
             call(4, "{\"name\": \"check\", \"arguments\": {\"set\": \"time.end=1\"}}").into(),
             json!(4),
             -32_602,
-            "`set` is a list",
+            "`set` must be a list",
         ),
         (call(5, "{\"name\": \"report\"}").into(), json!(5), -32_602, "`results` is missing"),
         (
