@@ -31,7 +31,7 @@ pub enum OutlineError {
         /// The file.
         path: PathBuf,
     },
-    /// It is not what the end of its name says, or has what is not followed.
+    /// It is not what the end of its name says, or contains what is not supported.
     #[error("`{}`{}: {reason}", path.display(), line.map(|line| format!(", line {line}")).unwrap_or_default())]
     Broken {
         /// The file.
@@ -68,7 +68,7 @@ impl Outline {
     /// Curves become sides that are at most 1e-4 of the size of the outline away from them.
     ///
     /// # Errors
-    /// [`OutlineError`] for a file that cannot be read or is not followed, and for loops that meet; what
+    /// [`OutlineError`] for a file that cannot be read or contains what is not supported, and for loops that meet; what
     /// [`Shape::polygon`] refuses of a loop.
     pub fn read(path: &Path, scale: f64, shift: Vector<2>) -> Result<Self, GeometryError> {
         let of = || path.to_owned();
@@ -269,7 +269,7 @@ mod tests {
             ("a.svg", "<svg>\n<path d='M0 0 C1e300 0 0 1 1 1z'/></svg>", "line 2: the path goes"),
             ("a.svg", "<svg><path d='M0 0'/></svg>", "there is no outline in it"),
             ("a.svg", "<svg>\n<g transform='scale(2)'/></svg>", "line 2: `transform` of <g>"),
-            ("a.svg", "<svg>\n<circle r='3'/></svg>", "line 2: <circle> is not followed"),
+            ("a.svg", "<svg>\n<circle r='3'/></svg>", "line 2: <circle> is not supported"),
             ("a.svg", "<svg/>", "there is no outline in it"),
         ] {
             let error = read(name, text).unwrap_err();
