@@ -103,7 +103,7 @@ def test_fields_of_a_moment_that_is_over_are_gone(case):
     assert np.array_equal(kept[:, 1], np.where(kept[:, 1] == 0, 0.0, -1.0))
     simulation.step()
     for ask in (lambda: body["velocity"], lambda: body.ids, lambda: len(body), lambda: moment.energy, lambda: moment.limits):
-        with pytest.raises(RuntimeError, match="read what you need in time; arrays remain valid"):
+        with pytest.raises(RuntimeError, match="read what you need before a step or a new value; arrays remain valid"):
             ask()
     with pytest.raises(RuntimeError, match="the run has continued"):
         body["velocity"] = kept
