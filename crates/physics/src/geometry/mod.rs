@@ -44,6 +44,7 @@ pub use region::Region;
 pub use shape::{Shape, ball_volume};
 pub use surface::Surface;
 pub use surroundings::surroundings;
+pub(crate) use way_out::slope;
 
 #[cfg(test)]
 mod tests;

@@ -20,6 +20,18 @@ const TIE: f64 = 0.05;
 const MOST_TURNS: usize = 30;
 const STRAIGHT: f64 = 1e-6;
 
+/// How much larger a depth in m is `step` m ahead of a point than as much behind it, along each axis.
+pub(crate) fn slope<const D: usize>(
+    point: &Vector<D>,
+    step: f64,
+    mut depth: impl FnMut(&Vector<D>) -> f64,
+) -> Vector<D> {
+    Vector::from_fn(|axis, _| {
+        let aside = Vector::from_fn(|i, _| if i == axis { step } else { 0.0 });
+        depth(&(point + aside)) - depth(&(point - aside))
+    })
+}
+
 impl<const D: usize> Shape<D> {
     /// The directions of the shortest ways from `point` inside the shape to space outside of it that
     /// lies between the corners `bounds` in m: the outward normal of the nearest face that is not
@@ -107,7 +119,7 @@ impl<const D: usize> Shape<D> {
         let mut way = *direction;
         for _ in 0..MOST_TURNS {
             let found = Some(length(&way)).filter(|length| length.is_finite())?;
-            let slope = self.slope(&(point + way * found), step);
+            let slope = slope(&(point + way * found), step, |x| self.depth(x));
             // Across an edge the depth does not grow by all of the step.
             let normal = -slope.try_normalize(1.9 * step)?;
             if (normal - way).norm() < STRAIGHT {
@@ -120,15 +132,7 @@ impl<const D: usize> Shape<D> {
 
     /// The direction in which the depth grows about a point, by differences over `step` m on both sides.
     fn inward(&self, point: &Vector<D>, step: f64) -> Option<Vector<D>> {
-        self.slope(point, step).try_normalize(0.1 * step)
-    }
-
-    /// How much deeper it is `step` m ahead of a point than as much behind it, in m along each axis.
-    fn slope(&self, point: &Vector<D>, step: f64) -> Vector<D> {
-        Vector::from_fn(|axis, _| {
-            let aside = Vector::from_fn(|i, _| if i == axis { step } else { 0.0 });
-            self.depth(&(point + aside)) - self.depth(&(point - aside))
-        })
+        slope(point, step, |x| self.depth(x)).try_normalize(0.1 * step)
     }
 
     /// The ways to the nearest facets, where the nearest part of the boundary is one of facets, and within the bounds. A point on

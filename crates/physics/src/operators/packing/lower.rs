@@ -1,7 +1,7 @@
 //! Places moved down below the boundary of a shape.
 
 use crate::Vector;
-use crate::geometry::{Probe, Shape};
+use crate::geometry::{Probe, Shape, slope};
 
 /// A particle is low enough up to this part of a spacing.
 const ENOUGH: f64 = 1e-9;
@@ -35,9 +35,9 @@ impl<'a, const D: usize> Depth<'a, D> {
             if clear >= -ENOUGH * self.width {
                 break;
             }
-            let Some(normal) = outwards(&mut self.shape, &at, OFF * self.width, reach) else {
-                break;
-            };
+            let off = OFF * self.width;
+            let outwards = -slope(&at, off, |x| self.shape.depth(x, reach));
+            let Some(normal) = outwards.try_normalize(0.1 * off) else { break };
             let tried = at + normal * (part * clear);
             let found = self.shape.depth(&tried, reach) - wanted;
             // Beyond the middle of what is thin it is higher again.
@@ -48,18 +48,4 @@ impl<'a, const D: usize> Depth<'a, D> {
         }
         (at, clear)
     }
-}
-
-/// The direction in which the depth falls, by differences over `off` m on both sides.
-fn outwards<const D: usize>(
-    shape: &mut Probe<'_, D>,
-    at: &Vector<D>,
-    off: f64,
-    reach: f64,
-) -> Option<Vector<D>> {
-    let slope: Vector<D> = Vector::from_fn(|axis, _| {
-        let aside = Vector::from_fn(|i, _| if i == axis { off } else { 0.0 });
-        shape.depth(&(at - aside), reach) - shape.depth(&(at + aside), reach)
-    });
-    slope.try_normalize(0.1 * off)
 }
