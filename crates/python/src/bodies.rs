@@ -18,7 +18,7 @@ use crate::simulation::{Simulation, Standing};
 #[pyclass(module = "piola", frozen, mapping)]
 pub struct Bodies {
     simulation: Py<Simulation>,
-    /// The moment that they are of, or they are as they are when they are read.
+    /// The moment they belong to; if there is none, their current state is read.
     moment: Option<Standing>,
 }
 
@@ -66,17 +66,18 @@ impl Bodies {
 /// A body, with its fields as arrays: `body["velocity"]`.
 ///
 /// An array has a row for each particle, in the order of particle files, which is the same at all moments (where
-/// particles come in or go out, of those that are there). Its shape is (particles,) for a scalar, (particles, D) for a
-/// vector, (particles, D, D) for a tensor, (particles, 6) for xx, yy, zz, yz, xz, xy of symmetric tensors; its unit is SI,
-/// as `fields()` says. It is read-only and does not change when the run continues: `array.base` is a `Field`, which says
-/// whether the simulation is still at that state, and whether the array looks at its memory or is a copy.
+/// particles enter or leave, for those present). Its shape is (particles,) for a scalar, (particles, D) for a vector,
+/// (particles, D, D) for a tensor, (particles, 6) for xx, yy, zz, yz, xz, xy of symmetric tensors; units are SI, as
+/// listed by `fields()`. It is read-only and does not change when the run continues: `array.base` is a `Field`, which
+/// says whether the simulation is still at that state, and whether the array is a view of its memory or a copy.
 ///
-/// `body["velocity"] = values` sets a field, before the first step or between two: an array of the shape that reading it
-/// gives, of numbers that fit 64-bit floats, in any order in memory. What is prescribed stays as it is.
+/// `body["velocity"] = values` sets a field, before the first step or between two steps, from an array of the shape
+/// that reading it gives, of numbers that convert safely to 64-bit floats, in any memory layout. Prescribed values stay
+/// as they are.
 ///
-/// To read or write raises KeyError if the scheme has no such field, RuntimeError if it is of a moment that is over; to
-/// write, ValueError for a wrong shape, NaN, infinity, or a field that cannot be set, and TypeError for other types. Then
-/// nothing is changed.
+/// Reading and writing raise KeyError if the scheme has no such field, and RuntimeError if the body belongs to a moment
+/// that is over; writing raises ValueError for a wrong shape, NaN, infinity, or a field that cannot be set, and
+/// TypeError for other types. In these cases nothing is changed.
 #[pyclass(module = "piola", frozen)]
 pub struct Body {
     simulation: Py<Simulation>,
@@ -94,7 +95,7 @@ impl Body {
         Self { simulation, moment, number: None, name: None }
     }
 
-    /// Works on the session, if that is still at the moment.
+    /// Works on the session, if it is still at that moment.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -130,7 +131,7 @@ impl Body {
         Field::array(py, view, standing, self.name.clone())
     }
 
-    /// Gives a field other values.
+    /// Sets the values of a field.
     fn __setitem__(&self, py: Python<'_>, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let number = self.number;
         let shape = self.with(py, |session| {
@@ -197,8 +198,8 @@ impl Body {
         Ok(PyArray1::from_vec(py, ids).into_any())
     }
 
-    /// Where its particles are among all of them: `simulation.particles[field][body.rows]` is `body[field]`, if no
-    /// particle has come in or gone out.
+    /// The rows of its particles among all: `simulation.particles[field][body.rows]` is `body[field]`, if no particle
+    /// has entered or left.
     #[getter(rows)]
     fn all_rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(PyArray1::from_vec(py, self.rows(py)?).into_any())

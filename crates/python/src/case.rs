@@ -15,7 +15,7 @@ use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::toml;
 
-/// Under which name the text of a dict stands in messages and records.
+/// The name of the text of a dict in messages and records.
 const DICT: &str = "case";
 
 /// Where the text of a case is.
@@ -25,18 +25,18 @@ enum Source {
     Text { text: String, folder: PathBuf },
 }
 
-/// A case: what `case.toml` says, with what was set on top of it.
+/// A case: the content of a case file, with all changes by `set`.
 ///
 /// Case(table, *, folder=".", variant=None, level="case")
 ///
 /// table: a dict with the keys of a case file (docs/case-file.md). NumPy arrays and numbers, tuples and paths
-/// may stand in it, functions of some of x, y, z and t where a case has an expression, and a `Cloud` where a body has a
-/// shape. It becomes the text of a case file, which `case.toml` shows and messages point into.
-/// folder: where files that the case names are looked for.
+/// are accepted, functions of any of x, y, z and t in place of expressions, and a `Cloud` in place of the shape of a
+/// body. It is turned into the text of a case file, which `case.toml` shows and messages refer to.
+/// folder: where files named in the case are searched for.
 /// variant: name of a variant, or of a member of a sweep (`NAME.3`).
 /// level: "case", or the settings "coarse" or "paper" of the case.
 ///
-/// What is wrong with a case is said by `faults`, and raised as `CaseError` by `check` and `start`.
+/// `faults` lists what is wrong with a case; `check` and `start` raise it as `CaseError`.
 ///
 /// >>> import piola
 /// >>> case = piola.Case({"version": 1, "title": "a bar", "dimension": 4})
@@ -90,7 +90,7 @@ impl Case {
     }
 }
 
-/// Makes the particles. Functions are asked for values of the start.
+/// Creates the particles. Functions are called for the values at the start.
 fn built(
     py: Python<'_>,
     case: &case::Case,
@@ -123,9 +123,9 @@ impl Case {
         Self::of(source, registry, variant, level)
     }
 
-    /// Reads the case file at `path`. It is read again by whatever asks for the case later.
+    /// Reads the case file at `path`. The file is read again whenever the case is used later.
     ///
-    /// Raises CaseError if there is no such file. What is wrong in it is said by `faults`.
+    /// Raises CaseError if there is no such file. `faults` lists what is wrong in it.
     #[staticmethod]
     #[pyo3(signature = (path, *, variant=None, level="case"))]
     fn load(py: Python<'_>, path: PathBuf, variant: Option<String>, level: &str) -> PyResult<Self> {
@@ -136,8 +136,8 @@ impl Case {
         }
     }
 
-    /// Sets the key that `path` leads to, as `--set` does: `body.water.spacing`, `load.0.acceleration`. A path
-    /// with `+` at its end appends to a list, the value None removes the key. A value may hold functions and clouds, as in
+    /// Sets the key that `path` leads to, as `--set` does: `body.water.spacing`, `load.0.acceleration`. A path with `+`
+    /// at its end appends to a list; the value None removes the key. A value may contain functions and clouds, as in
     /// `Case`. Returns the case itself.
     fn set<'py>(
         mut slf: PyRefMut<'py, Self>,
@@ -155,8 +155,8 @@ impl Case {
         Ok(slf)
     }
 
-    /// What is wrong with the case, in the order of its text: a list of `Fault`, empty for a good case. The
-    /// particles are made for it.
+    /// What is wrong with the case, in the order of its text: a list of `Fault`, empty for a valid case. This creates
+    /// the particles.
     fn faults(&self, py: Python<'_>) -> PyResult<Vec<Fault>> {
         let built = match self.read(py)? {
             (Ok(case), shared) => built(py, &case, &shared)?.map(|_| ()),
@@ -165,7 +165,7 @@ impl Case {
         Ok(built.err().map(|problems| faults(&problems)).unwrap_or_default())
     }
 
-    /// What a run will do, without doing it: makes the particles, and times two steps.
+    /// What a run will do, without running it: creates the particles and times two steps.
     ///
     /// Raises CaseError.
     fn check(&self, py: Python<'_>) -> PyResult<Plan> {
@@ -175,10 +175,10 @@ impl Case {
         Ok(Plan::new(session.case(), plan))
     }
 
-    /// Makes the particles and what else a run needs.
+    /// Creates the particles and everything else that a run needs.
     ///
-    /// out: folder of the results, as `piola run --out` writes it; None for a run in memory alone.
-    /// resume: goes on from the newest checkpoint in `out`, with the same bits.
+    /// out: folder of the results, as `piola run --out` writes it; None for a run in memory only.
+    /// resume: continues from the newest checkpoint in `out`, with results identical to the bit.
     ///
     /// Raises CaseError; RunError if there is nothing to resume from.
     #[pyo3(signature = (out=None, *, resume=false))]
@@ -196,7 +196,7 @@ impl Case {
         Ok(Simulation::new(session, out, shared))
     }
 
-    /// The text that the case is read from, into which messages point: of the file, or what the dict has become.
+    /// The text that the case is read from and that messages refer to: that of the file, or that made from the dict.
     ///
     /// Raises OSError if the file cannot be read.
     #[getter]
@@ -207,7 +207,7 @@ impl Case {
         }
     }
 
-    /// The text of the case with all that was set. Raises CaseError.
+    /// The text of the case with all changes by `set`. Raises CaseError.
     #[getter]
     fn toml(&self, py: Python<'_>) -> PyResult<String> {
         Ok(self.model(py)?.0.as_run)

@@ -8,18 +8,19 @@ use pyo3::prelude::*;
 
 use crate::arrays::{array, floats, numbers, shape_text};
 
-/// Points with their volumes, of which a body is made: `case.set("body.water.shape", piola.Cloud(positions, volumes))`.
+/// Points with their volumes, from which a body is made:
+/// `case.set("body.water.shape", piola.Cloud(positions, volumes))`.
 ///
 /// Cloud(positions, volumes)
 ///
 /// positions: array of shape (particles, D) in m.
 /// volumes: array of shape (particles,) in m^D, or one number for all.
 ///
-/// Arrays are copied: integers and 32-bit floats are converted, in any order in memory. A body made of a cloud has no key
-/// `spacing`. Its particles are reordered in memory: `body.ids - body.ids.min()`, taken at the start, has the row of each in
-/// these arrays.
+/// Arrays are copied; integers and 32-bit floats are converted, and any memory layout is accepted. A body made from a
+/// cloud has no key `spacing`. Its particles are reordered in memory: `body.ids - body.ids.min()`, taken at the start,
+/// gives the row of each in these arrays.
 ///
-/// Raises ValueError for a wrong shape, NaN or infinity, a volume that is not above 0 and points that are equal, with the
+/// Raises ValueError for a wrong shape, NaN or infinity, a volume that is not above 0 and coincident points, with the
 /// number of the particle, and TypeError for other types.
 ///
 /// >>> import piola

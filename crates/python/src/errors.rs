@@ -20,11 +20,11 @@ create_exception!(
     RunError,
     PyException,
     "A run that failed, or whose files cannot be written.\n\n\
-     kind: one word for the cause, for example `inverted`; `files` or `panic` where it was none of the physics.\n\
+     kind: one word for the cause, for example `inverted`; `files` or `panic` if the cause is not physical.\n\
      particle: number of the particle in the order of creation, or None.\n\
      place: reference position of the particle in m, or None.\n\
      time, step: of the last good state, in s and counted from the start, or None.\n\
-     run: the `Run` as far as it came, or None."
+     run: the `Run` up to the failure, or None."
 );
 
 /// One thing that is wrong with a case.
@@ -38,7 +38,7 @@ pub struct Fault {
     help: Option<String>,
     /// The file, or the override, that it is in.
     source: String,
-    /// Line in `source` from 1, or None where all of it is meant.
+    /// Line in `source` from 1, or None if the fault is not in a single place.
     line: Option<usize>,
     /// Column in characters from 1, or None.
     column: Option<usize>,

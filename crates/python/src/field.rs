@@ -11,14 +11,14 @@ use crate::simulation::{Standing, inside};
 /// 64-bit floats in the order of bytes of this machine, as NumPy writes it.
 const FLOATS: &str = if cfg!(target_endian = "little") { "<f8" } else { ">f8" };
 
-/// A field as it was when it was read: what its array looks at, and keeps in memory (`array.base`; of a slice
+/// A field as it was when it was read: the memory that its array views and keeps alive (`array.base`; for a slice
 /// `piola.field_of(slice)`). The numbers never change: the simulation writes its next states to other memory.
 #[pyclass(module = "piola", frozen, weakref)]
 pub struct Field {
     view: FieldView,
-    /// Where the simulation stood then.
+    /// The state of the simulation at that time.
     read: Standing,
-    /// Where it stands.
+    /// Its current state.
     now: Arc<Mutex<Standing>>,
     /// Name of the body, or None for all particles.
     #[pyo3(get)]
@@ -26,7 +26,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// An array that looks at a view.
+    /// An array on the memory of a view.
     pub fn array<'py>(
         py: Python<'py>,
         view: FieldView,
@@ -64,7 +64,7 @@ impl Field {
         self.read.progress.step
     }
 
-    /// Whether the simulation has still this state: False once a step has been taken, a field has been set, or the run
+    /// Whether the simulation still has this state: False once a step has been taken, a field has been set, or the run
     /// has ended.
     #[getter]
     fn is_current(&self) -> bool {
@@ -72,7 +72,7 @@ impl Field {
     }
 
     /// Whether it is a copy, and not the memory of the simulation: the field is not part of the state but computed from
-    /// it, or the particles of the body do not follow each other in memory.
+    /// it, or the particles of the body are not contiguous in memory.
     #[getter]
     fn is_copy(&self) -> bool {
         self.view.is_copy()
@@ -100,7 +100,7 @@ impl Field {
     }
 }
 
-/// The `Field` that an array, or a slice of it, looks at; None for an array with memory of its own.
+/// The `Field` behind an array or a slice of it; None for an array with memory of its own.
 #[pyfunction]
 pub fn field_of<'py>(array: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, Field>>> {
     let mut base = array.clone();

@@ -1,6 +1,7 @@
-//! The Python package `piola`: what of it is Rust, the module `piola._piola`.
+//! The Python package `piola`: its part in Rust, the module `piola._piola`.
 //!
-//! All goes through `piola::case`. Steps are taken without the GIL; `simulation` says who waits for whom.
+//! Everything goes through `piola::case`. Steps are taken without the GIL; `simulation` documents which thread waits
+//! for which.
 
 use std::ffi::OsString;
 

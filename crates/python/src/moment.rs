@@ -23,8 +23,8 @@ fn next_due(schedule: &Schedule, time: f64) -> f64 {
     next.unwrap_or(0.0).max(time * (1.0 + 2e-12))
 }
 
-/// A moment of a run. What it shows of the state (bodies, energy, limits) is gone when the run goes on: to ask for
-/// it then raises RuntimeError.
+/// A moment of a run. What it shows of the state (bodies, energy, limits) is no longer available once the run has
+/// continued: accessing it then raises RuntimeError.
 #[pyclass(module = "piola", frozen)]
 pub struct Moment {
     simulation: Py<Simulation>,
@@ -90,7 +90,7 @@ impl Moment {
         Ok(Body::of_all(self.simulation.clone_ref(py), Some(self.standing)))
     }
 
-    /// Whether the simulation has still this state.
+    /// Whether the simulation still has this state.
     #[getter]
     fn is_current(&self) -> bool {
         self.still_there().is_ok()

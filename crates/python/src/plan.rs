@@ -6,7 +6,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::display::table;
 
-/// What a run will do: the content of `piola check`, which `str(plan)` is.
+/// What a run will do: the output of `piola check`, which `str(plan)` returns.
 #[pyclass(module = "piola", frozen)]
 pub struct Plan {
     plan: case::Plan,
@@ -59,7 +59,7 @@ impl Plan {
         Ok(list)
     }
 
-    /// A dict of the least, mean and most neighbours of a particle.
+    /// A dict with the `least`, `mean` and `most` neighbours of a particle.
     #[getter]
     fn neighbors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = &self.plan.neighbors;
@@ -100,25 +100,25 @@ impl Plan {
         self.plan.seconds
     }
 
-    /// Particle evaluations a second, as measured here.
+    /// Particle evaluations per second, as measured here.
     #[getter]
     fn evaluations_per_second(&self) -> f64 {
         self.plan.evaluations_per_second
     }
 
-    /// Bytes of states and lists.
+    /// Memory of states and neighbour lists in bytes.
     #[getter]
     fn memory(&self) -> usize {
         self.plan.memory
     }
 
-    /// What will be written, a line each.
+    /// What will be written, one line each.
     #[getter]
     fn outputs(&self) -> Vec<String> {
         self.plan.outputs.clone()
     }
 
-    /// What the user should know, a sentence each.
+    /// Warnings, one sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.plan.warnings.clone()

@@ -13,7 +13,7 @@ use crate::arrays::array;
 use crate::display::{page, table};
 use crate::tables::Tables;
 
-/// A run that has ended, well or not.
+/// A run that has ended, successfully or not.
 #[pyclass(module = "piola", frozen)]
 pub struct Run {
     pub finished: Finished,
@@ -59,7 +59,7 @@ impl Run {
         self.finished.summary.outcome.summary()
     }
 
-    /// Why it failed, in a sentence, or None.
+    /// Why it failed, in one sentence, or None.
     #[getter]
     fn message(&self) -> Option<String> {
         match &self.finished.summary.outcome {
@@ -86,7 +86,7 @@ impl Run {
         self.finished.particles
     }
 
-    /// What the user should know, a sentence each.
+    /// Warnings, one sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.finished.warnings.clone()
@@ -120,8 +120,8 @@ impl Run {
         Tables::new(self.finished.tables.clone())
     }
 
-    /// What checks of a case call `name`: the values of a history or profile as an array, or a number or text of the
-    /// run as a whole, as `run.steps`.
+    /// The quantity `name` of checks of a case: the values of a history or profile as an array, or a number or text of
+    /// the run as a whole, such as `run.steps`.
     ///
     /// Raises KeyError.
     fn quantity<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

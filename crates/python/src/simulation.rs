@@ -25,7 +25,7 @@ use crate::run::Run;
 use crate::stepping::Goal;
 use crate::tables::Tables;
 
-/// Where a simulation stands, to be read at any time.
+/// The progress of a simulation, which can be read at any time.
 #[derive(Clone, Copy)]
 pub struct Standing {
     /// Time, steps, and what limited the last one.
@@ -36,8 +36,8 @@ pub struct Standing {
 
 /// A run of a case, from its particles at the start to its results.
 ///
-/// Steps are taken without the GIL. Fields, energies and tables are of the moment at which they are asked for, and stay
-/// as they are when the run continues. A simulation may be read from any thread, and is stepped by one at a time.
+/// Steps are taken without the GIL. Fields, energies and tables are those of the moment at which they are read, and do
+/// not change when the run continues. A simulation may be read from any thread, and stepped by one thread at a time.
 #[pyclass(module = "piola", frozen)]
 pub struct Simulation {
     session: Mutex<Session>,
@@ -144,23 +144,24 @@ impl Simulation {
 
 #[pymethods]
 impl Simulation {
-    /// Takes a step. Whether the run goes on: it does not where it has come to its end, and its results are
-    /// written then.
+    /// Takes a step. Returns whether the run continues: False when it has reached its end, and its results have been
+    /// written.
     ///
     /// Raises RunError if the run fails.
     fn step(slf: &Bound<'_, Self>) -> PyResult<bool> {
         Self::advance(slf, Goal::Step, false)
     }
 
-    /// Takes steps until the time is `until` (in s) or later, or to the end. None is shortened to meet `until`,
-    /// so that results do not depend on it.
+    /// Takes steps until the time is `until` (in s) or later, or to the end. No step is shortened to meet `until`, so
+    /// results do not depend on it.
     ///
-    /// progress: shows how far it is on the standard error output.
+    /// progress: shows progress on standard error.
     ///
-    /// Returns the `Run` where the run has come to its end, else None. Raises RunError if it fails.
+    /// Returns the `Run` if the run has reached its end, else None. Raises RunError if it fails.
     ///
-    /// Ctrl-C, and a function that raises, stop it after a whole step. Where the results go to a folder the run
-    /// is ended then, its last state is on disk, and `start(out, resume=True)` goes on; else it can go on here.
+    /// Ctrl-C, and a function that raises an exception, stop it after a whole step. If the results go to a folder the
+    /// run is then ended, with its last state on disk, and `start(out, resume=True)` continues it; otherwise this
+    /// simulation can be continued.
     #[pyo3(signature = (until=None, *, progress=false))]
     fn run(slf: &Bound<'_, Self>, until: Option<f64>, progress: bool) -> PyResult<Option<Py<Run>>> {
         let goal = match until {
@@ -174,7 +175,7 @@ impl Simulation {
         Ok(slf.get().ended_run(slf.py()))
     }
 
-    /// Ends the run where it is, and writes its results. Fields can be read after it, but no step is taken.
+    /// Ends the run where it is, and writes its results. Fields can still be read, but no more steps taken.
     ///
     /// Raises RunError if files cannot be written.
     fn finish(slf: &Bound<'_, Self>) -> PyResult<Py<Run>> {
@@ -182,13 +183,14 @@ impl Simulation {
     }
 
     /// The moments of a run: now, then the first one at or after each multiple of `interval` (in s), and the end.
-    /// No step is shortened to meet them. What a moment shows is gone when the run goes on.
+    /// No step is shortened to meet them. What a moment shows is no longer available once the run has continued.
     fn every(slf: &Bound<'_, Self>, interval: f64) -> PyResult<Every> {
         Every::new(slf.clone().unbind(), interval)
     }
 
     /// Calls `function(moment)` at the first moment at or after each multiple of `interval` (in s) from 0 on, and
-    /// at the end. Steps are not shortened, so that results do not depend on it. If it raises the run stops.
+    /// at the end. Steps are not shortened, so results do not depend on it. If the function raises an exception, the
+    /// run stops.
     fn observe(&self, interval: f64, function: &Bound<'_, PyAny>) -> PyResult<()> {
         if !function.is_callable() {
             return Err(pyo3::exceptions::PyTypeError::new_err("an observer must be a function"));
@@ -210,7 +212,7 @@ impl Simulation {
         self.standing().progress.time
     }
 
-    /// Where the run ends in s.
+    /// The time at which the run ends, in s.
     #[getter]
     fn end(&self) -> f64 {
         self.end
@@ -251,13 +253,14 @@ impl Simulation {
         Ok(plan::limits(py, &limits)?.into_any())
     }
 
-    /// The bodies by name, with their fields as they are when they are read.
+    /// The bodies by name. Fields are those of the moment at which they are read.
     #[getter]
     fn bodies(slf: &Bound<'_, Self>) -> Bodies {
         Bodies::new(slf.clone().unbind(), None)
     }
 
-    /// All particles, with their fields as they are when they are read: as a body, with a row for each particle there is.
+    /// All particles, like a body, with a row for each particle present. Fields are those of the moment at which they
+    /// are read.
     #[getter]
     fn particles(slf: &Bound<'_, Self>) -> Body {
         Body::of_all(slf.clone().unbind(), None)
@@ -269,13 +272,13 @@ impl Simulation {
         self.with(py, |session| Tables::new(session.tables().lock().clone()))
     }
 
-    /// The run when it has ended, else None.
+    /// The `Run` once the run has ended, else None.
     #[getter(result)]
     fn ended_run(&self, py: Python<'_>) -> Option<Py<Run>> {
         inside(&self.ended).as_ref().map(|run| run.clone_ref(py))
     }
 
-    /// The moment as it is.
+    /// The current moment.
     fn now(slf: &Bound<'_, Self>) -> Moment {
         Moment::of(slf)
     }

@@ -66,13 +66,13 @@ impl Tables {
         self.named().map(|(name, _)| name.to_owned()).collect()
     }
 
-    /// The names that `curve` takes.
+    /// The names that `curve` accepts.
     fn curves(&self) -> Vec<String> {
         self.tables.names()
     }
 
-    /// A history against time in s, or a profile against the distance from the start of its line in m, by the name
-    /// that checks and plots of a case have for it, as `top.displacement.y` or `energy.total`: both as arrays.
+    /// A history against time in s, or a profile against the distance from the start of its line in m, by its name in
+    /// checks and plots of a case, such as `top.displacement.y` or `energy.total`: both as arrays.
     ///
     /// Raises KeyError.
     fn curve<'py>(
@@ -144,14 +144,14 @@ impl Table {
         self.columns()
     }
 
-    /// All numbers, of the shape (rows, columns): a copy.
+    /// All numbers, with the shape (rows, columns): a copy.
     #[getter]
     fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let shape = [self.table.len(), self.table.columns().len()];
         array(py, self.table.numbers().to_vec(), &shape)
     }
 
-    /// The table as a frame of pandas, which has to be there.
+    /// The table as a pandas DataFrame; pandas has to be installed.
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let options = PyDict::new(py);
         options.set_item("columns", self.columns())?;

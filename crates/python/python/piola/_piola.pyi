@@ -1,4 +1,4 @@
-"""What of the package is Rust. All of it is found in `piola`."""
+"""The part of the package that is written in Rust. All of it is available in `piola`."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
