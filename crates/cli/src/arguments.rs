@@ -40,7 +40,7 @@ pub enum Command {
     Sweep(SweepArguments),
     /// Run all cases below some folders and evaluate their checks
     Verify(VerifyArguments),
-    /// Make the report of an earlier run again from its results folder
+    /// Recreate the report of an earlier run from its results folder
     Report {
         /// The results folder
         #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
@@ -66,7 +66,7 @@ pub enum Command {
     Reference,
     /// Write the manual pages, one for each command
     Man {
-        /// The folder that they are written to, which is created
+        /// The folder to write them to, which is created
         #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
         folder: PathBuf,
     },
@@ -180,8 +180,8 @@ pub struct VerifyArguments {
     /// Run only the paper's setting
     #[arg(long, conflicts_with = "full")]
     pub paper: bool,
-    /// Run long variants and sweeps too, or only these of them (`base` is the case
-    /// itself); may take hours
+    /// Also run long variants and sweeps, all or only those named (`base` is the case itself); may
+    /// take hours
     #[arg(long, value_name = "NAMES", num_args = 0.., require_equals = true, value_delimiter = ',')]
     pub long: Option<Vec<String>>,
     /// Write a page with all checks, and its charts and results, for example docs/validation.md;

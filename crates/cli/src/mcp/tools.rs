@@ -63,15 +63,15 @@ pub fn list() -> Value {
     json!([
         tool(
             "schema",
-            "The JSON schema of one key at the top of a case file, such as `body` or `scheme`, with units, defaults and \
-             meanings of all that is below it. Without `key` a list of these keys.",
-            json!({ "key": { "type": "string", "description": "a key at the top of a case file" } }),
+            "The JSON schema of one top-level key of a case file, such as `body` or `scheme`, with units, defaults and \
+             meanings of everything below it. Without `key` a list of these keys.",
+            json!({ "key": { "type": "string", "description": "a top-level key of a case file" } }),
             &[],
             true,
         ),
         tool(
             "check",
-            "Read and build a case without running it: all faults with their places in the file, or what a \
+            "Read and build a case without running it: all faults with their positions in the file, or what a \
              run will do (particles, neighbours, time steps, wall time, memory, warnings).",
             changes,
             &[],
@@ -87,7 +87,7 @@ pub fn list() -> Value {
         ),
         tool(
             "report",
-            "Make the report of an earlier run again (a page for a browser), and return its record: outcome, \
+            "Recreate the report of an earlier run (a page for a browser), and return its record: outcome, \
              failure, steps, wall time, energies, checks.",
             json!({ "results": { "type": "string", "description": "folder of the results, for example results/tank" } }),
             &["results"],
