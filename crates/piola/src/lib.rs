@@ -1,8 +1,8 @@
 //! piola: solid and fluid mechanics with smoothed particle hydrodynamics.
 //!
-//! The way into the library: [`case`] reads a case file and runs it, [`observe`] records what a run shows. What
-//! they stand on are two crates of their own, all of which is found here, too: `piola-report`, the files of
-//! results, as [`output`], and `piola-physics`, all that computes, as [`time`], [`schemes`], [`boundaries`],
+//! The entry points of the library: [`case`] reads a case file and runs it, [`observe`] records the results of a run.
+//! They build on two crates of their own, which are re-exported here: `piola-report`, the result files, as
+//! [`output`], and `piola-physics`, everything that computes, as [`time`], [`schemes`], [`boundaries`],
 //! [`operators`], [`geometry`], [`neighbors`], [`solve`], [`fields`] and [`parallel`].
 
 pub mod case;

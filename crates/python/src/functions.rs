@@ -21,7 +21,7 @@ use crate::simulation::inside;
 
 /// What a function may be of, in the order of a place and a time.
 const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
-/// The place of t among them.
+/// The position of t among them.
 const TIME: usize = 3;
 /// Values of a function that are remembered. Beyond, all are forgotten.
 const REMEMBERED: usize = 1 << 20;

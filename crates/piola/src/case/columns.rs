@@ -1,4 +1,4 @@
-//! The columns of a session: what they are, what they hold at the moment, and which can be set.
+//! The columns of a session: their descriptions, their current values, and which can be set.
 
 use thiserror::Error;
 
@@ -10,7 +10,7 @@ use crate::fields::{FieldDescription, FieldValues};
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ColumnError {
-    /// The formulation has none of this name.
+    /// The formulation has no column of this name.
     #[error("the scheme `{scheme}` has no column `{name}`; expected {known}")]
     Unknown {
         /// The name.
@@ -37,9 +37,9 @@ pub enum ColumnError {
     Length {
         /// The name.
         name: &'static str,
-        /// As many as it has.
+        /// How many values it has.
         expected: usize,
-        /// As many as were given.
+        /// How many values were given.
         got: usize,
     },
     /// A value that is not finite.
@@ -60,12 +60,12 @@ impl Session {
         self.executor.scheme.ids()
     }
 
-    /// What [`Session::column`] has.
+    /// The columns that [`Session::column`] knows.
     pub fn columns(&self) -> &'static [FieldDescription] {
         self.executor.scheme.description().fields
     }
 
-    /// The values of a column at the moment, particle by particle.
+    /// The current values of a column, particle by particle.
     ///
     /// # Errors
     /// [`ColumnError::Unknown`].
@@ -76,13 +76,13 @@ impl Session {
         Ok(FieldValues { description: *description, values })
     }
 
-    /// The particles that are parts of the body with a number in the case, or of any, at the moment, in the order of
+    /// The particles present that belong to the body with this number in the case, or to any body, in the order of
     /// all columns.
     pub fn particles_of(&mut self, body: Option<usize>) -> Vec<usize> {
         self.rows(body).list().into_iter().map(|particle| particle as usize).collect()
     }
 
-    /// The energies at the moment in J, by name; the last is their sum, `total`.
+    /// The current energies in J, by name; the last is their sum, `total`.
     pub fn energies(&mut self) -> Vec<(&'static str, f64)> {
         let now = self.executor.now();
         let names = now.scheme().description().energies;
@@ -92,10 +92,10 @@ impl Session {
         names.iter().copied().zip(energies).chain([("total", total)]).collect()
     }
 
-    /// Gives a column other values, particle by particle, before the first step or between two.
-    /// Accelerations follow, and what is prescribed stays as it is. What that adds to energy and
-    /// momentum of a run that has begun is in no ledger: their balance is off by it from there on. Values
-    /// that it has already change nothing.
+    /// Sets the values of a column, particle by particle, before the first step or between two steps. Accelerations
+    /// are updated, and prescribed values stay as they are. The energy and momentum that this adds to a run that has
+    /// begun are in no ledger: the balances are off by them from then on. Setting the values that a column already
+    /// has changes nothing.
     ///
     /// # Errors
     /// There is no such column, it cannot be set, or the values are too few, too many or not finite;

@@ -16,7 +16,7 @@ pub struct Problem {
     pub message: String,
     /// A few words for the underlined text. May be empty.
     pub label: String,
-    /// The text to underline. `None` where the whole file is meant.
+    /// The text to underline. `None` if the whole file is concerned.
     pub place: Option<Place>,
     /// What the user can do, often a suggestion.
     pub help: Option<String>,
@@ -51,8 +51,7 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Problems in `sources`, which [`Place::source`] counts. Sorted by position; a problem that
-    /// is there twice is kept once.
+    /// Problems in `sources`, as numbered by [`Place::source`], sorted by position and without duplicates.
     pub fn new(sources: Arc<[SourceText]>, mut list: Vec<Problem>) -> Self {
         list.sort_by_key(|problem| problem.place);
         list.dedup();
@@ -65,7 +64,7 @@ impl Problems {
         Self { sources, list: vec![problem], is_io: true }
     }
 
-    /// Whether a file could not be read, as opposed to saying something wrong.
+    /// Whether a file could not be read, as opposed to having wrong content.
     pub fn is_io(&self) -> bool {
         self.is_io
     }
@@ -90,13 +89,13 @@ impl Problems {
         &self.sources
     }
 
-    /// The text that `problem` is about: the case file where it has no place.
+    /// The text that `problem` is about: the case file if it has no place.
     pub fn source(&self, problem: &Problem) -> Option<&SourceText> {
         let number = problem.place.map_or(0, |place| place.source as usize);
         self.sources.get(number).or_else(|| self.sources.first())
     }
 
-    /// Line and column of a problem, counted from 1. `None` where it has no place.
+    /// Line and column of a problem, counted from 1. `None` if it has no place.
     pub fn line_column(&self, problem: &Problem) -> Option<(usize, usize)> {
         let place = problem.place?;
         Some(self.source(problem)?.line_column(place.start as usize))

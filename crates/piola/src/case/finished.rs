@@ -7,7 +7,7 @@ use crate::observe::{Series, Tables};
 use crate::solve::Costs;
 use crate::time::{IntegratorKind, Summary};
 
-/// A run that has ended, well or not.
+/// A run that has ended, successfully or not.
 #[derive(Clone, Debug)]
 pub struct Finished {
     /// How it ended, with its figures.
@@ -20,9 +20,9 @@ pub struct Finished {
     pub warnings: Vec<String>,
     /// Number of particles.
     pub particles: usize,
-    /// What linear equations took since the run started, or went on; `None` where there were none.
+    /// Cost of linear equations since the run started or was resumed; `None` if there were none.
     pub linear: Option<Costs>,
-    /// Steps of its own that each system has taken, by name; nothing where there is one system.
+    /// Number of its own steps that each system has taken, by name; empty for a single system.
     pub own_steps: Vec<(String, u64)>,
 }
 
@@ -81,7 +81,7 @@ pub(super) const RUN_QUANTITIES: [&str; 12] = [
 ];
 
 impl Finished {
-    /// What a check calls `name`: a column of a table, or `run.NAME`.
+    /// The quantity that checks call `name`: a column of a table, or `run.NAME`.
     pub fn quantity(&self, name: &str) -> Option<Series> {
         let number = |value: f64, unit| Some(Series::Number { value, unit });
         let summary = &self.summary;

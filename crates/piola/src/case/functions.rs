@@ -12,27 +12,27 @@ use crate::geometry::PointCloud;
 pub(super) const MARK: char = '@';
 
 /// Functions of place and time by name. Where a case has an expression, `"@NAME"` is the one of that name. What a run
-/// with functions does is not in its record: whoever resumes it has to give the same ones.
+/// with functions does is not in its record: to resume it, the same ones have to be given.
 pub type Functions = Named<dyn SpaceTime>;
 
 /// Clouds of points by name. Where a shape of the kind `points` has a file, `"@NAME"` is the cloud of that name.
-/// Whoever resumes a run with clouds has to give the same ones; others are refused.
+/// To resume a run with clouds, the same ones have to be given; others are refused.
 pub type Clouds = Named<PointCloud>;
 
-/// Things by name.
+/// Objects by name.
 pub struct Named<T: ?Sized>(Vec<Entry<T>>);
 
 type Entry<T> = (String, Arc<T>);
 
 impl<T: ?Sized> Named<T> {
-    /// Adds one, in place of what had its name.
+    /// Adds one, replacing any with the same name.
     pub fn insert(&mut self, name: impl Into<String>, one: Arc<T>) {
         let name = name.into();
         self.0.retain(|(known, _)| *known != name);
         self.0.push((name, one));
     }
 
-    /// The one of a name.
+    /// The one with this name.
     pub fn get(&self, name: &str) -> Option<&Arc<T>> {
         self.0.iter().find(|(known, _)| known == name).map(|(_, one)| one)
     }
@@ -44,7 +44,7 @@ impl<T: ?Sized> Named<T> {
 }
 
 impl Clouds {
-    /// Adds a cloud by a name that tells its numbers from others, and returns that.
+    /// Adds a cloud under a name derived from its numbers, and returns the name.
     pub fn add(&mut self, cloud: &Arc<PointCloud>) -> String {
         let sum = numbers_of(cloud, Sha256::new()).finalize();
         let digits: String = sum.iter().take(6).map(|byte| format!("{byte:02x}")).collect();

@@ -1,9 +1,9 @@
 //! Case files: what a user writes, checked and turned into types.
 //!
-//! The way of a case: text, tree of values (`document`), overrides (`overrides`), check
-//! against the descriptions of the tables ([`spec`], [`tables`], `decode`), agreement of values
-//! with each other (`interpret`), and the typed [`Case`]. Every step keeps the places of its
-//! values, so that each problem points at the text that causes it, and all are reported at once.
+//! The stages of reading a case: text, tree of values (`document`), overrides (`overrides`), check against the
+//! descriptions of the tables ([`spec`], [`tables`], `decode`), agreement of values with each other (`interpret`),
+//! and the typed [`Case`]. Every stage keeps the places of its values, so that each problem points at the text that
+//! causes it, and all are reported at once.
 
 pub mod assembly;
 pub mod catalogue;
@@ -60,11 +60,11 @@ pub use views::FieldView;
 /// What is said on the command line in front of an override.
 const FLAG: &str = "--set ";
 
-/// What to read of a case file, beside the file itself.
+/// Options for reading a case file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
-    /// Overrides `path.to.key=value` and `path.to.list+=value`, applied last, in this order. They are
-    /// meant for the setting that is read, so that the others are not looked at where there are any.
+    /// Overrides `path.to.key=value` and `path.to.list+=value`, applied last, in this order. They apply to the
+    /// setting that is read; if there are any, the other settings are not checked.
     pub overrides: Vec<String>,
     /// The variant, `None` or `base` for the case itself; `NAME.3` for the third member of the
     /// sweep `NAME`.
@@ -81,15 +81,15 @@ pub struct LoadOptions {
 /// Reads the case file at `path`.
 ///
 /// # Errors
-/// All problems at once; [`Problems::is_io`] where the file cannot be read. The settings that the
-/// options do not ask for (variants, coarse, paper) are checked too where there are no overrides.
+/// All problems at once; [`Problems::is_io`] if the file cannot be read. The settings that the options do not select
+/// (variants, coarse, paper) are checked too if there are no overrides.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Case, Problems> {
     let source = document::read(path)?;
     // A bare file name has the empty path as its folder, to which names can be joined.
     assemble(source, path.parent().or(Some(Path::new(""))), options)
 }
 
-/// Reads a case from its text. Files that it mentions are not looked for.
+/// Reads a case from its text. Files that it names are not searched for.
 ///
 /// # Errors
 /// As [`load`], with `name` in place of the path.
@@ -97,8 +97,7 @@ pub fn parse(text: &str, name: &str, options: &LoadOptions) -> Result<Case, Prob
     assemble(SourceText { name: name.to_owned(), text: text.to_owned() }, None, options)
 }
 
-/// Reads a case from its text, as if it stood in a file in `folder`: files that it mentions are looked for
-/// from there.
+/// Reads a case from its text, as if it were in a file in `folder`: files that it names are searched for from there.
 ///
 /// # Errors
 /// As [`parse`].

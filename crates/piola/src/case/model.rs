@@ -76,7 +76,7 @@ pub struct Case {
     pub plots: Vec<Plot>,
     /// Overrides of the coarse setting.
     pub coarse: Vec<String>,
-    /// What the publication has otherwise than the case as it stands.
+    /// The settings in which the publication differs from the case as it stands.
     pub paper: Option<PaperSetting>,
     /// The same case with other settings.
     pub variants: Vec<Variant>,
@@ -90,7 +90,7 @@ pub struct Case {
     pub level: Level,
     /// Whether overrides of the command line are applied.
     pub is_changed: bool,
-    /// What of the case is left out of this run, in sentences.
+    /// Remarks on the parts of the case that are left out of this run.
     pub remarks: Vec<String>,
     /// The case after all overrides, as TOML without comments, for the record of the run.
     pub as_run: String,
@@ -107,10 +107,10 @@ pub struct Parameter {
     pub value: f64,
 }
 
-/// The same case with some keys set otherwise.
+/// The same case with other values of some keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
-    /// Name on the command line and in checks. Members of sweeps are no entries of this list.
+    /// Name on the command line and in checks. Members of sweeps are not in this list.
     pub name: Located<String>,
     /// What it shows, in one line.
     pub title: Option<String>,
@@ -173,7 +173,7 @@ impl Case {
         self.parameters.iter().find(|parameter| parameter.name == name).map(|found| found.value)
     }
 
-    /// The value of an expression of the parameters, `None` where `text` is none.
+    /// The value of an expression of the parameters, `None` if `text` is not one.
     pub fn evaluate(&self, text: &str) -> Option<f64> {
         let parameters: Vec<_> =
             self.parameters.iter().map(|known| (known.name.clone(), Some(known.value))).collect();
@@ -191,7 +191,7 @@ impl Case {
         std::iter::once(None).chain(variants.chain(members).map(Some)).collect()
     }
 
-    /// Whether there is the member of a sweep called `name` at a setting. Variants are at all.
+    /// Whether the sweep member called `name` exists at a setting. Variants exist at all settings.
     pub fn is_at(&self, name: &str, level: Level) -> bool {
         member_of(name).is_none_or(|(sweep, index)| {
             let sweep = self.sweeps.iter().find(|known| *known.name == sweep);
@@ -207,8 +207,7 @@ impl Case {
         (index < sweep.count(self.level)).then_some((sweep, index))
     }
 
-    /// What tells the member called `name` of a sweep apart: `time.cfl=0.1`. `None` for names of
-    /// variants.
+    /// What distinguishes the sweep member called `name`: `time.cfl=0.1`. `None` for names of variants.
     pub fn member_label(&self, name: &str) -> Option<String> {
         let (sweep, index) = self.member(name)?;
         Some(sweep.label(index, self.level))

@@ -1,8 +1,7 @@
-//! The validation page: every check of many cases with its result, what it is worth, and charts, as
-//! Markdown.
+//! The validation page: every check of many cases with its result and its value as evidence, and charts, as Markdown.
 //!
-//! The same results give the same bytes: but for the day on which runs that take long were run,
-//! nothing in it tells time of day, wall time or machine.
+//! The same results give the same bytes: except for the dates of long runs, it contains no time of day, wall time or
+//! machine.
 
 use std::fmt::Write;
 use std::rc::Rc;
@@ -20,7 +19,7 @@ mod results;
 
 /// A case with its rows and runs.
 pub struct PageCase {
-    /// Name of its folder, which names its charts and stands for its id where it has none.
+    /// Name of its folder, which names its charts, and is used as its id if it has none.
     pub name: String,
     /// The link to its page or file, relative to the validation page.
     pub link: String,

@@ -1,4 +1,4 @@
-//! What a case will do, without doing it: the content of `piola check`.
+//! What a run of a case will do, without running it: the content of `piola check`.
 
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ use crate::time::{StepControl, supersonic};
 pub struct Plan {
     /// The bodies with their particles.
     pub bodies: Vec<BodyReport>,
-    /// Least, mean and most neighbours.
+    /// Smallest, mean and largest number of neighbours.
     pub neighbors: NeighborStatistics,
     /// Particles with fewer neighbours than there are dimensions.
     pub poorly_supported: Vec<Particle>,
@@ -26,17 +26,17 @@ pub struct Plan {
     pub limiter: String,
     /// Number of steps to the end if all are as large as the first.
     pub steps: u64,
-    /// How many steps of its own each system takes in the first one, by name; nothing where there is one system.
+    /// Number of its own steps that each system takes in the first step, by name; empty for a single system.
     pub own_steps: Vec<(String, u64)>,
-    /// What the integrator makes of what nothing damps, where that is known.
+    /// The effect of the integrator on the fastest undamped oscillation, if known.
     pub undamped: Option<Undamped>,
-    /// Particle evaluations a second, measured on this machine.
+    /// Particle evaluations per second, measured on this machine.
     pub evaluations_per_second: f64,
     /// Wall time of the run in s at that speed, without output.
     pub seconds: f64,
-    /// Bytes of states and lists.
+    /// Memory of states and neighbour lists in bytes.
     pub memory: usize,
-    /// What will be written, a line each.
+    /// What will be written, one line each.
     pub outputs: Vec<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
@@ -48,9 +48,9 @@ pub struct Plan {
 pub struct Undamped {
     /// Its period in s.
     pub period: f64,
-    /// What a period multiplies its energy by.
+    /// The factor by which its energy changes in a period.
     pub by_period: f64,
-    /// What the whole run multiplies its energy by.
+    /// The factor by which its energy changes in the whole run.
     pub by_end: f64,
 }
 
@@ -75,7 +75,7 @@ impl Undamped {
 pub struct PlannedLimit {
     /// Its name.
     pub name: &'static str,
-    /// The largest step it allows, with the CFL number applied where it applies, in s.
+    /// The largest step it allows, including the CFL number where it applies, in s.
     pub step: f64,
     /// The particle that sets it.
     pub particle: Particle,
@@ -116,7 +116,8 @@ impl Session {
         planned_limits(self.executor.scheme.as_ref(), control, &found)
     }
 
-    /// Looks at the initial state and times the first two steps, or two evaluations of the rates where steps solve equations.
+    /// Inspects the initial state and times the first two steps, or two evaluations of the rates if steps solve
+    /// equations.
     pub fn plan(&mut self) -> Plan {
         let control = assembly::step_control(&self.case);
         let scheme = self.executor.scheme.as_mut();

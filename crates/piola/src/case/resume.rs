@@ -69,8 +69,8 @@ pub(super) fn identity(case: &Case, scheme: &dyn Scheme) -> Identity {
 }
 
 impl Case {
-    /// What tells apart cases that give other results: some digits of a sum over the case with all
-    /// overrides, without what the course of a run does not depend on.
+    /// Distinguishes cases that give different results: some digits of a checksum of the case with all overrides,
+    /// without the keys that the course of a run does not depend on.
     pub fn fingerprint(&self) -> String {
         // The text is our own: that it cannot be read again is impossible.
         let mut tree = document::parse(&self.as_run).unwrap_or_default();

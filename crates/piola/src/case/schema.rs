@@ -8,8 +8,8 @@ use super::tables;
 
 /// The schema of the case file, JSON Schema draft 2020-12.
 ///
-/// It accepts every good case. What it cannot say, such as the length of vectors in a case of two
-/// dimensions or which keys exclude each other, only piola itself checks.
+/// It accepts every valid case. What it cannot express, such as the length of vectors in a case of two dimensions or
+/// which keys exclude each other, is checked by piola only.
 pub fn json_schema() -> Value {
     let mut definitions = Map::new();
     for section in sections(&tables::CASE).into_iter().skip(1) {

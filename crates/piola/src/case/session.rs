@@ -1,4 +1,4 @@
-//! A case that is built: the one way into a run.
+//! A case that is built: the only entry point to a run.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -23,8 +23,8 @@ use crate::time::{
     Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
 };
 
-/// A run of a case, from its particles at the start to its results: as a whole, in pieces, or a step at
-/// a time, with the same bits.
+/// A run of a case, from its particles at the start to its results: as a whole, in parts or step by step, with
+/// results identical to the bit.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;
@@ -77,16 +77,16 @@ pub enum RunError {
     /// A file during the run.
     #[error(transparent)]
     Observe(#[from] ObserveError),
-    /// There are checkpoints, and none of them is any good for this run.
+    /// There are checkpoints, but this run can be resumed from none of them.
     #[error("{newest}\nno checkpoint of this run is intact; nothing was changed")]
     NoCheckpoint {
         /// Why the newest was refused.
         newest: CheckpointError,
     },
-    /// A checkpoint is of a run with other outputs.
+    /// A checkpoint belongs to a run with other outputs.
     #[error("{0}; nothing was changed; start again without `--resume`")]
     Misfit(#[from] Misfit),
-    /// A folder was named for a run that had begun without it.
+    /// A folder was given for a run that had begun without it.
     #[error("the run has begun: name the folder of its results before the first step")]
     Begun,
 }
@@ -95,8 +95,8 @@ impl Session {
     /// Builds particles, lists, scheme and integrator of a case.
     ///
     /// # Errors
-    /// Everything that only shows when particles exist: a body without particles, a selection that
-    /// selects nothing, a particle without a gradient, a prestress that the material cannot carry.
+    /// Everything that appears only when particles exist: a body without particles, a selection that selects nothing,
+    /// a particle without a gradient, a prestress that the material cannot carry.
     pub fn new(case: &Case) -> Result<Self, Problems> {
         let start = Instant::now();
         let (scheme, integrator, built) = assembly::build(case)?;
@@ -146,7 +146,7 @@ impl Session {
         self.executor.time()
     }
 
-    /// Where the run stands.
+    /// The progress of the run.
     pub fn progress(&self) -> Progress {
         self.executor.progress()
     }
@@ -156,13 +156,13 @@ impl Session {
         &self.tables
     }
 
-    /// Lets `observer` look from now on, after those of the case.
+    /// Adds an observer, which is called after those of the case.
     pub fn observe(&mut self, observer: Box<dyn Observer>) {
         self.executor.observe(observer);
     }
 
-    /// Lets the results go to `folder`; without one the tables exist in memory only. Nothing is written
-    /// before the first step.
+    /// Writes the results to `folder`; without one the tables exist in memory only. Nothing is written before the
+    /// first step.
     ///
     /// # Errors
     /// [`RunError::Begun`] after the first step.
@@ -184,13 +184,13 @@ impl Session {
         Ok(())
     }
 
-    /// Goes on with the run in `folder` from its newest sound checkpoint, and starts anew where
-    /// there is none. The results are those of a run that was never broken off, to the bit. Observers
-    /// from outside have to be there already, the same as in that run.
+    /// Continues the run in `folder` from its newest sound checkpoint, and starts from the beginning if there is
+    /// none. The results are those of an uninterrupted run, to the bit. Observers that were added to that run have to
+    /// be added before.
     ///
     /// # Errors
-    /// As [`Session::step`], and if there are checkpoints of which none is sound or of this case; then
-    /// nothing is changed.
+    /// As [`Session::step`], and if there are checkpoints of which none is sound or of this case; nothing is changed
+    /// then.
     pub fn resume_from(&mut self, folder: &Path) -> Result<(), RunError> {
         self.write_to(folder)?;
         let case = &self.case;
@@ -222,22 +222,22 @@ impl Session {
         self.begin()
     }
 
-    /// All that the steps to come depend on.
+    /// Everything that further steps depend on.
     pub fn checkpoint(&mut self) -> Checkpoint {
         self.executor.checkpoint()
     }
 
-    /// Goes on from a checkpoint of a session of the same case with the same observers.
+    /// Continues from a checkpoint of a session of the same case with the same observers.
     ///
     /// # Errors
-    /// It cannot be one; the session is of no use then.
+    /// It cannot be one; the session cannot be used then.
     pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), Misfit> {
         self.executor.resume(checkpoint)
     }
 
-    /// Takes a step, and lets the observers look for whom the moment after it is due. Before the first
-    /// step they are shown the start. Whether the run goes on: it does not where it has come to its end
-    /// or has failed. A run that may retry may find itself at an earlier moment.
+    /// Takes a step, and calls the observers that are due after it; before the first step they are called for the
+    /// initial state. Returns whether the run continues: it does not if it has reached its end or has failed. A run
+    /// that may retry may be at an earlier time afterwards.
     ///
     /// # Errors
     /// [`RunError`] for faults of files. A run that fails is an outcome in the summary.
@@ -246,8 +246,8 @@ impl Session {
         Ok(self.executor.step()?)
     }
 
-    /// Takes steps until the time is `time` or later. None is shortened to meet it, so that results do
-    /// not depend on it. Whether the run goes on.
+    /// Takes steps until the time is `time` or later. No step is shortened to meet it, so results do not depend on
+    /// it. Returns whether the run continues.
     ///
     /// # Errors
     /// As [`Session::step`].
@@ -274,8 +274,8 @@ impl Session {
         self.conclude(summary)
     }
 
-    /// Ends the run where it is, and shows this moment to all observers as the last. No step is taken
-    /// after it, but columns can be read.
+    /// Ends the run where it is, and shows this moment to all observers as the last. No more steps can be taken, but
+    /// columns can be read.
     ///
     /// # Errors
     /// As [`Session::step`].

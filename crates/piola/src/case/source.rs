@@ -35,8 +35,8 @@ pub(super) fn floor_boundary(text: &str, offset: usize) -> usize {
 
 /// A range of bytes in one of the texts of a case.
 ///
-/// Places are handles: whoever refuses a value later, for example because a selection selects
-/// nothing, reports it with [`Case::problem_at`](super::model::Case::problem_at).
+/// Places are handles: a value that is refused later, for example because a selection selects nothing, is reported
+/// with [`Case::problem_at`](super::model::Case::problem_at).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Place {
     /// Number of the text: 0 is the case file, the overrides of the command line follow.
@@ -67,7 +67,7 @@ impl Place {
 pub struct Located<T> {
     /// The value.
     pub value: T,
-    /// Where the case file says it.
+    /// Where it is in the case file.
     pub place: Place,
 }
 

@@ -1,12 +1,12 @@
-//! How the tables of a case file are described: the one place that says which keys there are.
+//! How the tables of a case file are described: the single place that defines the keys.
 //!
-//! Checking, defaults, the JSON schema and the reference all follow these descriptions; the
-//! descriptions themselves stand in [`tables`](super::tables).
+//! Checking, defaults, the JSON schema and the reference all follow these descriptions; the descriptions themselves
+//! are in [`tables`](super::tables).
 
 /// A table with a fixed set of keys.
 #[derive(Debug)]
 pub struct TableSpec {
-    /// How messages and the reference call it, for example `[time]` or `lattice`.
+    /// Its name in messages and the reference, for example `[time]` or `lattice`.
     pub title: &'static str,
     /// What it is for.
     pub meaning: &'static str,
@@ -14,10 +14,10 @@ pub struct TableSpec {
     pub keys: &'static [KeySpec],
 }
 
-/// A table whose key `kind` decides which other keys there are.
+/// A table whose key `kind` determines its other keys.
 #[derive(Debug)]
 pub struct TaggedSpec {
-    /// How messages and the reference call it.
+    /// Its name in messages and the reference.
     pub title: &'static str,
     /// What it is for.
     pub meaning: &'static str,
@@ -45,9 +45,9 @@ pub struct KindSpec {
 pub struct KeySpec {
     /// Its name.
     pub name: &'static str,
-    /// What its value looks like.
+    /// The form of its value.
     pub kind: Kind,
-    /// SI unit, `1` for a pure number, empty for what is no number.
+    /// SI unit, `1` for a pure number, empty if it is not a number.
     pub unit: &'static str,
     /// Whether it has to be there.
     pub presence: Presence,
@@ -60,15 +60,15 @@ pub struct KeySpec {
 pub enum Presence {
     /// It must.
     Required,
-    /// It need not, and means nothing then.
+    /// It need not, and has no effect then.
     Optional,
     /// This TOML value is taken instead.
     Default(&'static str),
-    /// Something that depends on other keys is taken instead, said in words.
+    /// Something that depends on other keys is taken instead, described in words.
     Derived(&'static str),
 }
 
-/// What a value looks like.
+/// The form of a value.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// Any text.
@@ -93,7 +93,7 @@ pub enum Kind {
     NumberOrPerAxis(Interval),
     /// A list of expressions, one for each axis.
     Expressions(Variables),
-    /// A table with one of the keys `x`, `y`, `z` for each axis that is meant.
+    /// A table with any of the keys `x`, `y`, `z`.
     PerAxis(&'static Kind),
     /// A list.
     List(&'static Kind),
@@ -112,7 +112,7 @@ pub enum Kind {
 /// The variables that an expression may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variables {
-    /// `x`, `y`, `z` as far as the case has dimensions.
+    /// As many of `x`, `y`, `z` as the case has dimensions.
     Position,
     /// Those and `t`.
     PositionAndTime,
@@ -191,12 +191,12 @@ impl Interval {
         Self { lower, has_lower: true, ..Self::ANY }
     }
 
-    /// From `lower` to `upper`, with both.
+    /// From `lower` to `upper`, both included.
     pub const fn between(lower: f64, upper: f64) -> Self {
         Self { lower, upper, has_lower: true, has_upper: true }
     }
 
-    /// Whether `value` lies in it. Not a number does not.
+    /// Whether `value` lies in it. NaN does not.
     pub fn contains(&self, value: f64) -> bool {
         (value > self.lower || self.has_lower && value == self.lower)
             && (value < self.upper || self.has_upper && value == self.upper)

@@ -1,4 +1,4 @@
-//! What the members of a sweep gave, side by side: one table, and charts.
+//! The results of the members of a sweep, side by side: one table, and charts.
 
 use std::io;
 use std::path::Path;
@@ -8,7 +8,7 @@ use super::model::Case;
 use crate::observe::Series;
 use crate::output::{self, Column, OutputError, Plot, Style, atomic};
 
-/// Members of a sweep with what came of them.
+/// Members of a sweep with their results.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
     /// What the case shows.
@@ -19,14 +19,14 @@ pub struct Comparison {
     pub members: Vec<MemberResult>,
 }
 
-/// What came of one member.
+/// The result of one member.
 #[derive(Clone, Debug)]
 pub struct MemberResult {
     /// Name of its folder.
     pub name: String,
     /// The value of each key.
     pub values: Vec<MemberValue>,
-    /// How it ended: that of its run, or a word of why there was none.
+    /// The outcome of its run, or in a word why there was none.
     pub outcome: String,
     /// Wall time in s, of building and running.
     pub seconds: Option<f64>,
@@ -116,7 +116,7 @@ impl Comparison {
         columns
     }
 
-    /// Names of the columns of probes, and the total energy: what is worth a line on a screen.
+    /// Names of the columns of probes, and the total energy: the quantities that are shown on the screen.
     pub fn headlines(&self) -> Vec<String> {
         let names = self.columns().into_iter().map(|column| column.name);
         names.filter(|name| !name.starts_with("energy.") || name == "energy.total").collect()
@@ -227,8 +227,8 @@ pub fn split_values(text: &str) -> Vec<&str> {
 
 /// Names of folders for members, from the values of their keys: `time.cfl=0.1+scheme.kernel=lucy`.
 ///
-/// Letters that do not suit a file name on every system become `_`, long values are cut, and names
-/// that would be the same then, or differ in case only, get a number.
+/// Characters that are not suitable for file names on every system become `_`, long values are cut, and names that
+/// would then be equal, or differ only in case, get a number.
 pub fn folder_names(members: &[Vec<(&str, &str)>]) -> Vec<String> {
     const LONGEST: usize = 80;
     let suits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);

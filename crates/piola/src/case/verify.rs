@@ -1,7 +1,7 @@
 //! Evaluation of a case's checks.
 //!
-//! [`verify`] asks for a run of each variant that a check looks at, once, and compares. A check
-//! that cannot be evaluated fails with a reason: nothing passes by being skipped.
+//! [`verify`] requests one run of each variant that a check refers to, and compares. A check that cannot be evaluated
+//! fails with a reason: nothing passes by being skipped.
 
 use std::fmt;
 use std::rc::Rc;
@@ -49,7 +49,7 @@ impl From<&Outcome> for Ending {
     }
 }
 
-/// A run that is over, as checks see it.
+/// A run that has ended, as checks see it.
 pub trait RunResults {
     /// How it ended.
     fn ending(&self) -> Ending;
@@ -68,16 +68,15 @@ impl RunResults for Finished {
     }
 }
 
-/// A run with the case that was run: the variant has parameters and checks of its own.
+/// A run with its case: the variant has parameters and checks of its own.
 pub struct VariantRun<Run> {
     /// The case with the overrides of the variant and of the setting.
     pub case: Case,
-    /// What came of it.
+    /// Its results.
     pub run: Run,
 }
 
-/// Runs the variant or member of a sweep of this name (`None`: the case itself), or says why it
-/// cannot.
+/// Runs the variant or member of a sweep of this name (`None`: the case itself), or returns the reason why it cannot.
 pub type RunVariant<'a, Run> = dyn FnMut(Option<&str>) -> Result<VariantRun<Run>, String> + 'a;
 
 /// One line of the table of `piola verify`.
@@ -87,12 +86,12 @@ pub struct CheckRow {
     pub check: usize,
     /// The case's row of the reproduction list.
     pub id: Option<String>,
-    /// What was run, `None` for the case itself: the name of a variant, or a sweep and the values
-    /// that tell its members apart.
+    /// What was run, `None` for the case itself: the name of a variant, or a sweep and the values that distinguish
+    /// its members.
     pub run: Option<String>,
     /// The quantity with its reduction: `top.displacement.y maximum`.
     pub quantity: String,
-    /// What the run gave, `None` if there is no such thing.
+    /// The result of the run, `None` if there is none.
     pub got: Option<Got>,
     /// What was expected: `0.2 m`, `at most 1e-9 J`, `less than damped (0.31 m)`.
     pub expected: String,
@@ -106,37 +105,36 @@ pub struct CheckRow {
     pub source: String,
     /// Why the tolerance, or the bound, is what it is.
     pub bound: Option<String>,
-    /// The setting that it was run at: the paper's where the run has the publication's numbers,
-    /// however it comes by them.
+    /// The setting that it was run at: the paper's if the run has the publication's numbers, for whatever reason.
     pub level: Level,
-    /// The runs that it looks at, `None` for the case itself.
+    /// The runs that it uses, `None` for the case itself.
     pub runs: Vec<Option<String>>,
     /// Whether one of them takes long.
     pub is_long: bool,
     /// Whether the check passes.
     pub pass: bool,
-    /// Why it is not met, as the case knows; `None` where it passes, or where it should.
+    /// Why it is not met, as stated in the case; `None` if it passes, or should pass.
     pub unmet: Option<String>,
     /// Why it could not be evaluated, or how the run failed; `None` if only the number is off.
     pub reason: Option<String>,
-    /// For checks of how members of a sweep follow each other, what each gave.
+    /// For checks of trends, the results of the members of the sweep.
     pub trend: Option<TrendData>,
 }
 
-/// What the members along a key of a sweep gave.
+/// The results of the members along a key of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrendData {
     /// Path of the key.
     pub key: String,
     /// Unit of the quantity.
     pub unit: String,
-    /// Whether errors are looked at, not the quantity itself.
+    /// Whether errors are evaluated instead of the quantity itself.
     pub of_error: bool,
     /// The members in their order.
     pub points: Vec<TrendPoint>,
 }
 
-/// What one member of a sweep gave.
+/// The result of one member of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrendPoint {
     /// Name of the member.
@@ -147,11 +145,11 @@ pub struct TrendPoint {
     pub key: Option<f64>,
     /// The quantity.
     pub value: f64,
-    /// Its distance to what it should be, if that is known.
+    /// Its distance from the expected value, if that is known.
     pub error: Option<f64>,
 }
 
-/// A result that a check looks at.
+/// A result that a check evaluates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Got {
     /// A number with its unit.
@@ -169,8 +167,8 @@ impl fmt::Display for Got {
     }
 }
 
-/// The variants and members of sweeps that the checks of `case` look at in its setting, in the
-/// order in which they are needed; `None` is the case itself.
+/// The variants and members of sweeps that the checks of `case` refer to in its setting, in the order in which they
+/// are needed; `None` is the case itself.
 pub fn needed_variants(case: &Case) -> Vec<Option<String>> {
     let mut needed = Vec::new();
     for name in applicable(case).flat_map(|(_, check)| all_runs(case, check)) {
@@ -204,11 +202,11 @@ fn own_runs(case: &Case, check: &Check) -> Vec<Option<String>> {
 
 /// Evaluates the checks of `base` that apply in its setting, in their order.
 ///
-/// `run` is called once for each variant of [`needed_variants`]. It applies the variant and the
-/// setting, runs, and says why where it cannot.
+/// `run` is called once for each variant of [`needed_variants`]. It applies the variant and the setting and runs the
+/// case, or returns the reason why it cannot.
 ///
-/// Of a run that failed only `run.outcome` is looked at, unless the case says that it fails: then
-/// the rest of its checks are evaluated on what it recorded. Of an interrupted one nothing is.
+/// For a run that failed only `run.outcome` is evaluated, unless the case says that it fails: then the remaining
+/// checks are evaluated on what it recorded. For an interrupted one nothing is evaluated.
 pub fn verify<Run: RunResults>(base: &Case, run: &mut RunVariant<'_, Run>) -> Vec<CheckRow> {
     let variants = needed_variants(base);
     let runs = variants.into_iter().map(|variant| {

@@ -1,5 +1,5 @@
-//! Fields of bodies at a moment, which stay as they are when the run continues: without a copy where the numbers stand
-//! in one stretch of the state.
+//! Fields of bodies at a moment, which do not change when the run continues: without a copy if the numbers are
+//! contiguous in the state.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -41,8 +41,8 @@ impl Rows {
     }
 }
 
-/// A field of a body, or of all particles, at a moment. It holds the memory that it stands in: the run writes its next
-/// states to other memory as long as there is a view of this one.
+/// A field of a body, or of all particles, at a moment. It keeps its memory alive: the run writes its next states to
+/// other memory as long as there is a view of this one.
 #[derive(Clone, Debug)]
 pub struct FieldView {
     description: FieldDescription,
@@ -54,7 +54,7 @@ pub struct FieldView {
 }
 
 impl FieldView {
-    /// What the numbers are.
+    /// The description of the field.
     pub fn description(&self) -> &FieldDescription {
         &self.description
     }
@@ -64,18 +64,18 @@ impl FieldView {
         self.particles
     }
 
-    /// Whether the numbers are a copy: the field is no column of the state, or the particles of the body do not
-    /// follow each other in it.
+    /// Whether the numbers are a copy: the field is not a column of the state, or the particles of the body are not
+    /// contiguous in it.
     pub fn is_copy(&self) -> bool {
         self.is_copy
     }
 
-    /// The numbers, particle by particle. [`strides`](Self::strides) says where each component is.
+    /// The numbers, particle by particle. [`strides`](Self::strides) gives the position of each component.
     pub fn numbers(&self) -> &[f64] {
         &self.memory[self.stretch.clone()]
     }
 
-    /// How many numbers are from a value to the next one along each axis of the
+    /// The distance in numbers from a value to the next one along each axis of the
     /// [shape](crate::fields::FieldKind::shape).
     pub fn strides(&self) -> Vec<usize> {
         let components = self.description.kind.components(self.dimension);
@@ -95,8 +95,8 @@ impl FieldView {
 }
 
 impl Session {
-    /// A field of the body with a number in the case, or of all particles, at the moment. Rows are the particles that
-    /// are there, in the order of all columns.
+    /// The current values of a field of the body with this number in the case, or of all particles. Rows are the
+    /// particles present, in the order of all columns.
     ///
     /// # Errors
     /// [`ColumnError::Unknown`].

@@ -1,4 +1,4 @@
-//! A field against what it should be.
+//! A field compared with its expected values.
 
 use std::sync::Arc;
 
@@ -6,14 +6,14 @@ use crate::boundaries::SpaceTime;
 use crate::fields::FieldSelector;
 use crate::schemes::Observation;
 
-/// The relative difference `sum |f - e| / sum |e|` of fields f from functions e of the place of
-/// each particle and time, CTVF (66) with absolute values; or the root of that of squares, which
-/// with volumes is Dual-support (56).
+/// The relative difference `sum |f - e| / sum |e|` of fields f from functions e of the position of each particle and
+/// time, CTVF (66) with absolute values; or the root of the same ratio of squares, which with volumes is Dual-support
+/// (56).
 #[derive(Clone)]
 pub struct Deviation {
-    /// Numbers of each particle, with what they should be.
+    /// Numbers of each particle, with their expected values.
     pub parts: Vec<(FieldSelector, Arc<dyn SpaceTime>)>,
-    /// Whether the means of both are taken away first, as of a pressure without a zero.
+    /// Whether the means of both are subtracted first, as for a pressure without a reference value.
     pub without_mean: bool,
     /// What is summed.
     pub norm: Norm,
@@ -26,9 +26,9 @@ pub struct Deviation {
 pub enum Norm {
     /// Absolute values.
     Absolute,
-    /// Squares, of which the root is taken.
+    /// Squares, with the root of the sum.
     Square,
-    /// Squares times reference volumes, of which the root is taken.
+    /// Squares times reference volumes, with the root of the sum.
     Volume,
 }
 

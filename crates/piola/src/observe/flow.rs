@@ -1,4 +1,4 @@
-//! Where a fluid reaches, and how much of it goes through a plane.
+//! How far a fluid reaches, and how much of it flows through a plane.
 
 use piola_formulas::kernels::Kernel;
 
@@ -15,9 +15,9 @@ const STRIDE: f64 = 0.25;
 /// Halvings between two of these places.
 const HALVINGS: usize = 30;
 
-/// How far a fluid reaches along a line, as a gauge in a tank shows it: from the start of the line to the
-/// last place on it where `sum_b V_b W(x - x_b)` is one half, 0 where there is none. It is for lines that are
-/// at least a support away from walls.
+/// How far a fluid reaches along a line, as a gauge in a tank shows it: from the start of the line to the last point
+/// on it where `sum_b V_b W(x - x_b)` is one half, 0 if there is none. The line has to be at least a support away
+/// from walls.
 #[derive(Clone)]
 pub struct Gauge {
     /// Both ends of the line in m.
@@ -33,7 +33,7 @@ pub struct Gauge {
 }
 
 impl Gauge {
-    /// Gives its particles other indices; those without one do not count any more.
+    /// Renumbers its particles; those without a number no longer count.
     pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
         let renamed = self.particles.iter().filter_map(|&(a, volume)| Some((index(a)?, volume)));
         self.particles = renamed.collect();
@@ -88,8 +88,8 @@ impl Gauge {
     }
 }
 
-/// The mass that goes through a plane in a second, `sum_b m_b v_b . n K(d_b)`, d being the distance from the plane
-/// and K a hat as wide as two spacings on each side: over the time in which a particle goes through it
+/// The mass that flows through a plane per second, `sum_b m_b v_b . n K(d_b)`, d being the distance from the plane
+/// and K a hat as wide as two spacings on each side: integrated over the time in which a particle goes through it
 /// this is the mass of the particle.
 #[derive(Clone)]
 pub struct Flux {

@@ -17,7 +17,7 @@ pub struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Writes `fields` into `folder` at `schedule`, and notes the files in `written`.
+    /// Writes `fields` into `folder` at `schedule`, and records the files in `written`.
     pub fn new(
         folder: ResultsFolder,
         schedule: Schedule,

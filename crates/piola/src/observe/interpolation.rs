@@ -1,4 +1,4 @@
-//! Fields at fixed places of space.
+//! Fields at fixed points in space.
 
 use nalgebra::{DMatrix, DVector};
 use piola_formulas::kernels::Kernel;
@@ -10,19 +10,18 @@ use crate::schemes::Observation;
 /// as where it reaches out of the particles, and the mean is taken.
 const LARGEST_AMPLIFICATION: f64 = 3.0;
 
-/// Fields interpolated at some places: the value there of the linear function that fits the particles
-/// around best, weighted by the kernel, theory (54). It is exact for linear fields, at the edge of
-/// a body too. Where particles do not determine it, the mean, which is exact for constants; not a
-/// number where no particle is near.
+/// Fields interpolated at points: the value there of the linear function that best fits the surrounding particles,
+/// weighted by the kernel, theory (54). It is exact for linear fields, even at the edge of a body. Where the
+/// particles do not determine it, the mean is used, which is exact for constants; NaN where no particle is near.
 #[derive(Clone)]
 pub struct Interpolated {
-    /// The places in m.
+    /// The points in m.
     pub places: Vec<Vec<f64>>,
     /// The fields, with all their components.
     pub fields: Vec<FieldDescription>,
     /// The kernel.
     pub kernel: Kernel,
-    /// Its smoothing length in m at each place.
+    /// Its smoothing length in m at each point.
     pub smoothing_lengths: Vec<f64>,
     /// Periods of space in m by axis, infinite where it is open.
     pub periods: Vec<f64>,
@@ -40,7 +39,7 @@ struct Around {
 }
 
 impl Interpolated {
-    /// Gives its particles other indices; those without one do not count any more.
+    /// Renumbers its particles; those without a number no longer count.
     pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
         self.particles = self.particles.iter().filter_map(|&a| index(a)).collect();
     }

@@ -1,5 +1,5 @@
-//! What is recorded of a run while it goes (probes, energies, steps, particle files, pictures),
-//! and how histories become single numbers.
+//! What is recorded during a run (probes, energies, steps, particle files, pictures), and how histories become single
+//! numbers.
 
 mod comparison;
 mod files;

@@ -9,13 +9,13 @@ use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 /// What a picture shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureRequest {
-    /// Stands above it.
+    /// The title above it.
     pub title: String,
     /// The number that colours a particle.
     pub field: FieldSelector,
     /// Ends of the colour bar; those of the data if `None`.
     pub range: Option<[f64; 2]>,
-    /// Spacing of the particles in the reference in m.
+    /// Spacing of the particles in the reference state in m.
     pub spacing: f64,
     /// Numbers of the bodies that are left out.
     pub hidden: Vec<u32>,
@@ -32,7 +32,7 @@ pub struct PictureWriter {
 }
 
 impl PictureWriter {
-    /// Draws `request` into `folder` at `schedule`, and notes the files in `written`.
+    /// Draws `request` into `folder` at `schedule`, and records the files in `written`.
     pub fn new(
         folder: ResultsFolder,
         schedule: Schedule,

@@ -1,4 +1,4 @@
-//! Numbers of chosen particles against time.
+//! Quantities of selected particles against time.
 
 use std::borrow::Cow;
 
@@ -28,7 +28,7 @@ pub enum ProbeKind {
     Particle {
         /// Its index in memory.
         particle: u32,
-        /// Index of one whose fields are subtracted.
+        /// Index of a particle whose fields are subtracted.
         relative_to: Option<u32>,
         /// The fields, with all their components.
         fields: Vec<FieldDescription>,
@@ -41,8 +41,7 @@ pub enum ProbeKind {
         largest: bool,
         /// Their indices in memory, at least one.
         particles: Vec<u32>,
-        /// Lower and upper corner in m of a box outside of which they do not count, where they are
-        /// at the time.
+        /// Lower and upper corner in m of a box; particles that are outside it at the time do not count.
         inside: Option<[Vec<f64>; 2]>,
     },
     /// The sum of a field over a set of particles, with all its components.
@@ -72,15 +71,16 @@ pub enum ProbeKind {
     Sensor(Sensor),
     /// How far a fluid reaches along a line.
     Gauge(Gauge),
-    /// What goes through a plane.
+    /// The flow through a plane.
     Flux(Flux),
-    /// What has come in and gone out through the open boundary with the number of a body.
+    /// What has entered and left through the open boundary whose buffer is the body of this number.
     Opening(u32),
-    /// Whole fields interpolated at one fixed point of space; of two, those of the first less those of the second.
+    /// Whole fields interpolated at one fixed point in space; with two points, those at the first less those at the
+    /// second.
     Point(Interpolated),
-    /// How far a field is from a function of place and time.
+    /// How far a field is from a function of position and time.
     Error(Deviation),
-    /// The Taylor test of the tangent of an implicit step from the state of the moment.
+    /// The Taylor test of the tangent of an implicit step from the current state.
     Tangent {
         /// The rule of the step.
         rule: Theta,
@@ -92,8 +92,8 @@ pub enum ProbeKind {
 /// Distances of the Taylor test, a decade apart.
 const SIZES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 
-/// Columns of the Taylor test: the least and the largest of the slopes over a decade, which are 2
-/// where the tangent is exact, and what was left at each distance.
+/// Columns of the Taylor test: the smallest and the largest slope over a decade, which are 2 if the tangent is exact,
+/// and the remainder at each distance.
 pub const TANGENT_COLUMNS: [(&str, &str); 7] = [
     ("least_slope", "1"),
     ("largest_slope", "1"),
@@ -152,7 +152,7 @@ impl Probe {
         }
     }
 
-    /// Gives its particles other indices; those without one do not count any more.
+    /// Renumbers its particles; those without a number no longer count.
     pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
         match &mut self.kind {
             ProbeKind::Particle { particle, relative_to, .. } => {

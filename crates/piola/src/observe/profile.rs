@@ -9,14 +9,14 @@ use super::tables::{SpaceTime, Tables};
 use crate::output::{Column, ResultsFolder, Table};
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
-/// A probe that looks along a straight line.
+/// A probe along a straight line.
 #[derive(Clone)]
 pub struct Line {
     /// First part of the names of its columns and of its files.
     pub name: String,
-    /// Distances of its places from the first one in m.
+    /// Distances of its points from the first one in m.
     pub distances: Vec<f64>,
-    /// Its places, and what is recorded there.
+    /// Its points, and what is recorded there.
     pub values: Interpolated,
     /// Times at which it is recorded.
     pub schedule: Schedule,
@@ -56,8 +56,8 @@ pub struct ProfileRecorder {
 }
 
 impl ProfileRecorder {
-    /// A recorder of `line` in `dimension` dimensions that adds its table to `tables`. With a folder
-    /// it writes a file for each profile, and notes it.
+    /// A recorder of `line` in `dimension` dimensions that adds its table to `tables`. With a folder it writes a file
+    /// for each profile, and records it in the list of files.
     pub fn new(
         line: Line,
         dimension: usize,

@@ -12,7 +12,7 @@ use crate::output::{Column, OutputError, ResultsFolder, Table};
 use crate::schemes::{Ledger, MomentumComponent, Scheme, momentum_components};
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
-/// Tables that the recorder fills and the owner of the run reads when it is over.
+/// Tables that the recorder fills and the owner of the run reads when it has ended.
 #[derive(Clone)]
 pub struct SharedTables(Arc<Mutex<Tables>>);
 
@@ -41,8 +41,8 @@ pub fn energy_columns(energies: &[&'static str], mechanisms: &[&'static str]) ->
 }
 
 /// Names and units of the columns of the momentum table, after the time: the components of
-/// momentum, the impulse so far of each way in, and what momentum has gained beyond these impulses,
-/// which by theory (19) is the error of the integrator.
+/// momentum, the impulse so far of each source of momentum, and what momentum has gained beyond these impulses, which
+/// by theory (19) is the error of the integrator.
 pub fn momentum_columns(
     components: &[MomentumComponent],
     impulses: &[&'static str],
@@ -81,8 +81,8 @@ struct Memory {
 }
 
 impl Recorder {
-    /// A recorder of `probes` and of what `scheme` reports, with rows at `schedule`. With a
-    /// folder it writes the CSV files at `save` and at the end, and notes them.
+    /// A recorder of `probes` and of what `scheme` reports, with rows at `schedule`. With a folder it writes the CSV
+    /// files at `save` and at the end, and records them in the list of files.
     pub fn new(
         scheme: &dyn Scheme,
         probes: Vec<Probe>,

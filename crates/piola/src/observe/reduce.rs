@@ -1,10 +1,10 @@
 //! How the history of a quantity becomes one number.
 //!
-//! A history is a column of a table against its times. Between rows it is taken as a straight
-//! line; local extrema are refined by a parabola.
+//! A history is a column of a table against its times. Between rows it is assumed to be a straight line; local
+//! extrema are refined by a parabola.
 //!
-//! Extrema and crossings ignore wiggles: a movement of less than [`WIGGLE`] times the range of
-//! the history, or of what a window leaves of it (largest minus smallest value), is not seen.
+//! Extrema and crossings ignore wiggles: variations of less than [`WIGGLE`] times the range (largest minus smallest
+//! value) of the history, or of its part in a window, are ignored.
 
 use thiserror::Error;
 
@@ -17,7 +17,7 @@ mod reference;
 #[cfg(test)]
 mod tests;
 
-/// Movements below this share of a history's range are wiggles, neither extrema nor crossings.
+/// Variations below this fraction of a history's range are wiggles, neither extrema nor crossings.
 pub const WIGGLE: f64 = 0.05;
 
 /// A reduction with its arguments. `Reference` is what stands for a reference curve: the curve
@@ -38,7 +38,7 @@ pub enum Reduction<Reference = Curve> {
     Mean,
     /// Largest minus smallest value.
     Range,
-    /// Half way between largest and smallest value.
+    /// Halfway between largest and smallest value.
     Middle,
     /// Half of the range.
     Amplitude,
@@ -54,11 +54,11 @@ pub enum Reduction<Reference = Curve> {
     ExtremumTime(usize),
     /// The time in s of the change of sign of this number, counted from 1.
     ZeroTime(usize),
-    /// The place along a line in m of the change of sign of this number, counted from 1.
+    /// The position along a line in m of the change of sign of this number, counted from 1.
     ZeroPlace(usize),
     /// The largest increase from one row to the next.
     LargestRise,
-    /// Last value over first value, minus 1.
+    /// Last value divided by first value, minus 1.
     Growth,
     /// The integral over time.
     Integral,
@@ -70,7 +70,7 @@ pub enum Reduction<Reference = Curve> {
     CurveRms(Reference),
     /// Another reduction of the history between two times in s.
     Within([f64; 2], Box<Self>),
-    /// Another reduction of the moving mean over so many seconds.
+    /// Another reduction of the moving mean over this many seconds.
     Smoothed(f64, Box<Self>),
 }
 
@@ -224,7 +224,7 @@ impl<Reference> Reduction<Reference> {
         }
     }
 
-    /// The reference curve, to be changed.
+    /// The reference curve, mutably.
     pub fn reference_mut(&mut self) -> Option<&mut Reference> {
         match self {
             Self::Curve(reference) | Self::CurveRms(reference) => Some(reference),
@@ -291,13 +291,13 @@ impl Reduction {
     ///   middle between the first and the last crossing is taken; the same holds for `period`.
     /// - `curve` and `curve_rms` compare the straight lines between rows with those between the
     ///   points of the reference, over the time that both cover, without error of sampling.
-    /// - A window leaves the rows between its times, and interpolated ones at them.
-    /// - The moving mean is that of the straight lines over a width about each row that has half of it on both sides. Of
-    ///   an oscillation of frequency f it leaves the share sin(pi f w) / (pi f w).
+    /// - A window keeps the rows between its times, and adds interpolated ones at them.
+    /// - The moving mean is that of the straight lines over a width about each row that has half of it on both sides.
+    ///   An oscillation of frequency f keeps the fraction sin(pi f w) / (pi f w) of its amplitude.
     ///
     /// # Errors
-    /// A history with values that are not finite, times that do not grow, or not enough rows; and
-    /// what each reduction cannot find, see [`ReduceError`].
+    /// A history with values that are not finite, times that do not increase, or not enough rows; and what each
+    /// reduction cannot find, see [`ReduceError`].
     pub fn apply(&self, time: &[f64], values: &[f64]) -> Result<f64, ReduceError> {
         let history = History::new(time, values)?;
         match self {
@@ -381,7 +381,7 @@ pub enum ReduceError {
         /// The value.
         value: f64,
     },
-    /// A time is not finite or not later than the one before.
+    /// A time is not finite or not later than the previous one.
     #[error("row {row} is at {time}, which is not after the previous row")]
     TimeNotGrowing {
         /// Row, from 1.
@@ -399,7 +399,7 @@ pub enum ReduceError {
         /// Last time of the history in s.
         last: f64,
     },
-    /// The moving mean sees no more than a row.
+    /// The moving mean covers no more than one row.
     #[error(
         "a moving mean over {width} s is shorter than the time between two rows of the table, {apart} s on average: \
          lower output.table_every, or take a longer one"
@@ -410,7 +410,7 @@ pub enum ReduceError {
         /// Mean time between rows in s.
         apart: f64,
     },
-    /// The moving mean is as wide as all there is.
+    /// The moving mean is as wide as the whole history, or its window.
     #[error("a moving mean over {width} s leaves nothing of a history that covers {covered} s")]
     TooWide {
         /// Width of the mean in s.

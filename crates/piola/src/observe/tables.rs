@@ -9,11 +9,11 @@ pub struct Tables {
     pub probes: Table,
     /// Energies, the work of each mechanism so far, and the balance, in J.
     pub energy: Table,
-    /// Momentum, the impulse of each way in so far, and the balance.
+    /// Momentum, the impulse of each source of momentum so far, and the balance.
     pub momentum: Table,
     /// Steps: count, size, and health figures.
     pub steps: Table,
-    /// The last profile along each line: distance from its start, place, and the fields.
+    /// The last profile along each line: distance from its start, position, and the fields.
     pub profiles: Vec<Table>,
     /// Columns of lines at all times.
     pub over_time: Vec<SpaceTime>,
@@ -28,7 +28,7 @@ pub struct SpaceTime {
     pub distances: Vec<f64>,
     /// Times in s, ascending.
     pub times: Vec<f64>,
-    /// The values, one row of all places for each time.
+    /// The values, one row of all points for each time.
     pub values: Vec<f64>,
 }
 
@@ -39,9 +39,9 @@ pub enum Series {
     Curve {
         /// What it is against: the time in s, or the distance from the start of the line in m.
         against: Column,
-        /// The numbers of that, ascending.
+        /// Its values, ascending.
         abscissa: Vec<f64>,
-        /// The values, as many.
+        /// The values, equally many.
         values: Vec<f64>,
         /// Their unit.
         unit: String,

@@ -16,7 +16,7 @@ use crate::{Tensor, Vector};
 /// Points of a cloud that are closer than this fraction of the mean spacing are one point.
 const COINCIDENT: f64 = 1e-6;
 
-/// What became of one body.
+/// How one body was filled with particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyReport {
     /// Its name.
@@ -25,11 +25,11 @@ pub struct BodyReport {
     pub particles: usize,
     /// Sum of their quadrature volumes in m^D.
     pub volume: f64,
-    /// The volume of its shape in m^D where that is known.
+    /// The exact volume of its shape in m^D, if known.
     pub exact_volume: Option<f64>,
     /// The particle spacing along each axis in m.
     pub spacing: Vec<f64>,
-    /// How many times smaller it is where that is finest: 1, but for regions of finer spacing.
+    /// How many times smaller it is in the finest region: 1 without regions of finer spacing.
     pub finest: f64,
     /// How well its particles are packed, if they are.
     pub packing: Option<Packing>,

@@ -7,7 +7,8 @@ use super::syntax::{self, Tree};
 use super::{ExpressionError, Scope};
 
 /// The instructions of an energy: an expression of the invariants `I1`, `I2`, `J`, `I1b` and `I2b` and of what else
-/// `scope` knows, with `+ - * / ^`, `exp`, `ln`, `log` and `sqrt`. Other functions may be of parameters alone.
+/// `scope` knows, with `+ - * / ^`, `exp`, `ln`, `log` and `sqrt`. Other functions may have only parameters as
+/// arguments.
 ///
 /// # Errors
 /// As [`Expression::parse`](super::Expression::parse), and functions of invariants that have no instruction.

@@ -111,11 +111,11 @@ pub struct ExpressionError {
     pub message: String,
     /// A few words for the underlined text.
     pub label: String,
-    /// The bytes of the expression that are meant.
+    /// The bytes of the expression that are concerned.
     pub span: Range<usize>,
     /// What the user can do.
     pub help: Option<String>,
-    /// Whether the only fault is a parameter that was refused before, which is no news.
+    /// Whether the only fault is a parameter that has already been refused and reported.
     pub is_consequence: bool,
 }
 
@@ -176,7 +176,7 @@ impl Expression {
         Ok(Self { text: text.into(), form })
     }
 
-    /// A function from outside, which `text` names.
+    /// An external function, which `text` names.
     pub fn outside(text: &str, function: Arc<dyn SpaceTime>) -> Self {
         Self { text: text.into(), form: Form::Outside(Outside(function)) }
     }
@@ -186,7 +186,7 @@ impl Expression {
         &self.text
     }
 
-    /// Its value where it depends neither on position nor on time.
+    /// Its value if it depends neither on position nor on time.
     pub fn as_constant(&self) -> Option<f64> {
         match self.form {
             Form::Constant(value) => Some(value),
@@ -210,7 +210,7 @@ impl Expression {
 
     /// Its value at a position in m and a time in s.
     ///
-    /// Not a number outside of its domain, like `sqrt(x)` at `x = -1`: who uses it checks.
+    /// NaN outside its domain, as for `sqrt(x)` at `x = -1`: the caller has to check.
     pub fn eval(&self, position: [f64; 3], time: f64) -> f64 {
         match &self.form {
             Form::Constant(value) => *value,
@@ -219,13 +219,14 @@ impl Expression {
         }
     }
 
-    /// Its rate, the [derivative](Self::derivative) by time at a fixed position.
+    /// Its rate, the [derivative](Self::derivative) with respect to time at a fixed position.
     pub fn rate(&self, position: [f64; 3], time: f64) -> f64 {
         self.derivative(Variable::T, position, time)
     }
 
-    /// Its exact derivative by a variable, the others being fixed, computed with dual numbers. Of a function from
-    /// outside that by time is what it says, those by coordinates are quotients of differences.
+    /// Its exact derivative with respect to a variable, the others being fixed, computed with dual numbers. For an
+    /// external function the derivative with respect to time is the one it provides, and those with respect to
+    /// coordinates are difference quotients.
     ///
     /// At a kink or jump (`abs`, `sign`, `min`, `max`, `floor`, `step`, `mod`) it is that of the
     /// branch that [`eval`](Self::eval) takes there; a jump contributes none.

@@ -1,4 +1,4 @@
-//! Functions from outside as expressions.
+//! External functions as expressions.
 
 use std::fmt;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ impl Outside {
         }
     }
 
-    /// The rate that it tells, or a central difference along an axis.
+    /// The rate that it provides, or a central difference along an axis.
     pub fn derivative(&self, by: Variable, position: [f64; 3], time: f64) -> f64 {
         if by == Variable::T {
             return self.0.rate(position, time);

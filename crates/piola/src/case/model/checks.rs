@@ -9,11 +9,11 @@ use crate::case::source::Located;
 /// One line of the table that `piola verify` prints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// The variant that is run, `None` for the base case or where a sweep is looked at.
+    /// The variant that is run, `None` for the base case or for a sweep.
     pub variant: Option<Located<String>>,
     /// The members of a sweep that are run instead.
     pub members: Option<Members>,
-    /// What is looked at.
+    /// The quantity that is checked.
     pub quantity: Located<Quantity>,
     /// How its history becomes one number.
     pub reduce: Reduction,
@@ -25,7 +25,7 @@ pub struct Check {
     pub source: String,
     /// Why the tolerance, or the bound, is what it is.
     pub reason: Option<String>,
-    /// Why it is not met, where that is known and stands.
+    /// Why it is not met, if it is known not to be.
     pub unmet: Option<String>,
     /// At which setting it is evaluated.
     pub when: When,
@@ -83,7 +83,7 @@ pub struct Members {
     pub sweep: Located<usize>,
     /// For each key of the sweep the number of its value, `None` for all values.
     pub fixed: Vec<Option<usize>>,
-    /// Number of the key along which members follow each other, for trends.
+    /// Number of the key along which a trend is evaluated.
     pub along: Option<usize>,
 }
 
@@ -130,7 +130,7 @@ pub enum Expectation {
     Value {
         /// The value.
         expected: f64,
-        /// Largest difference, as a share of `expected` unless `absolute`.
+        /// Largest difference, as a fraction of `expected` unless `absolute`.
         tolerance: f64,
         /// Whether the tolerance has the unit of the quantity.
         absolute: bool,
@@ -150,18 +150,18 @@ pub enum Expectation {
     EqualTo {
         /// The variant, `None` for the base case.
         other: Option<Located<String>>,
-        /// Largest difference, as a share of the other value unless `absolute`.
+        /// Largest difference, as a fraction of the other value unless `absolute`.
         tolerance: f64,
         /// Whether the tolerance has the unit of the quantity.
         absolute: bool,
     },
     /// The text of `run.outcome`.
     Outcome(String),
-    /// How the members of a sweep follow each other.
+    /// A trend over the members of a sweep.
     Trend {
-        /// In which way.
+        /// The kind of trend.
         trend: Trend,
-        /// The value that each should have: its error is looked at instead of the quantity.
+        /// The value that each should have: the error is evaluated instead of the quantity.
         expected: Option<f64>,
     },
 }
@@ -178,16 +178,16 @@ impl Expectation {
     }
 }
 
-/// How the numbers along a key of a sweep follow each other.
+/// A trend of the numbers along a key of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trend {
-    /// Bounds of the order of convergence in the value of the key.
+    /// Bounds on the order of convergence in the value of the key.
     Order([f64; 2]),
-    /// Each is above the one before.
+    /// Each is above the previous one.
     Increasing,
-    /// Each is below the one before.
+    /// Each is below the previous one.
     Decreasing,
-    /// Bounds of each over the one before.
+    /// Bounds on the ratio of each to the previous one.
     Ratio([f64; 2]),
 }
 
@@ -229,12 +229,12 @@ impl Level {
     }
 }
 
-/// At which setting a check is evaluated, or a sweep is there.
+/// The settings at which a check is evaluated, or a sweep exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// At the coarse setting and in the case as it stands.
     Always,
-    /// At one only.
+    /// At one setting only.
     At(Level),
 }
 

@@ -11,7 +11,7 @@ use crate::geometry::{Arrangement, CloudSpec, Facets, PointCloud};
 /// The space that the particles live in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Domain {
-    /// Per axis, the ends in m between which space repeats itself, or `None`.
+    /// Per axis, the ends of the period in m, or `None`.
     pub periodic: Vec<Option<Located<[f64; 2]>>>,
 }
 
@@ -22,9 +22,9 @@ pub struct Body {
     pub name: Located<String>,
     /// The space that it fills in the reference state.
     pub shape: Located<Shape>,
-    /// Distance between particles in m, one number per axis; empty where a file has the particles.
+    /// Distance between particles in m, one number per axis; empty if the particles come from a file.
     pub spacing: Located<Vec<f64>>,
-    /// How the particles are laid out. Not used where a file has them.
+    /// How the particles are arranged. Not used if they come from a file.
     pub lattice: Lattice,
     /// What it is made of.
     pub material: Located<Material>,
@@ -43,9 +43,9 @@ pub struct Body {
 pub struct Surface {
     /// The file, relative paths resolved against the folder of the case file.
     pub file: Located<PathBuf>,
-    /// How its facets are laid out in space.
+    /// How its facets are placed in space.
     pub arrangement: Arrangement,
-    /// The facets, once they have been read: those of all shapes of this file that are laid out alike.
+    /// The facets, once they have been read: shared by all shapes of this file with the same arrangement.
     pub facets: Arc<OnceLock<Arc<Facets>>>,
 }
 
@@ -66,7 +66,7 @@ pub enum Shape {
         /// Radius in m.
         radius: f64,
     },
-    /// What lies between two radii: a ring in 2D, a hollow ball in 3D.
+    /// The region between two radii: a ring in 2D, a hollow ball in 3D.
     Annulus {
         /// Centre in m.
         center: Vec<f64>,
@@ -84,14 +84,14 @@ pub enum Shape {
         /// Radius in m.
         radius: f64,
     },
-    /// What straight sides enclose in the plane of x and y.
+    /// The region enclosed by straight sides in the x-y plane.
     Polygon {
         /// Corners in m, at least three.
         corners: Vec<[f64; 2]>,
         /// In 3D the ends along z in m.
         ends: Option<[f64; 2]>,
     },
-    /// What the loops of a file enclose in the plane of x and y.
+    /// The region enclosed by the loops of a file in the x-y plane.
     Outline {
         /// The file, relative paths resolved against the folder of the case file.
         file: Located<PathBuf>,
@@ -102,15 +102,15 @@ pub enum Shape {
         /// In 3D the ends along z in m.
         ends: Option<[f64; 2]>,
     },
-    /// What the triangles of a file enclose.
+    /// The region enclosed by the triangles of a file.
     Surface(Surface),
-    /// A shape turned with its lattice.
+    /// A shape rotated together with its lattice.
     Turned {
         /// The shape.
         of: Box<Located<Shape>>,
         /// Angle in rad.
         angle: f64,
-        /// A point that stays, in m.
+        /// A point that stays in place, in m.
         about: Vec<f64>,
         /// The axis, of length 1: z in 2D.
         axis: [f64; 3],
@@ -142,13 +142,13 @@ pub enum Shape {
     Mesh {
         /// The file, relative paths resolved against the folder of the case file.
         file: Located<PathBuf>,
-        /// What of it is made into particles, and how.
+        /// What is made into particles, and how.
         spec: CloudSpec,
     },
 }
 
 impl Shape {
-    /// Whether a file or a program has the particles, so that no lattice is laid out.
+    /// Whether the particles come from a file or a program, so that there is no lattice.
     pub fn is_from_file(&self) -> bool {
         self.is_points() || matches!(self, Self::Mesh { .. })
     }
@@ -158,7 +158,7 @@ impl Shape {
         matches!(self, Self::Points { .. } | Self::Cloud { .. })
     }
 
-    /// Whether shapes meet inside of it. What is cut away may be a union: its inside is outside.
+    /// Whether shapes meet inside it. What is cut away may be a union, as its interior is outside.
     pub fn has_seams(&self) -> bool {
         match self {
             Self::Union(shapes) => shapes.len() > 1,
@@ -200,18 +200,18 @@ impl Shape {
     }
 }
 
-/// How particles are laid out in a body.
+/// How particles are arranged in a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Arrangement.
     pub kind: LatticeKind,
     /// Where the first particle lies.
     pub on: LatticeOrigin,
-    /// Largest displacement of a particle at random, in spacings.
+    /// Largest random displacement of a particle, in spacings.
     pub jitter: f64,
     /// Seed of the random displacements.
     pub seed: u64,
-    /// Steps by which particles are moved apart after that.
+    /// Number of relaxation steps after that.
     pub relax: u64,
 }
 
@@ -224,7 +224,7 @@ pub enum LatticeKind {
     Hexagonal,
     /// In layers around a centre or an axis.
     Concentric,
-    /// Moved until they are even, and half a spacing below the surface.
+    /// Moved until evenly distributed, the outermost half a spacing below the surface.
     Packed,
 }
 
@@ -233,7 +233,7 @@ pub enum LatticeKind {
 pub enum LatticeOrigin {
     /// Particles on the faces of the body's bounding box.
     Boundary,
-    /// Particles half a spacing inside of the faces.
+    /// Particles half a spacing inside the faces.
     Cells,
 }
 

@@ -25,14 +25,14 @@ pub struct Load {
 pub enum LoadKind {
     /// Acceleration in m/s^2, as expressions of the reference position and time.
     BodyForce {
-        /// One expression a component.
+        /// One expression per component.
         acceleration: Vec<Expression>,
     },
     /// Force per reference area in Pa that keeps its direction, on a part of a body's surface.
     Traction {
         /// The particles that carry it.
         region: Located<Region>,
-        /// One expression of the reference position and time a component.
+        /// One expression of the reference position and time per component.
         traction: Vec<Expression>,
     },
     /// A spring with a damper to a point.
@@ -45,7 +45,7 @@ pub enum LoadKind {
         stiffness: f64,
         /// N s/m.
         damping: f64,
-        /// Its length without force in m; that of the start if there is none.
+        /// Its unstretched length in m; `None` for its initial length.
         length: Option<f64>,
     },
     /// Pressure that follows a part of a body's surface.
@@ -58,7 +58,7 @@ pub enum LoadKind {
 }
 
 impl LoadKind {
-    /// The expressions of the load: one a component, or the only one.
+    /// The expressions of the load: one per component, or a single one.
     pub fn components(&self) -> &[Expression] {
         match self {
             Self::BodyForce { acceleration } => acceleration,
@@ -85,7 +85,7 @@ pub struct Boundary {
     pub velocity: Vec<Option<Expression>>,
     /// The waves that it makes, with the unit vector along which it pushes.
     pub wave_maker: Option<Located<(Arc<WaveMaker>, Vec<f64>)>>,
-    /// Of a rigid body, what is prescribed of its turning.
+    /// What is prescribed of the rotation of a rigid body.
     pub turning: Option<Located<Turning>>,
     /// Whether the body is continued by mirror images beyond the plane of the region.
     pub mirror: Option<Located<bool>>,
@@ -98,10 +98,10 @@ pub struct Boundary {
     pub tied: Vec<Located<usize>>,
 }
 
-/// What is prescribed of how a rigid body turns.
+/// What is prescribed of the rotation of a rigid body, and the point that its velocity refers to.
 #[derive(Clone, Debug, Default)]
 pub struct Turning {
-    /// The point that velocities are of, in m; the centre of mass if there is none.
+    /// The point that velocities refer to, in m; `None` for the centre of mass.
     pub pivot: Option<Vec<f64>>,
     /// Per axis in space, the angular velocity in rad/s as an expression of time, or `None` where the
     /// body is free.

@@ -43,7 +43,7 @@ pub enum Material {
         density: f64,
         /// Its strain energy in three dimensions.
         law: HyperelasticLaw,
-        /// What the directions that the case does not have do. Without meaning in 3D.
+        /// The condition in the directions that the case does not resolve. Without meaning in 3D.
         plane: PlaneState,
     },
     /// A body that moves as one.
@@ -56,7 +56,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// What bodies are made of of which no one asks.
+    /// A placeholder for bodies whose material is never used.
     pub const PLACEHOLDER: Self =
         Self::Linear { density: 1.0, stiffness: Stiffness::BulkModulus(1.0) };
 
@@ -72,8 +72,8 @@ impl Material {
         }
     }
 
-    /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions; of an elastic
-    /// solid that of small strains, of a rigid one none.
+    /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions; for an elastic solid that at
+    /// small strains; a rigid one has none.
     ///
     /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
     /// Upwind (6.31) solved for kappa, with gamma = 1 for the linear law.
@@ -109,12 +109,12 @@ pub enum Stiffness {
         modulus: f64,
         /// Poisson's ratio.
         poisson_ratio: f64,
-        /// What the directions that the case does not have do. Without meaning in 3D.
+        /// The condition in the directions that the case does not resolve. Without meaning in 3D.
         plane: PlaneState,
     },
 }
 
-/// What happens in the directions that a case of one or two dimensions does not have.
+/// The condition in the directions that a case of one or two dimensions does not resolve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaneState {
     /// No stress there.
@@ -125,8 +125,8 @@ pub enum PlaneState {
 
 impl PlaneState {
     /// Ratio of pressure to relative change of length, area or volume of an isotropic elastic body
-    /// ([`volumetric::bulk_modulus`]); in three dimensions nothing is left to choose. NaN where it
-    /// does not exist, which no reader of cases lets pass.
+    /// ([`volumetric::bulk_modulus`]); in three dimensions there is no choice. NaN if it does not exist, which is
+    /// refused when a case is read.
     pub fn bulk_modulus(self, young_modulus: f64, poisson_ratio: f64, dimension: usize) -> f64 {
         let state = self.stress_state(dimension);
         volumetric::bulk_modulus(young_modulus, poisson_ratio, state).unwrap_or(f64::NAN)
@@ -155,14 +155,14 @@ pub struct Opening {
     pub profile: Option<Profile>,
     /// Factor over time.
     pub history: Option<Arc<History>>,
-    /// The time in s within which mean pressures follow.
+    /// The relaxation time of mean pressures in s.
     pub relaxation: Option<f64>,
 }
 
 /// A factor by the distance from a point within a plane.
 #[derive(Clone, Debug)]
 pub struct Profile {
-    /// The factor against the distance in m; none where the text of a case is from elsewhere than from a file.
+    /// The factor against the distance in m; none if the text of the case does not come from a file.
     pub factor: Option<Arc<History>>,
     /// The point in m.
     pub from: Vec<f64>,
@@ -173,7 +173,7 @@ pub struct Profile {
 pub enum OpenFlow {
     /// The velocity in m/s, by component.
     Velocity(Vec<Expression>),
-    /// The volume that comes in, in m^D/s.
+    /// The volume that enters per time, in m^D/s.
     Rate(Expression),
     /// The pressure in Pa.
     Pressure(Expression),
@@ -192,8 +192,8 @@ impl OpenFlow {
 /// What makes a body a wall.
 #[derive(Clone, Debug)]
 pub struct Wall {
-    /// What viscosity does along it.
+    /// The condition for viscous forces along it.
     pub slip: transport_velocity::Slip,
-    /// Velocity of its surface where it is, by component, in m/s.
+    /// Velocity of its surface, which slides in place, by component, in m/s.
     pub sliding: Vec<Option<Expression>>,
 }

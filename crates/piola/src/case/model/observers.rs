@@ -11,7 +11,7 @@ use crate::observe::Norm;
 pub struct Probe {
     /// Unique name, the first part of its columns.
     pub name: Located<String>,
-    /// Number of the body it looks at, `None` for all.
+    /// Number of the body it observes, `None` for all.
     pub body: Option<Located<usize>>,
     /// What is recorded.
     pub kind: ProbeKind,
@@ -24,7 +24,7 @@ pub enum ProbeKind {
     Particle {
         /// The point in m.
         at: Located<Vec<f64>>,
-        /// A point in m of whose particle the fields are subtracted.
+        /// A point in m; the fields of the particle there are subtracted.
         relative_to: Option<Located<Vec<f64>>>,
         /// The fields that are recorded, with all their components.
         fields: Vec<Located<FieldDescription>>,
@@ -37,7 +37,7 @@ pub enum ProbeKind {
         of: Extremum,
         /// The particles.
         region: Located<Region>,
-        /// Corners in m of a box outside of which they do not count, where they are at the time.
+        /// Corners in m of a box; particles that are outside it at the time do not count.
         inside: Option<[Vec<f64>; 2]>,
     },
     /// The sum over a selection.
@@ -79,7 +79,7 @@ pub enum ProbeKind {
         /// Where it ends, in m.
         to: Located<Vec<f64>>,
     },
-    /// What goes through a plane.
+    /// The flow through a plane.
     Flux {
         /// A point of the plane in m.
         point: Vec<f64>,
@@ -88,24 +88,24 @@ pub enum ProbeKind {
         /// Corners in m of a box outside of which nothing counts.
         inside: Option<[Vec<f64>; 2]>,
     },
-    /// What has come in and gone out through the open boundary that the body is the buffer of.
+    /// What has entered and left through the open boundary whose buffer is the body.
     Opening,
     /// Fields interpolated at a fixed point.
     Point {
         /// The point in m.
         at: Located<Vec<f64>>,
-        /// A point in m where what the fields are is subtracted.
+        /// A point in m; the values of the fields there are subtracted.
         relative_to: Option<Located<Vec<f64>>>,
         /// The fields that are recorded, with all their components.
         fields: Vec<Located<FieldDescription>>,
     },
-    /// Fields interpolated at places along a straight line.
+    /// Fields interpolated at points along a straight line.
     Line {
         /// Where it starts, in m.
         from: Located<Vec<f64>>,
         /// Where it ends, in m.
         to: Located<Vec<f64>>,
-        /// Number of places, at the same distance from each other.
+        /// Number of equidistant points.
         points: usize,
         /// The fields that are recorded, with all their components.
         fields: Vec<Located<FieldDescription>>,
@@ -117,11 +117,11 @@ pub enum ProbeKind {
         /// Length of the step in s.
         step: f64,
     },
-    /// The difference of a field from what it should be.
+    /// The difference of a field from its expected value.
     Error {
-        /// Numbers of each particle with what they should be, of the current position and time.
+        /// Numbers of each particle with their expected values, expressions of the current position and time.
         parts: Vec<(FieldSelector, Expression)>,
-        /// Whether the means of both are taken away first.
+        /// Whether the means of both are subtracted first.
         without_mean: bool,
         /// What is summed.
         norm: Norm,
@@ -157,13 +157,13 @@ pub struct Output {
     pub table_every: Located<f64>,
     /// Fields in the particle files.
     pub fields: Vec<FieldDescription>,
-    /// How the particle files are packed.
+    /// How the particle files are compressed.
     pub compression: Compression,
     /// Whether the run ends with a report.
     pub report: bool,
 }
 
-/// How particle files are packed.
+/// How particle files are compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compression {
     /// Not at all.
@@ -177,7 +177,7 @@ pub enum Compression {
 pub struct Picture {
     /// A single number of each particle.
     pub field: Located<FieldSelector>,
-    /// Times in s; none where all of them are after the end of the run.
+    /// Times in s; empty if all of them are after the end of the run.
     pub times: Vec<Located<f64>>,
     /// Ends of the colour bar, `None` for those of the data.
     pub range: Option<[f64; 2]>,
@@ -190,6 +190,6 @@ pub struct Plot {
     pub name: Located<String>,
     /// At least one column of the tables; all against time or all along lines.
     pub curves: Vec<Located<super::Quantity>>,
-    /// Whether it is a map of one column of a line over place and time.
+    /// Whether it is a map of one column of a line over position and time.
     pub over_time: bool,
 }

@@ -44,11 +44,11 @@ pub struct Upwind {
     pub smoothing_length: Located<f64>,
     /// Correction of the kernel.
     pub correction: Located<Correction>,
-    /// What is summed under the kernel.
+    /// The weights in kernel sums.
     pub weights: Weights,
-    /// Share of the upwinding of velocity, 0 for none.
+    /// Strength of the upwinding of velocity, 0 for none.
     pub tau_velocity: f64,
-    /// Share of the upwinding of pressure, 0 for none.
+    /// Strength of the upwinding of pressure, 0 for none.
     pub tau_pressure: f64,
     /// Whether it is as derived or as the paper prints it.
     pub dissipation: Located<Dissipation>,
@@ -67,7 +67,7 @@ pub enum Dissipation {
     WithoutDensity,
     /// Upwind (3.42) as printed.
     TurnedArea,
-    /// With both as printed.
+    /// Both as printed.
     AsPrinted,
 }
 
@@ -100,40 +100,41 @@ pub struct TransportVelocity {
     pub kernel: Located<String>,
     /// Smoothing length in particle spacings.
     pub smoothing_length: Located<f64>,
-    /// All that the formulation itself knows.
+    /// The settings of the formulation itself.
     pub settings: transport_velocity::Settings,
-    /// What bodies of solids do to each other.
+    /// How bodies of solids interact.
     pub contact: transport_velocity::Contact,
-    /// How far apart particles of one body must have begun to touch, in particle spacings.
+    /// The initial distance from which on particles of one body are in contact like those of different bodies, in
+    /// particle spacings.
     pub self_contact: Option<Located<f64>>,
     /// Whether velocity gradients of solids are corrected.
     pub corrected_gradients: bool,
-    /// Rate at which the motion of a fluid dies out in 1/s, as an expression of the current place.
+    /// Damping rate of the motion of a fluid in 1/s, as an expression of the current position.
     pub damping: Option<Located<Expression>>,
     /// Whether particles that escape are removed; otherwise the run ends.
     pub removes_escaped: bool,
-    /// How many particles may come in beyond those that go out.
+    /// How many more particles may enter than leave.
     pub reserve: Option<u32>,
-    /// The regions of a fluid in which spacings are half of those before.
+    /// The regions of a fluid in each of which the spacing is half of the previous one.
     pub refine: Vec<Located<Shape>>,
 }
 
 /// Settings of a total Lagrangian solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TotalLagrangian {
-    /// Whose choices hold where the file makes none.
+    /// The preset, which supplies the values that the file does not give.
     pub preset: Preset,
     /// Name in the kernel registry.
     pub kernel: Located<String>,
-    /// What weighs a kernel.
+    /// The weights in kernel sums.
     pub weights: Weights,
     /// How large supports are.
     pub support: Located<SupportSize>,
-    /// Whether bodies whose particles share places are one there.
+    /// Whether bodies are joined where their particles coincide.
     pub joined: bool,
     /// How the divergence of the stress is taken.
     pub form: Located<Form>,
-    /// Where matrices are made.
+    /// The configuration in which matrices are computed.
     pub configuration: Configuration,
     /// Coefficients of the deformation gradient; `None` for those of the preset.
     pub gradients: Option<Located<GradientKind>>,
@@ -141,7 +142,7 @@ pub struct TotalLagrangian {
     pub hourglass: Option<f64>,
     /// Which particles tractions act on, if it is given.
     pub tractions: Option<Tractions>,
-    /// What takes energy out of motion.
+    /// What dissipates energy.
     pub dissipation: Located<Dissipative>,
 }
 
@@ -165,7 +166,7 @@ impl Preset {
         Self::ALL.into_iter().find(|preset| preset.description().name == name)
     }
 
-    /// What the formulation is called with it.
+    /// The description of the formulation with it.
     pub fn description(self) -> &'static SchemeDescription {
         match self {
             Self::TotalLagrangian => &total_lagrangian::TOTAL_LAGRANGIAN,
@@ -214,15 +215,15 @@ impl Preset {
 /// Settings of the scheme `interpolation`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interpolation {
-    /// What is interpolated, of the position.
+    /// The interpolated function of position.
     pub function: Located<Expression>,
     /// Name in the kernel registry.
     pub kernel: Located<String>,
     /// Support radius in particle spacings.
     pub support: Located<f64>,
-    /// What is summed under the kernel.
+    /// The weights in kernel sums.
     pub weights: Weights,
-    /// What kernel gradients are made into.
+    /// The form of kernel gradients.
     pub form: GradientForm,
     /// What ghosts carry.
     pub boundary: interpolation::Boundary,
@@ -233,7 +234,7 @@ pub struct Interpolation {
 pub enum SupportSize {
     /// Its radius in units of the particle spacing.
     Spacings(f64),
-    /// It reaches to the so many-th neighbour.
+    /// Its radius is the distance to the neighbour of this number, counted from the nearest.
     Neighbors(usize),
 }
 
@@ -257,10 +258,10 @@ pub enum Correction {
     KernelAndGradient,
 }
 
-/// What is summed under a kernel.
+/// The weights in kernel sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weights {
-    /// The volume of a cell of the lattice for every particle, also at a face.
+    /// The volume of a cell of the lattice for every particle, even at a face.
     Lattice,
     /// The quadrature volume of the particle.
     Volume,

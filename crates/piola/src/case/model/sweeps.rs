@@ -18,7 +18,7 @@ pub struct Sweep {
     pub full: Vec<SweepKey>,
     /// The same keys at the coarse setting.
     pub coarse: Vec<SweepKey>,
-    /// At which setting there is the sweep.
+    /// The settings at which the sweep exists.
     pub when: When,
     /// What is known of its runs in the case as it stands.
     pub traits: RunTraits,
@@ -36,9 +36,9 @@ pub struct SweepKey {
 /// A value of a key of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepValue {
-    /// As TOML, texts without quotes.
+    /// As TOML, strings without quotes.
     pub text: String,
-    /// Its value where it is a number, or an expression of the parameters of the case that was
+    /// Its value if it is a number, or an expression of the parameters of the case that was
     /// read: those of a member may differ from those of another.
     pub number: Option<f64>,
 }
@@ -49,12 +49,12 @@ impl Sweep {
         if level == Level::Coarse { &self.coarse } else { &self.full }
     }
 
-    /// Whether there is the sweep at a setting.
+    /// Whether the sweep exists at a setting.
     pub fn exists(&self, level: Level) -> bool {
         self.when.includes(level)
     }
 
-    /// Number of members at a setting, none where the sweep does not exist.
+    /// Number of members at a setting, 0 if the sweep does not exist.
     pub fn count(&self, level: Level) -> usize {
         if !self.exists(level) {
             return 0;
@@ -68,7 +68,7 @@ impl Sweep {
         member_name(&self.name, index)
     }
 
-    /// What tells member number `index` apart: `time.cfl=0.1, scheme.kernel=lucy`.
+    /// What distinguishes member number `index`: `time.cfl=0.1, scheme.kernel=lucy`.
     pub fn label(&self, index: usize, level: Level) -> String {
         let each = self.values(index, level);
         let each = each.iter().map(|(key, value)| format!("{}={}", key.path.value, value.text));
@@ -128,8 +128,8 @@ impl Members {
         (0..sweep.count(level)).filter(|index| self.includes(sweep, *index, level)).collect()
     }
 
-    /// The members in lines along their key, one for each value of the other key; one line with a
-    /// single member each where there is no such key.
+    /// The members in lines along their key, one for each value of the other key; a line for each single member if
+    /// there is no such key.
     pub fn lines(&self, sweep: &Sweep, level: Level) -> Vec<Vec<usize>> {
         let keys = sweep.keys(level);
         let mut lines: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();

@@ -9,7 +9,7 @@ use crate::case::source::Located;
 use crate::schemes::transport_velocity::Slip;
 use crate::schemes::world::ContactLaw;
 
-/// A formulation beside the main one, for bodies that name it: a solid in a fluid.
+/// A formulation in addition to the main one, for bodies that name it: a solid in a fluid.
 #[derive(Clone, Debug)]
 pub struct System {
     /// Unique name.
@@ -18,9 +18,9 @@ pub struct System {
     pub scheme: Located<Scheme>,
     /// How it takes its steps.
     pub time: Time,
-    /// What its surface does to fluid along it.
+    /// The slip condition at its surface.
     pub slip: Slip,
-    /// What keeps it apart from walls and other systems.
+    /// Its contact with walls and other systems.
     pub contact: ContactLaw,
 }
 

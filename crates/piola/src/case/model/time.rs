@@ -14,21 +14,21 @@ pub struct Time {
     pub integrator: Located<String>,
     /// Its rule, if it takes implicit steps.
     pub rule: Option<ImplicitRule>,
-    /// Error of a step that is allowed, if the file says it.
+    /// Allowed error of a step, if given.
     pub error: Option<f64>,
-    /// Relative residual at which Newton's method has arrived, if the file says it.
+    /// Relative residual at which Newton's method has converged, if given.
     pub tolerance: Option<f64>,
     /// How linear equations are solved.
     pub linear_solver: LinearMethod,
     /// How long a step is.
     pub step: Located<StepControl>,
-    /// The run fails after so many steps.
+    /// The run fails after this many steps.
     pub max_steps: Option<u64>,
-    /// The run fails when the stable step falls below, in s.
+    /// The run fails when the stable step falls below this, in s.
     pub min_step: Option<f64>,
-    /// The run fails when a particle is faster, in m/s.
+    /// The run fails when a particle is faster than this, in m/s.
     pub max_speed: Option<f64>,
-    /// How often the run may go back and on with half the step.
+    /// How often the run may go back and continue with half the step.
     pub retries: u64,
 }
 
@@ -76,10 +76,10 @@ impl Time {
 /// How long a time step is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepControl {
-    /// This share of the stable step.
+    /// This fraction of the stable step.
     Cfl(f64),
     /// This many seconds, checked against the stable step.
     Fixed(f64),
-    /// At most this many seconds, whatever is stable, or this much of the load factor.
+    /// At most this many seconds, whatever step is stable, or this increment of the load factor.
     AtMost(f64),
 }

@@ -1,4 +1,4 @@
-//! The reproduction list: what is asked of each result of the papers, and whether it is met.
+//! The reproduction list: what is required of each result of the papers, and whether it is met.
 
 use serde::Deserialize;
 
@@ -11,17 +11,17 @@ use crate::case::model::Against;
 pub struct Reproduction {
     /// Its id: a letter for the paper, and a number.
     pub id: String,
-    /// What is asked.
+    /// What is required.
     pub asked: String,
     /// The setting that it was run at.
     pub setting: String,
-    /// What came of it.
+    /// The result.
     pub result: String,
-    /// Whether that is what was asked.
+    /// Whether that is what was required.
     pub met: Met,
     /// Why it is not, or how it is known.
     pub why: String,
-    /// The id of the cases whose checks show it, where it is another.
+    /// The id of the cases whose checks show it, if it is another.
     pub checks_of: Option<String>,
 }
 
@@ -29,7 +29,7 @@ pub struct Reproduction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Met {
-    /// As it is asked.
+    /// As required.
     Yes,
     /// In part, or in a weaker form.
     Partly,

@@ -1,5 +1,5 @@
 //! The results of checks as they are kept beside the validation page, as JSON: the page is made of
-//! nothing else, so that one case can be run again, and what takes long stays as it was.
+//! nothing else, so that a single case can be run again, and long runs keep their results.
 
 use serde::{Deserialize, Serialize};
 
@@ -45,12 +45,12 @@ pub struct Row {
     pub check: usize,
     /// The setting that was read.
     pub read_at: Level,
-    /// The setting that it counts as: the paper's where the run has the publication's numbers.
+    /// The setting that it counts as: the paper's if the run has the publication's numbers.
     pub level: Level,
     /// What was run, as [`CheckRow::run`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub run: Option<String>,
-    /// The runs that it looks at, `None` for the case itself.
+    /// The runs that it uses, `None` for the case itself.
     pub runs: Vec<Option<String>>,
     /// The quantity with its reduction.
     pub quantity: String,
@@ -58,11 +58,11 @@ pub struct Row {
     pub expected: String,
     /// How far off it may be.
     pub tolerance: String,
-    /// What came of it.
+    /// The result.
     pub got: String,
     /// How far off it is.
     pub off_by: String,
-    /// What the expected value is worth.
+    /// What the expected value is worth as evidence.
     pub against: Option<Against>,
     /// Where it comes from.
     pub source: String,
@@ -71,18 +71,18 @@ pub struct Row {
     pub bound: Option<String>,
     /// Whether the check passes.
     pub pass: bool,
-    /// Why it does not, where that is known and stands.
+    /// Why it does not, if it is known not to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unmet: Option<String>,
-    /// Why it does not, where it is not the number that is off.
+    /// Why it does not, if it is not the number that is off.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// What the members gave, where it says how they follow each other.
+    /// The results of the members, for a trend.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub members: Option<String>,
     /// Evaluations of the rates times particles, of all its runs.
     pub work: u64,
-    /// What tells the cases apart that were run.
+    /// A fingerprint of the cases that were run.
     pub fingerprint: String,
     /// Whether one of its runs takes long.
     pub is_long: bool,
@@ -134,7 +134,7 @@ impl Row {
         key(self) == key(other) && self.fingerprint == other.fingerprint
     }
 
-    /// Whether it was run and is not met for no known reason.
+    /// Whether it was run and is not met without a known reason.
     pub fn is_failed(&self) -> bool {
         self.was_run() && !self.pass && self.unmet.is_none()
     }

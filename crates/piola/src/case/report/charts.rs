@@ -1,4 +1,4 @@
-//! Which curves a report shows, and what stands beside them.
+//! Which curves a report shows, and what is shown beside them.
 
 use std::collections::BTreeSet;
 

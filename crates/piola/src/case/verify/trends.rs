@@ -1,4 +1,4 @@
-//! How numbers follow each other along a key of a sweep: order of convergence, monotone, ratios.
+//! Trends along a key of a sweep: order of convergence, monotonicity, ratios.
 
 use super::format::{list, significant};
 use super::{Got, TrendData};
@@ -12,7 +12,7 @@ const STEEPEST: f64 = 20.0;
 pub(super) struct Verdict {
     pub pass: bool,
     pub got: Got,
-    /// What the members gave, where it is not as expected.
+    /// The results of the members, if they are not as expected.
     pub reason: Option<String>,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn judge(trend: Trend, data: &TrendData) -> Result<Verdict, String> {
     Ok(Verdict { pass, got, reason })
 }
 
-/// Each number over the one before.
+/// The ratio of each number to the previous one.
 ///
 /// # Errors
 /// A number to divide by is zero.

@@ -1,4 +1,4 @@
-//! Crossings, period and local extrema, blind to wiggles.
+//! Crossings, period and local extrema, without wiggles.
 
 use super::history::History;
 use super::{ReduceError, WIGGLE};
