@@ -332,7 +332,7 @@ enum KernelBody {
 }
 
 impl Kernel {
-    /// Starts it with at least so many threads in blocks of a size, or of the largest that an OpenCL
+    /// Starts it with at least this many threads in blocks of a size, or of the largest that an OpenCL
     /// device takes.
     ///
     /// Its text says which arguments it takes and how long they have to be; here that is not checked.

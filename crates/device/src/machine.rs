@@ -25,7 +25,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Compiles passes for a device, with those that sum over chunks of so many particles.
+    /// Compiles passes for a device, with those that sum over chunks of this many particles.
     ///
     /// # Errors
     /// When the device's compiler refuses their text.
@@ -119,7 +119,7 @@ impl Machine {
         done
     }
 
-    /// Starts a pass over so many rows.
+    /// Starts a pass over this many rows.
     ///
     /// # Errors
     /// When the device refuses.
@@ -152,7 +152,7 @@ impl Machine {
         kernel.start(rows * pass.threads, BLOCK, &arguments)
     }
 
-    /// Sums of the first components of the column `terms` over so many particles, in the order of the
+    /// Sums of the first components of the column `terms` over this many particles, in the order of the
     /// processor: chunk by chunk, then over chunks.
     ///
     /// # Errors
@@ -172,7 +172,7 @@ impl Machine {
         Ok(parts.chunks_exact(chunks).map(sum).collect())
     }
 
-    /// The largest of each of the first `N` components of the column `terms` over so many particles, at least
+    /// The largest of each of the first `N` components of the column `terms` over this many particles, at least
     /// negative infinity, with its first particle. What is not a number is infinite.
     ///
     /// # Errors
@@ -200,7 +200,7 @@ impl Machine {
         Ok(all)
     }
 
-    /// Makes room for so many numbers in a column.
+    /// Makes room for this many numbers in a column.
     fn need(&mut self, name: &'static str, length: usize) -> Result<(), DeviceError> {
         match self.numbers.get(name) {
             Some(column) if column.len() >= length => Ok(()),

@@ -126,7 +126,7 @@ impl Device {
             Buffer::create(&self.context, CL_MEM_READ_WRITE, length, std::ptr::null_mut())
         };
         let mut buffer = buffer.map_err(failed)?;
-        // SAFETY: so many bytes were asked for.
+        // SAFETY: this many bytes were asked for.
         unsafe { self.queue.enqueue_fill_buffer(&mut buffer, &[T::default()], 0, bytes, &[]) }
             .map_err(failed)?;
         Ok(buffer)

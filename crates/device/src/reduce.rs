@@ -20,7 +20,7 @@ pub const LARGEST: &str = "largest_of_chunks";
 /// Threads that look for what is largest in a chunk.
 pub const STRIDE: usize = 32;
 
-/// The kernels of [`SUMS`], [`LARGEST_OF_STRIDES`] and [`LARGEST`], for chunks of so many particles.
+/// The kernels of [`SUMS`], [`LARGEST_OF_STRIDES`] and [`LARGEST`], for chunks of this many particles.
 pub fn passes(chunk: usize) -> [Pass; 3] {
     let sums = format!(
         "KERNEL void {SUMS}(const int n, const real count, const real chunks, GLOBAL const real *terms, \

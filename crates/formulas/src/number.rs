@@ -82,7 +82,7 @@ pub trait Number:
         Self::select(mask, yes(), no())
     }
 
-    /// Repeats a step on some numbers until a condition holds, and at most so many times.
+    /// Repeats a step on some numbers until a condition holds, and at most this many times.
     fn repeat<const N: usize>(
         most: u32,
         state: [Self; N],

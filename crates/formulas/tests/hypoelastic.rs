@@ -13,7 +13,7 @@ fn simple_shear(rate: f64) -> Matrix3<f64> {
     Matrix3::new(0.0, rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 }
 
-/// Error of simple shear to gamma = 2 in so many steps against `s_xy = G sin gamma`,
+/// Error of simple shear to gamma = 2 in this many steps against `s_xy = G sin gamma`,
 /// `s_xx = -s_yy = G (1 - cos gamma)`.
 fn error_of_shear(steps: u32) -> f64 {
     let (rate, end) = (0.7, 2.0 / 0.7);

@@ -82,7 +82,7 @@ impl ResultsFolder {
     }
 
     /// Removes the files of the run that are not among `kept` (relative paths), except the record
-    /// and the checkpoints: what was written after the checkpoint that the run goes on from is
+    /// and the checkpoints: what was written after the checkpoint that the run continues from is
     /// written again.
     ///
     /// # Errors

@@ -50,7 +50,7 @@ pub struct RunRecord {
     pub outcome: String,
     /// The whole message of a failure, for a reader.
     pub message: Option<String>,
-    /// Simulated times in s of the checkpoints from which the run went on after it was broken off.
+    /// Simulated times in s of the checkpoints from which the run was continued after an interruption.
     pub resumed_at: Vec<f64>,
     /// Failures after which the run went back and on with smaller steps.
     pub retries: Vec<RetryRecord>,

@@ -47,7 +47,7 @@ impl Server {
     }
 }
 
-/// What the server answers to these messages, of which so many have answers.
+/// What the server answers to these messages, of which this many have answers.
 fn exchange(place: &Place, messages: &[Value], answers: usize) -> Vec<Value> {
     let mut server = Server::start(place);
     messages.iter().for_each(|message| server.say(message));

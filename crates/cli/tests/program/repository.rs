@@ -6,7 +6,7 @@ use std::thread;
 
 use assert_cmd::Command;
 
-/// Small cases keep one thread busy: so many are verified at a time.
+/// Small cases keep one thread busy: this many are verified at a time.
 const AT_A_TIME: usize = 2;
 
 #[test]

@@ -28,7 +28,7 @@ fn lengths(mut length: usize) -> impl Iterator<Item = usize> {
 }
 
 impl Scan {
-    /// For at most so many numbers.
+    /// For at most this many numbers.
     pub(super) fn new(
         device: &Device,
         program: &Program,

@@ -134,7 +134,7 @@ impl WaveMaker {
     }
 
     /// A solitary wave of a height in m. The piston begins where kappa c t is `-(3.8 + H/d)`, as Goring has it: the about 0.05 % of
-    /// the stroke that lie before are left away.
+    /// the stroke that lie before are left out.
     pub fn solitary(height: f64, water: Water) -> Self {
         let wave = Solitary { height, depth: water.depth, gravity: water.gravity };
         let crest = (3.8 + height / water.depth) / (wave.narrowness() * wave.speed());

@@ -22,7 +22,7 @@ use super::{FieldDescription, FieldKind, Life};
 /// ```
 ///
 /// The structs are views of the columns of a state; the enum has the fields that are not in it, which
-/// the formulation makes, so that one that nobody makes does not compile. `FIELDS` of the enum is the
+/// the formulation makes, so that one that is not made does not compile. `FIELDS` of the enum is the
 /// table. The number of a derived field says how many stages of observation it needs.
 macro_rules! columns {
     ($vis:vis struct $View:ident, $Mut:ident, enum $Made:ident; $($all:tt)*) => {

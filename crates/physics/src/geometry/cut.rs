@@ -143,7 +143,7 @@ fn owners<const D: usize>(
     owners
 }
 
-/// Visits the midpoints of a block, of so many along each edge, that lie in the shape. A block that is further from the
+/// Visits the midpoints of a block, this many along each edge, that lie in the shape. A block that is further from the
 /// boundary than it is large lies on one side of it as a whole.
 fn within<const D: usize>(
     shape: &mut Probe<'_, D>,

@@ -8,7 +8,7 @@ use super::lattice::Lattice;
 use super::{LatticeSpec, Shape};
 use crate::Vector;
 
-/// Halvings of a displacement out of the shape before it is left away.
+/// Halvings of a displacement out of the shape before it is given up.
 const HALVINGS: usize = 6;
 
 /// Moves each particle at random by up to `spec.jitter` cells along each axis.

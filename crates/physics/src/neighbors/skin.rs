@@ -21,7 +21,7 @@ pub struct SkinList<const D: usize> {
     /// many as `active`.
     ranks: Vec<u32>,
     active: u32,
-    /// Particles that nobody sees, by number; empty if there are none.
+    /// Particles that no others see, by number; empty if there are none.
     excluded: Vec<bool>,
     /// Whether the list has to be made anew, whoever moved.
     stale: bool,
@@ -112,7 +112,7 @@ impl<const D: usize> SkinList<D> {
     }
 
     /// Takes positions, and returns the square in m^2 of the longest way from where the list was
-    /// made, of those who moved; it is negative where nobody did.
+    /// made, of those who moved; it is negative where none did.
     fn take<T: Send>(
         &mut self,
         rows: &mut [T],
@@ -143,7 +143,7 @@ impl<const D: usize> SkinList<D> {
     fn build(&mut self) -> Result<(), NeighborError> {
         let reach = self.support + self.skin;
         let mut order = spatial_order(&self.positions, reach)?;
-        // Those that nobody sees come last and are not looked for: many may be in one place.
+        // Those that no others see come last and are not looked for: many may be in one place.
         let is_out = |place: u32| {
             self.excluded.get(self.numbers[place as usize] as usize).is_some_and(|is_out| *is_out)
         };

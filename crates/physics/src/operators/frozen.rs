@@ -133,6 +133,6 @@ impl<R: Record> Pairs for FrozenRows<R> {
     }
 }
 
-/// What counts of four lanes of which so many are left.
+/// What counts of four lanes of which this many are left.
 const COUNTS: [[f64; WIDTH]; WIDTH + 1] =
     [[0.0; WIDTH], [1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 1.0, 0.0], [1.0; WIDTH]];

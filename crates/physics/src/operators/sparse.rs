@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use crate::parallel;
 
-/// Matrices of up to so many rows and columns are printed entry by entry.
+/// Matrices of up to this many rows and columns are printed entry by entry.
 const PRINTED: usize = 12;
 
 /// A sparse matrix by rows, to hold, print, apply and export. Its products gather, so that they are

@@ -34,7 +34,7 @@ pub trait CoupledScheme: Scheme {
     /// where they are in `old` to where they are in `new`, behind [`Self::push`] from `old`.
     fn flow(&mut self, step: [f64; 2], count: u64, old: &[f64], new: &mut [f64]);
 
-    /// Brings what `state` says of all systems together into line with the systems, which have taken so many steps of
+    /// Brings what `state` says of all systems together into line with the systems, which have taken this many steps of
     /// their own, the fluid first.
     fn add_up(&mut self, counts: &[u64], state: &mut [f64]);
 

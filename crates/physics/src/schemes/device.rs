@@ -38,7 +38,7 @@ pub trait DeviceSteps: Send {
     /// When the device refuses.
     fn fetch_before(&self, state: &mut [f64]) -> Result<(), DeviceError>;
 
-    /// The parts of a step as lists of stages. What a device does while nobody waits for it is counted
+    /// The parts of a step as lists of stages. What a device does while nothing waits for it is counted
     /// where somebody does next.
     fn phases(&self) -> Vec<&Phase>;
 }

@@ -1,7 +1,7 @@
 //! What changes energy and momentum, by name: powers and forces come from stages as totals, and the tail
 //! of a state has their integrals.
 //!
-//! The tail begins with the work of each mechanism and the impulse of each way in. Where kicks carry the
+//! The tail begins with the work of each mechanism and the impulse of each source of momentum. Where kicks carry the
 //! ledger, the rates of these integrals stand behind them, and then how fast each power grows in a kick.
 
 use thiserror::Error;
@@ -11,7 +11,7 @@ use super::{Phase, Scheme};
 use crate::Vector;
 use crate::parallel::Sums;
 
-/// Most mechanisms, and most ways in, that a formulation may declare.
+/// Most mechanisms, and most sources of momentum, that a formulation may declare.
 const MOST: usize = 16;
 
 /// The ledger of a formulation: what may change its energy and its momentum, in the order of tables.
@@ -94,7 +94,7 @@ impl Filled {
     }
 }
 
-/// Powers and growths by mechanism, and forces by way in.
+/// Powers and growths by mechanism, and forces by source of momentum.
 type Slots = [Total; MOST];
 
 fn fill(slots: &mut Slots, Entry { mechanism, way }: Entry, total: &Total) {
@@ -171,12 +171,12 @@ impl Accounts {
     /// Without anything.
     pub const NONE: Self = Self { mechanisms: &[], impulses: &[], is_kicked: false };
 
-    /// The mechanism of a name, with the way in of the same name, if there is one.
+    /// The mechanism of a name, with the source of momentum of the same name, if there is one.
     pub(crate) const fn entry(&self, name: &str) -> Entry {
         self.entry_by(name, name)
     }
 
-    /// The mechanism of a name, with the way in of another.
+    /// The mechanism of a name, with the source of momentum of another.
     pub(crate) const fn entry_by(&self, name: &str, way: &str) -> Entry {
         assert!(self.mechanisms.len() <= MOST && self.impulses.len() <= MOST, "too many");
         let mechanism = place(self.mechanisms, name).expect("the mechanism is declared");
@@ -304,7 +304,7 @@ const fn place(names: &[&str], name: &str) -> Option<usize> {
 pub struct Ledger<'a> {
     /// Work so far in J, one number a mechanism.
     pub work: &'a [f64],
-    /// Impulse so far, one row of momentum components for each way in.
+    /// Impulse so far, one row of momentum components for each source of momentum.
     pub impulses: &'a [f64],
 }
 

@@ -37,7 +37,7 @@ impl Most {
         }
     }
 
-    /// At least `least`, which nobody has.
+    /// At least `least`, which none has.
     fn at_least(self, least: f64) -> Self {
         if self.value > least { self } else { Self { value: least, particle: 0 } }
     }

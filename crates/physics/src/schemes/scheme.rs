@@ -18,7 +18,7 @@ use crate::solve::Costs;
 ///
 /// The state is one flat slice: a column of `particle_count` rows for each of its
 /// [`fields`](SchemeDescription::fields) that is evolved or kept, followed by the running integrals of the
-/// [`Ledger`](super::Ledger): the work of each mechanism, then the impulse of each way in. The
+/// [`Ledger`](super::Ledger): the work of each mechanism, then the impulse of each source of momentum. The
 /// rate of an integral is a power or a force, so an integrator carries the bookkeeping to its own
 /// order without knowing of it, theory (18), and a copy of the state is all there is to save.
 pub trait Scheme: Send + Sync {
@@ -341,11 +341,11 @@ impl Health {
 /// What has gone through an open boundary since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// Mass in kg that has come in.
+    /// Mass in kg that has entered.
     pub entered: f64,
-    /// Mass in kg that has gone out.
+    /// Mass in kg that has left.
     pub left: f64,
-    /// Energy in J of the particles that have come in, less that of those that have gone out.
+    /// Energy in J of the particles that have entered, less that of those that have left.
     pub energy: f64,
     /// The same of their momentum, as [`momentum_components`](super::momentum_components) orders it.
     pub momentum: [f64; MOST_COMPONENTS],

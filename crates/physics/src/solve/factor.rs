@@ -61,7 +61,7 @@ impl Factor {
         Self::within(free_memory(), matrix)
     }
 
-    /// The same where so many bytes are free.
+    /// The same where this many bytes are free.
     fn within(free: u64, matrix: &SparseMatrix) -> Result<Self, FactorError> {
         let unknowns = matrix.len();
         let too_much = |needed: u64| FactorError::Memory { unknowns, needed, free };
@@ -164,7 +164,7 @@ fn parameters() -> Spec<LdltParams, f64> {
     default()
 }
 
-/// Bytes of memory that nobody uses. Where the system does not tell there is no bound.
+/// Bytes of free memory; there is no bound where the system does not report it.
 fn free_memory() -> u64 {
     let mut system = System::new();
     system.refresh_memory();

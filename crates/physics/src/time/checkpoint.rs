@@ -10,8 +10,8 @@ use super::clock::{Clock, Tally};
 use super::history::History;
 
 /// A run at one instant, after the observers that were due have looked and before the next step.
-/// What it holds is all that the steps to come depend on, so that a run that goes on from it
-/// equals to the bit one that was never broken off.
+/// What it holds is all that the steps to come depend on, so that a run that continues from it
+/// equals to the bit one that was never interrupted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Checkpoint {
     pub(super) clock: Clock,
@@ -31,7 +31,7 @@ pub struct Checkpoint {
 pub struct Misfit(pub String);
 
 impl Checkpoint {
-    /// Nobody waits for more.
+    /// Nothing needs more.
     const MOST_STEPS: u64 = 1 << 60;
 
     /// Simulated time in s.
@@ -76,9 +76,9 @@ impl Checkpoint {
 /// When checkpoints are taken. Each of the intervals may be given or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CheckpointPolicy {
-    /// After so many steps.
+    /// After this many steps.
     pub steps: Option<u64>,
-    /// At the first step at or after each multiple of so many seconds of simulated time. Steps are
+    /// At the first step at or after each multiple of this many seconds of simulated time. Steps are
     /// not shortened for it: results do not depend on checkpoints.
     pub time: Option<f64>,
     /// After so much wall time.

@@ -1,4 +1,4 @@
-//! What looks at a run while it goes.
+//! What observes a run.
 
 use thiserror::Error;
 
@@ -35,7 +35,7 @@ pub struct ObserveError {
     pub source: Box<dyn std::error::Error + Send + Sync>,
 }
 
-/// Something that looks at chosen moments, and at the last one, which it may have been shown
+/// Something that observes chosen moments, and the last one, which it may have been shown
 /// already: then it sees it again, marked as the last.
 pub trait Observer: Send {
     /// When it wants to look.
@@ -47,7 +47,7 @@ pub trait Observer: Send {
     /// A fault stops the run.
     fn observe(&mut self, moment: &mut Moment) -> Result<(), ObserveError>;
 
-    /// What it has to remember for a run that goes on from a checkpoint taken now. One without
+    /// What it has to remember for a run that continues from a checkpoint taken now. One without
     /// memory need not say anything.
     fn save(&self) -> Vec<u8> {
         Vec::new()

@@ -15,7 +15,7 @@ use crate::schemes::Scheme;
 pub(super) struct Run {
     pub clock: Clock,
     pub tally: Tally,
-    /// Written to only while nobody else holds it; else a copy takes its place.
+    /// Written to only while nothing else holds it; else a copy takes its place.
     pub state: Arc<Vec<f64>>,
     /// When each observer is due next.
     pub due: Vec<Option<f64>>,

@@ -3,7 +3,7 @@
 /// Times at which something is due.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// At 0 and every so many seconds; at 0 only if that number is not positive.
+    /// At 0 and then at intervals of this many seconds; at 0 only if that number is not positive.
     Every(f64),
     /// At the given times, ascending.
     At(Vec<f64>),

@@ -40,8 +40,8 @@ impl Outputs {
         }
     }
 
-    /// Makes the folder ready, for a new run or for one that goes on from what was found, and
-    /// writes the first record.
+    /// Makes the folder ready, for a new run or for one that continues from a checkpoint that was found, and writes the
+    /// first record.
     pub fn begin(&mut self, resumed: Option<&Resumed>) -> Result<(), RunError> {
         let Self { folder, record, written } = self;
         let Some(resumed) = resumed else {

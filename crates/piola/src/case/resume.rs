@@ -23,7 +23,7 @@ struct Payload<C> {
     checkpoint: C,
 }
 
-/// What is known of a run that goes on from a checkpoint.
+/// What is known of a run that continues from a checkpoint.
 pub(super) struct Resumed {
     /// Simulated time of the checkpoint in s.
     pub time: f64,

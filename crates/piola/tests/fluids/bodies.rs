@@ -125,7 +125,7 @@ fn bits(state: &[f64]) -> Vec<u64> {
     state.iter().map(|value| value.to_bits()).collect()
 }
 
-/// The state after so many steps, with a scheme made anew after each `every` of them.
+/// The state after this many steps, with a scheme made anew after each `every` of them.
 fn advanced(set: &[&str], steps: usize, every: usize) -> Vec<u64> {
     let step = 1.5e-4;
     let fresh = || Session::new(&read(DISCS, set)).unwrap_or_else(|problems| panic!("{problems}"));

@@ -344,7 +344,7 @@ damping = 20.0
     assert!(ends[0] != ends[1] && ends[0] != ends[2] && ends[1] != ends[2]);
 }
 
-/// The bits of where the block is in the end, which are the same whether the run is broken off, resumed, or neither.
+/// The bits of where the block is in the end, which are the same whether the run is interrupted, resumed, or neither.
 fn resumed_end(text: &str) -> Vec<u64> {
     let overrides = [
         "parameters.friction=0.3",

@@ -1,4 +1,4 @@
-//! Fluid that comes in and goes out through open boundaries.
+//! Fluid that enters and leaves through open boundaries.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -400,8 +400,8 @@ fn a_stream_that_turns_back_has_no_gaps() {
     }
 }
 
-/// What buffers keep of the stream is in the state: a run that goes on from a checkpoint while they are filled up and thinned out
-/// has the bits of one that was not interrupted.
+/// What buffers keep of the stream is in the state: a run that continues from a checkpoint while they are filled up and
+/// thinned out has the bits of one that was not interrupted.
 #[test]
 fn a_stream_that_turns_back_resumes_to_the_bit() {
     let started = || session(&stream(2), &SWING).expect("it is built");

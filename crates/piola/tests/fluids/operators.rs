@@ -191,7 +191,7 @@ fn close<const D: usize, const N: usize>(what: &str, found: &Found<D>, check: Ch
     close_to([1.0, 1.0], what, found, check);
 }
 
-/// The same with bounds so many times as large, on a lattice and on one that is disordered.
+/// The same with bounds this many times as large, on a lattice and on one that is disordered.
 fn close_to<const D: usize, const N: usize>(
     times: [f64; 2],
     what: &str,

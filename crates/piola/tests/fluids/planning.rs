@@ -2,7 +2,7 @@
 
 use piola::case::{self, LoadOptions, Session};
 
-/// Water in a tank, with walls of so many layers.
+/// Water in a tank, with walls of this many layers.
 fn tank(layers: usize, top: &str, more: &str) -> String {
     format!(
         "version = 1\ntitle = 'A tank'\ndimension = 2\n[parameters]\ndx = 0.05\n\

@@ -206,7 +206,7 @@ fn a_run_that_goes_back_keeps_several_steps_of_the_fluid() {
     };
     let mut whole = heavy(&set);
     let start = momentum_of(&mut whole);
-    // Where it is broken off it has gone back already.
+    // Where it is interrupted it has gone back already.
     whole.run_until(0.1).expect("it runs");
     let mut resumed = heavy(&set);
     resumed.resume(whole.checkpoint()).expect("it fits");

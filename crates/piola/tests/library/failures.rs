@@ -261,7 +261,7 @@ fn the_number_of_retries_is_bounded() {
     assert_eq!(finished.summary.retries.len(), 3);
 }
 
-/// What a run goes back to is in its checkpoints: broken off between that and the failure, it goes
+/// What a run goes back to is in its checkpoints: interrupted between that and the failure, it goes
 /// the same way.
 #[test]
 fn a_retried_run_resumes_to_the_bit() {

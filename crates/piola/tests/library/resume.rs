@@ -1,4 +1,4 @@
-//! Runs that are broken off and gone on with, against runs that are not.
+//! Runs that are interrupted and resumed, compared with runs that are not.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
 
 use std::collections::BTreeMap;
@@ -100,8 +100,8 @@ fn cases() -> Vec<PathBuf> {
     found
 }
 
-/// Every case, broken off twice, on other numbers of threads each time: every file of the results
-/// has the bytes of the run that was never broken off.
+/// Every case, interrupted twice, on other numbers of threads each time: every file of the results
+/// has the bytes of the run that was never interrupted.
 #[test]
 fn every_case_resumes_to_the_bit() {
     // Most of a run is on one thread: as many cases at a time as there are cores.
@@ -313,7 +313,7 @@ fn without_a_checkpoint_a_resumed_run_starts() {
     assert!(finished.warnings[0].contains("no checkpoint to resume from"));
 }
 
-/// The one at the end is there on request, and a later end goes on from it.
+/// The one at the end is there on request, and a later end continues from it.
 #[test]
 fn a_completed_run_can_be_extended() {
     let bar = Bar::new();

@@ -9,7 +9,7 @@ const SAMPLE: f32 = 44.0;
 /// Distance between entries.
 const BETWEEN: f32 = 3.0 * GAP;
 const LEADING: f32 = 1.4 * SMALL;
-/// Most rows; the number of the curves that find no place is told.
+/// Most rows; the number of curves without a row is shown.
 const ROWS: usize = 4;
 
 /// The entries of a panel, row by row.

@@ -49,7 +49,7 @@ pub(super) fn check(triangles: &[Triangle]) -> Result<(), SurfaceError> {
 }
 
 /// The facets without those that are there twice or have no area, all of each piece the same way round, as most of its area
-/// was, and such that they enclose a volume, which is told in m^3.
+/// was, and such that they enclose a volume, which is returned in m^3.
 pub(super) fn mended(
     triangles: Vec<Triangle>,
 ) -> Result<(Vec<Triangle>, Soundness, f64), SurfaceError> {

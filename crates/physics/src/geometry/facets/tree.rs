@@ -13,7 +13,7 @@ use crate::{Tensor, Vector};
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
 
-/// A node is far from a point if that is further from its middle than so many times its radius: the triangles of its
+/// A node is far from a point if that is further from its middle than this many times its radius: the triangles of its
 /// leaves are then taken together.
 const FAR: f64 = 2.0;
 
@@ -271,7 +271,7 @@ impl Node {
     }
 }
 
-/// Adds the node around triangles of which so many others come before, and all below it.
+/// Adds the node around triangles of which this many others come before, and all below it.
 fn add(triangles: &mut [Triangle], before: u32, nodes: &mut Vec<Node>) {
     let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::<3>::repeat);
     let (mut sum, mut middle, mut whole) = (Vector::zeros(), Vector::zeros(), 0.0);

@@ -73,7 +73,7 @@ fn path(data: &str) -> Result<BezPath, String> {
         let to = |x: f64, y: f64| Point::new(x, y) + base;
         let [cubic, quadratic] = last.map(|last| last.map_or(at, |last| at + (at - last)));
         last = [None; 2];
-        // After its end a loop goes on from its start.
+        // After its end a loop continues from its start.
         let begins = matches!(segment, PathSegment::MoveTo { .. });
         if is_closed && !begins {
             path.move_to(start);

@@ -13,7 +13,7 @@ const ATTEMPTS: usize = 12;
 const FAR: f64 = 4.0;
 const OFF: f64 = 1e-3;
 
-/// Depths in a shape whose particles are so many m apart.
+/// Depths in a shape whose particles are this many m apart.
 pub(super) struct Depth<'a, const D: usize> {
     shape: Probe<'a, D>,
     width: f64,

@@ -10,15 +10,15 @@ use crate::{Vector, parallel};
 /// Most steps.
 const MOST: usize = 1000;
 
-/// Lists of neighbours hold what is nearer than the support and so many spacings, and last until a particle has moved by half
-/// of these.
+/// Lists of neighbours hold what is nearer than the support and this many spacings, and last until a particle has moved
+/// by half of these.
 const SKIN: f64 = 0.5;
 
 /// Most spacings that a particle moves in a step.
 const LONGEST: f64 = 0.1;
 
-/// By how much a step is made longer after so many downhill, and shorter after one uphill; how much of velocities is turned
-/// towards the forces at first, and what remains of that part after each step: those of Bitzek2006.
+/// By how much a step is made longer after this many downhill, and shorter after one uphill; how much of velocities is
+/// turned towards the forces at first, and what remains of that part after each step: those of Bitzek2006.
 const LONGER: f64 = 1.1;
 const AFTER: usize = 5;
 const SHORTER: f64 = 0.5;
@@ -50,7 +50,7 @@ impl<const D: usize> Pairs<D> {
         Ok(Self { list, found_at: position.to_vec() })
     }
 
-    /// Whether no particle has moved by more than so many m.
+    /// Whether no particle has moved by more than this many m.
     fn hold(&self, position: &[Vector<D>], most: f64) -> bool {
         let moved = |a: usize| (position[a] - self.found_at[a]).norm();
         parallel::maximum(position.len(), 0.0, moved) <= most

@@ -6,7 +6,7 @@ use crate::operators::{BoundaryValueError, ModifiedMatrix, SphMatrices, raise_gh
 
 use super::Field;
 
-/// Particles with a ghost nearer than so many spacings along each axis lie on the boundary: next to it
+/// Particles with a ghost nearer than this many spacings along each axis lie on the boundary: next to it
 /// on the lattice, diagonals included.
 const NEXT: f64 = 1.01;
 

@@ -40,7 +40,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// Whether it has columns of its own that evolve and that neighbours see.
     const HAS_MATERIAL: bool;
 
-    /// Density and wave speed at rest of so many bodies.
+    /// Density and wave speed at rest of this many bodies.
     fn at_rest(input: &Self::Input, bodies: usize) -> Vec<AtRest>;
 
     /// Binds it to particles.
@@ -104,7 +104,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         0
     }
 
-    /// Whether particles come in.
+    /// Whether particles enter.
     fn is_open(&self) -> bool {
         false
     }
@@ -114,7 +114,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         0.0
     }
 
-    /// The first particle that could not come in, with the name of its boundary if there is one.
+    /// The first particle that could not enter, with the name of its boundary if there is one.
     fn starved(&self, _common: &Common<D>, _state: &[f64]) -> Option<(usize, Option<&str>)> {
         None
     }

@@ -21,7 +21,7 @@ impl<const D: usize> Extent<D> {
         }))
     }
 
-    /// A larger one, by so many m on all sides.
+    /// A larger one, by this many m on all sides.
     pub fn widened(&self, by: f64) -> Self {
         let by = Vector::repeat(by);
         Self { low: self.low - by, high: self.high + by }

@@ -75,7 +75,7 @@ impl<const D: usize> TransportVelocity<D> {
         (0..position.len()).find(|a| !is_own[*a] && is_near(a))
     }
 
-    /// The particles (numbers) of walls that nobody else moves.
+    /// The particles (numbers) of walls that nothing else moves.
     pub(crate) fn own_walls(&self) -> impl Iterator<Item = u32> {
         let walls = self.common.walls.iter().enumerate();
         let own = walls.filter(|(index, _)| self.common.guided.velocity(*index).is_none());
@@ -87,7 +87,7 @@ impl<const D: usize> TransportVelocity<D> {
         self.common.faces(number as usize)
     }
 
-    /// Whether walls move that nobody else does.
+    /// Whether walls move that nothing else moves.
     pub(crate) fn moves_walls(&self) -> bool {
         !self.common.motion.is_empty()
     }

@@ -40,7 +40,7 @@ pub enum Divergence {
 /// instead, belongs to `div(u (x) d)` and differs by `u (d . grad rho) / rho`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dilatation {
-    /// Left away.
+    /// Left out.
     None,
     /// `- u div(rho d) / rho`, so that both terms together are `(d . grad) u`.
     Deviation,

@@ -6,7 +6,7 @@ use super::Upwind;
 use crate::parallel;
 use crate::{Tensor, Vector};
 
-/// Neighbours up to so many times the largest spacing of a particle make its corners: those along the
+/// Neighbours up to this many times the largest spacing of a particle make its corners: those along the
 /// axes of a lattice, and not its diagonals.
 const CLOSE: f64 = 1.1;
 

@@ -61,7 +61,7 @@ impl<const D: usize> World<D> {
     }
 
     /// Index of the work of the interface of a solid among the works of all, and that of its impulse among
-    /// the ways in. Those of contact are the next.
+    /// the sources of momentum. Those of contact are the next.
     fn entries(&self, solid: usize) -> [usize; 2] {
         let ledger = |k: usize| self.system(k).description().ledger;
         let works = 1 + (0..=solid + 1).map(|k| ledger(k).mechanisms.len()).sum::<usize>();

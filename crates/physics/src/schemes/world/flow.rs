@@ -8,7 +8,7 @@ use crate::schemes::{Scheme, SplitScheme, StepLimit};
 use crate::{Tensor, Vector, parallel};
 
 /// Most steps of the fluid in one of all. At a CFL number of 0.25 what moves with a tenth of the wave speed goes
-/// 0.4 of a smoothing length in so many: the look at the state after a step sees it before it is through
+/// 0.4 of a smoothing length in this many: the look at the state after a step sees it before it is through
 /// a layer of particles, and the look before it sees surfaces that will touch.
 pub const MOST_FLUID_STEPS: u64 = 16;
 
@@ -26,7 +26,7 @@ pub(super) struct Way<const D: usize> {
     pub number: u32,
     places: [Vector<D>; 2],
     velocities: [Vector<D>; 2],
-    /// Deformation gradients; the first one is that at the end, too, where nobody asks for those in between.
+    /// Deformation gradients; the first one is that at the end, too, where nothing needs those in between.
     gradients: [Tensor<D>; 2],
     /// The step in s.
     step: f64,

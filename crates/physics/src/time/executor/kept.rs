@@ -73,7 +73,7 @@ impl Executor {
         Ok(())
     }
 
-    /// Takes a checkpoint of a run that was interrupted, or that is to be gone on with later. It
+    /// Takes a checkpoint of a run that was interrupted, or that is to be continued later. It
     /// is taken before the observers are shown the last moment, which another end would not have.
     pub(super) fn save_at_end(&mut self, outcome: &Outcome) {
         let wanted = |completed| {

@@ -278,7 +278,7 @@ fn fluid_volume(case: &Case, bodies: &[BodyReport]) -> f64 {
     both.map(|(_, report)| report.volume).sum()
 }
 
-/// Refuses a level whose lattices are not those of the coarsest one with so many times smaller cells.
+/// Refuses a level whose lattices are not those of the coarsest one with this many times smaller cells.
 fn halved(
     case: &Case,
     coarsest: &[Vec<f64>],

@@ -154,7 +154,7 @@ fn sensor<const D: usize>(
     Err(refuse(message, "no wall here"))
 }
 
-/// Probes of a particle are meant to have one within so many spacings.
+/// Probes of a particle are meant to have one within this many spacings.
 const NEAR: f64 = 1.5;
 
 /// What the user should know of probes whose particle is not where they are.

@@ -75,7 +75,7 @@ fn first<const D: usize>(
     found.min_by_key(|(a, _)| particles.id[*a])
 }
 
-/// How far the wall goes on from a point inside it, at most `most` m.
+/// How far the wall continues from a point inside it, at most `most` m.
 fn extent<const D: usize>(
     walls: &Shape<D>,
     from: &Vector<D>,

@@ -77,7 +77,7 @@ every = 0.1
 table_every = 0.005
 "#;
 
-/// A run on a device that fails after so many steps.
+/// A run on a device that fails after this many steps.
 fn session(steps: Option<usize>) -> Session {
     let case = parse(WATER, "water.toml", &LoadOptions::default());
     let case = case.unwrap_or_else(|problems| panic!("{problems}"));

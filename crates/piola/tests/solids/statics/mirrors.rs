@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use piola::case::{self, LoadOptions, Session};
 use piola::observe::Series;
 
-/// A block that a suction on its ends draws out, in so many dimensions.
+/// A block that a suction on its ends draws out, in this many dimensions.
 fn block(dimension: usize, is_part: bool, clock: &str) -> String {
     let is_static = !clock.contains("newmark");
     let vector = |x: f64, y: f64, z: f64| format!("{:?}", &[x, y, z][..dimension]);

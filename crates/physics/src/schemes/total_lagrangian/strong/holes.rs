@@ -204,7 +204,7 @@ fn bounds<const D: usize>(particles: &Particles<D>) -> [Vector<D>; 2] {
     [all().fold(none, |low, x| low.inf(x)), all().fold(-none, |high, x| high.sup(x))]
 }
 
-/// All ways of at most so many layers along each axis.
+/// All ways of at most this many layers along each axis.
 fn offsets<const D: usize>(layers: &nalgebra::SVector<i64, D>) -> Vec<Vector<D>> {
     let mut all = vec![Vector::<D>::zeros()];
     for axis in 0..D {

@@ -21,7 +21,7 @@ struct Faces<const D: usize> {
     all: Vec<(Traced, Vector<D>)>,
 }
 
-/// Numbers of the faces of a wall particle with so many normals.
+/// Numbers of the faces of a wall particle with this many normals.
 pub(super) const fn faces_width(dimension: usize, normals: usize) -> usize {
     2 + dimension + normals * (1 + dimension)
 }

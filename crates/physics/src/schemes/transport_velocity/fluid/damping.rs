@@ -17,7 +17,7 @@ pub(super) struct Damping<const D: usize> {
 }
 
 impl<const D: usize> Damping<D> {
-    /// That of a rate in 1/s, of so many particles.
+    /// That of a rate in 1/s, of this many particles.
     pub fn new(rate: Arc<dyn SpaceTime>, count: usize) -> Self {
         Self { rate: Some(rate), accelerations: vec![Vector::zeros(); count] }
     }

@@ -3,7 +3,7 @@
 use super::{Common, Hypoelastic};
 use crate::neighbors::{NeighborError, search};
 
-/// First neighbours of the start are those within so many spacings, and particles hang together
+/// First neighbours of the start are those within this many spacings, and particles hang together
 /// within that.
 const FIRST: f64 = 1.2;
 const LINK: f64 = 1.5;

@@ -23,7 +23,7 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// a plane: fluid goes into a buffer with the velocity that it has, and a particle of a buffer becomes
     /// fluid and is followed by another one at the buffer's end. What has come to the end of a buffer is taken out.
     ///
-    /// The energy and the momentum that come in are those of particles that become fluid.
+    /// The energy and the momentum that enter are those of particles that become fluid.
     pub(in super::super) fn exchange(
         &mut self,
         common: &mut Common<D>,

@@ -1,4 +1,4 @@
-//! Open boundaries, through which fluid comes in and goes out, theory (86) to (89).
+//! Open boundaries, through which fluid enters and leaves, theory (86) to (89).
 
 mod buffers;
 mod even;
@@ -25,12 +25,12 @@ use crate::{Vector, parallel};
 pub enum Flow<const D: usize> {
     /// Its velocity in m/s where it is; the pressure is that of the fluid inside.
     Velocity([Arc<dyn SpaceTime>; D]),
-    /// Its pressure in Pa where it is; the velocity is that with which it goes out, or comes in along the
+    /// Its pressure in Pa where it is; the velocity is that with which it leaves, or enters along the
     /// normal.
     Pressure(Arc<dyn SpaceTime>),
 }
 
-/// A plane through which fluid comes in and goes out, with a buffer of particles behind it.
+/// A plane through which fluid enters and leaves, with a buffer of particles behind it.
 #[derive(Clone)]
 pub struct OpenBoundary<const D: usize> {
     /// Its name.
@@ -96,14 +96,14 @@ pub struct OpenBoundaries<const D: usize> {
     pub all: Vec<OpenBoundary<D>>,
     /// In whose buffer each particle is at the start, counted from 1; 0 for others.
     pub buffers: Vec<u32>,
-    /// How many particles, the last ones, are not there at the start: they come in when they are needed.
+    /// How many particles, the last ones, are not there at the start: they enter when they are needed.
     pub reserve: usize,
     /// How the fluid is nested among others of another resolution, if there are some.
     pub nesting: Option<Nesting<D>>,
 }
 
 impl<const D: usize> OpenBoundaries<D> {
-    /// Whether no particle ever comes in.
+    /// Whether no particle ever enters.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty() && self.nesting.is_none()
     }
@@ -141,14 +141,14 @@ struct Seen<const D: usize> {
     pressure: Option<f64>,
     /// Its velocity along the normal in m/s, with it.
     inwards: f64,
-    /// Velocity in m/s with which fluid comes in, where the pressure is prescribed and it does.
+    /// Velocity in m/s with which fluid enters, where the pressure is prescribed and it does.
     entering: Option<Vector<D>>,
 }
 
 /// Numbers that a state keeps of all open boundaries: how many particles wait in the reserve, how many could
 /// not be born in the last exchange, and how many ever were.
 const COUNTS: usize = 3;
-/// Numbers that it keeps of each: the slow pressure, the mass in kg that has come in and gone out, the slow velocity
+/// Numbers that it keeps of each: the slow pressure, the mass in kg that has entered and left, the slow velocity
 /// along the normal in m/s, and the energy in J and the momentum that particles have brought in, less what they took out.
 const KEPT: usize = 5 + MOST_COMPONENTS;
 
@@ -375,7 +375,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         (!self.open.is_empty()).then(|| &LEDGER.behind(D, stored.tail)[1..])
     }
 
-    /// The mass in kg that has come in and gone out through all open boundaries up to a state.
+    /// The mass in kg that has entered and left through all open boundaries up to a state.
     pub(super) fn exchanged(&self, common: &Common<D>, state: &[f64]) -> [f64; 2] {
         let each = self.counts(common, state).map_or(&[][..], |counts| &counts[COUNTS..]);
         let sum = |which: usize| each.iter().skip(which).step_by(KEPT).sum();
@@ -395,8 +395,8 @@ impl<const D: usize> WeaklyCompressible<D> {
         Some(Passage { entered: each[1], left: each[2], energy: each[4], momentum })
     }
 
-    /// The first particle that could not come in for want of others to follow it, and the name of its boundary; of a finer
-    /// level, in which those of the coarser one could not be split, the first of its band.
+    /// The first particle that could not enter for lack of others to follow it, and the name of its boundary; of a
+    /// finer level, in which those of the coarser one could not be split, the first of its band.
     pub(super) fn starved(
         &self,
         common: &Common<D>,
