@@ -8,6 +8,9 @@
 pub mod case;
 pub mod observe;
 
+// The formulations, compiled.
+use {piola_physics_1d as _, piola_physics_2d as _, piola_physics_3d as _};
+
 pub use piola_physics::{
     Tensor, Vector, boundaries, fields, geometry, neighbors, operators, parallel, schemes, solve,
     time,

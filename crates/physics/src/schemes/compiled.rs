@@ -1,10 +1,10 @@
-//! What is compiled here for all dimensions.
+//! What is compiled for each number of dimensions by a crate of its own.
 //!
 //! Generic code is compiled in the crate that names its types, and again in each crate above it; only functions that
-//! are never inlined are shared with those above, where this crate has them for the same types. So the ways into
-//! formulations are `#[inline(never)]`, and this module names them: the library above, its tests and the program find
-//! them compiled, and are compiled while this crate still is. Each is called once for a run or a step, so that nothing is
-//! lost.
+//! are never inlined are shared with those above, where a crate below has them for the same types. So the ways into
+//! formulations are `#[inline(never)]`, and `piola-physics-1d`, `-2d` and `-3d`, which can be compiled side by side,
+//! name them through this function: the library above, its tests and the program find them compiled. Each is called
+//! once for a run or a step, so that nothing is lost.
 
 use super::Scheme;
 use super::interpolation::Interpolation;
@@ -13,10 +13,11 @@ use super::transport_velocity::{Hypoelastic, Levels, TransportVelocity, WeaklyCo
 use super::upwind::Upwind;
 use super::world::World;
 
-/// Ways in.
-type Doors = [*const (); 14];
+/// Ways into the formulations.
+pub type Doors = [*const (); 14];
 
-fn doors<const D: usize>() -> Doors {
+/// All formulations in `D` dimensions.
+pub fn compiled<const D: usize>() -> Doors {
     type Fluid<const D: usize> = TransportVelocity<D, WeaklyCompressible<D>>;
     type Solids<const D: usize> = TransportVelocity<D, Hypoelastic<D>>;
     [
@@ -41,10 +42,3 @@ fn doors<const D: usize>() -> Doors {
 fn methods<S: Scheme + 'static>(scheme: &mut S) -> &mut dyn Scheme {
     scheme
 }
-
-#[used]
-static IN_1D: fn() -> Doors = doors::<1>;
-#[used]
-static IN_2D: fn() -> Doors = doors::<2>;
-#[used]
-static IN_3D: fn() -> Doors = doors::<3>;

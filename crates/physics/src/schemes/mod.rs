@@ -1,7 +1,5 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
-// The tests of this crate compile what they use.
-#[cfg(not(test))]
 mod compiled;
 pub(crate) mod coupled;
 mod description;
@@ -27,6 +25,7 @@ pub mod transport_velocity;
 pub mod upwind;
 pub mod world;
 
+pub use compiled::{Doors, compiled};
 pub use coupled::CoupledScheme;
 pub use description::{Capability, NEWTON_ITERATIONS, SchemeDescription};
 pub use device::{DeviceRefusal, DeviceSteps};
