@@ -40,7 +40,8 @@ fn face(dimension: usize, axis: usize, is_upper: bool) -> String {
 }
 
 fn body_force(dimension: usize) -> String {
-    let components = &["\"40 * y * t\"", "\"-30 * x * t\"", "\"20 * t\""][..dimension];
+    let along = if dimension == 1 { "\"40 * x * t\"" } else { "\"40 * y * t\"" };
+    let components = &[along, "\"-30 * x * t\"", "\"20 * t\""][..dimension];
     format!("[[load]]\nkind = \"body_force\"\nacceleration = [{}]\n", components.join(", "))
 }
 
@@ -340,12 +341,10 @@ fn what_has_no_derivative_is_refused_with_its_key() {
         "body.block.material.young_moduls",
         "did you mean `body.block.material.young_modulus`?",
     );
-    ["parameters.e", "body.block", "body.other.material.c10", ""]
-        .into_iter()
-        .for_each(|key| advised(key, known));
+    ["parameters.e", "body.other.material.c10", ""].into_iter().for_each(|key| advised(key, known));
 
     let key = "body.block.material.young_modulus";
-    let mut refused = |text: &str, expected: NoSensitivity| {
+    let refused = |text: &str, expected: NoSensitivity| {
         let refused = started(text, &[]).sensitivity(key).unwrap_err();
         assert!(refused.to_string().contains(&format!("by `{key}`")), "{refused}");
         assert_eq!(refused, SensitivityError::None { key: key.to_owned(), source: expected });
