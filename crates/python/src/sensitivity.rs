@@ -18,16 +18,16 @@ pub struct Sensitivity {
     /// The time in s of the state.
     #[pyo3(get)]
     time: f64,
-    /// Of displacements, by the name of the body: arrays of the shape (particles, D), in m over the unit of the constant,
-    /// with the rows of the fields of the body.
+    /// Of displacements, by the name of the body: arrays of the shape (particles, D), in m over the unit of the
+    /// constant, with the rows of the fields of the body.
     #[pyo3(get)]
     displacement: Py<PyDict>,
     /// Of the forces of supports, as the field `reaction` has them, by the name of the body: arrays of the shape
     /// (particles, D), in N over the unit of the constant.
     #[pyo3(get)]
     reaction: Py<PyDict>,
-    /// Of the columns of probes, by their names, as `head.reaction.x`: those of displacements, positions and reactions of
-    /// the kinds `particle`, `sum` and `mean`.
+    /// Of the columns of probes, by their names, as `head.reaction.x`: those of displacements, positions and
+    /// reactions of the kinds `particle`, `sum` and `mean`.
     #[pyo3(get)]
     probes: Py<PyDict>,
 }

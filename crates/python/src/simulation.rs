@@ -204,7 +204,8 @@ impl Simulation {
     /// `arc_length`.
     ///
     /// key: a key of the material that the case has, as `body.bar.material.young_modulus`, or
-    /// `body.bar.material.moduli.0` for one of several. All others stay as they are, as do the loads.
+    /// `body.bar.material.moduli.0` of several. All others stay as they are, those included that the same parameter
+    /// of the case is in.
     ///
     /// Raises KeyError if it is no constant of a material, ValueError if the derivative is not known.
     fn sensitivity(&self, py: Python<'_>, key: String) -> PyResult<Sensitivity> {

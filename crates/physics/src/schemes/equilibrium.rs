@@ -80,7 +80,7 @@ pub enum NoSensitivity {
     #[error("it is not known where faces of cells are held: take the difference of two runs")]
     Faces,
     /// The tangent has no solution.
-    #[error("the tangent of this state has no solution: {0}")]
+    #[error(transparent)]
     Linear(#[from] LinearError),
 }
 

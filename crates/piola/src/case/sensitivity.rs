@@ -3,7 +3,7 @@
 use piola_formulas::hyperelastic::HyperelasticLaw;
 use thiserror::Error;
 
-use super::model::Material;
+use super::model::{Body, Material};
 use super::session::Session;
 use super::suggest::suggestion;
 use crate::observe::Probe;
@@ -34,8 +34,8 @@ pub enum SensitivityError {
 impl Session {
     /// The derivatives of displacements and reactions by a constant of a material, exact, of the state in
     /// equilibrium at the moment, at the same loads: theory (104) to (107). `key` is a key that the case
-    /// has, as `body.bar.material.young_modulus` or `body.bar.material.moduli.0`, of one of several; other
-    /// keys stay as they are, and so does all else, whatever the case makes of the same parameter.
+    /// has, as `body.bar.material.young_modulus`, or `body.bar.material.moduli.0` of several. All others stay as
+    /// they are, those included that the same parameter of the case is in.
     ///
     /// # Errors
     /// [`SensitivityError`]; nothing is changed.
@@ -58,7 +58,7 @@ impl Session {
     /// The derivatives of the columns of probes that are linear in displacements and reactions, by name:
     /// fields of particles, sums and means.
     pub fn probe_sensitivities(&self, sensitivity: &Sensitivity) -> Vec<(String, f64)> {
-        let of = |probe| Probe::sensitivities(probe, sensitivity, self.case.dimension);
+        let of = |probe: &Probe| probe.sensitivities(sensitivity, self.case.dimension);
         self.built.probes.iter().flat_map(of).collect()
     }
 
@@ -78,20 +78,14 @@ impl Session {
 
     /// What to ask for instead of a key.
     fn advice(&self, key: &str) -> String {
-        let known: Vec<String> = self
-            .case
-            .bodies
-            .iter()
-            .flat_map(|body| {
-                let constants = match &body.material.value {
-                    Material::Hyperelastic { constants, .. } => constants.as_slice(),
-                    _ => &[],
-                };
-                constants
-                    .iter()
-                    .map(|(constant, _)| format!("body.{}.material.{constant}", *body.name))
-            })
-            .collect();
+        let of = |body: &Body| match &body.material.value {
+            Material::Hyperelastic { constants, .. } => {
+                let key = |(key, _): &(String, _)| format!("body.{}.material.{key}", *body.name);
+                constants.iter().map(key).collect()
+            }
+            _ => Vec::new(),
+        };
+        let known: Vec<String> = self.case.bodies.iter().flat_map(of).collect();
         match known.is_empty() {
             true => {
                 "this case has none, as energies written out, fluids and rigid bodies have none"

@@ -177,10 +177,10 @@ impl Probe {
 
     /// The derivatives of its columns of displacements and reactions, by name, if it is linear in them.
     pub fn sensitivities(&self, of: &Sensitivity, dimension: usize) -> Vec<(String, f64)> {
-        let each = |particles: &[u32], factor: f64| -> Vec<(u32, f64)> {
-            particles.iter().map(|&particle| (particle, factor)).collect()
+        let each = |particles: &[u32], weight: f64| {
+            particles.iter().map(|&particle| (particle, weight)).collect()
         };
-        let (fields, weights) = match &self.kind {
+        let (fields, weights): (_, Vec<_>) = match &self.kind {
             ProbeKind::Particle { particle, relative_to, fields } => {
                 let own = std::iter::once((*particle, 1.0));
                 (fields.as_slice(), own.chain(relative_to.map(|other| (other, -1.0))).collect())
@@ -198,21 +198,18 @@ impl Probe {
             "reaction" => Some(&of.reaction),
             _ => None,
         };
-        let known = fields.iter().filter_map(|field| Some((field, derivatives(field)?)));
-        let columns = known.flat_map(|(field, values)| {
+        let mut all = Vec::new();
+        for field in fields {
+            let Some(values) = derivatives(field) else { continue };
             let columns = component_columns(&self.name, std::slice::from_ref(field), dimension);
-            columns
-                .into_iter()
-                .enumerate()
-                .map(|(component, column)| {
-                    let value = |(particle, weight): &(u32, f64)| {
-                        weight * values[*particle as usize * dimension + component]
-                    };
-                    (column.name, weights.iter().map(value).sum())
-                })
-                .collect::<Vec<_>>()
-        });
-        columns.collect()
+            for (component, column) in columns.into_iter().enumerate() {
+                let value = |&(particle, weight): &(u32, f64)| {
+                    weight * values[particle as usize * dimension + component]
+                };
+                all.push((column.name, weights.iter().map(value).sum()));
+            }
+        }
+        all
     }
 
     /// Appends its numbers to `row`. `scratch` is overwritten.

@@ -269,6 +269,50 @@ fn a_stretched_cube_is_known_exactly() {
     }
 }
 
+/// A bar of St. Venant and Kirchhoff's law is compressed along its path through the limit of its load, where
+/// the stretch l is the root of a third. With the stress `E l (l^2 - 1)/2` held,
+/// `dl/dE = -l (l^2 - 1)/(E (3 l^2 - 1))`. Conjugate gradients end at an indefinite tangent, and what they have then is
+/// refused. The bound is the tolerance over the least slope of the stress that is met.
+#[test]
+fn limit_points_are_passed() {
+    let e = 1.7e5;
+    let material = "kind = \"saint_venant_kirchhoff\", young_modulus = 1.7e5, poisson_ratio = 0.23, \
+                    plane = \"stress\"";
+    for (solver, end) in [("direct", 0.9), ("krylov", 0.75)] {
+        let rest = format!(
+            "[time]\nintegrator = \"arc_length\"\nend = {end}\nstep = 0.05\ntolerance = 1e-12\n\
+             linear_solver = \"{solver}\"\n[[load]]\nkind = \"traction\"\nwhere = {}\ntraction = [\"-1e5 * t\"]\n",
+            face(1, 0, true)
+        );
+        let mut session = started(&block(1, material, "kind = \"dual_support\"", &rest), &[]);
+        let (mut stable, mut unstable) = (0, 0);
+        let mut goes_on = true;
+        while goes_on {
+            goes_on = session.step().unwrap();
+            let [displacement, _] = columns(&mut session);
+            let tip = (0..displacement.len())
+                .max_by(|&a, &b| displacement[a].abs().total_cmp(&displacement[b].abs()))
+                .unwrap();
+            let l = 1.0 + displacement[tip];
+            let found = session.sensitivity("body.block.material.young_modulus");
+            if 3.0 * l * l > 1.0 {
+                stable += 1
+            } else {
+                unstable += 1
+            }
+            if solver == "krylov" && unstable > 0 {
+                let refused = found.unwrap_err().to_string();
+                assert!(refused.contains("use the `direct` solver"), "{refused}");
+                break;
+            }
+            let expected = -l * (l * l - 1.0) / (e * (3.0 * l * l - 1.0));
+            let found = found.unwrap().displacement[tip];
+            assert!((found / expected - 1.0).abs() < 1e-8, "{l}: {found:e} against {expected:e}");
+        }
+        assert!(stable > 0 && unstable > 0, "{solver}: {stable} {unstable}");
+    }
+}
+
 /// Of two bodies that do not touch, each follows its own constants.
 #[test]
 fn a_body_does_not_follow_the_constants_of_another() {
