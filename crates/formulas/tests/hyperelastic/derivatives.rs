@@ -20,13 +20,13 @@ fn given(name: &str) -> Vec<Given> {
         ($law:expr) => {
             vec![
                 (&[YoungModulus, PoissonRatio], |[e, nu, _]| {
-                    $law(LameConstants::from_young(e, nu).unwrap())
+                    $law(LameConstants::from_young(e, nu).expect("in range"))
                 }),
                 (&[BulkModulus, ShearModulus], |[kappa, mu, _]| {
-                    $law(LameConstants::from_bulk(kappa, mu).unwrap())
+                    $law(LameConstants::from_bulk(kappa, mu).expect("in range"))
                 }),
                 (&[Lambda, ShearModulusAtLambda], |[lambda, mu, _]| {
-                    $law(LameConstants::new(lambda, mu).unwrap())
+                    $law(LameConstants::new(lambda, mu).expect("in range"))
                 }),
             ]
         };
@@ -37,10 +37,10 @@ fn given(name: &str) -> Vec<Given> {
         "neo_hookean" => of_two!(HyperelasticLaw::neo_hookean),
         "neo_hookean_logarithmic" => of_two!(HyperelasticLaw::neo_hookean_logarithmic),
         "mooney_rivlin" => vec![(&[C10, C01, BulkModulus], |[c10, c01, kappa]| {
-            HyperelasticLaw::mooney_rivlin(c10, c01, kappa).unwrap()
+            HyperelasticLaw::mooney_rivlin(c10, c01, kappa).expect("in range")
         })],
         "ogden" => vec![(&[Modulus(0), Modulus(1), BulkModulus], |[one, other, kappa]| {
-            HyperelasticLaw::ogden(&[(one, 1.3), (-other, -2.4)], kappa).unwrap()
+            HyperelasticLaw::ogden(&[(one, 1.3), (-other, -2.4)], kappa).expect("in range")
         })],
         "hyperelastic" => vec![],
         _ => panic!("the law `{name}` is registered, and its constants are not here"),
@@ -54,7 +54,7 @@ fn check<const D: usize>(
     a: &Matrix3<f64>,
 ) -> Result<(), TestCaseError> {
     let a = SMatrix::<f64, D, D>::from_fn(|i, j| a[(i, j)]);
-    let reduced = |values| Reduced::<D>::new(law(values), state).unwrap();
+    let reduced = |values| Reduced::<D>::new(law(values), state).expect("the state fits");
     for (number, &constant) in constants.iter().enumerate() {
         let at = |steps: f64| {
             let mut values = values;
@@ -62,7 +62,7 @@ fn check<const D: usize>(
             reduced(values).stress(&a)
         };
         let quotient = ((at(1.0) - at(-1.0)) * 8.0 - (at(2.0) - at(-2.0))) / (12.0 * STEP);
-        let derivative = law(values).derivative(constant).unwrap();
+        let derivative = law(values).derivative(constant).expect("it is its own");
         // The second modulus of Ogden's law is given with the other sign.
         let sign = if constant == Constant::Modulus(1) { -1.0 } else { 1.0 };
         let found = reduced(values).stress_derivative(&a, &derivative) * sign;
