@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use piola::case::{self, ColumnError, Problems};
+use piola::case::{self, ColumnError, Problems, SensitivityError};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -116,6 +116,14 @@ pub fn file_error(py: Python<'_>, error: &case::RunError) -> PyErr {
 pub fn column_error(error: &ColumnError) -> PyErr {
     match error {
         ColumnError::Unknown { .. } => PyKeyError::new_err(error.to_string()),
+        _ => PyValueError::new_err(error.to_string()),
+    }
+}
+
+/// A derivative that is not known.
+pub fn sensitivity_error(error: &SensitivityError) -> PyErr {
+    match error {
+        SensitivityError::Unknown { .. } => PyKeyError::new_err(error.to_string()),
         _ => PyValueError::new_err(error.to_string()),
     }
 }

@@ -18,6 +18,7 @@ mod functions;
 mod moment;
 mod plan;
 mod run;
+mod sensitivity;
 mod simulation;
 mod stepping;
 mod tables;
@@ -40,6 +41,7 @@ fn _piola(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<cloud::Cloud>()?;
     module.add_class::<plan::Plan>()?;
     module.add_class::<simulation::Simulation>()?;
+    module.add_class::<sensitivity::Sensitivity>()?;
     module.add_class::<moment::Moment>()?;
     module.add_class::<moment::Every>()?;
     module.add_class::<bodies::Bodies>()?;

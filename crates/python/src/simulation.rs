@@ -22,6 +22,7 @@ use crate::functions::{Shared, refuse_inside};
 use crate::moment::{Every, Moment, Watcher, schedule};
 use crate::plan;
 use crate::run::Run;
+use crate::sensitivity::Sensitivity;
 use crate::stepping::Goal;
 use crate::tables::Tables;
 
@@ -198,6 +199,19 @@ impl Simulation {
         let watcher = Watcher::new(schedule(interval)?, self.standing(), function.clone().unbind());
         inside(&self.watchers).push(watcher);
         Ok(())
+    }
+
+    /// The derivatives of displacements, reactions and probes by a constant of a material, of the state in equilibrium
+    /// as it is: exact, for the cost of an iteration of Newton's method. For runs with `time.integrator` `static` or
+    /// `arc_length`.
+    ///
+    /// key: a key of the material that the case has, as `body.bar.material.young_modulus`, or
+    /// `body.bar.material.moduli.0` of several. All others stay as they are, those included that the same parameter
+    /// of the case is in.
+    ///
+    /// Raises KeyError if it is no constant of a material, ValueError if the derivative is not known.
+    fn sensitivity(&self, py: Python<'_>, key: String) -> PyResult<Sensitivity> {
+        Sensitivity::of(self, py, key)
     }
 
     /// What the case shows, in one line.

@@ -1,5 +1,6 @@
 //! Lame's constants from the pairs of parameters in use.
 
+use crate::Number;
 use crate::volumetric::MaterialError;
 
 /// Lame's constants of small strains, of a material whose energy has a minimum at rest.
@@ -35,7 +36,8 @@ impl LameConstants {
         if !(nu > -1.0 && nu < 0.5) {
             return Err(MaterialError::PoissonRatio { value: nu, incompressible_allowed: false });
         }
-        Self::new(e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)))
+        let [lambda, mu] = of_young(e, nu);
+        Self::new(lambda, mu)
     }
 
     /// Of bulk and shear modulus in Pa: `lambda = kappa - 2/3 mu`.
@@ -67,6 +69,12 @@ impl LameConstants {
     pub fn pressure_wave_modulus(&self) -> f64 {
         self.lambda + 2.0 * self.mu
     }
+}
+
+/// `[lambda, mu]` of Young's modulus and Poisson's ratio.
+pub(super) fn of_young<T: Number>(e: T, nu: T) -> [T; 2] {
+    let one = nu + 1.0;
+    [e * nu / (one * (nu * -2.0 + 1.0)), e / (one * 2.0)]
 }
 
 pub(super) fn positive(parameter: &'static str, value: f64) -> Result<f64, MaterialError> {

@@ -13,6 +13,7 @@
 //! - [`LameConstants`] come from any usual pair of parameters.
 
 mod constants;
+mod derivatives;
 mod energy;
 mod kinematics;
 mod law;
@@ -24,6 +25,7 @@ mod reduced;
 mod spectral;
 
 pub use constants::LameConstants;
+pub use derivatives::Constant;
 pub use energy::{EnergyError, EnergyFunction, Instruction, Invariant};
 pub use law::HyperelasticLaw;
 pub use linear::{LinearElastic, SaintVenantKirchhoff};

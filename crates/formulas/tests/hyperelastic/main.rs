@@ -9,6 +9,7 @@ use piola_formulas::tensor;
 use piola_formulas::volumetric::{MaterialError, StressState};
 use proptest::prelude::*;
 
+mod derivatives;
 mod energies;
 
 const YOUNG: f64 = 2.5e6;

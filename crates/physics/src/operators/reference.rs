@@ -121,6 +121,12 @@ impl<const D: usize> ReferenceGradient<D> {
         Self { hourglass, is_plain, kernel, radius, domain, positions, images, pairs, centers }
     }
 
+    /// The same gradient of the same particles with other hourglass coefficients in J.
+    pub fn with_hourglass(&self, particles: &Particles<D>, hourglass: Vec<f64>) -> Self {
+        let (support, gradient) = self.lists();
+        Self::new((particles, &self.images), &support, &gradient, hourglass)
+    }
+
     /// Number of particles.
     pub fn count(&self) -> usize {
         self.centers.len()

@@ -2,7 +2,10 @@
 
 use thiserror::Error;
 
+use piola_formulas::hyperelastic::HyperelasticLaw;
+
 use super::Scheme;
+use crate::solve::LinearError;
 
 /// A formulation that finds states in equilibrium. The load factor takes the part of the time.
 pub trait StaticScheme: Scheme {
@@ -34,6 +37,51 @@ pub trait StaticScheme: Scheme {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution>;
+
+    /// The derivatives of a state in equilibrium by a constant of the material of a body, at the same
+    /// loads; `law` is the derivative of its law.
+    ///
+    /// # Errors
+    /// [`NoSensitivity`].
+    fn sensitivity(
+        &mut self,
+        state: &[f64],
+        body: u32,
+        law: &HyperelasticLaw,
+    ) -> Result<Sensitivity, NoSensitivity>;
+}
+
+/// The derivatives of a state in equilibrium by a constant of a material, particle by particle with a
+/// number for each axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// Of the displacements, m over the unit of the constant.
+    pub displacement: Vec<f64>,
+    /// Of the forces of the supports, N over the unit of the constant.
+    pub reaction: Vec<f64>,
+}
+
+/// Why the derivatives of a state are not known.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum NoSensitivity {
+    /// The run has no states in equilibrium.
+    #[error(
+        "only states in equilibrium have one: set `time.integrator` to `static` or `arc_length`"
+    )]
+    NotStatic,
+    /// Particles are made of several materials.
+    #[error(
+        "it is not known where bodies are joined: set `scheme.joined = false`, or take the \
+         difference of two runs"
+    )]
+    Joined,
+    /// Faces of cells are held.
+    #[error("it is not known where faces of cells are held: take the difference of two runs")]
+    Faces,
+    /// The tangent has no solution.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
 }
 
 /// Why there is no state that meets the equations, as far as was looked.

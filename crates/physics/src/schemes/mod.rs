@@ -29,7 +29,7 @@ pub use compiled::{Doors, compiled};
 pub use coupled::CoupledScheme;
 pub use description::{Capability, NEWTON_ITERATIONS, SchemeDescription};
 pub use device::{DeviceRefusal, DeviceSteps};
-pub use equilibrium::{Missed, NoSolution, StaticScheme};
+pub use equilibrium::{Missed, NoSensitivity, NoSolution, Sensitivity, StaticScheme};
 pub use initial::Initial;
 pub use input::InputError;
 pub use ledger::{Accounts, Filled, Ledger, LedgerFault};

@@ -10,7 +10,7 @@ use super::interpolation::Interpolated;
 use super::sensor::Sensor;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
-use crate::schemes::{Observation, Theta, momentum_components};
+use crate::schemes::{Observation, Sensitivity, Theta, momentum_components};
 
 /// A probe bound to the particles of a run.
 #[derive(Clone)]
@@ -173,6 +173,43 @@ impl Probe {
             ProbeKind::Gauge(gauge) => gauge.renumber(index),
             ProbeKind::Opening(_) | ProbeKind::Tangent { .. } => (),
         }
+    }
+
+    /// The derivatives of its columns of displacements and reactions, by name, if it is linear in them.
+    pub fn sensitivities(&self, of: &Sensitivity, dimension: usize) -> Vec<(String, f64)> {
+        let each = |particles: &[u32], weight: f64| {
+            particles.iter().map(|&particle| (particle, weight)).collect()
+        };
+        let (fields, weights): (_, Vec<_>) = match &self.kind {
+            ProbeKind::Particle { particle, relative_to, fields } => {
+                let own = std::iter::once((*particle, 1.0));
+                (fields.as_slice(), own.chain(relative_to.map(|other| (other, -1.0))).collect())
+            }
+            ProbeKind::Sum { field, particles } => {
+                (std::slice::from_ref(field), each(particles, 1.0))
+            }
+            ProbeKind::Mean { field, particles } => {
+                (std::slice::from_ref(field), each(particles, 1.0 / particles.len() as f64))
+            }
+            _ => return Vec::new(),
+        };
+        let derivatives = |field: &FieldDescription| match field.name {
+            "displacement" | "position" => Some(&of.displacement),
+            "reaction" => Some(&of.reaction),
+            _ => None,
+        };
+        let mut all = Vec::new();
+        for field in fields {
+            let Some(values) = derivatives(field) else { continue };
+            let columns = component_columns(&self.name, std::slice::from_ref(field), dimension);
+            for (component, column) in columns.into_iter().enumerate() {
+                let value = |&(particle, weight): &(u32, f64)| {
+                    weight * values[particle as usize * dimension + component]
+                };
+                all.push((column.name, weights.iter().map(value).sum()));
+            }
+        }
+        all
     }
 
     /// Appends its numbers to `row`. `scratch` is overwritten.

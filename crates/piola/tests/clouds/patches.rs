@@ -133,3 +133,13 @@ fn sets_that_are_not_there_are_named() {
     let message = wrong("points = \"nodes\"", "points = \"nodes\", volumes = \"array\"");
     assert!(message.contains("needs the key `array`"), "{message}");
 }
+
+/// What holds faces of cells is found by multipliers, of which derivatives are not known.
+#[test]
+fn held_faces_of_cells_have_no_sensitivity() {
+    let text = block(2, "triangles-41.msh", "cells", "");
+    let case = case::parse(&text, "case.toml", &LoadOptions::default()).unwrap();
+    let mut session = Session::new(&case).unwrap();
+    let refused = session.sensitivity("body.block.material.young_modulus").unwrap_err();
+    assert!(refused.to_string().contains("where faces of cells are held"), "{refused}");
+}

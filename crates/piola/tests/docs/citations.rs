@@ -19,7 +19,7 @@ fn bracketed(text: &str) -> Option<(&str, &str)> {
     let (inside, rest) = text.strip_prefix('(')?.split_once(')')?;
     let digits = inside.strip_suffix(|c: char| c.is_ascii_lowercase()).unwrap_or(inside);
     let is_short_number = |part: &str| {
-        (1..=2).contains(&part.len()) && part.chars().all(|digit| digit.is_ascii_digit())
+        (1..=3).contains(&part.len()) && part.chars().all(|digit| digit.is_ascii_digit())
     };
     let parts: Vec<&str> = digits.split('.').collect();
     (parts.len() <= 2 && parts.into_iter().all(is_short_number)).then_some((inside, rest))
@@ -108,9 +108,10 @@ fn cited_sources_are_in_the_bibliography() {
 
 #[test]
 fn citations_are_read_as_they_are_meant() {
-    let text =
-        in_one_line("/// by theory (2), (3) and\n/// (17); Upwind (3.40b), theory\n/// (4) to (6)");
-    assert_eq!(cited_equations(&text), ["2", "3", "17", "4", "5", "6"]);
+    let text = in_one_line(
+        "/// by theory (2), (3) and\n/// (17); Upwind (3.40b), theory\n/// (4) to (6), (103)",
+    );
+    assert_eq!(cited_equations(&text), ["2", "3", "17", "4", "5", "6", "103"]);
     let text = in_one_line("//! Dual-support\n//! (19), [Upwind (4.1)], Ito (2008), f (3), A (1)");
     assert_eq!(cited_sources(&text), ["Dual-support", "Upwind"]);
     assert_eq!(

@@ -24,6 +24,7 @@ mod operators;
 mod pair_pass;
 mod profiles;
 mod resume;
+mod sensitivity;
 mod session;
 mod strong_form;
 #[path = "../support/mod.rs"]

@@ -1,5 +1,7 @@
 //! The formulation where there is no motion: states in equilibrium, with the work that led there.
 
+use piola_formulas::hyperelastic::HyperelasticLaw;
+
 use super::fields::ColumnsMut;
 use super::statics::Known;
 use super::{
@@ -8,7 +10,7 @@ use super::{
 };
 use crate::boundaries::{pressure::Pressed, traction::Loaded};
 use crate::schemes::ledger::{Total, Totals};
-use crate::schemes::{Missed, NoSolution, StaticScheme};
+use crate::schemes::{Missed, NoSensitivity, NoSolution, Sensitivity, StaticScheme};
 use crate::solve::{LoadError, NewtonError};
 use crate::{Vector, parallel};
 
@@ -63,6 +65,21 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
                 if from > 0.0 { scale } else { radius / (to - from) };
         }
         Ok(())
+    }
+
+    fn sensitivity(
+        &mut self,
+        state: &[f64],
+        body: u32,
+        law: &HyperelasticLaw,
+    ) -> Result<Sensitivity, NoSensitivity> {
+        let at = self.columns(state);
+        let factor = LEDGER.behind(D, at.tail)[LOAD_FACTOR];
+        let statics = self.statics.as_mut().ok_or(NoSensitivity::NotStatic)?;
+        let derivatives = statics.sensitivity(factor, at.displacement, body, law)?;
+        let [displacement, reaction] =
+            derivatives.map(|rows| rows.iter().flat_map(|row| row.iter().copied()).collect());
+        Ok(Sensitivity { displacement, reaction })
     }
 }
 

@@ -347,7 +347,7 @@ fn materials<const D: usize>(case: &Case, problems: &mut Vec<Problem>) -> Vec<Ma
     for body in &case.bodies {
         // The reader of cases has refused others for this scheme.
         let (density, law, plane) = match &body.material.value {
-            model::Material::Hyperelastic { density, law, plane } => (*density, law, *plane),
+            model::Material::Hyperelastic { density, law, plane, .. } => (*density, law, *plane),
             model::Material::Rigid { density } => {
                 materials.push(Material::rigid(*density));
                 continue;

@@ -1,6 +1,6 @@
 //! The scheme `total_lagrangian` and the materials of elastic solids.
 
-use piola_formulas::hyperelastic::{HyperelasticLaw, LameConstants};
+use piola_formulas::hyperelastic::{Constant, HyperelasticLaw, LameConstants};
 use piola_formulas::volumetric::MaterialError;
 
 use super::bodies::{number, plane};
@@ -181,7 +181,8 @@ impl Reader<'_, '_> {
         };
         match law {
             Ok(law) => {
-                let material = Material::Hyperelastic { density: density?, law, plane };
+                let constants = constants_of(record);
+                let material = Material::Hyperelastic { density: density?, law, constants, plane };
                 Some(Located::new(material, record.place))
             }
             Err(error) => {
@@ -228,4 +229,25 @@ impl Reader<'_, '_> {
             }
         }
     }
+}
+
+/// The constants that a law is given by, with their keys.
+fn constants_of(record: &Record) -> Vec<(String, Constant)> {
+    let shear = match record.has("lame_lambda") {
+        true => Constant::ShearModulusAtLambda,
+        false => Constant::ShearModulus,
+    };
+    let single = [
+        ("young_modulus", Constant::YoungModulus),
+        ("poisson_ratio", Constant::PoissonRatio),
+        ("bulk_modulus", Constant::BulkModulus),
+        ("shear_modulus", shear),
+        ("lame_lambda", Constant::Lambda),
+        ("c10", Constant::C10),
+        ("c01", Constant::C01),
+    ];
+    let single = single.into_iter().filter(|(key, _)| record.has(key));
+    let moduli = record.numbers("moduli").map_or(0, |moduli| moduli.len());
+    let terms = (0..moduli).map(|term| (format!("moduli.{term}"), Constant::Modulus(term)));
+    single.map(|(key, constant)| (key.to_owned(), constant)).chain(terms).collect()
 }

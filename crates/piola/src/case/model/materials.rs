@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use piola_formulas::hyperelastic::HyperelasticLaw;
+use piola_formulas::hyperelastic::{Constant, HyperelasticLaw};
 use piola_formulas::volumetric::{self, StressState};
 
 use crate::boundaries::History;
@@ -43,6 +43,8 @@ pub enum Material {
         density: f64,
         /// Its strain energy in three dimensions.
         law: HyperelasticLaw,
+        /// The constants that it is given by, with their keys.
+        constants: Vec<(String, Constant)>,
         /// The condition in the directions that the case does not resolve. Without meaning in 3D.
         plane: PlaneState,
     },

@@ -11,6 +11,7 @@ mod error;
 mod faces;
 mod inertia;
 mod rigid;
+mod sensitivity;
 mod stiffness;
 mod supports;
 
