@@ -7,6 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{array, floats, numbers, shape_text};
+use crate::errors::guard;
 
 /// Points with their volumes, from which a body is made:
 /// `case.set("body.water.shape", piola.Cloud(positions, volumes))`.
@@ -45,7 +46,7 @@ impl Cloud {
             (one, shape) if shape.is_empty() => vec![one[0]; count],
             _ => numbers("`volumes`", volumes, &[count])?,
         };
-        let cloud = PointCloud::new(dimension, points, volumes);
+        let cloud = guard(positions.py(), || PointCloud::new(dimension, points, volumes))?;
         let cloud = cloud.map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(Self { cloud: Arc::new(cloud) })
     }

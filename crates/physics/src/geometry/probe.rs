@@ -1,5 +1,7 @@
 //! Depths at places that follow each other closely.
 
+use rayon::prelude::*;
+
 use super::facets::Local;
 use super::{Facets, Shape};
 use crate::Vector;
@@ -68,6 +70,25 @@ impl<'a, const D: usize> Probe<'a, D> {
             if side.is_inside { distance } else { -distance }
         });
         depth >= 0.0
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// The first of `count` points that lies deeper in the shape than it may: `point(i)` is one, with its largest depth in
+    /// m.
+    pub fn first_deeper(
+        &self,
+        count: usize,
+        point: impl Fn(usize) -> (Vector<D>, f64) + Sync,
+    ) -> Option<usize> {
+        let (min, max) = self.bounding_box();
+        let is_deeper = |probe: &mut Probe<'_, D>, i: usize| {
+            let (x, most) = point(i);
+            let is_near = (0..D).all(|axis| min[axis] <= x[axis] && x[axis] <= max[axis]);
+            (is_near && probe.depth(&x, 2.0 * most) > most).then_some(i)
+        };
+        let all = (0..count).into_par_iter().map_init(|| Probe::of(self), is_deeper);
+        all.find_first(Option::is_some).flatten()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::overlap::overlaps;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Body, Case};
 use crate::case::source::{Located, Place};
@@ -75,6 +76,9 @@ pub(super) fn particles<const D: usize>(
             Ok(report) => reports.push(report),
             Err(problem) => problems.push(problem),
         }
+    }
+    if problems.is_empty() {
+        problems = overlaps(case, &all);
     }
     if problems.is_empty() { Ok((all, reports)) } else { Err(problems) }
 }

@@ -9,6 +9,7 @@ mod levels;
 mod loads;
 mod mirrors;
 mod openings;
+mod overlap;
 mod printed;
 mod probes;
 mod selections;

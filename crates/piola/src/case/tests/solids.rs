@@ -284,6 +284,24 @@ fn rollers_ties_and_pressures_hold_and_load_the_block() {
     assert!(message.contains("has no load of the kind `pressure`"), "{message}");
 }
 
+#[test]
+fn bodies_may_touch_and_not_overlap() {
+    let second = |y: f64| {
+        let body = GOOD.find("[[body]]").expect("a body")..GOOD.find("[scheme]").expect("a scheme");
+        let top = format!("min = [0.5, {y}], max = [1.5, {}]", y + 1.0);
+        let other =
+            GOOD[body].replace("block", "top").replace("min = [0.0, 0.0], max = [1.0, 1.0]", &top);
+        built(&GOOD.replace("[scheme]", &format!("{other}[scheme]"))).map(|_| ())
+    };
+    assert_eq!(second(1.0), Ok(()));
+    assert_eq!(second(0.96), Ok(()), "less than half a spacing deep");
+    let said = second(0.9).expect_err("a layer of particles in the other body");
+    assert!(said.contains("the bodies `block` and `top` overlap: particle 121 of `top`"), "{said}");
+    assert_eq!(said.matches("overlap").count(), 1, "{said}");
+    // A lattice that is not that of the other body, and finer.
+    assert!(second(0.43).is_err_and(|said| said.contains("overlap")));
+}
+
 /// A load on a plane is the product of traction and area, wherever the particles lie in their cells,
 /// and what holds the body carries it.
 #[test]
