@@ -1,23 +1,23 @@
 """Makes the surface of a ship's hull as a binary STL, the water line at z = 0, and prints its volumes and the height of their
 centre: python hull.py [length] [beam] [draught] [freeboard] [facets along] [facets down]
 
-The sides are Wigley's with fuller sections, y = +-beam/2 (1 - (2x/length)^2)(1 - (z/draught)^4) under water and vertical above it,
+The sides are Wigley's with fuller ends and sections, y = +-beam/2 (1 - (2x/length)^6)(1 - (z/draught)^4) under water and vertical above it,
 up to a flat deck."""
 
 import struct
 import sys
-from math import pi, sin
+from math import cos, pi, sin
 
 numbers = [float(text) for text in sys.argv[1:]]
-length, beam, draught, freeboard, along, down = numbers + [1.2, 0.5, 0.2, 0.1, 40, 12][len(numbers) :]
+length, beam, draught, freeboard, along, down = numbers + [1.2, 0.5, 0.2, 0.15, 40, 12][len(numbers) :]
 along, down = int(along), int(down)
 
 
 def side(i, j):
     """A corner on the side with y > 0: with a number from the bow, and one from the keel up to the water line and the deck."""
-    across = 2 * i / along - 1
+    across = -cos(pi * i / along)
     under = sin(pi / 2 * (1 - j / down)) if j <= down else 0.0
-    y = beam / 2 * (1 - across**2) * (1 - under**4)
+    y = beam / 2 * (1 - across**6) * (1 - under**4)
     return length / 2 * across, y, -draught * under if j <= down else freeboard
 
 
