@@ -1,13 +1,13 @@
 """A ship's hull floats in a tank with waves, by linear potential theory: surge, heave and pitch.
 
-The potential phi of the water is harmonic; its normal derivative is d(eta)/dt on the surface, the normal velocity on hull and
-piston, and 0 on floor and walls. On the surface d(phi)/dt = -g eta - s phi, s being the rate of the beach. Of the hull
-d(M V + rho int phi n dA)/dt = -C x, with its masses M and hydrostatic stiffness C. Quadratic hexahedra in half of the tank,
-y > 0, whose side is bent to that of the hull, y = f(x, z).
+The potential phi of the water is harmonic; its normal derivative is d(eta)/dt on the surface, the normal velocity on
+hull and piston, and 0 on floor and walls. On the surface d(phi)/dt = -g eta - s phi, s being the rate of the beach. Of
+the hull d(M V + rho int phi n dA)/dt = -C x, with its masses M and hydrostatic stiffness C. Quadratic hexahedra in half
+of the tank, y > 0, whose side is bent to that of the hull, y = f(x, z).
 
-`python3 hull.py [n] [FILE]` with n elements over the draught, 4 by default, takes the numbers of cases/coupled/hull and prints
-amplitudes within some periods of the case, and those of the steady state over the wave without the hull, and its slope; to FILE
-goes the heave against time."""
+`python3 hull.py [n] [FILE]` with n elements over the draught, 4 by default, takes the numbers of cases/coupled/hull and
+prints the amplitudes within some periods of the case, and those of the steady state over the wave without the hull and
+over its slope, with all that piston and beach reflect; to FILE goes the heave against time."""
 
 import sys
 from dataclasses import replace
@@ -103,7 +103,7 @@ class Tank:
         followed = solver.solve(coupling.toarray())
         driven = solver.solve(flux[inside])
         lift = np.linalg.inv(area[nodes][:, nodes].toarray())
-        # d(eta)/dt = rise phi + drive (V, w), w being the velocity of the piston, and int phi n dA = take phi + add (V, w).
+        # d(eta)/dt = rise phi + drive (V, w), rho int phi n dA = take phi + add (V, w); w is the piston's velocity.
         self.rise = lift @ (laplace[nodes][:, nodes].toarray() - coupling.T @ followed)
         self.drive = lift @ (coupling.T @ driven - flux[nodes])
         self.damp = lift @ damping[nodes][:, nodes].toarray()
@@ -169,7 +169,7 @@ if __name__ == "__main__":
     calm, tank = Tank(n, 0), Tank(n, 1)
     added = ", ".join(f"{value:.4f}" for value in np.diag(tank.add) / (mass, mass, turning))
     print(f"period {PERIOD:.5f} s, k a {K * HEIGHT / 2:.4f}, mass {mass:.4f} kg, centre of mass at z = {center:.5f} m")
-    print(f"{len(tank.x)} nodes on the surface; added over own masses in surge, heave and pitch, without waves: {added}")
+    print(f"{len(tank.x)} nodes on the surface; added over own masses, without waves: {added}")
     alone, rows = calm.run(), tank.run()
     surge, heave, pitch = amplitudes(rows)[1:]
     print(f"case: wave {amplitudes(alone)[0]:.6f} m, surge {surge:.6f} m, heave {heave:.6f} m, pitch {pitch:.6f} rad")

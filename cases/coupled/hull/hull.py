@@ -1,8 +1,11 @@
-"""Makes the surface of a ship's hull as a binary STL, the water line at z = 0, and prints its volumes and the height of their
-centre: python hull.py [length] [beam] [draught] [freeboard] [facets along] [facets down]
+"""Makes the surface of a ship's hull as a binary STL, the water line at z = 0, and prints its volumes and the height
+of their centre: python hull.py [length] [beam] [draught] [freeboard] [facets along] [facets down]
 
-The sides are Wigley's with fuller ends and sections, y = +-beam/2 (1 - (2x/length)^6)(1 - (z/draught)^4) under water and vertical above it,
-up to a flat deck."""
+The sides are Wigley's with fuller ends and sections, under water
+
+    y = +-beam/2 (1 - (2x/length)^6)(1 - (z/draught)^4),
+
+and vertical above it, up to a flat deck."""
 
 import struct
 import sys
@@ -14,7 +17,7 @@ along, down = int(along), int(down)
 
 
 def side(i, j):
-    """A corner on the side with y > 0: with a number from the bow, and one from the keel up to the water line and the deck."""
+    """A corner on the side with y > 0, numbered from the bow, and from the keel to the water line and the deck."""
     across = -cos(pi * i / along)
     under = sin(pi / 2 * (1 - j / down)) if j <= down else 0.0
     y = beam / 2 * (1 - across**6) * (1 - under**4)
