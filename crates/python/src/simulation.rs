@@ -201,15 +201,15 @@ impl Simulation {
         Ok(())
     }
 
-    /// The derivatives of displacements, reactions and probes by a constant of a material, of the state in equilibrium
-    /// as it is: exact, for the cost of an iteration of Newton's method. For runs with `time.integrator` `static` or
+    /// The derivatives of displacements, reactions and probes by a constant of a material, of the current state in
+    /// equilibrium: exact, for the cost of a factorisation and a solution. For runs with `time.integrator` `static` or
     /// `arc_length`.
     ///
     /// key: a key of the material that the case has, as `body.bar.material.young_modulus`, or
-    /// `body.bar.material.moduli.0` of several. All others stay as they are, those included that the same parameter
-    /// of the case is in.
+    /// `body.bar.material.moduli.0` of several. All other constants stay fixed, even if they are computed
+    /// from the same parameter of the case.
     ///
-    /// Raises KeyError if it is no constant of a material, ValueError if the derivative is not known.
+    /// Raises KeyError if it is no elastic constant of a named law, ValueError if the derivative is not available.
     fn sensitivity(&self, py: Python<'_>, key: String) -> PyResult<Sensitivity> {
         Sensitivity::of(self, py, key)
     }

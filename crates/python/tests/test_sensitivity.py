@@ -99,7 +99,7 @@ def test_what_has_none_is_refused(block, case):
     simulation = piola.Case(block).start()
     with pytest.raises(KeyError, match="did you mean `body.block.material.young_modulus`?"):
         simulation.sensitivity("body.block.material.young")
-    with pytest.raises(KeyError, match="is no constant of a material: expected `body.block.material"):
+    with pytest.raises(KeyError, match="there is no derivative by .*: expected `body.block.material"):
         simulation.sensitivity("load.0.acceleration")
     with pytest.raises(KeyError, match="this case has none"):
         case.start().sensitivity("body.water.material.gamma")

@@ -72,13 +72,29 @@ pub enum NoSensitivity {
     NotStatic,
     /// Particles are made of several materials.
     #[error(
-        "it is not known where bodies are joined: set `scheme.joined = false`, or take the \
-         difference of two runs"
+        "it is not available where bodies are joined: take the difference of two runs"
     )]
     Joined,
     /// Faces of cells are held.
-    #[error("it is not known where faces of cells are held: take the difference of two runs")]
+    #[error("it is not available where faces of cells are held: take the difference of two runs")]
     Faces,
+    /// The state is not one in equilibrium, as at the start of a run with loads.
+    #[error(
+        "the state is not in equilibrium, {residual:.1e} of the loads is left: take a step first"
+    )]
+    NotInEquilibrium {
+        /// The norm of what loads and inner forces leave over that of the loads.
+        residual: f64,
+    },
+    /// The tangent has no inverse.
+    #[error(
+        "the tangent is nearly singular, a residual of {residual:.1e} is left: the state is close \
+         to a limit point, or needs the `direct` solver"
+    )]
+    Singular {
+        /// What is left of the right-hand side.
+        residual: f64,
+    },
     /// The tangent has no solution.
     #[error(transparent)]
     Linear(#[from] LinearError),

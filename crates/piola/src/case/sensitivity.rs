@@ -14,7 +14,7 @@ use crate::schemes::{NoSensitivity, Sensitivity};
 #[non_exhaustive]
 pub enum SensitivityError {
     /// The key is of no constant.
-    #[error("`{key}` is no constant of a material: {advice}")]
+    #[error("there is no derivative by `{key}`: {advice}")]
     Unknown {
         /// What was asked for.
         key: String,
@@ -34,8 +34,8 @@ pub enum SensitivityError {
 impl Session {
     /// The derivatives of displacements and reactions by a constant of a material, exact, of the state in
     /// equilibrium at the moment, at the same loads: theory (104) to (107). `key` is a key that the case
-    /// has, as `body.bar.material.young_modulus`, or `body.bar.material.moduli.0` of several. All others stay as
-    /// they are, those included that the same parameter of the case is in.
+    /// has, as `body.bar.material.young_modulus`, or `body.bar.material.moduli.0` of several. All other
+    /// constants stay fixed, even if they are computed from the same parameter of the case.
     ///
     /// # Errors
     /// [`SensitivityError`]; nothing is changed.
@@ -88,7 +88,7 @@ impl Session {
         let known: Vec<String> = self.case.bodies.iter().flat_map(of).collect();
         match known.is_empty() {
             true => {
-                "this case has none, as energies written out, fluids and rigid bodies have none"
+                "only the elastic constants of named laws have derivatives, and this case has none"
                     .to_owned()
             }
             false => suggestion(key, known.iter().map(String::as_str)),

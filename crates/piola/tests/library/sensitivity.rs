@@ -343,7 +343,7 @@ fn a_body_does_not_follow_the_constants_of_another() {
     assert!(by_other.displacement.iter().any(|value| *value != 0.0));
 }
 
-/// Who asks changes no bit of the steps to come, whatever the solver keeps; at rest there is nothing to
+/// Asking changes no bit of the steps to come, whatever the solver keeps; at rest there is nothing to
 /// follow a constant.
 #[test]
 fn asking_changes_nothing() {
@@ -374,7 +374,7 @@ fn what_has_no_derivative_is_refused_with_its_key() {
     let mut session = ended(&text, &[]);
     let mut advised = |key: &str, advice: &str| {
         let refused = session.sensitivity(key).unwrap_err();
-        let expected = format!("`{key}` is no constant of a material: {advice}");
+        let expected = format!("there is no derivative by `{key}`: {advice}");
         assert_eq!(refused.to_string(), expected);
     };
     let known =
@@ -404,8 +404,16 @@ fn what_has_no_derivative_is_refused_with_its_key() {
     );
     refused(&joined.replace("dual_support", "total_lagrangian"), NoSensitivity::Joined);
 
+    // A load that does not begin at zero has moved nothing before the first step.
+    let load = format!("{STATIC}{}", body_force(2).replace(" * t", ""));
+    let mut loaded = started(&block(2, RUBBER, "kind = \"dual_support\"", &load), &[]);
+    let refused = loaded.sensitivity(key).unwrap_err();
+    assert!(refused.to_string().contains("take a step first"), "{refused}");
+    loaded.step().unwrap();
+    assert!(loaded.sensitivity(key).is_ok());
+
     let energy = RUBBER.split(',').next().unwrap().replace("neo_hookean", "hyperelastic")
         + ", energy = \"4e4 * (I1b - 3) + 1e5 * (J - 1)^2\"";
     let refused = started(&text.replace(RUBBER, &energy), &[]).sensitivity(key).unwrap_err();
-    assert!(refused.to_string().contains("energies written out"), "{refused}");
+    assert!(refused.to_string().contains("elastic constants of named laws"), "{refused}");
 }

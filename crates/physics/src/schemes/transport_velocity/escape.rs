@@ -21,6 +21,9 @@ pub struct Guard {
 /// the wall's face, which the fluid touches up to round-off.
 pub(super) const TOLERANCE: f64 = 0.1;
 
+/// Two planes less than this part of a spacing apart are one.
+const SAME_PLANE: f64 = 0.25;
+
 /// The density that says that its particle has been removed.
 const REMOVED: f64 = 0.0;
 
@@ -115,9 +118,12 @@ impl<const D: usize> Common<D> {
             Place::Wall { number, height, normal } => {
                 let body = self.particles.body[number as usize] as usize;
                 let name = guard.bodies.get(body).cloned().unwrap_or_default();
-                // What moves into the wall has come through that of its planes which it has passed last.
+                // What moves into the wall has come through that of its planes which it has passed last. The face
+                // of a flat wall may be on the box around all walls: both have been passed at once.
                 let (inwards, all) = (-velocity.dot(&normal), list.domain());
-                let is_later = room.walls.since(position, velocity, all) < -height / inwards;
+                let same = SAME_PLANE * self.particles.spacing[0];
+                let since = room.walls.since(position, velocity, all);
+                let is_later = since * inwards < -height - same;
                 match inwards > 0.0 && is_later {
                     true => (Behind::End(name), END_ADVICE),
                     false => (Behind::Wall(name), ADVICE),

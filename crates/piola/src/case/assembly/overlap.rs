@@ -1,6 +1,7 @@
 //! Bodies that are partly in the same place.
 
 use super::bodies::shape;
+use crate::Vector;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{Body, Case};
 use crate::geometry::Particles;
@@ -9,43 +10,46 @@ use crate::geometry::Particles;
 /// outside, or on the common face.
 const DEPTH: f64 = 0.5;
 
-/// The pairs of bodies that overlap, a problem each. Walls may overlap one another, and openings the fluid that they fill.
+/// The pairs of bodies that overlap, a problem each; walls may overlap one another. Of two bodies from files nothing is
+/// known but their particles: they are not compared.
 pub(super) fn overlaps<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<Problem> {
+    // Particles are stored body by body.
+    let start = |body: usize| particles.body.partition_point(|&of| (of as usize) < body);
+    let rows: Vec<_> = (0..case.bodies.len()).map(|body| start(body)..start(body + 1)).collect();
+    let boxes: Vec<_> = rows.iter().map(|rows| corners(&particles.position[rows.clone()])).collect();
+    let mut found: Vec<[usize; 2]> = Vec::new();
     let mut problems = Vec::new();
     for (number, body) in case.bodies.iter().enumerate() {
-        // Bodies from files have no shape, and a shape that cannot be built has been refused.
-        let Some(Ok(inner)) =
-            (!body.shape.is_from_file()).then(|| shape::<D>(case, body, &body.shape))
-        else {
-            continue;
-        };
+        // A shape that cannot be built has been refused.
+        let inner = (!body.shape.is_from_file()).then(|| shape::<D>(case, body, &body.shape));
+        let Some(Ok(inner)) = inner else { continue };
+        let (min, max) = inner.bounding_box();
         let spacing = body.spacing.iter().copied().fold(f64::INFINITY, f64::min);
-        for (other, outer) in case.bodies.iter().enumerate().filter(|(other, _)| *other != number) {
-            let both_found =
-                other < number && problems.iter().any(|(pair, _)| *pair == [other, number]);
-            if both_found || !excludes(body, outer) {
+        for (other, outer) in case.bodies.iter().enumerate() {
+            let (low, high) = &boxes[other];
+            let is_near = (0..D).all(|axis| min[axis] <= high[axis] && low[axis] <= max[axis]);
+            let are_walls = body.wall.is_some() && outer.wall.is_some();
+            if other == number || !is_near || are_walls || found.contains(&[other, number]) {
                 continue;
             }
-            // Particles stand body by body.
-            let [first, end] = [other, other + 1]
-                .map(|body| particles.body.partition_point(|&of| (of as usize) < body));
-            let deeper = inner.first_deeper(end - first, |offset| {
+            let first = rows[other].start;
+            let deeper = inner.first_deeper(rows[other].len(), |offset| {
                 let a = first + offset;
                 (particles.position[a], DEPTH * spacing.min(particles.spacing[a]))
             });
             if let Some(offset) = deeper {
-                let problem = problem(case, [body, outer], particles, first + offset);
-                problems.push(([number, other], problem));
+                found.push([number, other]);
+                problems.push(problem(case, [body, outer], particles, first + offset));
             }
         }
     }
-    problems.into_iter().map(|(_, problem)| problem).collect()
+    problems
 }
 
-/// Whether two bodies may not be in the same place.
-fn excludes(body: &Body, other: &Body) -> bool {
-    let are_walls = body.wall.is_some() && other.wall.is_some();
-    !are_walls && body.opening.is_none() && other.opening.is_none()
+/// The corners of the box around points.
+fn corners<const D: usize>(points: &[Vector<D>]) -> (Vector<D>, Vector<D>) {
+    let none = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+    points.iter().fold(none, |(low, high), x| (low.inf(x), high.sup(x)))
 }
 
 /// Particle `a` of the second body lies in the first.
@@ -55,9 +59,13 @@ fn problem<const D: usize>(
     particles: &Particles<D>,
     a: usize,
 ) -> Problem {
+    let remedy = match other.shape.is_from_file() {
+        true => "move one of the bodies",
+        false => "move one of the bodies, or cut it out of the other with the shape `difference`",
+    };
     let message = format!(
         "the bodies `{0}` and `{1}` overlap: particle {2} of `{1}`, at {3:?} m, lies inside `{0}`, where particles \
-         would be twice as dense; move one of them, or cut it out of the other with the shape `difference`",
+         would be twice as dense; {remedy}",
         *body.name,
         *other.name,
         particles.id[a],

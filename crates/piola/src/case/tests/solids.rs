@@ -298,7 +298,7 @@ fn bodies_may_touch_and_not_overlap() {
     let said = second(0.9).expect_err("a layer of particles in the other body");
     assert!(said.contains("the bodies `block` and `top` overlap: particle 121 of `top`"), "{said}");
     assert_eq!(said.matches("overlap").count(), 1, "{said}");
-    // A lattice that is not that of the other body, and finer.
+    // Its lattice is that of the other body no more.
     assert!(second(0.43).is_err_and(|said| said.contains("overlap")));
 }
 

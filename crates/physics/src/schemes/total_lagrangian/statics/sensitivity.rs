@@ -4,9 +4,11 @@ use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use super::Statics;
 use crate::schemes::NoSensitivity;
-use crate::solve::{Equations, LinearError, Tangent};
+use crate::solve::{Equations, Tangent};
 use crate::{Tensor, Vector, parallel};
 
+/// A state with less than this part of the loads left is one that Newton's method has found.
+const BALANCED: f64 = 0.1;
 /// Part of a right-hand side that Krylov methods are asked to leave.
 const TOLERANCE: f64 = 1e-10;
 /// Part of a right-hand side that may be left: a direct method leaves round-off times the condition
@@ -19,8 +21,8 @@ impl<const D: usize> Statics<D> {
     /// `law` is the derivative of its law.
     ///
     /// # Errors
-    /// [`NoSensitivity`] where particles are made of several materials or faces of cells are held, and
-    /// where the tangent is singular.
+    /// [`NoSensitivity`] where particles are made of several materials or faces of cells are held, where the
+    /// state is not in equilibrium, and where the tangent is singular.
     pub fn sensitivity(
         &mut self,
         factor: f64,
@@ -35,9 +37,13 @@ impl<const D: usize> Statics<D> {
             return Err(NoSensitivity::Faces);
         }
         let x = self.collect(displacement);
+        let mut residual = vec![0.0; x.len()];
+        let open = self.residual(factor, &x, &mut residual);
+        if !(open < BALANCED) {
+            return Err(NoSensitivity::NotInEquilibrium { residual: open });
+        }
         self.linearise(factor, &x, false)?;
         let mut left = self.forces_by_constant(body, law);
-        let mut residual = vec![0.0; x.len()];
         self.solver.reduction().restrict(&left, &mut residual);
         let norm =
             |residual: &[f64]| parallel::sum(residual.len(), |k| residual[k] * residual[k]).sqrt();
@@ -45,7 +51,7 @@ impl<const D: usize> Statics<D> {
         if size > 0.0 {
             let mut solution = vec![0.0; x.len()];
             let Self { solver, stiffness, .. } = self;
-            let steps = solver.solve(stiffness, &residual, TOLERANCE, &mut solution)?.steps;
+            solver.solve(stiffness, &residual, TOLERANCE, &mut solution)?;
             self.solver.reduction().expand_free(&solution, &mut moved);
             let mut product = moved.clone();
             self.stiffness.apply(&moved, &mut product);
@@ -53,7 +59,7 @@ impl<const D: usize> Statics<D> {
             self.solver.reduction().restrict(&left, &mut residual);
             let residual = norm(&residual) / size;
             if !(residual <= MOST_LEFT) {
-                return Err(LinearError::NoConvergence { steps, residual }.into());
+                return Err(NoSensitivity::Singular { residual });
             }
         }
         let reduction = self.solver.reduction();
