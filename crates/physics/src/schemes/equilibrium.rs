@@ -71,9 +71,7 @@ pub enum NoSensitivity {
     )]
     NotStatic,
     /// Particles are made of several materials.
-    #[error(
-        "it is not available where bodies are joined: take the difference of two runs"
-    )]
+    #[error("it is not available where bodies are joined: take the difference of two runs")]
     Joined,
     /// Faces of cells are held.
     #[error("it is not available where faces of cells are held: take the difference of two runs")]

@@ -16,7 +16,8 @@ pub(super) fn overlaps<const D: usize>(case: &Case, particles: &Particles<D>) ->
     // Particles are stored body by body.
     let start = |body: usize| particles.body.partition_point(|&of| (of as usize) < body);
     let rows: Vec<_> = (0..case.bodies.len()).map(|body| start(body)..start(body + 1)).collect();
-    let boxes: Vec<_> = rows.iter().map(|rows| corners(&particles.position[rows.clone()])).collect();
+    let boxes: Vec<_> =
+        rows.iter().map(|rows| corners(&particles.position[rows.clone()])).collect();
     let mut found: Vec<[usize; 2]> = Vec::new();
     let mut problems = Vec::new();
     for (number, body) in case.bodies.iter().enumerate() {
