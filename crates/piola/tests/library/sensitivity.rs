@@ -302,7 +302,7 @@ fn limit_points_are_passed() {
             }
             if solver == "krylov" && unstable > 0 {
                 let refused = found.unwrap_err().to_string();
-                assert!(refused.contains("use the `direct` solver"), "{refused}");
+                assert!(refused.contains("needs the `direct` solver"), "{refused}");
                 break;
             }
             let expected = -l * (l * l - 1.0) / (e * (3.0 * l * l - 1.0));
