@@ -1,12 +1,18 @@
 //! Loops over particles on all threads, with results that do not depend on their number.
 //!
 //! A loop is cut into chunks of a fixed length. Each chunk writes its own rows; sums are taken
-//! chunk by chunk and then over the chunks in order. Neither depends on the number of threads,
+//! chunk by chunk, and over the chunks without rounding. Neither depends on the number of threads,
 //! so results are the same to the bit.
+
+mod sums;
+mod team;
 
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
+
+pub use sums::{ExactSums, Reduce, Sums};
+pub use team::{Halo, Team};
 
 /// Particles a chunk. Long enough that handing it to a thread costs nothing, short enough that
 /// many threads share small problems.
@@ -141,65 +147,57 @@ pub fn try_map<T: Send, E: Send>(
     all.into_iter().collect()
 }
 
-/// What is added up over particles, or of which the largest is kept.
-pub trait Sums: Copy + Send + Sync {
-    /// Nothing yet.
-    const ZERO: Self;
-
-    /// Adds another sum.
-    fn add(&mut self, other: &Self);
-}
-
-impl Sums for f64 {
-    const ZERO: Self = 0.0;
-
-    #[inline]
-    fn add(&mut self, other: &Self) {
-        *self += other;
-    }
-}
-
-impl<T: Sums, const N: usize> Sums for [T; N] {
-    const ZERO: Self = [T::ZERO; N];
-
-    #[inline]
-    fn add(&mut self, other: &Self) {
-        self.iter_mut().zip(other).for_each(|(sum, part)| sum.add(part));
-    }
-}
-
-/// Sums `term(i)` over `0..count` in an order that does not depend on the number of threads.
+/// Sums `term(i)` over `0..count`: terms in their order within chunks, and what chunks have without rounding, so that the
+/// result depends neither on the number of threads nor on who has which chunks.
 pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let partial = |chunk: usize| -> f64 {
-        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(&term).sum()
-    };
-    sums_of_chunks(count.div_ceil(CHUNK), partial)
+    sums(count, |i, sum: &mut f64| *sum += term(i))
 }
 
-/// Adds up what a row has over `0..count`: `add(i, sums)` adds the terms of row i. The order
-/// does not depend on the number of threads.
+/// Adds up what a row has over `0..count`, as [`sum`]: `add(i, sums)` adds the terms of row i.
 pub fn sums<T: Sums>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
-    let partial = |chunk: usize| {
-        let mut sums = T::ZERO;
-        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(i, &mut sums));
-        sums
-    };
-    sums_of_chunks(count.div_ceil(CHUNK), partial)
+    if count <= CHUNK {
+        return of_chunk(0, count, &add);
+    }
+    let mut exact = ExactSums::default();
+    add_sums(count, add, &mut exact);
+    exact.total()
+}
+
+/// As [`sums`], for others to add theirs.
+pub fn add_sums<T: Sums>(count: usize, add: impl Fn(usize, &mut T) + Sync, exact: &mut ExactSums) {
+    each_chunk(count, add, |part| exact.add(part));
+}
+
+/// Puts together what a row has over `0..count`, in their order: `add(i, all)` adds that of row i.
+pub fn reduce<T: Reduce>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
+    let mut all = T::ZERO;
+    each_chunk(count, add, |part| all.add(part));
+    all
 }
 
 /// Chunks whose sums are kept side by side until they are added, so that none are allocated.
 const SIDE_BY_SIDE: usize = 64;
 
-/// Adds up the sums of all chunks in their order.
-fn sums_of_chunks<T: Sums>(chunks: usize, partial: impl Fn(usize) -> T + Sync) -> T {
+/// Shows what the rows of each chunk have, in the order of chunks.
+fn each_chunk<T: Reduce>(
+    count: usize,
+    add: impl Fn(usize, &mut T) + Sync,
+    mut see: impl FnMut(&T),
+) {
     let mut kept = [T::ZERO; SIDE_BY_SIDE];
-    let mut sums = T::ZERO;
+    let chunks = count.div_ceil(CHUNK);
     for first in (0..chunks).step_by(SIDE_BY_SIDE) {
         let kept = &mut kept[..SIDE_BY_SIDE.min(chunks - first)];
-        for_each_item(kept, |k, part| *part = partial(first + k));
-        kept.iter().for_each(|part| sums.add(part));
+        for_each_item(kept, |k, part| *part = of_chunk(first + k, count, &add));
+        kept.iter().for_each(&mut see);
     }
-    sums
+}
+
+/// What the rows of a chunk have, of `count` rows in all.
+fn of_chunk<T: Reduce>(chunk: usize, count: usize, add: &impl Fn(usize, &mut T)) -> T {
+    let mut part = T::ZERO;
+    (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(i, &mut part));
+    part
 }
 
 /// The larger of two numbers, infinite where the second is not a number.
@@ -226,13 +224,24 @@ fn largest<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) -> f64 + Sy
 }
 
 /// Calls `body(first, parts, sums)` for chunks of the arrays of `count` particles, which changes them and
-/// adds its terms to sums, in the order of [`sums`].
+/// adds its terms to sums, as those of [`sums`].
 pub fn sums_over_parts<T: Sums, P: Parts>(
     count: usize,
     parts: P,
     body: impl Fn(usize, P, &mut T) + Sync,
 ) -> T {
-    let mut sums = T::ZERO;
+    let mut exact = ExactSums::default();
+    add_sums_over_parts(count, parts, body, &mut exact);
+    exact.total()
+}
+
+/// As [`sums_over_parts`], for others to add theirs.
+pub fn add_sums_over_parts<T: Sums, P: Parts>(
+    count: usize,
+    parts: P,
+    body: impl Fn(usize, P, &mut T) + Sync,
+    exact: &mut ExactSums,
+) {
     let mut kept = [T::ZERO; SIDE_BY_SIDE];
     let (mut first, mut rest) = (0, Some(parts));
     while let Some(parts) = rest.take() {
@@ -244,11 +253,10 @@ pub fn sums_over_parts<T: Sums, P: Parts>(
             body(first + offset, parts, &mut own);
             part.fill(own);
         });
-        kept.iter().for_each(|part| sums.add(part));
+        kept.iter().for_each(|part| exact.add(part));
         first += length;
         rest = (first < count).then_some(later);
     }
-    sums
 }
 
 /// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them, and
@@ -297,6 +305,8 @@ impl<V: Send, T: Send, S: Fn(usize) -> usize + Sync> Parts for Spans<'_, V, T, S
 
 #[cfg(test)]
 mod tests {
+    use piola_ranks::Exact;
+
     use super::*;
 
     /// Below, at and above whole chunks, and more of them than sums are kept side by side.
@@ -356,7 +366,9 @@ mod tests {
         let term = |i: usize| 1.0 / (i as f64 + 0.3);
         for count in COUNTS {
             let chunk = |first: usize| (first..(first + CHUNK).min(count)).map(term).sum::<f64>();
-            let expected = (0..count).step_by(CHUNK).fold(0.0, |sum, first| sum + chunk(first));
+            let mut expected = Exact::default();
+            (0..count).step_by(CHUNK).for_each(|first| expected.add(chunk(first)));
+            let expected = expected.total();
             assert_eq!(on_any_number(|| sum(count, term)), expected);
             let beside = on_any_number(|| {
                 let (mut rows, mut calls) = (vec![0.0; count], vec![0; count.div_ceil(CHUNK)]);

@@ -1,5 +1,6 @@
 //! Velocity components with prescribed values (Dirichlet conditions).
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::function::{SpaceTime, padded};
@@ -55,6 +56,13 @@ impl PrescribedComponents {
         entries.dedup_by_key(|entry| (entry.particle, entry.component));
         entries.reverse();
         Self { entries }
+    }
+
+    /// Those of particles that follow each other, numbered from the first of them.
+    pub fn part(&self, own: &Range<usize>) -> Self {
+        let entries = self.entries.iter().filter(|entry| own.contains(&entry.particle)).cloned();
+        let moved = |entry: Entry| Entry { particle: entry.particle - own.start, ..entry };
+        Self { entries: entries.map(moved).collect() }
     }
 
     /// Gives velocities the prescribed values of a time.

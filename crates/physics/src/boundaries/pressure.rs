@@ -43,9 +43,11 @@ pub(crate) struct Pressed<const D: usize> {
     /// Index of the particle in memory.
     pub particle: usize,
     /// Outward reference area vector N in m^(D-1).
-    area: Vector<D>,
-    place: [f64; 3],
-    value: Arc<dyn SpaceTime>,
+    pub area: Vector<D>,
+    /// Where its value is taken, in m.
+    pub place: [f64; 3],
+    /// The value.
+    pub value: Arc<dyn SpaceTime>,
 }
 
 impl<const D: usize> Pressed<D> {

@@ -64,9 +64,11 @@ pub(crate) struct Loaded<const D: usize> {
     /// Index of the particle in memory.
     pub particle: usize,
     /// Reference area in m^(D-1) that each component acts on.
-    area: Vector<D>,
-    place: [f64; 3],
-    value: [Arc<dyn SpaceTime>; D],
+    pub area: Vector<D>,
+    /// Where its value is taken, in m.
+    pub place: [f64; 3],
+    /// The value.
+    pub value: [Arc<dyn SpaceTime>; D],
 }
 
 impl<const D: usize> Loaded<D> {

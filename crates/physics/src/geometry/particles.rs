@@ -1,5 +1,7 @@
 //! The particles that geometry makes and schemes are bound to.
 
+use std::ops::Range;
+
 use super::{GeometryError, Surface};
 use crate::Vector;
 
@@ -33,6 +35,19 @@ impl<const D: usize> Particles<D> {
     /// Whether there is no particle.
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
+    }
+
+    /// Those that follow each other in memory, with their numbers, and without surfaces of meshes.
+    pub fn part(&self, own: Range<usize>) -> Self {
+        Self {
+            position: self.position[own.clone()].to_vec(),
+            volume: self.volume[own.clone()].to_vec(),
+            weight: self.weight[own.clone()].to_vec(),
+            spacing: self.spacing[own.clone()].to_vec(),
+            body: self.body[own.clone()].to_vec(),
+            id: self.id[own].to_vec(),
+            surface: Surface::default(),
+        }
     }
 
     /// Bytes of all arrays.

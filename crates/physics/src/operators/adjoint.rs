@@ -1,5 +1,7 @@
 //! Pairs of a gradient and of its adjoint, with as many coefficients as there are sums.
 
+use std::ops::Range;
+
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Number;
 use piola_formulas::kernels::Needs;
@@ -10,7 +12,7 @@ use super::directed::DirectedSupport;
 use super::dual_gradient::{DualGradient, dual_row};
 use super::frozen::{FrozenRows, Row};
 use super::gather::{Among, OfOther, Term, gather, gather_parts, sum_at, visit};
-use crate::parallel::Parts;
+use crate::parallel::{Parts, Team};
 use crate::{Tensor, Vector};
 
 /// Pairs with N coefficients: `G_ab`, and `w_ab X_ab`.
@@ -68,6 +70,12 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
         }
     }
 
+    /// Those of some particles, of which `place` says where others stand now.
+    pub fn part(&self, own: Range<usize>, place: impl Fn(u32) -> u32) -> Self {
+        let gradients = self.gradients.part(own.clone(), &place);
+        Self { gradients, forces: self.forces.part(own, place) }
+    }
+
     /// N.
     pub const fn sums(&self) -> usize {
         N
@@ -82,10 +90,10 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
     ) {
         let sum = Term { law: Gradients::<D, N>, source: field, among: Among::All };
         let count = self.gradients.count();
-        let _: [f64; 0] =
-            gather_parts(&self.gradients, &sum, (count, out), |rows, sums, out, _| {
-                close(rows, sums, out);
-            });
+        let (alone, rows) = (Team::default(), (&self.gradients, &sum));
+        let _: [f64; 0] = gather_parts(&alone, rows, (count, out), |rows, sums, out, _| {
+            close(rows, sums, out);
+        });
     }
 
     /// The sums of one particle, in numbers of any type.

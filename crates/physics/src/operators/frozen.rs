@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::{self, Of, Record};
@@ -68,6 +69,21 @@ impl<R: Record> FrozenRows<R> {
                 count += 1;
             }
             ranges.push(Row { first, count });
+        }
+        Self { neighbors, numbers, rows: ranges, record: PhantomData }
+    }
+
+    /// Some of the rows, of which `place` says where neighbours stand now.
+    pub fn part(&self, rows: Range<usize>, place: impl Fn(u32) -> u32) -> Self {
+        let blocks = |row: &Row| {
+            row.first as usize..row.first as usize + (row.count as usize).div_ceil(LANES)
+        };
+        let (mut neighbors, mut numbers, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+        for row in &self.rows[rows] {
+            let own = blocks(row);
+            ranges.push(Row { first: neighbors.len() as u32, count: row.count });
+            neighbors.extend(self.neighbors[own.clone()].iter().map(|block| block.map(&place)));
+            numbers.extend_from_slice(&self.numbers[own.start * R::NUMBERS..own.end * R::NUMBERS]);
         }
         Self { neighbors, numbers, rows: ranges, record: PhantomData }
     }

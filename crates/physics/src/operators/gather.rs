@@ -14,7 +14,7 @@ use piola_formulas::pairs::{Of, One, PairLaw, Record};
 use piola_formulas::{Lanes, Lanes4, Number, WIDTH};
 
 use super::LANES;
-use crate::parallel::{self, Parts, Sums};
+use crate::parallel::{self, Parts, Sums, Team};
 
 /// Which neighbours of a particle a sum runs over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -301,14 +301,14 @@ pub fn gather<P: Pairs, M: Sum<P>, O: Send>(
 }
 
 /// As [`gather`], of the first `count` slots, for arrays beside each other and with totals of all
-/// particles: `close([slot, k], sums, out, totals)` fills in row `k` of the part `out`.
+/// particles of a team: `close([slot, k], sums, out, totals)` fills in row `k` of the part `out`.
 pub fn gather_parts<P: Pairs, M: Sum<P>, O: Parts, T: Sums>(
-    pairs: &P,
-    sum: &M,
+    team: &Team,
+    (pairs, sum): (&P, &M),
     (count, out): (usize, O),
     close: impl Fn([usize; 2], &Of<M::Sums, f64>, &mut O, &mut T) + Sync,
 ) -> T {
-    parallel::sums_over_parts(count, out, |first, mut out, totals| {
+    team.sums_over_parts(count, out, |first, mut out, totals| {
         let slots = first..(first + parallel::CHUNK).min(count);
         rows(pairs, sum, slots, &Some, &mut |slot, k, sums| {
             close([slot, k], sums, &mut out, totals);

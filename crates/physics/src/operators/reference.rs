@@ -1,5 +1,7 @@
 //! The gradient of a body in its reference configuration, with its hourglass energy and the adjoint of both.
 
+use std::ops::Range;
+
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Scalar;
 use piola_formulas::kernels::Kernel;
@@ -125,6 +127,43 @@ impl<const D: usize> ReferenceGradient<D> {
     pub fn with_hourglass(&self, particles: &Particles<D>, hourglass: Vec<f64>) -> Self {
         let (support, gradient) = self.lists();
         Self::new((particles, &self.images), &support, &gradient, hourglass)
+    }
+
+    /// That of some particles, none of which has images: behind them stand `copies` of others, in ascending order.
+    pub fn part(&self, own: Range<usize>, copies: &[u32]) -> Self {
+        let place = |b: u32| match own.contains(&(b as usize)) {
+            true => b - own.start as u32,
+            false => (own.len() + copies.partition_point(|&copy| copy < b)) as u32,
+        };
+        let slots = || own.clone().chain(copies.iter().map(|&b| b as usize));
+        Self {
+            hourglass: self.hourglass[own.clone()].to_vec(),
+            is_plain: self.is_plain,
+            kernel: self.kernel,
+            radius: slots().map(|a| self.radius[a]).collect(),
+            domain: self.domain,
+            positions: slots().map(|a| self.positions[a]).collect(),
+            images: Vec::new(),
+            pairs: match &self.pairs {
+                Pairs::Plain(pairs) => Pairs::Plain(pairs.part(own.clone(), place)),
+                Pairs::Consistent(pairs) => Pairs::Consistent(pairs.part(own.clone(), place)),
+            },
+            centers: self.centers[own.clone()].to_vec(),
+        }
+    }
+
+    /// The particles that some particles take part in a gradient with, and are not among them, in ascending order.
+    pub fn beside(&self, own: &Range<usize>) -> Vec<u32> {
+        let all = own.clone().flat_map(|a| on_pairs!(&self.pairs, pairs => pairs.all(a)));
+        let mut others: Vec<u32> = all.filter(|&b| !own.contains(&(b as usize))).collect();
+        others.sort_unstable();
+        others.dedup();
+        others
+    }
+
+    /// How many tensors forces gather of a particle.
+    pub fn tensions(&self) -> usize {
+        on_pairs!(&self.pairs, pairs => pairs.sums())
     }
 
     /// Number of particles.
@@ -261,7 +300,7 @@ impl<const D: usize> ReferenceGradient<D> {
 
     /// Scratch for the strains of all particles.
     pub fn strained(&self) -> Strained<D> {
-        let sums = on_pairs!(&self.pairs, pairs => pairs.sums());
+        let sums = self.tensions();
         let zeros = |count: usize| vec![Tensor::zeros(); count];
         Strained { gradient: zeros(self.count()), tension: zeros(sums * self.positions.len()) }
     }

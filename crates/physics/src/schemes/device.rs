@@ -1,42 +1,59 @@
-//! What a formulation offers to a device.
+//! What a formulation offers to a device, and what whoever takes its steps elsewhere offers to a run.
 
 use piola_device::DeviceError;
+use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::{Health, Phase, StepLimit};
 
-/// The steps of a formulation on a device, by the kick-drift-kick method, with a state that stays
+/// Why steps that are taken elsewhere cannot go on.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepsError {
+    /// The device refuses.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// A rank is lost.
+    #[error(transparent)]
+    Ranks(#[from] RankError),
+}
+
+/// The steps of a formulation on a device, by the kick-drift-kick method, or on several ranks, with a state that stays
 /// there. What comes back is the state where somebody asks for it, and what the choice of a step takes.
 pub trait DeviceSteps: Send {
     /// Takes a state over.
     ///
     /// # Errors
-    /// When the device refuses.
-    fn put(&mut self, state: &[f64]) -> Result<(), DeviceError>;
+    /// When the device refuses, or a rank is lost.
+    fn put(&mut self, state: &[f64]) -> Result<(), StepsError>;
 
     /// Takes a step from a time, both in s. The state before it is kept.
     ///
     /// # Errors
-    /// When the device refuses.
-    fn step(&mut self, time: f64, step: f64) -> Result<(), DeviceError>;
+    /// When the device refuses, or a rank is lost.
+    fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError>;
 
     /// Looks once over the state, as [`Scheme::inspect`](super::Scheme::inspect).
     ///
     /// # Errors
-    /// When the device refuses.
-    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, DeviceError>;
+    /// When the device refuses, or a rank is lost.
+    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError>;
 
     /// Gives the state.
     ///
     /// # Errors
-    /// When the device refuses.
-    fn fetch(&self, state: &mut [f64]) -> Result<(), DeviceError>;
+    /// When the device refuses, or a rank is lost.
+    fn fetch(&self, state: &mut [f64]) -> Result<(), StepsError>;
 
     /// Gives the state before the last step.
     ///
     /// # Errors
-    /// When the device refuses.
-    fn fetch_before(&self, state: &mut [f64]) -> Result<(), DeviceError>;
+    /// When the device refuses, or a rank is lost.
+    fn fetch_before(&self, state: &mut [f64]) -> Result<(), StepsError>;
+
+    /// Whether [`Scheme::warning`](super::Scheme::warning) has something to say of the state that was looked at last.
+    fn warns(&self) -> bool {
+        false
+    }
 
     /// The parts of a step as lists of stages. What a device does while nothing waits for it is counted
     /// where somebody does next.
@@ -94,7 +111,13 @@ pub enum DeviceRefusal {
          device, or none"
     )]
     Single(String),
-    /// The device.
+    /// Whoever takes the steps.
     #[error(transparent)]
-    Device(#[from] DeviceError),
+    Steps(#[from] StepsError),
+}
+
+impl From<DeviceError> for DeviceRefusal {
+    fn from(error: DeviceError) -> Self {
+        Self::Steps(error.into())
+    }
 }

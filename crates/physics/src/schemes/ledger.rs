@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
 use super::{Phase, Scheme};
 use crate::Vector;
-use crate::parallel::Sums;
+use crate::parallel::{Reduce, Sums};
 
 /// Most mechanisms, and most sources of momentum, that a formulation may declare.
 const MOST: usize = 16;
@@ -50,6 +50,17 @@ impl Total {
         Self { power, ..Self::default() }
     }
 
+    /// That of a force in N on a particle.
+    pub fn by<const D: usize>(
+        position: &Vector<D>,
+        velocity: &Vector<D>,
+        force: &Vector<D>,
+    ) -> Self {
+        let mut total = Self::default();
+        total.push(position, velocity, force);
+        total
+    }
+
     /// Adds a force in N on a particle.
     #[inline]
     pub fn push<const D: usize>(
@@ -64,6 +75,16 @@ impl Total {
 }
 
 impl Sums for Total {
+    const NUMBERS: usize = 2 + MOST_COMPONENTS;
+
+    fn each(&mut self, see: &mut impl FnMut(&mut f64)) {
+        see(&mut self.power);
+        see(&mut self.growth);
+        self.force.iter_mut().for_each(see);
+    }
+}
+
+impl Reduce for Total {
     const ZERO: Self = Self { power: 0.0, growth: 0.0, force: [0.0; MOST_COMPONENTS] };
 
     #[inline]

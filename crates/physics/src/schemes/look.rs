@@ -2,7 +2,7 @@
 
 use super::Health;
 use crate::Vector;
-use crate::parallel::{self, Sums};
+use crate::parallel::{Reduce, Team};
 
 /// What one particle contributes.
 pub(crate) struct Seen<const D: usize, const N: usize> {
@@ -52,7 +52,7 @@ struct Sight<const N: usize> {
     own: [Most; N],
 }
 
-impl<const N: usize> Sums for Sight<N> {
+impl<const N: usize> Reduce for Sight<N> {
     const ZERO: Self =
         Self { first_not_finite: None, common: [Most::NOTHING; 4], own: [Most::NOTHING; N] };
 
@@ -64,22 +64,48 @@ impl<const N: usize> Sums for Sight<N> {
     }
 }
 
-/// The health of `count` particles, and the largest of their figures, which are no less than `least`.
-/// `see` has what a particle contributes; nothing if a value is not finite.
+impl<const N: usize> Sight<N> {
+    /// As numbers.
+    fn pack(&self) -> Vec<f64> {
+        let first = self.first_not_finite.map_or(-1.0, |first| first as f64);
+        let all = self.common.iter().chain(&self.own);
+        std::iter::once(first).chain(all.flat_map(|it| [it.value, it.particle as f64])).collect()
+    }
+
+    /// Of such numbers.
+    fn unpack(numbers: &[f64]) -> Self {
+        let (mut sight, mut rest) = (Self::ZERO, numbers.iter());
+        let first = rest.next().copied().filter(|first| *first >= 0.0);
+        sight.first_not_finite = first.map(|first| first as usize);
+        for (most, pair) in
+            sight.common.iter_mut().chain(&mut sight.own).zip(rest.as_slice().chunks_exact(2))
+        {
+            *most = Most { value: pair[0], particle: pair[1] as usize };
+        }
+        sight
+    }
+}
+
+/// The health of the particles of a team, of which `count` are here, and the largest of their figures, which are no less
+/// than `least`. `see` has what a particle contributes; nothing if a value is not finite. They are named by their
+/// numbers among those of all ranks.
 pub(crate) fn look<const D: usize, const N: usize>(
+    team: &Team,
     count: usize,
     least: [f64; N],
     see: impl Fn(usize) -> Option<Seen<D, N>> + Sync,
 ) -> (Health, [Most; N]) {
-    let sight = parallel::sums(count, |particle, sight: &mut Sight<N>| {
-        let Some(seen) = see(particle) else {
+    let see = |a: usize, sight: &mut Sight<N>| {
+        let (particle, seen) = (team.number(a), see(a));
+        let Some(seen) = seen else {
             sight.first_not_finite.get_or_insert(particle);
             return;
         };
         let common = [seen.velocity.norm_squared(), seen.wave_speed, -seen.ratio, seen.mismatch];
         sight.common.iter_mut().zip(common).for_each(|(most, value)| most.see(value, particle));
         sight.own.iter_mut().zip(seen.figures).for_each(|(most, value)| most.see(value, particle));
-    });
+    };
+    let sight = team.reduce(count, see, Sight::pack, Sight::unpack);
     let [speed, wave_speed, ratio, mismatch] = sight.common;
     let speed = speed.at_least(0.0);
     let health = Health {
@@ -103,7 +129,7 @@ mod tests {
 
     /// What is seen of 3000 particles, more than a chunk: a speed and a figure of each.
     fn seen(speed: impl Fn(usize) -> f64 + Sync, least: f64) -> (Health, Most) {
-        let (health, [most]) = look(3000, [least], |a| {
+        let (health, [most]) = look(&Team::default(), 3000, [least], |a| {
             let value = speed(a);
             let velocity = Vector::from([value, 0.0]);
             let seen =
@@ -142,7 +168,7 @@ mod tests {
         assert_eq!((health.largest_speed, health.smallest_ratio), (3.0, 3.0));
         assert_eq!(most, Most { value: 3.0, particle: 0 });
         // Of nothing there is nothing to say.
-        let (none, [most]) = look::<2, 1>(0, [0.0], |_| None);
+        let (none, [most]) = look::<2, 1>(&Team::default(), 0, [0.0], |_| None);
         assert_eq!((none, most), (Health::NEUTRAL, Most { value: 0.0, particle: 0 }));
     }
 }

@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use piola_device::Device;
+use piola_ranks::RankError;
 use serde::{Deserialize, Serialize};
 
 use super::momentum::MOST_COMPONENTS;
 use super::{
-    CoupledScheme, DeviceRefusal, DeviceSteps, NewmarkScheme, PartitionedScheme, Phase,
-    SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
+    CoupledScheme, DeviceRefusal, DeviceSteps, NewmarkScheme, Part, PartitionedScheme, Phase,
+    RankRefusal, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
 use crate::geometry::Particles;
@@ -205,6 +206,24 @@ pub trait Scheme: Send + Sync {
     /// Something of it has no body for devices, or the device refuses.
     fn on_device(&self, _device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         Err(DeviceRefusal::Formulation(self.description().name))
+    }
+
+    /// The part of a rank: a formulation of its particles, with copies of those of others. All ranks call this together.
+    ///
+    /// # Errors
+    /// Something of it cannot be shared, or a rank is lost.
+    fn share(&self, _part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
+        Err(RankRefusal::Formulation(self.description().name))
+    }
+
+    /// What some particles cost in a step, in units of one's own.
+    fn cost(&self, particles: Range<usize>) -> f64 {
+        particles.len() as f64
+    }
+
+    /// Why the ranks that compute it together cannot go on.
+    fn lost(&self) -> Option<RankError> {
+        None
     }
 
     /// Whether [`Scheme::rates`] are all there is of its motion, as Runge-Kutta methods need it.

@@ -2,6 +2,7 @@
 
 mod device;
 mod kept;
+mod ranks;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,7 +54,7 @@ pub struct Executor {
     outcome: Option<Outcome>,
     /// Whether the outcome is a failure that the last step led to.
     is_broken: bool,
-    /// Who takes the steps, if that is a device.
+    /// Who takes the steps, if that is a device or several ranks.
     device: Option<Box<dyn DeviceSteps>>,
     /// Whether the state is that of the moment: a device may be ahead.
     is_here: bool,
@@ -304,7 +305,7 @@ impl Executor {
                     }
                     self.is_seen = true;
                 }
-                Some(failure @ Failure::Device(_)) => self.lose(failure),
+                Some(failure) if failure.is_loss() => self.lose(failure),
                 Some(failure) if self.run.clock.step > 0 && self.may_retry() => {
                     self.go_back(&failure)?;
                 }
@@ -333,6 +334,11 @@ impl Executor {
         let broken = self.broken(&health, &self.run.state, &self.run.clock, speeds);
         if broken.is_some() {
             return broken;
+        }
+        if !self.run.tally.warned && self.device.as_ref().is_some_and(|device| device.warns()) {
+            // What it is about is asked of the formulation.
+            self.bring();
+            self.scheme.inspect(&self.run.state, &mut Vec::new());
         }
         let Run { clock, tally, .. } = &mut self.run;
         if let (false, Some(warning)) = (tally.warned, self.scheme.warning()) {
@@ -380,7 +386,7 @@ impl Executor {
                 (Failure::Inaccurate { .. }, Some(growth)) if self.control.adapts() => {
                     run.tally.factor *= growth * met.step / chosen.step;
                 }
-                (Failure::Device(_), _) => self.lose(failure),
+                (lost, _) if lost.is_loss() => self.lose(failure),
                 _ if may_retry => run.shorten(&failure),
                 _ => self.outcome = Some(Outcome::Failed(failure)),
             }

@@ -1,10 +1,11 @@
 //! Why a run stops before its end.
 
 use piola_device::DeviceError;
+use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::integrator::Unserved;
-use crate::schemes::{Behind, Escape, Missed, NoSolution, Particle};
+use crate::schemes::{Behind, Escape, Missed, NoSolution, Particle, StepsError};
 
 /// What went wrong, where and when, with what to do about it.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -197,6 +198,12 @@ pub enum Failure {
          continues from there, on any device or on the processor"
     )]
     Device(#[from] DeviceError),
+    /// The ranks that compute the run cannot go on together.
+    #[error(
+        "the ranks cannot go on: {0}; the run is back at the last saved state, and `--resume` continues from there, on \
+         any number of ranks"
+    )]
+    Ranks(#[from] RankError),
     /// The number of steps allowed is used up.
     #[error(
         "it took the maximum number of steps, {steps}, and is at t = {time:.6} s, before its end; \
@@ -228,8 +235,14 @@ impl Failure {
             Self::Unserved(_) => "unserved",
             Self::Inaccurate { .. } => "inaccurate",
             Self::Device(_) => "device",
+            Self::Ranks(_) => "ranks",
             Self::TooManySteps { .. } => "too_many_steps",
         }
+    }
+
+    /// Whether whoever takes the steps is lost, and the state with it.
+    pub fn is_loss(&self) -> bool {
+        matches!(self, Self::Device(_) | Self::Ranks(_))
     }
 
     /// The particle (index in memory) that it names, if it names one.
@@ -246,7 +259,17 @@ impl Failure {
             | Self::Unserved(_)
             | Self::Inaccurate { .. }
             | Self::Device(_)
+            | Self::Ranks(_)
             | Self::TooManySteps { .. } => None,
+        }
+    }
+}
+
+impl From<StepsError> for Failure {
+    fn from(error: StepsError) -> Self {
+        match error {
+            StepsError::Device(error) => error.into(),
+            StepsError::Ranks(error) => error.into(),
         }
     }
 }

@@ -24,6 +24,7 @@ use crate::fields::width;
 use crate::geometry::Particles;
 use crate::neighbors::Domain;
 use crate::operators::{Cover, DirectedSupport, Mirror, OperatorError, images};
+use crate::parallel::Team;
 use crate::schemes::input::{check_displacement, check_particle};
 use crate::schemes::{Scheme as _, SchemeDescription, SplitScheme as _};
 use crate::{Tensor, Vector};
@@ -186,7 +187,9 @@ impl<const D: usize> TotalLagrangian<D> {
         let mut scheme = Self {
             description: input.description,
             updated: is_updated.then_some(Moving { kernel, radius, group, domain }),
+            is_driven: !loads.is_empty() || !prescribed.is_empty(),
             loads,
+            team: Team::default(),
             prescribed,
             rigid: RigidBodies::new(input.rigid, &solid),
             statics: statics.map(Box::new),

@@ -31,8 +31,10 @@ impl<const D: usize> TotalLagrangian<D> {
             Matrices::Strong(edges) => edges.append_held(count, &mut self.velocity),
             Matrices::Adjoint(discrete) => {
                 discrete.continue_field(&mut self.displacement);
+                self.team.refresh(&mut self.displacement, count, 1);
                 if !self.velocity.is_empty() {
                     discrete.continue_field(&mut self.velocity);
+                    self.team.refresh(&mut self.velocity, count, 1);
                 }
             }
         }
@@ -58,6 +60,8 @@ impl<const D: usize> TotalLagrangian<D> {
             }
             stress * solid.particles.volume[a]
         });
+        let width = discrete.operator.tensions();
+        self.team.refresh(&mut self.strained.tension, solid.len(), width);
     }
 
     /// Internal forces.

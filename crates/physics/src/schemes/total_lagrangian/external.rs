@@ -5,10 +5,11 @@ use super::{
     BODY_FORCE, BOUNDARY_MOTION, DAMPING, FIGURES, LEDGER, PRESSURE, SPRING, TRACTION,
     TotalLagrangian, VISCOSITY,
 };
+use crate::Vector;
 use crate::boundaries::Spring;
+use crate::parallel::{self, ExactSums, Reduce as _};
 use crate::schemes::ledger::{Found, Total, Totals};
-use crate::schemes::outside::{Acted, over_all, prescribe, push};
-use crate::{Vector, parallel};
+use crate::schemes::outside::{Acted, Acts, over_all, prescribe, push};
 
 impl<const D: usize> TotalLagrangian<D> {
     /// Body forces at particle a in m/s^2.
@@ -63,35 +64,41 @@ impl<const D: usize> TotalLagrangian<D> {
             velocity: velocity[a],
         };
         // What is not there costs nothing.
-        let weight = |a: usize, mass: f64| self.body_acceleration(a, time) * mass;
-        totals.drive(BODY_FORCE, &over_all(self.pulled(), particle, weight));
+        let (team, weight) =
+            (&self.team, |a: usize, mass: f64| self.body_acceleration(a, time) * mass);
+        totals.drive(BODY_FORCE, &over_all(team, self.pulled(), particle, weight));
         let drag = |a: usize, mass: f64| velocity[a] * (-damping * mass);
         let dragged = if damping > 0.0 { count } else { 0 };
-        totals.drive(DAMPING, &over_all(dragged, particle, drag));
+        totals.drive(DAMPING, &over_all(team, dragged, particle, drag));
         let power = |a: usize| {
             let [gradient, rate] = [&self.strained.gradient[a], &self.gradient_rate[a]];
             let stress = self.dissipation.stress(solid, a, gradient, rate);
             stress.dot(rate) * solid.particles.volume[a]
         };
         let viscous = if self.dissipation.is_viscous() { count } else { 0 };
-        totals.drive(VISCOSITY, &Total::of(-parallel::sum(viscous, power)));
-        let ghosts = self.ghost_powers(velocity);
-        let [mut traction, mut boundary] = ghosts.map(Total::of);
-        let mut pressure = Total::default();
-        if self.matrices.behind() > 0 {
-            // What bodies beyond planes and ends do on this one.
-            boundary.force = over_all(count, particle, |a, _| self.force[a]).force;
-        }
-        push(self.tractions(time), particle, own.velocity, &mut traction);
-        push(self.pressures(time), particle, own.velocity, &mut pressure);
-        let mut spring = Total::default();
+        totals.drive(VISCOSITY, &Total::of(-team.sum(viscous, power)));
+        let mut acts = Acts::<4>::default();
+        push(self.tractions(time), particle, own.velocity, |total| acts.add(0, total));
+        push(self.pressures(time), particle, own.velocity, |total| acts.add(1, total));
         for (load, pull) in self.pulls(at) {
             let whole: f64 = load.particles.iter().map(|&a| solid.mass[a as usize]).sum();
             let share = |&a: &u32| (a as usize, pull * (solid.mass[a as usize] / whole));
-            push(load.particles.iter().map(share), particle, own.velocity, &mut spring);
+            let shares = load.particles.iter().map(share);
+            push(shares, particle, own.velocity, |total| acts.add(2, total));
+        }
+        prescribe(&self.prescribed, time, particle, own.velocity, |total| acts.add(3, total));
+        let [mut traction, pressure, spring, mut boundary] = match self.is_driven {
+            true => acts.close(team),
+            false => Default::default(),
+        };
+        let [of_tractions, of_motion] = self.ghost_powers(velocity);
+        (traction.power, boundary.power) =
+            (traction.power + of_tractions, boundary.power + of_motion);
+        if self.matrices.behind() > 0 {
+            // What bodies beyond planes and ends do on this one.
+            boundary.force.add(&over_all(team, count, particle, |a, _| self.force[a]).force);
         }
         totals.drive(SPRING, &spring);
-        prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
         let moved = [at.displacement, velocity];
         self.rigid.accelerate(time, solid, moved, own.velocity, &mut boundary);
         totals.drive(TRACTION, &traction);
@@ -124,11 +131,19 @@ impl<const D: usize> TotalLagrangian<D> {
         let kick = &*own.kick;
         let growth = |(a, force): (usize, Vector<D>)| force.dot(&kick[a]);
         let body = |a: usize| solid.mass[a] * self.body_acceleration(a, time).dot(&kick[a]);
-        totals.grow(BODY_FORCE, parallel::sum(self.pulled(), body));
+        let team = &self.team;
+        totals.grow(BODY_FORCE, team.sum(self.pulled(), body));
         let drag = |a: usize| solid.mass[a] * own.velocity[a].dot(&kick[a]);
         let dragged = if self.dissipation.damping > 0.0 { count } else { 0 };
-        totals.grow(DAMPING, -self.dissipation.damping * parallel::sum(dragged, drag));
-        totals.grow(PRESSURE, self.pressures(time).map(growth).sum());
+        totals.grow(DAMPING, -self.dissipation.damping * team.sum(dragged, drag));
+        let mut growths = ExactSums::default();
+        self.pressures(time).for_each(|load| growths.add(&[growth(load), 0.0]));
+        self.tractions(time).for_each(|load| growths.add(&[0.0, growth(load)]));
+        let [pressure, mut traction] = match self.is_driven {
+            true => team.close::<[f64; 2]>(growths),
+            false => [0.0; 2],
+        };
+        totals.grow(PRESSURE, pressure);
         let springs = self.loads.springs.iter().map(|spring| {
             let mean = |of: &[Vector<D>]| spring.mean(&solid.mass, |a| of[a]);
             let (place, velocity) = (mean(own.displacement), mean(own.velocity));
@@ -136,7 +151,6 @@ impl<const D: usize> TotalLagrangian<D> {
             spring.force(&place, &velocity).dot(&mean(kick))
         });
         totals.grow(SPRING, springs.sum());
-        let mut traction = self.tractions(time).map(growth).sum();
         if self.matrices.edges().is_some() {
             self.acceleration[..count].copy_from_slice(kick);
             traction += self.ghost_powers(&self.acceleration)[0];

@@ -24,7 +24,7 @@ impl<const D: usize> TotalLagrangian<D> {
             self.matrices.gradients(&self.displacement, &mut self.strained.gradient);
         }
         let (health, [stiffening, thickening], soft) = self.look_at_solid(&at);
-        if let Some(a) = soft {
+        if let Some(a) = soft.and_then(|number| self.team.own(number, self.solid.len())) {
             self.not_convex = Some((a, self.strained.gradient[a]));
         }
         self.is_evaluated = is_known;
@@ -48,7 +48,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let (solid, columns) = (&*self.solid, [at.velocity, at.displacement, at.kick]);
         let velocity = self.velocity(at);
         let least = [0.0, 0.0, f64::NEG_INFINITY];
-        let (health, [stiffening, thickening, softening]) = look(solid.len(), least, |a| {
+        let team = &self.team;
+        let (health, [stiffening, thickening, softening]) = look(team, solid.len(), least, |a| {
             let is_finite = |column: &&[Vector<D>]| column[a].iter().all(|value| value.is_finite());
             columns.iter().all(is_finite).then(|| {
                 let gradient = &self.strained.gradient[a];
@@ -85,9 +86,10 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Whether the gradients at hand are those of the displacements of `state`: after a step they
     /// are, because forces have been taken there.
     pub(super) fn is_evaluated_at(&self, at: &Columns<'_, D>) -> bool {
-        self.is_evaluated
+        let is_known = self.is_evaluated
             && self.updated.is_none()
-            && self.displacement[..self.solid.len()] == *at.displacement
+            && self.displacement[..self.solid.len()] == *at.displacement;
+        self.team.all(is_known)
     }
 }
 

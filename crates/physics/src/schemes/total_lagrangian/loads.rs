@@ -1,5 +1,7 @@
 //! What acts on a body from outside, as a function of the time or of the load factor.
 
+use std::ops::Range;
+
 use super::Solid;
 use crate::Vector;
 use crate::boundaries::pressure::{Pressed, pressed_force};
@@ -17,6 +19,25 @@ pub(super) struct Loads<const D: usize> {
 }
 
 impl<const D: usize> Loads<D> {
+    /// Those on particles that follow each other, numbered from the first of them; of springs none.
+    pub fn part(&self, own: &Range<usize>) -> Self {
+        let loaded = self.loaded.iter().filter(|load| own.contains(&load.particle)).cloned();
+        let pressed = self.pressed.iter().filter(|part| own.contains(&part.particle)).cloned();
+        Self {
+            body_forces: self.body_forces.clone(),
+            loaded: loaded.map(|it| Loaded { particle: it.particle - own.start, ..it }).collect(),
+            pressed: pressed
+                .map(|it| Pressed { particle: it.particle - own.start, ..it })
+                .collect(),
+            springs: Vec::new(),
+        }
+    }
+
+    /// Whether nothing acts but body forces.
+    pub fn is_empty(&self) -> bool {
+        self.loaded.is_empty() && self.pressed.is_empty() && self.springs.is_empty()
+    }
+
     /// Body forces at particle a in m/s^2.
     #[inline]
     pub fn acceleration(&self, solid: &Solid<D>, a: usize, time: f64) -> Vector<D> {

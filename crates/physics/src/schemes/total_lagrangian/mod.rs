@@ -40,6 +40,7 @@ mod newmark;
 mod rigid;
 mod scheme;
 mod settings;
+mod share;
 mod solid;
 mod split;
 mod stable_step;
@@ -66,6 +67,7 @@ use std::sync::Arc;
 
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::operators::Strained;
+use crate::parallel::Team;
 use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
 use crate::schemes::{Accounts, SchemeDescription};
@@ -92,6 +94,10 @@ pub struct TotalLagrangian<const D: usize> {
     /// Load factors of the first step that may have gone over a limit of the load.
     jumped: Option<[f64; 2]>,
     loads: Loads<D>,
+    /// Whether loads or prescribed motion act on any particle, of this rank or of others.
+    is_driven: bool,
+    /// Who else computes it.
+    team: Team,
     prescribed: PrescribedComponents,
     rigid: rigid::RigidBodies<D>,
     /// Whether gradients and forces are those of the displacements at hand.

@@ -1,5 +1,9 @@
 //! The formulation as integrators, clock and output see it.
 
+use std::ops::Range;
+
+use piola_ranks::RankError;
+
 use super::fields::{ColumnsMut, Made};
 use super::inspect::convexity_is_lost;
 use super::{ENERGIES, LEDGER, LOAD_FACTOR, Matrices, TotalLagrangian};
@@ -7,8 +11,8 @@ use crate::fields::FieldDescription;
 use crate::parallel;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Particle, Phase, Scheme,
-    SchemeDescription, SplitScheme, StaticScheme, StepLimit,
+    Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Part, Particle, Phase, RankRefusal,
+    Scheme, SchemeDescription, SplitScheme, StaticScheme, StepLimit,
 };
 use crate::solve::Costs;
 
@@ -73,6 +77,20 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         let kept = LEDGER.behind(D, self.columns(state).tail);
         figures.extend_from_slice(&kept[..=LOAD_FACTOR]);
+    }
+
+    #[inline(never)]
+    fn share(&self, part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
+        Ok(Box::new(self.shared(part)?))
+    }
+
+    #[inline(never)]
+    fn cost(&self, particles: Range<usize>) -> f64 {
+        particles.map(|a| self.matrices.neighbors(a) as f64).sum()
+    }
+
+    fn lost(&self) -> Option<RankError> {
+        self.team.fault().cloned()
     }
 
     fn linear_costs(&self) -> Option<Costs> {

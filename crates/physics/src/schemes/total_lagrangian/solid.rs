@@ -1,5 +1,7 @@
 //! A solid at rest: its particles and what they are made of.
 
+use std::ops::Range;
+
 use super::material::{Material, Mixture};
 use crate::Tensor;
 use crate::geometry::Particles;
@@ -55,6 +57,17 @@ impl<const D: usize> Solid<D> {
         let mixtures = Mixture::of_each(materials);
         let mixture = particles.body.clone();
         Self::new(particles, mixtures, mixture)
+    }
+
+    /// The particles that follow each other in memory.
+    pub fn part(&self, own: Range<usize>) -> Self {
+        Self {
+            particles: self.particles.part(own.clone()),
+            mixtures: self.mixtures.clone(),
+            mixture: self.mixture[own.clone()].to_vec(),
+            mass: self.mass[own].to_vec(),
+            moduli_at_rest: self.moduli_at_rest.clone(),
+        }
     }
 
     /// Number of particles.

@@ -1,6 +1,7 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
 use super::{Continuum, TransportVelocity};
+use crate::parallel::Team;
 use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, StepLimit};
 
@@ -56,7 +57,9 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     fn bound_step(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let common = &self.common;
         let (mut health, [signal, acceleration, damping]) =
-            look(common.particles.len(), [0.0; 3], |number| self.look_at(number, state));
+            look(&Team::default(), common.particles.len(), [0.0; 3], |number| {
+                self.look_at(number, state)
+            });
         let fastest = Most { value: health.largest_speed, particle: health.largest_speed_particle };
         let signal = match self.matter.wave_speed() {
             None => signal,

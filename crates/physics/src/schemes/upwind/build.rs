@@ -7,17 +7,18 @@ use thiserror::Error;
 
 use super::implicit::{Implicit, ImplicitSettings};
 use super::{Initial, Material, Reference, Settings, Upwind};
+use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
 use crate::geometry::Particles;
 use crate::operators::{GradientOperator, LeastSquares, OperatorError, PairAreas, Support};
+use crate::parallel::{self, Team};
 use crate::schemes::InputError;
 use crate::schemes::input::{
     check_conditions, check_lengths, check_materials, check_particle, check_particles,
 };
 use crate::schemes::stages::{StageFault, Stages};
 use crate::solve::LinearError;
-use crate::{Vector, parallel};
 
 /// All that the formulation is bound to.
 pub struct UpwindInput<const D: usize> {
@@ -107,6 +108,8 @@ impl<const D: usize> Upwind<D> {
             largest_exchange: largest_exchange(&particles, &support, &gradient),
             fastest_reference: reference.iter().map(|r| r.wave_speed).fold(0.0, f64::max),
             prescribed: PrescribedComponents::new(&input.prescribed, positions),
+            is_driven: !input.tractions.is_empty() || !input.prescribed.is_empty(),
+            team: Team::default(),
             steady_body_force: input.body_forces.iter().all(BodyForce::is_steady),
             body_acceleration: vec![Vector::zeros(); count],
             loaded: input.tractions.iter().flat_map(|load| load.loaded(positions)).collect(),

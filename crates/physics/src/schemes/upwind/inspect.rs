@@ -19,7 +19,7 @@ impl<const D: usize> Upwind<D> {
     pub(super) fn look(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let at = self.columns(state);
         let (health, [crossing, fastest, shock]) =
-            look(self.particles.len(), LEAST, |a| self.look_at(a, &at));
+            look(&self.team, self.particles.len(), LEAST, |a| self.look_at(a, &at));
         limits.clear();
         limits.push(StepLimit::scaled("acoustic", -crossing.value, crossing.particle));
         let settings = &self.settings;

@@ -37,6 +37,7 @@ use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::traction::Loaded;
 use crate::geometry::Particles;
 use crate::operators::{LeastSquares, PairAreas, Support};
+use crate::parallel::Team;
 use crate::schemes::ledger::Entry;
 use crate::schemes::stages::Stages;
 use crate::schemes::{Accounts, NEWTON_ITERATIONS};
@@ -70,6 +71,10 @@ pub struct Upwind<const D: usize> {
     fastest_reference: f64,
     body_forces: Vec<BodyForce<D>>,
     prescribed: PrescribedComponents,
+    /// Whether tractions or prescribed motion act on any particle, of this rank or of others.
+    is_driven: bool,
+    /// Who else computes it.
+    team: Team,
     /// Acceleration by body forces: constant in time if all of them are steady.
     body_acceleration: Vec<Vector<D>>,
     steady_body_force: bool,

@@ -7,7 +7,7 @@ use super::fields::ColumnsMut;
 use super::{BODY_FORCE, BOUNDARY_MOTION, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
 use crate::operators::{Among, FrozenRows, Sum, Term, gather_parts};
 use crate::schemes::ledger::{Entry, Total, Totals};
-use crate::schemes::outside::{Acted, prescribe, push};
+use crate::schemes::outside::{Acted, Acts, prescribe, push};
 
 /// The mechanisms of the pass, in the order of its sums.
 const MECHANISMS: [Entry; 3] = [BODY_FORCE, UPWIND_VELOCITY, UPWIND_PRESSURE];
@@ -55,7 +55,8 @@ impl<const D: usize> Upwind<D> {
     ) {
         let count = self.particles.len();
         let (own, _) = ColumnsMut::<D>::of(rate, count);
-        let found = gather_parts(&self.areas.pairs, sum, (count, own), |row, sums, own, found| {
+        let pairs = (&self.areas.pairs, sum);
+        let found = gather_parts(&self.team, pairs, (count, own), |row, sums, own, found| {
             self.write_row(row, sums, own, found);
         });
         MECHANISMS.iter().zip(&found).for_each(|(entry, sum)| totals.drive(*entry, sum));
@@ -98,10 +99,12 @@ impl<const D: usize> Upwind<D> {
             position: self.sides[a].position,
             velocity: self.sides[a].velocity,
         };
-        let [mut traction, mut boundary] = [Total::default(); 2];
+        let mut acts = Acts::<2>::default();
         let loads = self.loaded.iter().map(|load| (load.particle, load.force(time)));
-        push(loads, particle, own.velocity, &mut traction);
-        prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
+        push(loads, particle, own.velocity, |total| acts.add(0, total));
+        prescribe(&self.prescribed, time, particle, own.velocity, |total| acts.add(1, total));
+        let [traction, boundary] =
+            if self.is_driven { acts.close(&self.team) } else { Default::default() };
         totals.drive(TRACTION, &traction);
         totals.drive(BOUNDARY_MOTION, &boundary);
     }

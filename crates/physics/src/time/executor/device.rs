@@ -1,14 +1,14 @@
-//! Runs whose steps somebody else takes, on a device.
+//! Runs whose steps somebody else takes, on a device or on several ranks.
 //!
 //! Their state is there, and brought here where it is looked at. The formulation here knows a state once
 //! it has looked at that.
 
 use std::sync::Arc;
 
-use piola_device::{Device, DeviceError};
+use piola_device::Device;
 
 use super::Executor;
-use crate::schemes::{DeviceRefusal, DeviceSteps, Health};
+use crate::schemes::{DeviceRefusal, DeviceSteps, Health, StepsError};
 use crate::time::failure::Failure;
 use crate::time::kick_drift_kick::KickDriftKick;
 use crate::time::run::Run;
@@ -31,7 +31,7 @@ impl Executor {
     ///
     /// # Errors
     /// They cannot take the state over.
-    pub fn use_steps(&mut self, mut steps: Box<dyn DeviceSteps>) -> Result<(), DeviceError> {
+    pub fn use_steps(&mut self, mut steps: Box<dyn DeviceSteps>) -> Result<(), StepsError> {
         self.bring();
         steps.put(&self.run.state)?;
         self.device = Some(steps);

@@ -82,7 +82,8 @@ impl Executor {
         };
         let take = match outcome {
             Outcome::Completed => wanted(true),
-            Outcome::Interrupted | Outcome::Failed(Failure::Device(_)) => wanted(false),
+            Outcome::Interrupted => wanted(false),
+            Outcome::Failed(failure) if failure.is_loss() => wanted(false),
             Outcome::Failed(_) => false,
         };
         if take {

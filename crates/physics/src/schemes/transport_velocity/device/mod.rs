@@ -24,13 +24,13 @@ use super::shifting::Speed;
 use super::stages::{Instant, Pass};
 use crate::Vector;
 use crate::boundaries::BodyForce;
-use crate::parallel::Sums;
+use crate::parallel::Reduce as _;
 use crate::schemes::device::DeviceSteps;
 use crate::schemes::ledger::Totals;
 use crate::schemes::look::Most;
 use crate::schemes::momentum::momentum_components;
 use crate::schemes::stages::{Phase, Stages};
-use crate::schemes::{Health, StepLimit};
+use crate::schemes::{Health, StepLimit, StepsError};
 
 /// What the passes depend on.
 struct Plan<const D: usize> {
@@ -240,7 +240,7 @@ impl<const D: usize> OnDevice<D> {
 
 impl<const D: usize> DeviceSteps for OnDevice<D> {
     #[inline(never)]
-    fn put(&mut self, state: &[f64]) -> Result<(), DeviceError> {
+    fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
         for &(start, (name, _, width)) in &self.columns {
             self.machine.write(name, &state[start..][..self.count * width])?;
         }
@@ -251,7 +251,7 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
     }
 
     #[inline(never)]
-    fn step(&mut self, time: f64, step: f64) -> Result<(), DeviceError> {
+    fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError> {
         for &(_, (name, before, _)) in &self.columns {
             self.machine.copy(name, before)?;
         }
@@ -267,11 +267,11 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         let done = stages.attempt(|pass, totals| self.run(pass, end, totals));
         self.accelerate = stages;
         LEDGER.keep(D, &done?, &mut self.tail);
-        self.kick(0.5 * step)
+        Ok(self.kick(0.5 * step)?)
     }
 
     #[inline(never)]
-    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, DeviceError> {
+    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
         if self.plan.room.is_some() {
             if !self.is_picked {
                 self.load()?;
@@ -304,12 +304,12 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         })
     }
 
-    fn fetch(&self, state: &mut [f64]) -> Result<(), DeviceError> {
-        self.give(false, &self.tail, state)
+    fn fetch(&self, state: &mut [f64]) -> Result<(), StepsError> {
+        Ok(self.give(false, &self.tail, state)?)
     }
 
-    fn fetch_before(&self, state: &mut [f64]) -> Result<(), DeviceError> {
-        self.give(true, &self.tail_before, state)
+    fn fetch_before(&self, state: &mut [f64]) -> Result<(), StepsError> {
+        Ok(self.give(true, &self.tail_before, state)?)
     }
 
     fn phases(&self) -> Vec<&Phase> {

@@ -1,7 +1,7 @@
 //! Particles that go through open boundaries.
 
 use super::{Common, KEPT, Kept, WeaklyCompressible};
-use crate::parallel::Sums;
+use crate::parallel::Reduce as _;
 use crate::schemes::ledger::Total;
 use crate::schemes::momentum::add_moments;
 use crate::{Vector, parallel};

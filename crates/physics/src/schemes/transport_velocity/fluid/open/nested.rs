@@ -2,7 +2,7 @@
 
 use super::{Common, Kept, Stored, WeaklyCompressible};
 use crate::geometry::Shape;
-use crate::parallel::Sums;
+use crate::parallel::Reduce as _;
 use crate::schemes::ledger::Total;
 use crate::{Vector, parallel};
 

@@ -1,0 +1,143 @@
+//! What a formulation offers to ranks that compute it together.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use piola_ranks::{Message, RankError, Ranks};
+use thiserror::Error;
+
+use super::Scheme;
+use crate::parallel::{CHUNK, Halo, Team};
+
+/// The particles of each rank: those from `bounds[k]` to `bounds[k + 1]` in memory.
+#[derive(Clone)]
+pub struct Part {
+    /// One rank, and through it the others.
+    pub ranks: Arc<dyn Ranks>,
+    /// Where the particles of each rank begin, and where those of the last end.
+    pub bounds: Vec<usize>,
+}
+
+impl Part {
+    /// Shares the particles of a formulation among ranks: whole chunks, with about the same number of pairs.
+    ///
+    /// # Errors
+    /// There are fewer chunks than ranks.
+    pub fn of(scheme: &dyn Scheme, ranks: Arc<dyn Ranks>) -> Result<Self, RankRefusal> {
+        let (count, size) = (scheme.particle_count(), ranks.size());
+        let chunks = count.div_ceil(CHUNK);
+        if size > chunks {
+            return Err(RankRefusal::TooMany { ranks: size, particles: count, chunks });
+        }
+        let cost = |chunk: usize| scheme.cost(chunk * CHUNK..((chunk + 1) * CHUNK).min(count));
+        let costs: Vec<f64> = (0..chunks).map(cost).collect();
+        let (whole, mut sum) = (costs.iter().sum::<f64>(), 0.0);
+        let mut bounds = vec![0];
+        for (chunk, cost) in costs.iter().enumerate() {
+            // A rank ends where it has its share, and leaves a chunk for each of those that follow.
+            let next = bounds.len();
+            let is_full = sum + 0.5 * cost >= whole * next as f64 / size as f64;
+            let is_needed = chunks - chunk == size - next;
+            if next < size && chunk * CHUNK > bounds[next - 1] && (is_full || is_needed) {
+                bounds.push(chunk * CHUNK);
+            }
+            sum += cost;
+        }
+        bounds.push(count);
+        Ok(Self { ranks, bounds })
+    }
+
+    /// The particles of a rank.
+    pub fn of_rank(&self, rank: usize) -> Range<usize> {
+        self.bounds[rank]..self.bounds[rank + 1]
+    }
+
+    /// The particles of this rank.
+    pub fn own(&self) -> Range<usize> {
+        self.of_rank(self.ranks.rank())
+    }
+
+    /// Where the rows of a rank stand in a state of all.
+    pub fn stretches(
+        &self,
+        scheme: &dyn Scheme,
+        rank: usize,
+    ) -> impl Iterator<Item = Range<usize>> {
+        let rows = self.of_rank(rank);
+        let fields = scheme.description().fields.iter();
+        fields.filter_map(move |field| scheme.stretch(field, &rows))
+    }
+
+    /// The team of this rank, which has copies of these particles of others, in ascending order. All ranks call this
+    /// together.
+    ///
+    /// # Errors
+    /// A rank is lost.
+    pub fn team(&self, copies: &[u32]) -> Result<Team, RankError> {
+        let (ranks, size) = (&self.ranks, self.ranks.size());
+        let of_rank = |rank: usize| {
+            let place = |bound: usize| copies.partition_point(|&a| (a as usize) < bound);
+            &copies[place(self.bounds[rank])..place(self.bounds[rank + 1])]
+        };
+        let wanted: Vec<f64> = (0..size).map(|rank| of_rank(rank).len() as f64).collect();
+        let all = ranks.gather_to_all(&wanted)?;
+        let others = || (0..size).filter(|&rank| !of_rank(rank).is_empty());
+        let numbers = |rank: usize| of_rank(rank).iter().map(|&a| f64::from(a)).collect();
+        let asked: Vec<Message> =
+            others().map(|rank| Message { rank, numbers: numbers(rank) }).collect();
+        let of_others = all.iter().map(|wanted| wanted[ranks.rank()] as usize);
+        let mut lent: Vec<Message> = (of_others.enumerate())
+            .filter(|(_, count)| *count > 0)
+            .map(|(rank, count)| Message { rank, numbers: vec![0.0; count] })
+            .collect();
+        ranks.exchange(&asked, &mut lent)?;
+        let first = self.own().start;
+        let own = |message: Message| {
+            let rows = message.numbers.iter().map(|&a| (a as usize - first) as u32);
+            (message.rank, rows.collect())
+        };
+        let halo = Halo {
+            lent: lent.into_iter().map(own).collect(),
+            copied: others().map(|rank| (rank, of_rank(rank).len())).collect(),
+        };
+        Ok(Team::new(ranks.clone(), first, halo))
+    }
+}
+
+/// Why a run cannot be shared among ranks.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum RankRefusal {
+    /// The formulation has no parts.
+    #[error("the formulation `{0}` does not run on several ranks yet: leave out `--ranks`")]
+    Formulation(&'static str),
+    /// Something of the case has none.
+    #[error("{what} on several ranks yet: {instead}, or leave out `--ranks`")]
+    Feature {
+        /// What does not run.
+        what: &'static str,
+        /// What a case has to be like instead.
+        instead: &'static str,
+    },
+    /// The integrator solves for states, or is not known.
+    #[error(
+        "the integrator `{0}` does not run on several ranks yet: take explicit steps, or leave out `--ranks`"
+    )]
+    Integrator(&'static str),
+    /// There is nothing for a rank to do.
+    #[error(
+        "{ranks} ranks are too many for {particles} particles, of which each rank needs at least a chunk of {CHUNK}: \
+         take {chunks} ranks or fewer"
+    )]
+    TooMany {
+        /// Ranks asked for.
+        ranks: usize,
+        /// Particles of the run.
+        particles: usize,
+        /// Chunks of them.
+        chunks: usize,
+    },
+    /// The ranks.
+    #[error(transparent)]
+    Ranks(#[from] RankError),
+}

@@ -1,0 +1,92 @@
+//! The part of a rank.
+
+use std::sync::Arc;
+
+use super::fields::Made;
+use super::rigid::RigidBodies;
+use super::{Discrete, Matrices, TotalLagrangian};
+use crate::fields::width;
+use crate::schemes::{Part, RankRefusal, Scheme as _};
+use crate::{Tensor, Vector};
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// What cannot be shared yet, with what a case has to be like instead.
+    fn unshared(&self) -> Option<[&'static str; 2]> {
+        let adjoint = match &self.matrices {
+            Matrices::Adjoint(discrete) => Some(discrete),
+            Matrices::Strong(_) => None,
+        };
+        let features = [
+            (adjoint.is_none(), ["the strong form does not run", "choose `form = \"adjoint\"`"]),
+            (
+                self.statics.is_some(),
+                ["statics and implicit steps do not run", "take explicit steps"],
+            ),
+            (self.updated.is_some(), ["the updated configuration does not run", "leave it out"]),
+            (!self.rigid.is_empty(), ["rigid bodies do not run", "leave them out"]),
+            (!self.loads.springs.is_empty(), ["springs do not act", "leave them out"]),
+            (
+                adjoint.is_some_and(|discrete| discrete.operator.images() > 0),
+                ["mirror planes do not run", "simulate the whole body"],
+            ),
+        ];
+        features.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what)
+    }
+
+    /// The particles of a rank, with the same coefficients.
+    pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
+        if let Some([what, instead]) = self.unshared() {
+            return Err(RankRefusal::Feature { what, instead });
+        }
+        let Matrices::Adjoint(whole) = &self.matrices else {
+            return Err(RankRefusal::Formulation(self.description.name));
+        };
+        let own = part.own();
+        let copies = whole.operator.beside(&own);
+        let team = part.team(&copies)?;
+        let operator = Arc::new(whole.operator.part(own.clone(), &copies));
+        let solid = Arc::new(self.solid.part(own.clone()));
+        let (count, all) = (own.len(), own.len() + copies.len());
+        let is_viscous = self.dissipation.is_viscous();
+        let matrices =
+            Matrices::Adjoint(Discrete { solid: solid.clone(), operator, planes: Vec::new() });
+        let length = self.rate.len() - (self.solid.len() - count) * width(Made::FIELDS, D);
+        let mut share = Self {
+            description: self.description,
+            updated: None,
+            loads: self.loads.part(&own),
+            is_driven: self.is_driven,
+            team,
+            prescribed: self.prescribed.part(&own),
+            rigid: RigidBodies::new(Vec::new(), &solid),
+            statics: None,
+            is_static: false,
+            stable: self.stable,
+            not_convex: None,
+            jumped: None,
+            is_evaluated: false,
+            has_matrices: true,
+            stages: self.stages.clone(),
+            displacement: vec![Vector::zeros(); all],
+            velocity: vec![Vector::zeros(); if is_viscous { all } else { 0 }],
+            acceleration: Vec::new(),
+            strained: matrices.strained(count),
+            gradient_rate: vec![Tensor::zeros(); if is_viscous { count } else { 0 }],
+            stress: Vec::new(),
+            force: vec![Vector::zeros(); count],
+            rate: vec![0.0; length],
+            reaction: Vec::new(),
+            initial: Vec::new(),
+            dissipation: self.dissipation,
+            matrices,
+            solid,
+        };
+        let mut initial = Vec::with_capacity(length);
+        for stretch in part.stretches(self, part.ranks.rank()) {
+            initial.extend_from_slice(&self.initial[stretch]);
+        }
+        initial.extend_from_slice(&self.initial[self.ledger_start()..]);
+        share.initial = initial;
+        Ok(share)
+    }
+}

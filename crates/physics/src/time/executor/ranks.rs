@@ -1,0 +1,294 @@
+//! Runs whose steps several ranks take together.
+//!
+//! Rank 0 has the run: clock, observers, files. It tells the others what to do, and does the same with its own particles.
+
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+use piola_ranks::{RankError, Ranks};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::Executor;
+use crate::schemes::{
+    DeviceSteps, Health, Part, Phase, RankRefusal, Scheme, StepLimit, StepsError,
+};
+use crate::time::integrator::{Integrator, IntegratorKind};
+
+/// What all ranks are to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Order {
+    /// Take over what rank 0 has for them.
+    Put,
+    /// Take a step from a time, both in s.
+    Step { time: f64, step: f64 },
+    /// Look at the state.
+    Inspect,
+    /// Give the state to rank 0.
+    Fetch,
+    /// Give the state before the last step.
+    FetchBefore,
+    /// Nothing more.
+    End,
+}
+
+impl Order {
+    fn pack(self) -> Vec<f64> {
+        match self {
+            Self::Put => vec![0.0],
+            Self::Step { time, step } => vec![1.0, time, step],
+            Self::Inspect => vec![2.0],
+            Self::Fetch => vec![3.0],
+            Self::FetchBefore => vec![4.0],
+            Self::End => vec![5.0],
+        }
+    }
+
+    fn unpack(said: &[f64]) -> Self {
+        match *said {
+            [0.0] => Self::Put,
+            [1.0, time, step] => Self::Step { time, step },
+            [2.0] => Self::Inspect,
+            [3.0] => Self::Fetch,
+            [4.0] => Self::FetchBefore,
+            _ => Self::End,
+        }
+    }
+}
+
+/// What a rank computes.
+struct Worker {
+    ranks: Arc<dyn Ranks>,
+    scheme: Box<dyn Scheme>,
+    integrator: Box<dyn Integrator>,
+    state: Vec<f64>,
+    before: Vec<f64>,
+    next: Vec<f64>,
+    limits: Vec<StepLimit>,
+    health: Health,
+}
+
+impl Worker {
+    /// That of a rank, with an integrator of this name. All ranks call this together.
+    fn new(whole: &dyn Scheme, part: &Part, integrator: &'static str) -> Result<Self, RankRefusal> {
+        let refused = || RankRefusal::Integrator(integrator);
+        let mut scheme = whole.share(part)?;
+        let mut kinds = IntegratorKind::ALL.into_iter();
+        let kind = kinds.find(|kind| kind.name() == integrator).ok_or_else(refused)?;
+        let integrator = kind.build(scheme.as_mut()).map_err(|_| refused())?;
+        let state = scheme.initial_state();
+        let (before, next) = (state.clone(), state.clone());
+        let (limits, health) = (Vec::new(), Health::NEUTRAL);
+        let ranks = part.ranks.clone();
+        Ok(Self { ranks, scheme, integrator, state, before, next, limits, health })
+    }
+
+    /// Does what rank 0 says, until it says no more.
+    fn serve(&mut self) -> Result<(), RankError> {
+        loop {
+            match Order::unpack(&self.ranks.broadcast(Vec::new())?) {
+                Order::End => return Ok(()),
+                order => self.obey(order)?,
+            }
+        }
+    }
+
+    /// Does what all ranks do. What comes to rank 0, and goes out from it, does so beside this.
+    fn obey(&mut self, order: Order) -> Result<(), RankError> {
+        match order {
+            Order::Put => self.state = self.ranks.scatter(&[])?,
+            Order::Fetch => drop(self.ranks.gather(&self.state)?),
+            Order::FetchBefore => drop(self.ranks.gather(&self.before)?),
+            Order::Inspect => {
+                self.inspect()?;
+            }
+            Order::Step { time, step } => self.step(time, step)?,
+            Order::End => {}
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, time: f64, step: f64) -> Result<(), RankError> {
+        let scheme = self.scheme.as_mut();
+        let taken = self.integrator.step(scheme, time, step, &self.state, &mut self.next);
+        std::mem::swap(&mut self.before, &mut self.state);
+        std::mem::swap(&mut self.state, &mut self.next);
+        // Explicit methods always find a state.
+        match (self.scheme.lost(), taken) {
+            (Some(lost), _) => Err(lost),
+            (None, Ok(())) => Ok(()),
+            (None, Err(_)) => Err(RankError::Lost(self.ranks.rank())),
+        }
+    }
+
+    /// Looks at the state; whether any rank has something to say of it, for rank 0.
+    fn inspect(&mut self) -> Result<bool, RankError> {
+        self.health = self.scheme.inspect(&self.state, &mut self.limits);
+        if let Some(lost) = self.scheme.lost() {
+            return Err(lost);
+        }
+        let own = f64::from(u8::from(self.scheme.warning().is_some()));
+        let told = self.ranks.gather(&[own])?;
+        Ok(told.iter().flatten().any(|said| *said > 0.0))
+    }
+}
+
+/// The steps of several ranks, as rank 0 has them taken.
+struct RankSteps {
+    worker: Worker,
+    /// Where the rows of each rank stand in a state of all.
+    rows: Rows,
+    warns: bool,
+    /// The threads that rank 0 computes with, if the ranks are threads.
+    pool: Option<ThreadPool>,
+    others: Vec<JoinHandle<()>>,
+}
+
+/// Where the rows of each rank stand in a state of all.
+struct Rows {
+    stretches: Vec<Vec<std::ops::Range<usize>>>,
+    tail: usize,
+}
+
+impl Rows {
+    fn of(scheme: &dyn Scheme, part: &Part) -> Self {
+        let of_rank = |rank| part.stretches(scheme, rank).collect();
+        let stretches = (0..part.ranks.size()).map(of_rank).collect();
+        Self { stretches, tail: scheme.ledger_start() }
+    }
+
+    /// What each rank has of a state: its rows of each column, and what stands behind all columns.
+    fn split(&self, state: &[f64]) -> Vec<Vec<f64>> {
+        let of_rank = |own: &Vec<std::ops::Range<usize>>| {
+            let rows = own.iter().flat_map(|stretch| &state[stretch.clone()]);
+            rows.chain(&state[self.tail..]).copied().collect()
+        };
+        self.stretches.iter().map(of_rank).collect()
+    }
+
+    /// Puts a state together, of which rank 0 has what stands behind all columns.
+    fn join(&self, parts: &[Vec<f64>], state: &mut [f64]) {
+        for (own, part) in self.stretches.iter().zip(parts) {
+            let mut rest = part.as_slice();
+            for stretch in own {
+                let (rows, others) = rest.split_at(stretch.len());
+                state[stretch.clone()].copy_from_slice(rows);
+                rest = others;
+            }
+        }
+        if let Some(first) = parts.first() {
+            let tail = &mut state[self.tail..];
+            tail.copy_from_slice(&first[first.len() - tail.len()..]);
+        }
+    }
+}
+
+impl RankSteps {
+    /// Says what all do, and does it.
+    fn order(&mut self, order: Order) -> Result<(), RankError> {
+        let Self { worker, pool, warns, .. } = self;
+        worker.ranks.broadcast(order.pack())?;
+        let mut run = || match order {
+            Order::Inspect => {
+                *warns = worker.inspect()?;
+                Ok(())
+            }
+            order => worker.obey(order),
+        };
+        match pool {
+            Some(pool) => pool.install(run),
+            None => run(),
+        }
+    }
+
+    /// Brings a state here.
+    fn bring(&self, order: Order, own: &[f64], state: &mut [f64]) -> Result<(), StepsError> {
+        self.worker.ranks.broadcast(order.pack())?;
+        self.rows.join(&self.worker.ranks.gather(own)?, state);
+        Ok(())
+    }
+}
+
+impl DeviceSteps for RankSteps {
+    fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
+        self.worker.ranks.broadcast(Order::Put.pack())?;
+        self.worker.state = self.worker.ranks.scatter(&self.rows.split(state))?;
+        Ok(())
+    }
+
+    fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError> {
+        Ok(self.order(Order::Step { time, step })?)
+    }
+
+    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
+        self.order(Order::Inspect)?;
+        limits.clone_from(&self.worker.limits);
+        Ok(self.worker.health)
+    }
+
+    fn fetch(&self, state: &mut [f64]) -> Result<(), StepsError> {
+        self.bring(Order::Fetch, &self.worker.state, state)
+    }
+
+    fn fetch_before(&self, state: &mut [f64]) -> Result<(), StepsError> {
+        self.bring(Order::FetchBefore, &self.worker.before, state)
+    }
+
+    fn warns(&self) -> bool {
+        self.warns
+    }
+
+    fn phases(&self) -> Vec<&Phase> {
+        self.worker.scheme.phases()
+    }
+}
+
+impl Drop for RankSteps {
+    fn drop(&mut self) {
+        // Those that are lost do not hear it, and have ended.
+        drop(self.worker.ranks.broadcast(Order::End.pack()));
+        self.others.drain(..).for_each(|other| drop(other.join()));
+    }
+}
+
+impl Executor {
+    /// Lets ranks take the steps from now on, which are threads of this process: each with its part of the particles, and
+    /// of the threads of this pool.
+    ///
+    /// # Errors
+    /// [`RankRefusal`] for what does not run on several ranks, and where there are more ranks than chunks of particles.
+    pub fn use_ranks(&mut self, ranks: Vec<Arc<dyn Ranks>>) -> Result<(), RankRefusal> {
+        let (scheme, integrator) = (self.scheme.as_ref(), self.integrator.name());
+        let parts: Result<Vec<Part>, _> =
+            ranks.into_iter().map(|rank| Part::of(scheme, rank)).collect();
+        let parts = parts?;
+        let threads = (rayon::current_num_threads() / parts.len()).max(1);
+        let pool = || ThreadPoolBuilder::new().num_threads(threads).build();
+        let made: Vec<Result<Worker, RankRefusal>> = thread::scope(|scope| {
+            let make = |part| scope.spawn(move || Worker::new(scheme, part, integrator));
+            let made: Vec<_> = parts.iter().map(make).collect();
+            let join = |(rank, made): (usize, thread::ScopedJoinHandle<'_, _>)| {
+                made.join().unwrap_or_else(|_| Err(RankError::Lost(rank).into()))
+            };
+            made.into_iter().enumerate().map(join).collect()
+        });
+        let mut workers = made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter();
+        let (Some(worker), Some(part)) = (workers.next(), parts.first()) else { return Ok(()) };
+        let rows = Rows::of(self.scheme.as_ref(), part);
+        let others = workers.map(|mut worker| {
+            let pool = pool();
+            thread::spawn(move || {
+                // Whoever waits for a rank that has ended is told.
+                let _ended = match pool {
+                    Ok(pool) => pool.install(|| worker.serve()),
+                    Err(_) => worker.serve(),
+                };
+            })
+        });
+        let others = others.collect();
+        let steps = RankSteps { worker, rows, warns: false, pool: pool().ok(), others };
+        self.use_steps(Box::new(steps)).map_err(|error| match error {
+            StepsError::Ranks(error) => error.into(),
+            StepsError::Device(_) => RankRefusal::Formulation(self.scheme.description().name),
+        })
+    }
+}
