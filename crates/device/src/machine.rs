@@ -164,10 +164,11 @@ impl Machine {
         self.start(reduce::SUMS, components * chunks, &scalars)?;
         let mut parts = vec![0.0; components * chunks];
         self.device.read(self.column("chunk_sums"), &mut parts)?;
-        let sum = |part: &[f64]| match part {
-            // The sum of one chunk is the sum.
-            [only] => *only,
-            all => all.iter().fold(0.0, |sum, part| sum + part),
+        // As on the processor: what chunks have is summed without rounding.
+        let sum = |parts: &[f64]| {
+            let mut sum = Exact::default();
+            parts.iter().for_each(|part| sum.add(*part));
+            sum.total()
         };
         Ok(parts.chunks_exact(chunks).map(sum).collect())
     }

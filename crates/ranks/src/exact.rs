@@ -165,3 +165,18 @@ impl Exact {
         bits + u64::from(is_half && (is_above || bits & 1 == 1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Entries as 2³⁰ terms leave them at most.
+    #[test]
+    fn full_entries_are_carried_before_a_term_is_added() {
+        let full = i64::from(MOST) * MASK;
+        let mut sum = Exact { limbs: [full; LIMBS], load: MOST };
+        sum.add(f64::MAX);
+        let (_, limbs) = sum.number();
+        assert!(limbs.iter().all(|&limb| limb <= 2 * MASK), "{limbs:?}");
+    }
+}
