@@ -96,6 +96,9 @@ pub struct CaseArguments {
     /// Compute on this device, as listed by `piola devices`, for example cuda:0
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
+    /// Share the particles among this many ranks, each with a part of the threads [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub ranks: Option<u32>,
 }
 
 /// Arguments of `piola run`.

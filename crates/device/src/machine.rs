@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use piola_ranks::Exact;
+
 use crate::device::{Argument, Column, Device, Kernel};
 use crate::error::DeviceError;
 use crate::lists::Lists;

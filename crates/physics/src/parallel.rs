@@ -14,9 +14,14 @@ use rayon::prelude::*;
 pub use sums::{ExactSums, Reduce, Sums};
 pub use team::{Halo, Team};
 
-/// Particles a chunk. Long enough that handing it to a thread costs nothing, short enough that
+/// Most particles a chunk. Long enough that handing it to a thread costs nothing, short enough that
 /// many threads share small problems.
 pub const CHUNK: usize = 1024;
+
+/// Particles a chunk of `count` in all: [`CHUNK`], or less of few, of which several ranks can have whole chunks then.
+pub fn chunk(count: usize) -> usize {
+    (count / 64).next_power_of_two().clamp(16, CHUNK)
+}
 
 /// Calls `body(first, rows)` for chunks of `rows`, where `first` is the number of the first row.
 pub fn for_each_chunk<T: Send>(rows: &mut [T], body: impl Fn(usize, &mut [T]) + Sync) {
@@ -65,26 +70,33 @@ impl Parts for Counted {
     }
 }
 
-/// An array with one entry for each chunk of particles.
-pub struct PerChunk<'a, T>(pub &'a mut [T]);
+/// An array with one entry for each chunk of this many particles.
+pub struct PerChunk<'a, T>(pub &'a mut [T], pub usize);
 
 impl<T: Send> Parts for PerChunk<'_, T> {
     fn split(self, middle: usize) -> (Self, Self) {
-        let (own, later) = self.0.split_at_mut(middle.div_ceil(CHUNK));
-        (Self(own), Self(later))
+        let Self(all, chunk) = self;
+        let (own, later) = all.split_at_mut(middle.div_ceil(chunk));
+        (Self(own, chunk), Self(later, chunk))
     }
 }
 
 /// Calls `body(first, parts)` for chunks of the arrays of `count` particles.
 pub fn for_each_part<P: Parts>(count: usize, parts: P, body: impl Fn(usize, P) + Sync) {
-    hand_out(count, CHUNK, parts, body);
+    hand_out(count, [CHUNK; 2], parts, body);
 }
 
-/// Hands out arrays of `count` entries in pieces of `grain`, the last of which may be shorter, to all threads.
+/// Hands out arrays of `count` entries in pieces of `grain`, the last of which may be shorter, to all threads, or to as
+/// many as there is `work` for.
 ///
 /// A thread that has nothing to do takes a part of what is left, long at first and short in the end, so that
 /// all of them end together and rarely wait for one another.
-fn hand_out<P: Parts>(count: usize, grain: usize, parts: P, body: impl Fn(usize, P) + Sync) {
+fn hand_out<P: Parts>(
+    count: usize,
+    [grain, work]: [usize; 2],
+    parts: P,
+    body: impl Fn(usize, P) + Sync,
+) {
     let shares = 4 * rayon::current_num_threads();
     let rest = Mutex::new((0, Some(parts)));
     let take = || {
@@ -98,7 +110,7 @@ fn hand_out<P: Parts>(count: usize, grain: usize, parts: P, body: impl Fn(usize,
         *rest = (first + length, Some(later));
         Some((first, length, own))
     };
-    on_threads(count.div_ceil(grain), &|| {
+    on_threads(count.div_ceil(work), &|| {
         while let Some((mut first, length, parts)) = take() {
             let (end, mut rest) = (first + length, Some(parts));
             // One call: what is inlined into it is the body of every loop of a step.
@@ -130,7 +142,7 @@ fn on_threads(pieces: usize, work: &(dyn Fn() + Sync)) {
 
 /// Calls `body(number, item)` for each item, of which each is worth a thread's while.
 pub fn for_each_item<T: Send>(items: &mut [T], body: impl Fn(usize, &mut T) + Sync) {
-    hand_out(items.len(), 1, items, |first, items: &mut [T]| {
+    hand_out(items.len(), [1; 2], items, |first, items: &mut [T]| {
         items.iter_mut().enumerate().for_each(|(k, item)| body(first + k, item));
     });
 }
@@ -155,23 +167,24 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
 
 /// Adds up what a row has over `0..count`, as [`sum`]: `add(i, sums)` adds the terms of row i.
 pub fn sums<T: Sums>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
-    if count <= CHUNK {
-        return of_chunk(0, count, &add);
-    }
     let mut exact = ExactSums::default();
-    add_sums(count, add, &mut exact);
+    add_sums([count, chunk(count)], add, &mut exact);
     exact.total()
 }
 
-/// As [`sums`], for others to add theirs.
-pub fn add_sums<T: Sums>(count: usize, add: impl Fn(usize, &mut T) + Sync, exact: &mut ExactSums) {
-    each_chunk(count, add, |part| exact.add(part));
+/// As [`sums`] over chunks of this many rows, for others to add theirs.
+pub fn add_sums<T: Sums>(
+    rows: [usize; 2],
+    add: impl Fn(usize, &mut T) + Sync,
+    exact: &mut ExactSums,
+) {
+    each_chunk(rows, add, |part| exact.add(part));
 }
 
 /// Puts together what a row has over `0..count`, in their order: `add(i, all)` adds that of row i.
 pub fn reduce<T: Reduce>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
     let mut all = T::ZERO;
-    each_chunk(count, add, |part| all.add(part));
+    each_chunk([count, CHUNK], add, |part| all.add(part));
     all
 }
 
@@ -180,24 +193,44 @@ const SIDE_BY_SIDE: usize = 64;
 
 /// Shows what the rows of each chunk have, in the order of chunks.
 fn each_chunk<T: Reduce>(
-    count: usize,
+    [count, chunk]: [usize; 2],
     add: impl Fn(usize, &mut T) + Sync,
+    see: impl FnMut(&T),
+) {
+    over_chunks(
+        [count, chunk],
+        Counted,
+        |first, Counted, part| {
+            (first..(first + chunk).min(count)).for_each(|i| add(i, part));
+        },
+        see,
+    );
+}
+
+/// Calls `body(first, parts, own)` for chunks of the arrays of `count` particles, which changes them and adds to what the
+/// chunk has, and shows that, in the order of chunks.
+fn over_chunks<T: Reduce, P: Parts>(
+    [count, chunk]: [usize; 2],
+    parts: P,
+    body: impl Fn(usize, P, &mut T) + Sync,
     mut see: impl FnMut(&T),
 ) {
     let mut kept = [T::ZERO; SIDE_BY_SIDE];
-    let chunks = count.div_ceil(CHUNK);
-    for first in (0..chunks).step_by(SIDE_BY_SIDE) {
-        let kept = &mut kept[..SIDE_BY_SIDE.min(chunks - first)];
-        for_each_item(kept, |k, part| *part = of_chunk(first + k, count, &add));
+    let (mut first, mut rest) = (0, Some(parts));
+    while let (Some(parts), true) = (rest.take(), first < count) {
+        let length = (SIDE_BY_SIDE * chunk).min(count - first);
+        let (block, later) = parts.split(length);
+        let kept = &mut kept[..length.div_ceil(chunk)];
+        let all = (block, PerChunk(kept, chunk));
+        hand_out(length, [chunk, CHUNK], all, |offset, (parts, PerChunk(part, _))| {
+            let mut own = T::ZERO;
+            body(first + offset, parts, &mut own);
+            part.fill(own);
+        });
         kept.iter().for_each(&mut see);
+        first += length;
+        rest = Some(later);
     }
-}
-
-/// What the rows of a chunk have, of `count` rows in all.
-fn of_chunk<T: Reduce>(chunk: usize, count: usize, add: &impl Fn(usize, &mut T)) -> T {
-    let mut part = T::ZERO;
-    (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).for_each(|i| add(i, &mut part));
-    part
 }
 
 /// The larger of two numbers, infinite where the second is not a number.
@@ -231,32 +264,18 @@ pub fn sums_over_parts<T: Sums, P: Parts>(
     body: impl Fn(usize, P, &mut T) + Sync,
 ) -> T {
     let mut exact = ExactSums::default();
-    add_sums_over_parts(count, parts, body, &mut exact);
+    add_sums_over_parts([count, chunk(count)], parts, body, &mut exact);
     exact.total()
 }
 
-/// As [`sums_over_parts`], for others to add theirs.
+/// As [`sums_over_parts`] over chunks of this many rows, for others to add theirs.
 pub fn add_sums_over_parts<T: Sums, P: Parts>(
-    count: usize,
+    rows: [usize; 2],
     parts: P,
     body: impl Fn(usize, P, &mut T) + Sync,
     exact: &mut ExactSums,
 ) {
-    let mut kept = [T::ZERO; SIDE_BY_SIDE];
-    let (mut first, mut rest) = (0, Some(parts));
-    while let Some(parts) = rest.take() {
-        let length = (SIDE_BY_SIDE * CHUNK).min(count - first);
-        let (block, later) = parts.split(length);
-        let kept = &mut kept[..length.div_ceil(CHUNK)];
-        for_each_part(length, (block, PerChunk(kept)), |offset, (parts, PerChunk(part))| {
-            let mut own = T::ZERO;
-            body(first + offset, parts, &mut own);
-            part.fill(own);
-        });
-        kept.iter().for_each(|part| exact.add(part));
-        first += length;
-        rest = (first < count).then_some(later);
-    }
+    over_chunks(rows, parts, body, |part| exact.add(part));
 }
 
 /// Calls `body(first, rows, others)` for chunks of `rows` and of the `others` beside them, and
@@ -329,13 +348,17 @@ mod tests {
         for count in COUNTS {
             let rows = on_any_number(|| {
                 let (mut rows, mut calls) = (vec![0; count], vec![0; count.div_ceil(CHUNK)]);
-                for_each_part(count, (&mut rows[..], PerChunk(&mut calls)), |first, parts| {
-                    let (rows, PerChunk(calls)) = parts;
-                    assert_eq!(first % CHUNK, 0);
-                    assert_eq!(rows.len(), CHUNK.min(count - first));
-                    rows.iter_mut().enumerate().for_each(|(k, row)| *row += first + k + 1);
-                    calls.iter_mut().for_each(|call| *call += 1);
-                });
+                for_each_part(
+                    count,
+                    (&mut rows[..], PerChunk(&mut calls, CHUNK)),
+                    |first, parts| {
+                        let (rows, PerChunk(calls, _)) = parts;
+                        assert_eq!(first % CHUNK, 0);
+                        assert_eq!(rows.len(), CHUNK.min(count - first));
+                        rows.iter_mut().enumerate().for_each(|(k, row)| *row += first + k + 1);
+                        calls.iter_mut().for_each(|call| *call += 1);
+                    },
+                );
                 assert!(calls.iter().all(|&call| call == 1));
                 rows
             });
@@ -365,16 +388,18 @@ mod tests {
         // Terms of which the rounded sum depends on the order.
         let term = |i: usize| 1.0 / (i as f64 + 0.3);
         for count in COUNTS {
-            let chunk = |first: usize| (first..(first + CHUNK).min(count)).map(term).sum::<f64>();
+            let length = chunk(count);
+            let of_chunk =
+                |first: usize| (first..(first + length).min(count)).map(term).sum::<f64>();
             let mut expected = Exact::default();
-            (0..count).step_by(CHUNK).for_each(|first| expected.add(chunk(first)));
+            (0..count).step_by(length).for_each(|first| expected.add(of_chunk(first)));
             let expected = expected.total();
             assert_eq!(on_any_number(|| sum(count, term)), expected);
             let beside = on_any_number(|| {
-                let (mut rows, mut calls) = (vec![0.0; count], vec![0; count.div_ceil(CHUNK)]);
-                let parts = (&mut rows[..], PerChunk(&mut calls));
+                let (mut rows, mut calls) = (vec![0.0; count], vec![0; count.div_ceil(length)]);
+                let parts = (&mut rows[..], PerChunk(&mut calls, length));
                 let total = sums_over_parts(count, parts, |first, parts, total: &mut f64| {
-                    let (rows, PerChunk(calls)) = parts;
+                    let (rows, PerChunk(calls, _)) = parts;
                     rows.iter_mut().enumerate().for_each(|(k, row)| *row = term(first + k));
                     *total += rows.iter().sum::<f64>();
                     calls.iter_mut().for_each(|call| *call += 1);

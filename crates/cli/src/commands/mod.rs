@@ -33,8 +33,9 @@ fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
     // A JSON string is one of TOML, too.
     let quoted = |name: &String| serde_json::Value::from(name.as_str()).to_string();
     let device = arguments.device.iter().map(|name| format!("compute.device={}", quoted(name)));
+    let ranks = arguments.ranks.iter().map(|count| format!("compute.ranks={count}"));
     let options = LoadOptions {
-        overrides: arguments.set.iter().cloned().chain(device).collect(),
+        overrides: arguments.set.iter().cloned().chain(device).chain(ranks).collect(),
         variant: arguments.variant.clone(),
         ..LoadOptions::default()
     };

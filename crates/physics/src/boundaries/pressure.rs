@@ -43,14 +43,17 @@ pub(crate) struct Pressed<const D: usize> {
     /// Index of the particle in memory.
     pub particle: usize,
     /// Outward reference area vector N in m^(D-1).
-    pub area: Vector<D>,
-    /// Where its value is taken, in m.
-    pub place: [f64; 3],
-    /// The value.
-    pub value: Arc<dyn SpaceTime>,
+    area: Vector<D>,
+    place: [f64; 3],
+    value: Arc<dyn SpaceTime>,
 }
 
 impl<const D: usize> Pressed<D> {
+    /// The same of particles that are counted from a later one.
+    pub fn counted_from(self, first: usize) -> Self {
+        Self { particle: self.particle - first, ..self }
+    }
+
     /// `p N` at a time in s, in N.
     pub fn pressing(&self, time: f64) -> Vector<D> {
         self.area * self.value.value(self.place, time)

@@ -64,14 +64,17 @@ pub(crate) struct Loaded<const D: usize> {
     /// Index of the particle in memory.
     pub particle: usize,
     /// Reference area in m^(D-1) that each component acts on.
-    pub area: Vector<D>,
-    /// Where its value is taken, in m.
-    pub place: [f64; 3],
-    /// The value.
-    pub value: [Arc<dyn SpaceTime>; D],
+    area: Vector<D>,
+    place: [f64; 3],
+    value: [Arc<dyn SpaceTime>; D],
 }
 
 impl<const D: usize> Loaded<D> {
+    /// The same of particles that are counted from a later one.
+    pub fn counted_from(self, first: usize) -> Self {
+        Self { particle: self.particle - first, ..self }
+    }
+
     /// The force in N at a time in s.
     pub fn force(&self, time: f64) -> Vector<D> {
         self.traction(time).component_mul(&self.area)

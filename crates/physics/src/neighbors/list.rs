@@ -31,6 +31,12 @@ pub struct NeighborStatistics {
     pub most: usize,
 }
 
+impl Default for NeighborList {
+    fn default() -> Self {
+        Self { offsets: vec![0], indices: Vec::new() }
+    }
+}
+
 impl NeighborList {
     /// Number of particles.
     pub fn len(&self) -> usize {
@@ -77,6 +83,16 @@ impl NeighborList {
             mean: self.pairs() as f64 / self.len().max(1) as f64,
             most: lengths().max().unwrap_or(0),
         }
+    }
+
+    /// The neighbours of some particles that are not among them, in ascending order.
+    pub fn beside(&self, own: &Range<usize>) -> Vec<u32> {
+        let all = &self.indices[self.offsets[own.start]..self.offsets[own.end]];
+        let mut others: Vec<u32> =
+            all.iter().copied().filter(|&b| !own.contains(&(b as usize))).collect();
+        others.sort_unstable();
+        others.dedup();
+        others
     }
 
     /// A list from its arrays, which the caller has made by the rules above.

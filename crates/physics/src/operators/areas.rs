@@ -1,5 +1,7 @@
 //! The areas through which particles act on each other.
 
+use std::ops::Range;
+
 use piola_formulas::pairs::{AreaPair, Areas};
 
 use super::frozen::FrozenRows;
@@ -34,6 +36,11 @@ impl<const D: usize> PairAreas<D> {
         let diagonal = volume.iter().enumerate().map(|(a, v)| operator.diagonal(a) * *v);
         let pairs = FrozenRows::new((0..list.len()).map(row));
         Self { pairs, diagonal: diagonal.collect() }
+    }
+
+    /// Those of some particles, of which `place` says where others stand now.
+    pub fn part(&self, own: Range<usize>, place: impl Fn(u32) -> u32) -> Self {
+        Self { pairs: self.pairs.part(own.clone(), place), diagonal: self.diagonal[own].to_vec() }
     }
 
     /// `V_a G_aa` in m^(D-1).

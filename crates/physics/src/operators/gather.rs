@@ -308,8 +308,9 @@ pub fn gather_parts<P: Pairs, M: Sum<P>, O: Parts, T: Sums>(
     (count, out): (usize, O),
     close: impl Fn([usize; 2], &Of<M::Sums, f64>, &mut O, &mut T) + Sync,
 ) -> T {
+    let chunk = team.chunk(count);
     team.sums_over_parts(count, out, |first, mut out, totals| {
-        let slots = first..(first + parallel::CHUNK).min(count);
+        let slots = first..(first + chunk).min(count);
         rows(pairs, sum, slots, &Some, &mut |slot, k, sums| {
             close([slot, k], sums, &mut out, totals);
         });

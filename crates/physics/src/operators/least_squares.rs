@@ -1,5 +1,7 @@
 //! The least-squares gradient of Upwind (3.50) to (3.53).
 
+use std::ops::Range;
+
 use super::error::OperatorError;
 use super::gradient::invert;
 use super::support::Support;
@@ -28,6 +30,11 @@ impl<const D: usize> LeastSquares<D> {
         let inverse =
             parallel::try_map(particles.len(), |a| inverse_moment(particles, support, a))?;
         Ok(Self { inverse })
+    }
+
+    /// Those of some particles.
+    pub fn part(&self, own: Range<usize>) -> Self {
+        Self { inverse: self.inverse[own].to_vec() }
     }
 
     /// `[sum_b N_ab (x) N_ab]^-1` of particle a.

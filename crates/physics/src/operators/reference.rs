@@ -129,12 +129,8 @@ impl<const D: usize> ReferenceGradient<D> {
         Self::new((particles, &self.images), &support, &gradient, hourglass)
     }
 
-    /// That of some particles, none of which has images: behind them stand `copies` of others, in ascending order.
-    pub fn part(&self, own: Range<usize>, copies: &[u32]) -> Self {
-        let place = |b: u32| match own.contains(&(b as usize)) {
-            true => b - own.start as u32,
-            false => (own.len() + copies.partition_point(|&copy| copy < b)) as u32,
-        };
+    /// That of some particles, none of which has images: behind them stand `copies` of others, at a `place` each.
+    pub fn part(&self, own: Range<usize>, copies: &[u32], place: impl Fn(u32) -> u32) -> Self {
         let slots = || own.clone().chain(copies.iter().map(|&b| b as usize));
         Self {
             hourglass: self.hourglass[own.clone()].to_vec(),

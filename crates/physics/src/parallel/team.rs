@@ -4,9 +4,11 @@
 //! them stand copies of those of other ranks that its own see. As neighbours keep their order, and sums over chunks are
 //! not rounded, every number is the same to the bit for any number of ranks.
 
+use std::cell::{Cell, RefCell};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
+use piola_formulas::pairs::{Of, Record};
 use piola_ranks::{Exact, Message, RankError, Ranks};
 
 use super::{ExactSums, Parts, Reduce, Sums, add_sums, add_sums_over_parts, reduce};
@@ -22,6 +24,8 @@ struct Shared {
     ranks: Arc<dyn Ranks>,
     /// Number of its first particle among all.
     first: usize,
+    /// Particles a chunk.
+    chunk: usize,
     halo: Halo,
     messages: Mutex<[Vec<Message>; 2]>,
     /// Why the ranks cannot go on, from then on.
@@ -38,13 +42,14 @@ pub struct Halo {
 }
 
 impl Team {
-    /// A rank whose first particle has the number `first` among all, with a plan of the copies.
-    pub fn new(ranks: Arc<dyn Ranks>, first: usize, halo: Halo) -> Self {
+    /// A rank whose first particle has the number `first` among `all`, with a plan of the copies.
+    pub fn new(ranks: Arc<dyn Ranks>, [first, all]: [usize; 2], halo: Halo) -> Self {
         let message = |rank: usize| Message { rank, numbers: Vec::new() };
         let lent = halo.lent.iter().map(|(rank, _)| message(*rank)).collect();
         let copied = halo.copied.iter().map(|(rank, _)| message(*rank)).collect();
         let messages = Mutex::new([lent, copied]);
-        let shared = Shared { ranks, first, halo, messages, fault: OnceLock::new() };
+        let (chunk, fault) = (super::chunk(all), OnceLock::new());
+        let shared = Shared { ranks, first, chunk, halo, messages, fault };
         Self { shared: Some(Arc::new(shared)) }
     }
 
@@ -56,6 +61,11 @@ impl Team {
     /// The number of particle `a` among those of all ranks.
     pub fn number(&self, a: usize) -> usize {
         self.shared.as_ref().map_or(a, |shared| shared.first + a)
+    }
+
+    /// Particles a chunk, of `count` here.
+    pub fn chunk(&self, count: usize) -> usize {
+        self.shared.as_ref().map_or_else(|| super::chunk(count), |shared| shared.chunk)
     }
 
     /// The particle with a number among those of all ranks, if it is one of `count` here.
@@ -76,11 +86,8 @@ impl Team {
 
     /// The sums of what rows have over the particles of all ranks, as [`sums`](super::sums).
     pub fn sums<T: Sums>(&self, count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
-        if self.is_alone() {
-            return super::sums(count, add);
-        }
         let mut exact = ExactSums::default();
-        add_sums(count, add, &mut exact);
+        add_sums([count, self.chunk(count)], add, &mut exact);
         self.close(exact)
     }
 
@@ -92,7 +99,7 @@ impl Team {
         body: impl Fn(usize, P, &mut T) + Sync,
     ) -> T {
         let mut exact = ExactSums::default();
-        add_sums_over_parts(count, parts, body, &mut exact);
+        add_sums_over_parts([count, self.chunk(count)], parts, body, &mut exact);
         self.close(exact)
     }
 
@@ -133,30 +140,58 @@ impl Team {
     pub fn refresh<T: Pod>(&self, column: &mut [T], count: usize, width: usize) {
         let Some(shared) = &self.shared else { return };
         let (own, copies) = column.split_at_mut(count * width);
-        let mut messages = shared.messages.lock().unwrap_or_else(PoisonError::into_inner);
-        let [send, receive] = &mut *messages;
-        for (message, (_, lent)) in send.iter_mut().zip(&shared.halo.lent) {
-            message.numbers.clear();
-            for &a in lent {
-                let row = &own[a as usize * width..][..width];
-                message.numbers.extend_from_slice(cast_slice(row));
-            }
-        }
+        let copies: &mut [f64] = cast_slice_mut(copies);
+        let show = |a: usize, numbers: &mut Vec<f64>| {
+            numbers.extend_from_slice(cast_slice(&own[a * width..][..width]));
+        };
         let length = width * size_of::<T>() / size_of::<f64>();
-        for (message, (_, copied)) in receive.iter_mut().zip(&shared.halo.copied) {
-            message.numbers.resize(copied * length, 0.0);
-        }
-        shared.told(|| shared.ranks.exchange(send, receive));
-        let mut rest: &mut [f64] = cast_slice_mut(copies);
-        for message in receive {
-            let (own, others) = rest.split_at_mut(message.numbers.len());
-            own.copy_from_slice(&message.numbers);
-            rest = others;
-        }
+        shared.exchange(length, show, |copy, numbers| {
+            copies[copy * length..][..length].copy_from_slice(numbers);
+        });
+    }
+
+    /// Fetches the copies behind the `count` own rows of a column of records.
+    pub fn refresh_records<R: Record>(&self, column: &mut [Of<R, f64>], count: usize) {
+        let Some(shared) = &self.shared else { return };
+        let (own, copies) = column.split_at_mut(count);
+        let show = |a: usize, numbers: &mut Vec<f64>| {
+            let numbers = RefCell::new(numbers);
+            R::map([&own[a]], &|[number]: [f64; 1]| {
+                numbers.borrow_mut().push(number);
+                number
+            });
+        };
+        shared.exchange(R::NUMBERS, show, |copy, numbers| {
+            let next = Cell::new(0);
+            copies[copy] =
+                R::map([&R::zero::<f64>()], &|_: [f64; 1]| numbers[next.replace(next.get() + 1)]);
+        });
     }
 }
 
 impl Shared {
+    /// Tells other ranks what they have copies of, and takes what they tell: `length` numbers a particle, which `show`
+    /// appends of an own one and `take` has of a copy.
+    fn exchange(
+        &self,
+        length: usize,
+        show: impl Fn(usize, &mut Vec<f64>),
+        mut take: impl FnMut(usize, &[f64]),
+    ) {
+        let mut messages = self.messages.lock().unwrap_or_else(PoisonError::into_inner);
+        let [send, receive] = &mut *messages;
+        for (message, (_, lent)) in send.iter_mut().zip(&self.halo.lent) {
+            message.numbers.clear();
+            lent.iter().for_each(|&a| show(a as usize, &mut message.numbers));
+        }
+        for (message, (_, copied)) in receive.iter_mut().zip(&self.halo.copied) {
+            message.numbers.resize(copied * length, 0.0);
+        }
+        self.told(|| self.ranks.exchange(send, receive));
+        let rows = receive.iter().flat_map(|message| message.numbers.chunks_exact(length));
+        rows.enumerate().for_each(|(copy, numbers)| take(copy, numbers));
+    }
+
     /// What the ranks say, unless they cannot go on.
     fn told<T>(&self, ask: impl FnOnce() -> Result<T, RankError>) -> Option<T> {
         if self.fault.get().is_some() {

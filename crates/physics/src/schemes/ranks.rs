@@ -7,7 +7,7 @@ use piola_ranks::{Message, RankError, Ranks};
 use thiserror::Error;
 
 use super::Scheme;
-use crate::parallel::{CHUNK, Halo, Team};
+use crate::parallel::{self, Halo, Team};
 
 /// The particles of each rank: those from `bounds[k]` to `bounds[k + 1]` in memory.
 #[derive(Clone)]
@@ -19,17 +19,19 @@ pub struct Part {
 }
 
 impl Part {
-    /// Shares the particles of a formulation among ranks: whole chunks, with about the same number of pairs.
+    /// Where the particles of each of `size` ranks begin, and where those of the last end: whole chunks, with about the
+    /// same cost.
     ///
     /// # Errors
     /// There are fewer chunks than ranks.
-    pub fn of(scheme: &dyn Scheme, ranks: Arc<dyn Ranks>) -> Result<Self, RankRefusal> {
-        let (count, size) = (scheme.particle_count(), ranks.size());
-        let chunks = count.div_ceil(CHUNK);
+    pub fn bounds(scheme: &dyn Scheme, size: usize) -> Result<Vec<usize>, RankRefusal> {
+        let count = scheme.particle_count();
+        let length = parallel::chunk(count);
+        let chunks = count.div_ceil(length);
         if size > chunks {
-            return Err(RankRefusal::TooMany { ranks: size, particles: count, chunks });
+            return Err(RankRefusal::TooMany { ranks: size, particles: count, length, chunks });
         }
-        let cost = |chunk: usize| scheme.cost(chunk * CHUNK..((chunk + 1) * CHUNK).min(count));
+        let cost = |chunk: usize| scheme.cost(chunk * length..((chunk + 1) * length).min(count));
         let costs: Vec<f64> = (0..chunks).map(cost).collect();
         let (whole, mut sum) = (costs.iter().sum::<f64>(), 0.0);
         let mut bounds = vec![0];
@@ -38,13 +40,13 @@ impl Part {
             let next = bounds.len();
             let is_full = sum + 0.5 * cost >= whole * next as f64 / size as f64;
             let is_needed = chunks - chunk == size - next;
-            if next < size && chunk * CHUNK > bounds[next - 1] && (is_full || is_needed) {
-                bounds.push(chunk * CHUNK);
+            if next < size && chunk * length > bounds[next - 1] && (is_full || is_needed) {
+                bounds.push(chunk * length);
             }
             sum += cost;
         }
         bounds.push(count);
-        Ok(Self { ranks, bounds })
+        Ok(bounds)
     }
 
     /// The particles of a rank.
@@ -66,6 +68,22 @@ impl Part {
         let rows = self.of_rank(rank);
         let fields = scheme.description().fields.iter();
         fields.filter_map(move |field| scheme.stretch(field, &rows))
+    }
+
+    /// The rows of this rank of a state of all, and what stands behind all columns.
+    pub fn rows_of(&self, scheme: &dyn Scheme, state: &[f64]) -> Vec<f64> {
+        let rows =
+            self.stretches(scheme, self.ranks.rank()).chain([scheme.ledger_start()..state.len()]);
+        rows.flat_map(|stretch| &state[stretch]).copied().collect()
+    }
+
+    /// Where a particle stands here: own ones first, then copies of others, in ascending order.
+    pub fn place(&self, copies: &[u32], a: u32) -> u32 {
+        let own = self.own();
+        match own.contains(&(a as usize)) {
+            true => a - own.start as u32,
+            false => (own.len() + copies.partition_point(|&copy| copy < a)) as u32,
+        }
     }
 
     /// The team of this rank, which has copies of these particles of others, in ascending order. All ranks call this
@@ -100,7 +118,7 @@ impl Part {
             lent: lent.into_iter().map(own).collect(),
             copied: others().map(|rank| (rank, of_rank(rank).len())).collect(),
         };
-        Ok(Team::new(ranks.clone(), first, halo))
+        Ok(Team::new(ranks.clone(), [first, self.bounds[size]], halo))
     }
 }
 
@@ -126,7 +144,7 @@ pub enum RankRefusal {
     Integrator(&'static str),
     /// There is nothing for a rank to do.
     #[error(
-        "{ranks} ranks are too many for {particles} particles, of which each rank needs at least a chunk of {CHUNK}: \
+        "{ranks} ranks are too many for {particles} particles, of which each rank needs at least a chunk of {length}: \
          take {chunks} ranks or fewer"
     )]
     TooMany {
@@ -134,6 +152,8 @@ pub enum RankRefusal {
         ranks: usize,
         /// Particles of the run.
         particles: usize,
+        /// Particles a chunk.
+        length: usize,
         /// Chunks of them.
         chunks: usize,
     },

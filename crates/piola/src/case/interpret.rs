@@ -181,6 +181,8 @@ pub(super) fn case(
         checkpoint: checkpoint?,
         device: (record.record("compute").and_then(|compute| compute.text("device")))
             .filter(|device| **device != "processor"),
+        ranks: (record.record("compute").and_then(|compute| compute.whole("ranks")))
+            .filter(|ranks| **ranks > 1),
         loads: loads.into_iter().collect::<Option<_>>()?,
         boundaries: boundaries?,
         probes: probes?,

@@ -62,6 +62,8 @@ pub struct Case {
     pub checkpoint: Checkpoint,
     /// The device that computes, if it is not the processor.
     pub device: Option<Located<String>>,
+    /// How many ranks share the particles, if there are several.
+    pub ranks: Option<Located<u64>>,
     /// Body forces and tractions.
     pub loads: Vec<Load>,
     /// Prescribed velocities.

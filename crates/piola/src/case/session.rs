@@ -18,7 +18,7 @@ use super::views::Rows;
 use super::{Problems, report};
 use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
-use crate::schemes::{DeviceRefusal, Scheme};
+use crate::schemes::{DeviceRefusal, RankRefusal, Scheme};
 use crate::time::{
     Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
 };
@@ -113,6 +113,10 @@ impl Session {
             }
             None => None,
         };
+        if let Some(ranks) = &case.ranks {
+            use_ranks(&mut executor, ranks, case.device.is_some())
+                .map_err(|problem| case.refuse(vec![problem]))?;
+        }
         let (tables, observers) = observers(case, &built, executor.scheme.as_ref(), None);
         let own = observers.len();
         observers.into_iter().for_each(|observer| executor.observe(observer));
@@ -337,10 +341,30 @@ fn use_device(executor: &mut Executor, name: &Located<String>) -> Result<String,
     });
     used.map_err(|refusal| {
         let label = match &refusal {
-            DeviceRefusal::Device(_) => "the device",
+            DeviceRefusal::Steps(_) => "the device",
             _ => "this case has no steps there",
         };
         Problem::new(name.place, refusal.to_string(), label)
+    })
+}
+
+/// Lets a run take its steps on several ranks, which are threads of this process.
+fn use_ranks(
+    executor: &mut Executor,
+    ranks: &Located<u64>,
+    has_device: bool,
+) -> Result<(), Problem> {
+    if has_device {
+        let message = "a run has either several ranks or a device: leave out one of them";
+        return Err(Problem::new(ranks.place, message.to_owned(), "beside `device`"));
+    }
+    let count = usize::try_from(**ranks).unwrap_or(usize::MAX);
+    executor.use_ranks(count).map_err(|refusal| {
+        let label = match &refusal {
+            RankRefusal::TooMany { .. } => "too many",
+            _ => "this case does not run on several ranks",
+        };
+        Problem::new(ranks.place, refusal.to_string(), label)
     })
 }
 

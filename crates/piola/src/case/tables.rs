@@ -77,7 +77,7 @@ pub static CASE: TableSpec = TableSpec {
             Optional,
             "when the run writes a file from which it can be resumed; it also does so on Ctrl-C and SIGTERM",
         ),
-        key("compute", Kind::Table(&time::COMPUTE), "", Optional, "the device that computes"),
+        key("compute", Kind::Table(&time::COMPUTE), "", Optional, "who computes"),
         key(
             "load",
             Kind::List(&Kind::Tagged(&loads::LOAD)),

@@ -25,10 +25,8 @@ impl<const D: usize> Loads<D> {
         let pressed = self.pressed.iter().filter(|part| own.contains(&part.particle)).cloned();
         Self {
             body_forces: self.body_forces.clone(),
-            loaded: loaded.map(|it| Loaded { particle: it.particle - own.start, ..it }).collect(),
-            pressed: pressed
-                .map(|it| Pressed { particle: it.particle - own.start, ..it })
-                .collect(),
+            loaded: loaded.map(|load| load.counted_from(own.start)).collect(),
+            pressed: pressed.map(|part| part.counted_from(own.start)).collect(),
             springs: Vec::new(),
         }
     }

@@ -6,7 +6,7 @@ use super::fields::Made;
 use super::rigid::RigidBodies;
 use super::{Discrete, Matrices, TotalLagrangian};
 use crate::fields::width;
-use crate::schemes::{Part, RankRefusal, Scheme as _};
+use crate::schemes::{Part, RankRefusal};
 use crate::{Tensor, Vector};
 
 impl<const D: usize> TotalLagrangian<D> {
@@ -44,7 +44,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let own = part.own();
         let copies = whole.operator.beside(&own);
         let team = part.team(&copies)?;
-        let operator = Arc::new(whole.operator.part(own.clone(), &copies));
+        let operator =
+            Arc::new(whole.operator.part(own.clone(), &copies, |a| part.place(&copies, a)));
         let solid = Arc::new(self.solid.part(own.clone()));
         let (count, all) = (own.len(), own.len() + copies.len());
         let is_viscous = self.dissipation.is_viscous();
@@ -81,12 +82,7 @@ impl<const D: usize> TotalLagrangian<D> {
             matrices,
             solid,
         };
-        let mut initial = Vec::with_capacity(length);
-        for stretch in part.stretches(self, part.ranks.rank()) {
-            initial.extend_from_slice(&self.initial[stretch]);
-        }
-        initial.extend_from_slice(&self.initial[self.ledger_start()..]);
-        share.initial = initial;
+        share.initial = part.rows_of(self, &self.initial);
         Ok(share)
     }
 }

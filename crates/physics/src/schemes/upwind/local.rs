@@ -1,7 +1,7 @@
 //! The pass over particles alone: what each of them shows its neighbours.
 
 use nalgebra::{SMatrix, SVector};
-use piola_formulas::pairs::upwind::Side;
+use piola_formulas::pairs::upwind::{Side, UpwindSide};
 use piola_formulas::volumetric::VolumetricResponse;
 use piola_formulas::{Number, riemann, tensor};
 
@@ -40,11 +40,13 @@ impl<const D: usize> Upwind<D> {
     pub(super) fn local_pass(&mut self, state: &[f64]) {
         let at = self.columns(state);
         let mut sides = std::mem::take(&mut self.sides);
-        parallel::for_each_chunk(&mut sides, |first, sides| {
+        let count = self.particles.len();
+        parallel::for_each_chunk(&mut sides[..count], |first, sides| {
             for (a, side) in (first..).zip(sides) {
                 *side = self.side(a, &Unknowns::of(&at, a));
             }
         });
+        self.team.refresh_records::<UpwindSide<D>>(&mut sides, count);
         self.sides = sides;
     }
 

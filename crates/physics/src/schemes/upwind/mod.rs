@@ -28,6 +28,7 @@ mod passes;
 mod reconstruction;
 mod scheme;
 mod settings;
+mod share;
 
 use piola_formulas::pairs::upwind::{Side, Slope};
 use piola_formulas::volumetric::{Prestressed, VolumetricLaw};

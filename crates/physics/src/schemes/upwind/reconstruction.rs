@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Number;
 use piola_formulas::pairs::Periods;
-use piola_formulas::pairs::upwind::{Slope, Slopes};
+use piola_formulas::pairs::upwind::{Slope, Slopes, UpwindSlope};
 
 use super::Upwind;
 use crate::Tensor;
@@ -20,9 +20,11 @@ impl<const D: usize> Upwind<D> {
         let Some(least_squares) = &self.least_squares else { return };
         let law = Slopes(self.periods());
         let sum = Term { law, source: &*self.sides, among: Among::All };
-        gather(&self.areas.pairs, &sum, &mut self.slopes, Some, |a, moments, slope| {
+        let count = self.particles.len();
+        gather(&self.areas.pairs, &sum, &mut self.slopes[..count], Some, |a, moments, slope| {
             *slope = solved(moments, least_squares.inverse(a));
         });
+        self.team.refresh_records::<UpwindSlope<D>>(&mut self.slopes, count);
     }
 }
 

@@ -2,13 +2,17 @@
 
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
+use std::ops::Range;
+
+use piola_ranks::RankError;
+
 use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, FIGURES, KEPT, LEDGER, Upwind};
 use crate::fields::FieldDescription;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, Health, Particle, PartitionedScheme, Phase, Scheme, SchemeDescription, StepLimit,
-    ThetaScheme,
+    Capability, Health, Part, Particle, PartitionedScheme, Phase, RankRefusal, Scheme,
+    SchemeDescription, StepLimit, ThetaScheme,
 };
 use crate::solve::Costs;
 use crate::{Tensor, parallel};
@@ -72,6 +76,19 @@ impl<const D: usize> Scheme for Upwind<D> {
     fn figures(&self, state: &[f64], figures: &mut Vec<f64>) {
         figures.extend_from_slice(LEDGER.behind(D, self.columns(state).tail));
         figures.push(self.least_corner(state));
+    }
+
+    #[inline(never)]
+    fn share(&self, part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
+        Ok(Box::new(self.shared(part)?))
+    }
+
+    fn cost(&self, particles: Range<usize>) -> f64 {
+        particles.map(|a| self.support.list.row(a).len() as f64).sum()
+    }
+
+    fn lost(&self) -> Option<RankError> {
+        self.team.fault().cloned()
     }
 
     fn linear_costs(&self) -> Option<Costs> {

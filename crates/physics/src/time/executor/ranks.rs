@@ -5,7 +5,7 @@
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-use piola_ranks::{RankError, Ranks};
+use piola_ranks::{RankError, Ranks, Threads};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::Executor;
@@ -256,11 +256,12 @@ impl Executor {
     ///
     /// # Errors
     /// [`RankRefusal`] for what does not run on several ranks, and where there are more ranks than chunks of particles.
-    pub fn use_ranks(&mut self, ranks: Vec<Arc<dyn Ranks>>) -> Result<(), RankRefusal> {
+    pub fn use_ranks(&mut self, count: usize) -> Result<(), RankRefusal> {
         let (scheme, integrator) = (self.scheme.as_ref(), self.integrator.name());
-        let parts: Result<Vec<Part>, _> =
-            ranks.into_iter().map(|rank| Part::of(scheme, rank)).collect();
-        let parts = parts?;
+        let bounds = Part::bounds(scheme, count)?;
+        let ranks = Threads::group(count).into_iter();
+        let part = |rank| Part { ranks: Arc::new(rank), bounds: bounds.clone() };
+        let parts: Vec<Part> = ranks.map(part).collect();
         let threads = (rayon::current_num_threads() / parts.len()).max(1);
         let pool = || ThreadPoolBuilder::new().num_threads(threads).build();
         let made: Vec<Result<Worker, RankRefusal>> = thread::scope(|scope| {

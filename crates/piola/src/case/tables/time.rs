@@ -218,14 +218,23 @@ const REACTIONS: Choices = choices(&[
 
 pub(super) static COMPUTE: TableSpec = TableSpec {
     title: "[compute]",
-    meaning: "The device that computes. Results do not depend on it, except for the last digits with kernels that contain an exponential.",
-    keys: &[key(
-        "device",
-        Kind::Text,
-        "",
-        Default("\"processor\""),
-        "`processor`, or the name of a device as listed by `piola devices`, for example `cuda:0`; `docs/devices.md` lists the supported cases",
-    )],
+    meaning: "Who computes. Results do not depend on it, except for the last digits on a device with kernels that contain an exponential.",
+    keys: &[
+        key(
+            "device",
+            Kind::Text,
+            "",
+            Default("\"processor\""),
+            "`processor`, or the name of a device as listed by `piola devices`, for example `cuda:0`; `docs/devices.md` lists the supported cases",
+        ),
+        key(
+            "ranks",
+            Kind::Integer(Interval::at_least(1.0)),
+            "1",
+            Default("1"),
+            "how many ranks share the particles, each with a part of the threads; `docs/distributed.md` lists the supported cases",
+        ),
+    ],
 };
 
 pub(super) static CHECKPOINT: TableSpec = TableSpec {

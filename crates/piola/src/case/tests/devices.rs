@@ -4,7 +4,7 @@ use piola_device::DeviceError;
 
 use super::*;
 use crate::case::{Finished, Session};
-use crate::schemes::{DeviceSteps, Health, Phase, Scheme, StepLimit};
+use crate::schemes::{DeviceSteps, Health, Phase, Scheme, StepLimit, StepsError};
 use crate::time::{Failure, Integrator, KickDriftKick, Outcome};
 
 /// A device that is the processor, and fails at some step.
@@ -23,31 +23,31 @@ impl Failing {
 }
 
 impl DeviceSteps for Failing {
-    fn put(&mut self, state: &[f64]) -> Result<(), DeviceError> {
+    fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
         self.state = state.to_vec();
-        self.check()
+        Ok(self.check()?)
     }
 
-    fn step(&mut self, time: f64, step: f64) -> Result<(), DeviceError> {
+    fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError> {
         self.before.clone_from(&self.state);
         let (before, scheme) = (&self.before, self.scheme.as_mut());
         KickDriftKick::default().step(scheme, time, step, before, &mut self.state).expect("kicks");
         self.left -= 1;
-        self.check()
+        Ok(self.check()?)
     }
 
-    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, DeviceError> {
+    fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
         Ok(self.scheme.inspect(&self.state, limits))
     }
 
-    fn fetch(&self, state: &mut [f64]) -> Result<(), DeviceError> {
+    fn fetch(&self, state: &mut [f64]) -> Result<(), StepsError> {
         state.copy_from_slice(&self.state);
-        self.check()
+        Ok(self.check()?)
     }
 
-    fn fetch_before(&self, state: &mut [f64]) -> Result<(), DeviceError> {
+    fn fetch_before(&self, state: &mut [f64]) -> Result<(), StepsError> {
         state.copy_from_slice(&self.before);
-        self.check()
+        Ok(self.check()?)
     }
 
     fn phases(&self) -> Vec<&Phase> {

@@ -9,7 +9,7 @@ use super::{Named, OnDevice, Plan, walls};
 use crate::boundaries::BodyForce;
 use crate::fields;
 use crate::operators::MovingSupport;
-use crate::parallel::CHUNK;
+use crate::parallel::chunk;
 use crate::schemes::Scheme;
 use crate::schemes::device::{DeviceRefusal, DeviceSteps};
 
@@ -140,7 +140,8 @@ impl<const D: usize> TransportVelocity<D> {
         let support = list.support();
         let skin = MovingSupport::<D>::SKIN * support;
         let lists = Lists::new(&device, &common.is_wall, support, skin, &periods)?;
-        let mut machine = Machine::new(device, lists, |language| plan.passes(language), CHUNK)?;
+        let mut machine =
+            Machine::new(device, lists, |language| plan.passes(language), chunk(count))?;
         for (_, (name, before, width)) in &columns {
             machine.add_zeros(name, count * width)?;
             machine.add_zeros(before, count * width)?;

@@ -1,0 +1,60 @@
+//! The part of a rank.
+
+use piola_formulas::pairs::Record as _;
+use piola_formulas::pairs::upwind::{UpwindSide, UpwindSlope};
+
+use super::Upwind;
+use crate::Vector;
+use crate::neighbors::NeighborList;
+use crate::operators::Support;
+use crate::schemes::{Part, RankRefusal};
+
+impl<const D: usize> Upwind<D> {
+    /// The particles of a rank, with the same coefficients.
+    pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
+        if self.implicit.is_some() {
+            let (what, instead) = ("implicit steps do not run", "take explicit steps");
+            return Err(RankRefusal::Feature { what, instead });
+        }
+        let own = part.own();
+        let copies = self.support.list.beside(&own);
+        let team = part.team(&copies)?;
+        let (count, all) = (own.len(), own.len() + copies.len());
+        let slopes = if self.settings.reconstruction { all } else { 0 };
+        let loaded = self.loaded.iter().filter(|load| own.contains(&load.particle)).cloned();
+        let mut share = Self {
+            team,
+            is_driven: self.is_driven,
+            nearest: self.nearest[own.clone()].to_vec(),
+            areas: self.areas.part(own.clone(), |a| part.place(&copies, a)),
+            largest_exchange: self.largest_exchange,
+            fastest_reference: self.fastest_reference,
+            prescribed: self.prescribed.part(&own),
+            steady_body_force: self.steady_body_force,
+            body_acceleration: vec![Vector::zeros(); count],
+            loaded: loaded.map(|load| load.counted_from(own.start)).collect(),
+            sides: vec![UpwindSide::zero(); all],
+            slopes: vec![UpwindSlope::zero(); slopes],
+            observed: Vec::new(),
+            body_forces: self.body_forces.clone(),
+            initial_velocity: self.initial_velocity[own.clone()].to_vec(),
+            particles: self.particles.part(own.clone()),
+            // Neighbours are those of the areas.
+            support: Support {
+                kernel: self.support.kernel,
+                smoothing_length: Vec::new(),
+                list: NeighborList::default(),
+                reverse: Vec::new(),
+                domain: self.support.domain,
+            },
+            least_squares: self.least_squares.as_ref().map(|all| all.part(own.clone())),
+            settings: self.settings.clone(),
+            materials: self.materials.clone(),
+            reference: self.reference[own].to_vec(),
+            stages: self.stages.clone(),
+            implicit: None,
+        };
+        share.update_body_acceleration(0.0);
+        Ok(share)
+    }
+}
