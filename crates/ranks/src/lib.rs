@@ -4,13 +4,18 @@
 //! other goes through [`Ranks`], and nothing that a run computes depends on how many there are: sums over particles
 //! are [`Exact`].
 
+mod alone;
 mod exact;
 mod message;
+mod threads;
 
+pub use alone::Alone;
 pub use exact::{Exact, LIMBS};
 pub use message::{Message, RankError};
+pub use threads::Threads;
 
 /// What a rank can tell the others. All ranks make the same calls in the same order, but for the partners of an exchange.
+/// All bits of numbers arrive, also of those that are NaN. After a call that has failed, none succeeds.
 pub trait Ranks: Send + Sync {
     /// The number of this rank, from 0.
     fn rank(&self) -> usize;
