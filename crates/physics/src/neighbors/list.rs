@@ -86,10 +86,10 @@ impl NeighborList {
     }
 
     /// The neighbours of some particles that are not among them, in ascending order.
-    pub fn beside(&self, own: &Range<usize>) -> Vec<u32> {
-        let all = &self.indices[self.offsets[own.start]..self.offsets[own.end]];
-        let mut others: Vec<u32> =
-            all.iter().copied().filter(|&b| !own.contains(&(b as usize))).collect();
+    pub fn beside(&self, own: &Range<usize>) -> Vec<usize> {
+        let all = self.indices[self.offsets[own.start]..self.offsets[own.end]].iter();
+        let mut others: Vec<usize> =
+            all.map(|&b| b as usize).filter(|b| !own.contains(b)).collect();
         others.sort_unstable();
         others.dedup();
         others

@@ -70,10 +70,11 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
         }
     }
 
-    /// Those of some particles, of which `place` says where others stand now.
-    pub fn part(&self, own: Range<usize>, place: impl Fn(u32) -> u32) -> Self {
+    /// Those of some particles, and of images, of which `place` says where others stand now.
+    pub fn part(&self, own: Range<usize>, images: &[usize], place: impl Fn(u32) -> u32) -> Self {
         let gradients = self.gradients.part(own.clone(), &place);
-        Self { gradients, forces: self.forces.part(own, place) }
+        let slots = own.chain(images.iter().copied());
+        Self { gradients, forces: self.forces.part(slots, place) }
     }
 
     /// N.
@@ -111,7 +112,10 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
     /// All that particle a shares a support with, some twice.
     pub fn all(&self, a: usize) -> Vec<u32> {
         let mut all = Vec::new();
-        self.visit(a, |b, _| all.push(b as u32));
+        // Images have no support of their own.
+        if a < self.gradients.count() {
+            self.visit(a, |b, _| all.push(b as u32));
+        }
         let (among, needs) = (Among::All, Needs::Nothing);
         visit(&self.forces, a, among, needs, &mut Row::default(), |b, _| all.push(b as u32));
         all

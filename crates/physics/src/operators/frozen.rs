@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 use std::marker::PhantomData;
-use std::ops::Range;
 
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::{self, Of, Record};
@@ -74,12 +73,13 @@ impl<R: Record> FrozenRows<R> {
     }
 
     /// Some of the rows, of which `place` says where neighbours stand now.
-    pub fn part(&self, rows: Range<usize>, place: impl Fn(u32) -> u32) -> Self {
+    pub fn part(&self, rows: impl Iterator<Item = usize>, place: impl Fn(u32) -> u32) -> Self {
         let blocks = |row: &Row| {
-            row.first as usize..row.first as usize + (row.count as usize).div_ceil(LANES)
+            let first = row.first as usize;
+            first..first + (row.count as usize).div_ceil(LANES)
         };
         let (mut neighbors, mut numbers, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
-        for row in &self.rows[rows] {
+        for row in rows.map(|row| &self.rows[row]) {
             let own = blocks(row);
             ranges.push(Row { first: neighbors.len() as u32, count: row.count });
             neighbors.extend(self.neighbors[own.clone()].iter().map(|block| block.map(&place)));

@@ -10,8 +10,10 @@ use super::adjoint::AdjointPairs;
 use super::directed::DirectedSupport;
 use super::dual_gradient::DualGradient;
 use super::images::Image;
+use super::slots::Slots;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborList};
+use crate::parallel::Team;
 use crate::{Tensor, Vector};
 
 /// What the lower and the upper plane of each axis prescribe for the component along it.
@@ -129,32 +131,51 @@ impl<const D: usize> ReferenceGradient<D> {
         Self::new((particles, &self.images), &support, &gradient, hourglass)
     }
 
-    /// That of some particles, none of which has images: behind them stand `copies` of others, at a `place` each.
-    pub fn part(&self, own: Range<usize>, copies: &[u32], place: impl Fn(u32) -> u32) -> Self {
-        let slots = || own.clone().chain(copies.iter().map(|&b| b as usize));
+    /// That of some particles and of their images, behind which stand copies of other slots.
+    pub fn part(&self, slots: &Slots) -> Self {
+        let Slots { own, images, .. } = slots;
+        let all = || slots.iter();
+        let place = |slot: u32| slots.place(slot);
+        let image = |&slot: &usize| {
+            let image = self.images[slot - self.count()];
+            Image { source: image.source - own.start as u32, ..image }
+        };
         Self {
             hourglass: self.hourglass[own.clone()].to_vec(),
             is_plain: self.is_plain,
             kernel: self.kernel,
-            radius: slots().map(|a| self.radius[a]).collect(),
+            radius: own.clone().map(|a| self.radius[a]).collect(),
             domain: self.domain,
-            positions: slots().map(|a| self.positions[a]).collect(),
-            images: Vec::new(),
+            positions: all().map(|slot| self.positions[slot]).collect(),
+            images: images.iter().map(image).collect(),
             pairs: match &self.pairs {
-                Pairs::Plain(pairs) => Pairs::Plain(pairs.part(own.clone(), place)),
-                Pairs::Consistent(pairs) => Pairs::Consistent(pairs.part(own.clone(), place)),
+                Pairs::Plain(all) => Pairs::Plain(all.part(own.clone(), images, place)),
+                Pairs::Consistent(all) => Pairs::Consistent(all.part(own.clone(), images, place)),
             },
             centers: self.centers[own.clone()].to_vec(),
         }
     }
 
-    /// The particles that some particles take part in a gradient with, and are not among them, in ascending order.
-    pub fn beside(&self, own: &Range<usize>) -> Vec<u32> {
-        let all = own.clone().flat_map(|a| on_pairs!(&self.pairs, pairs => pairs.all(a)));
-        let mut others: Vec<u32> = all.filter(|&b| !own.contains(&(b as usize))).collect();
-        others.sort_unstable();
-        others.dedup();
-        others
+    /// The slots of a rank: its particles, their images, and what either takes part in a gradient with, and `more`, as
+    /// copies, rank by rank. Those of a rank begin and end where `bounds` has it.
+    pub fn slots(&self, own: Range<usize>, bounds: &[usize], more: &[usize]) -> Slots {
+        let source = |slot: usize| self.source(slot).0;
+        let rank = |slot: usize| bounds.partition_point(|&bound| bound <= source(slot)) - 1;
+        let all = self.count()..self.positions.len();
+        let images: Vec<usize> = all.filter(|&slot| own.contains(&source(slot))).collect();
+        let near = own.clone().chain(images.iter().copied()).flat_map(|slot| self.beside(slot));
+        let others = near.chain(more.iter().copied());
+        let others = others.filter(|&slot| !own.contains(&source(slot)));
+        let mut copies: Vec<(usize, usize)> = others.map(|slot| (rank(slot), slot)).collect();
+        copies.sort_unstable();
+        copies.dedup();
+        Slots::new(own, images, copies)
+    }
+
+    /// The slots that a particle or an image takes part in a gradient with, some twice.
+    fn beside(&self, slot: usize) -> Vec<usize> {
+        let all = on_pairs!(&self.pairs, pairs => pairs.all(slot));
+        all.into_iter().map(|slot| slot as usize).collect()
     }
 
     /// How many tensors forces gather of a particle.
@@ -170,6 +191,11 @@ impl<const D: usize> ReferenceGradient<D> {
     /// Number of images, whose values stand behind those of particles.
     pub fn images(&self) -> usize {
         self.images.len()
+    }
+
+    /// Number of particles and of their images, behind which a rank has copies of others.
+    pub fn owned(&self) -> usize {
+        self.centers.len() + self.images.len()
     }
 
     /// The particle that a slot is, or is the image of, with the signs of the components of its field there.
@@ -207,10 +233,10 @@ impl<const D: usize> ReferenceGradient<D> {
         }
     }
 
-    /// The power in W of planes whose data change at these rates, with the forces on images.
-    pub fn plane_power(&self, force: &[Vector<D>], rates: &PlaneData<D>) -> f64 {
+    /// The power in W of planes whose data change at these rates, with the forces on images of all ranks.
+    pub fn plane_power(&self, team: &Team, force: &[Vector<D>], rates: &PlaneData<D>) -> f64 {
         let pairs = force[self.count()..].iter().zip(&self.images);
-        -pairs.map(|(force, image)| force.dot(&image.carried(rates))).sum::<f64>()
+        -team.total(pairs.map(|(force, image)| force.dot(&image.carried(rates))))
     }
 
     /// Who sees whom with which coefficients, entry by entry, as matrices are made of it.

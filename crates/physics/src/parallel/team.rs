@@ -103,6 +103,13 @@ impl Team {
         self.close(exact)
     }
 
+    /// The sum of terms of all ranks, none of which is rounded.
+    pub fn total<T: Sums>(&self, terms: impl Iterator<Item = T>) -> T {
+        let mut exact = ExactSums::default();
+        terms.for_each(|term| exact.add(&term));
+        self.close(exact)
+    }
+
     /// The sum over all ranks of what has been added on each.
     pub fn close<T: Sums>(&self, mut exact: ExactSums) -> T {
         if let (Some(shared), true) = (&self.shared, T::NUMBERS > 0) {

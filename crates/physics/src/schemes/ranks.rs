@@ -7,6 +7,7 @@ use piola_ranks::{Message, RankError, Ranks};
 use thiserror::Error;
 
 use super::Scheme;
+use crate::operators::Slots;
 use crate::parallel::{self, Halo, Team};
 
 /// The particles of each rank: those from `bounds[k]` to `bounds[k + 1]` in memory.
@@ -77,30 +78,20 @@ impl Part {
         rows.flat_map(|stretch| &state[stretch]).copied().collect()
     }
 
-    /// Where a particle stands here: own ones first, then copies of others, in ascending order.
-    pub fn place(&self, copies: &[u32], a: u32) -> u32 {
-        let own = self.own();
-        match own.contains(&(a as usize)) {
-            true => a - own.start as u32,
-            false => (own.len() + copies.partition_point(|&copy| copy < a)) as u32,
-        }
-    }
-
-    /// The team of this rank, which has copies of these particles of others, in ascending order. All ranks call this
-    /// together.
+    /// The team of this rank, which has these slots. All ranks call this together.
     ///
     /// # Errors
     /// A rank is lost.
-    pub fn team(&self, copies: &[u32]) -> Result<Team, RankError> {
+    pub fn team(&self, slots: &Slots) -> Result<Team, RankError> {
         let (ranks, size) = (&self.ranks, self.ranks.size());
         let of_rank = |rank: usize| {
-            let place = |bound: usize| copies.partition_point(|&a| (a as usize) < bound);
-            &copies[place(self.bounds[rank])..place(self.bounds[rank + 1])]
+            let place = |rank: usize| slots.copies.partition_point(|(owner, _)| *owner < rank);
+            &slots.copies[place(rank)..place(rank + 1)]
         };
         let wanted: Vec<f64> = (0..size).map(|rank| of_rank(rank).len() as f64).collect();
         let all = ranks.gather_to_all(&wanted)?;
         let others = || (0..size).filter(|&rank| !of_rank(rank).is_empty());
-        let numbers = |rank: usize| of_rank(rank).iter().map(|&a| f64::from(a)).collect();
+        let numbers = |rank: usize| of_rank(rank).iter().map(|(_, slot)| *slot as f64).collect();
         let asked: Vec<Message> =
             others().map(|rank| Message { rank, numbers: numbers(rank) }).collect();
         let of_others = all.iter().map(|wanted| wanted[ranks.rank()] as usize);
@@ -109,16 +100,15 @@ impl Part {
             .map(|(rank, count)| Message { rank, numbers: vec![0.0; count] })
             .collect();
         ranks.exchange(&asked, &mut lent)?;
-        let first = self.own().start;
         let own = |message: Message| {
-            let rows = message.numbers.iter().map(|&a| (a as usize - first) as u32);
+            let rows = message.numbers.iter().map(|&slot| slots.place(slot as u32));
             (message.rank, rows.collect())
         };
         let halo = Halo {
             lent: lent.into_iter().map(own).collect(),
             copied: others().map(|rank| (rank, of_rank(rank).len())).collect(),
         };
-        Ok(Team::new(ranks.clone(), [first, self.bounds[size]], halo))
+        Ok(Team::new(ranks.clone(), [self.own().start, self.bounds[size]], halo))
     }
 }
 

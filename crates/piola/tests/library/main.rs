@@ -23,6 +23,7 @@ mod matrices;
 mod operators;
 mod pair_pass;
 mod profiles;
+mod ranks;
 mod resume;
 mod sensitivity;
 mod session;

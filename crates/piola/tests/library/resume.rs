@@ -100,12 +100,37 @@ fn cases() -> Vec<PathBuf> {
     found
 }
 
-/// Every case, interrupted twice, on other numbers of threads each time: every file of the results
-/// has the bytes of the run that was never interrupted.
+/// Every case, interrupted twice, on other numbers of threads each time, and of ranks where it can be shared: every file
+/// of the results has the bytes of the run that was never interrupted.
 #[test]
 fn every_case_resumes_to_the_bit() {
     // Most of a run is on one thread: as many cases at a time as there are cores.
-    cases().par_iter().for_each(|path| resumes_to_the_bit(path, None));
+    let cases = cases();
+    let shared: Vec<&str> = cases
+        .par_iter()
+        .filter(|path| resumes_to_the_bit(path, None))
+        .filter_map(|path| path.parent()?.file_name()?.to_str())
+        .collect();
+    assert_eq!(shared, SHARED);
+}
+
+/// The cases of which several ranks have a part each.
+const SHARED: [&str; 0] = [];
+
+/// The case on as many ranks as it can be shared among, up to 7.
+fn on_ranks(path: &Path, variant: Option<&str>, set: &[&str]) -> Option<Case> {
+    let (mut refusals, told) = (Vec::new(), ["on several ranks yet", "ranks are too many"]);
+    for ranks in [7, 4, 3, 2] {
+        let more = format!("compute.ranks={ranks}");
+        let case = load(path, variant, &[set, &[more.as_str()]].concat());
+        match Session::new(&case) {
+            Ok(_) => return Some(case),
+            Err(refusal) => refusals.push(refusal.to_string()),
+        }
+    }
+    let is_told = |refusal: &String| told.iter().any(|it| refusal.contains(it));
+    assert!(refusals.iter().all(is_told), "{}: {refusals:?}", path.display());
+    None
 }
 
 /// The integrators that no base case has.
@@ -120,7 +145,7 @@ fn implicit_steps_resume_to_the_bit() {
     ];
     for (name, variant) in runs {
         let path = all.iter().find(|path| path.ends_with(name)).unwrap();
-        resumes_to_the_bit(path, Some(variant));
+        let _is_shared = resumes_to_the_bit(path, Some(variant));
     }
 }
 
@@ -131,33 +156,42 @@ fn solids_of_each_kind_in_a_fluid_resume_to_the_bit() {
     let all = cases();
     let slab = all.iter().find(|path| path.ends_with("slab/case.toml")).unwrap();
     let variants = ["upwind", "upwind-damped", "upwind-implicit", "hypoelastic-fine"];
-    variants.par_iter().for_each(|variant| resumes_to_the_bit(slab, Some(variant)));
+    variants.par_iter().for_each(|variant| {
+        let _is_shared = resumes_to_the_bit(slab, Some(variant));
+    });
 }
 
-fn resumes_to_the_bit(path: &Path, variant: Option<&str>) {
+/// Whether part of it was on several ranks.
+fn resumes_to_the_bit(path: &Path, variant: Option<&str>) -> bool {
     // What is drawn and packed only takes time here; one picture and five files have it all.
-    let mut case = load(path, variant, &["output.compression='none'"]);
+    let set = ["output.compression='none'"];
+    let case = load(path, variant, &set);
     let end = *case.time.end;
     if end == 0.0 {
         // Nothing moves, and there is nothing to break off.
-        return;
+        return false;
     }
-    case.output.every.value = end / 5.0;
-    // Steps of loads are large, each of them takes a whole iteration.
-    let rows = if *case.time.integrator == "static" { 10.0 } else { 50.0 };
-    case.output.table_every.value = end / rows;
-    case.pictures.truncate(1);
+    let sparse = |mut case: Case| {
+        case.output.every.value = end / 5.0;
+        // Steps of loads are large, each of them takes a whole iteration.
+        let rows = if *case.time.integrator == "static" { 10.0 } else { 50.0 };
+        case.output.table_every.value = end / rows;
+        case.pictures.truncate(1);
+        case
+    };
+    let (case, shared) = (sparse(case), on_ranks(path, variant, &set).map(sparse));
+    let on_several = shared.as_ref().unwrap_or(&case);
     let folder = tempfile::tempdir().unwrap();
     let (whole, broken) = (folder.path().join("whole"), folder.path().join("broken"));
     let unbroken = run(&case, &whole, false, 1, u64::MAX);
     let steps = unbroken.summary.steps;
     assert!(steps >= 4, "{}", path.display());
 
-    let first = run(&case, &broken, false, 2, steps / 3);
+    let first = run(on_several, &broken, false, 2, steps / 3);
     assert_eq!(first.summary.outcome, Outcome::Interrupted, "{}", path.display());
     let second = run(&case, &broken, true, 1, 3 * steps / 4);
     assert_eq!(second.summary.resumed, Some((first.summary.time, first.summary.steps)));
-    let last = run(&case, &broken, true, 3, u64::MAX);
+    let last = run(on_several, &broken, true, 3, u64::MAX);
     assert_eq!(last.summary.resumed.map(|(_, steps)| steps), Some(3 * steps / 4));
 
     assert_same(&whole, &broken, &path.display().to_string());
@@ -167,6 +201,7 @@ fn resumes_to_the_bit(path: &Path, variant: Option<&str>) {
     (last.timings, last.resumed) = (unbroken.timings.clone(), None);
     last.phases = unbroken.phases.clone();
     assert_eq!(last, unbroken, "{}", path.display());
+    shared.is_some()
 }
 
 /// A wave in a bar that is over in a blink, in a folder of its own.

@@ -189,6 +189,7 @@ impl<const D: usize> TotalLagrangian<D> {
             updated: is_updated.then_some(Moving { kernel, radius, group, domain }),
             is_driven: !loads.is_empty() || !prescribed.is_empty(),
             loads,
+            has_images: !made.is_empty(),
             team: Team::default(),
             prescribed,
             rigid: RigidBodies::new(input.rigid, &solid),

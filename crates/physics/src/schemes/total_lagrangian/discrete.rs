@@ -11,6 +11,7 @@ use crate::geometry::Particles;
 use crate::operators::{
     Cover, DirectedSupport, DualGradient, Image, Mirror, PlaneData, ReferenceGradient, Strained,
 };
+use crate::parallel::Team;
 use crate::schemes::input::check_lengths;
 use crate::{Tensor, Vector};
 
@@ -124,6 +125,16 @@ impl<const D: usize> Discrete<D> {
         self.operator.continue_field(&data, field);
     }
 
+    /// Writes the values of images behind those of particles, and behind both the copies of a team.
+    pub(super) fn continue_on(&self, team: &Team, has_images: bool, field: &mut [Vector<D>]) {
+        // Planes know their data by a particle, which another rank may have.
+        if has_images {
+            team.refresh(field, self.operator.owned(), 1);
+            self.continue_field(field);
+        }
+        team.refresh(field, self.operator.owned(), 1);
+    }
+
     /// What acts on images, as forces on the particles that they mirror and on the planes.
     pub(super) fn fold(&self, force: &mut [Vector<D>]) {
         for (mirror, particle) in &self.planes {
@@ -136,7 +147,7 @@ impl<const D: usize> Discrete<D> {
     pub(super) fn plane_force(&self, mirror: &Mirror, force: &[Vector<D>]) -> f64 {
         let mut along = [[0.0; 2]; D];
         along[mirror.axis][usize::from(mirror.is_upper)] = 1.0;
-        -self.operator.plane_power(force, &along)
+        -self.operator.plane_power(&Team::default(), force, &along)
     }
 
     /// Internal forces on all particles in N, theory (49), Dual-support (28) with the sign of its (27) turned

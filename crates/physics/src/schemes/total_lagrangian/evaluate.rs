@@ -30,11 +30,9 @@ impl<const D: usize> TotalLagrangian<D> {
         match &self.matrices {
             Matrices::Strong(edges) => edges.append_held(count, &mut self.velocity),
             Matrices::Adjoint(discrete) => {
-                discrete.continue_field(&mut self.displacement);
-                self.team.refresh(&mut self.displacement, count, 1);
+                discrete.continue_on(&self.team, self.has_images, &mut self.displacement);
                 if !self.velocity.is_empty() {
-                    discrete.continue_field(&mut self.velocity);
-                    self.team.refresh(&mut self.velocity, count, 1);
+                    discrete.continue_on(&self.team, self.has_images, &mut self.velocity);
                 }
             }
         }
@@ -61,7 +59,7 @@ impl<const D: usize> TotalLagrangian<D> {
             stress * solid.particles.volume[a]
         });
         let width = discrete.operator.tensions();
-        self.team.refresh(&mut self.strained.tension, solid.len(), width);
+        self.team.refresh(&mut self.strained.tension, discrete.operator.owned(), width);
     }
 
     /// Internal forces.

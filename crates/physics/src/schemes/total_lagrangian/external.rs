@@ -94,7 +94,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let [of_tractions, of_motion] = self.ghost_powers(velocity);
         (traction.power, boundary.power) =
             (traction.power + of_tractions, boundary.power + of_motion);
-        if self.matrices.behind() > 0 {
+        if self.has_images || self.matrices.edges().is_some_and(|edges| edges.data() > 0) {
             // What bodies beyond planes and ends do on this one.
             boundary.force.add(&over_all(team, count, particle, |a, _| self.force[a]).force);
         }

@@ -96,6 +96,8 @@ pub struct TotalLagrangian<const D: usize> {
     loads: Loads<D>,
     /// Whether loads or prescribed motion act on any particle, of this rank or of others.
     is_driven: bool,
+    /// Whether bodies have images beyond planes, those of this rank or of others.
+    has_images: bool,
     /// Who else computes it.
     team: Team,
     prescribed: PrescribedComponents,

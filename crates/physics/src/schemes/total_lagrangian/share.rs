@@ -12,12 +12,11 @@ use crate::{Tensor, Vector};
 impl<const D: usize> TotalLagrangian<D> {
     /// What cannot be shared yet, with what a case has to be like instead.
     fn unshared(&self) -> Option<[&'static str; 2]> {
-        let adjoint = match &self.matrices {
-            Matrices::Adjoint(discrete) => Some(discrete),
-            Matrices::Strong(_) => None,
-        };
         let features = [
-            (adjoint.is_none(), ["the strong form does not run", "choose `form = \"adjoint\"`"]),
+            (
+                self.matrices.edges().is_some(),
+                ["the strong form does not run", "choose `form = \"adjoint\"`"],
+            ),
             (
                 self.statics.is_some(),
                 ["statics and implicit steps do not run", "take explicit steps"],
@@ -25,10 +24,6 @@ impl<const D: usize> TotalLagrangian<D> {
             (self.updated.is_some(), ["the updated configuration does not run", "leave it out"]),
             (!self.rigid.is_empty(), ["rigid bodies do not run", "leave them out"]),
             (!self.loads.springs.is_empty(), ["springs do not act", "leave them out"]),
-            (
-                adjoint.is_some_and(|discrete| discrete.operator.images() > 0),
-                ["mirror planes do not run", "simulate the whole body"],
-            ),
         ];
         features.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what)
     }
@@ -42,21 +37,23 @@ impl<const D: usize> TotalLagrangian<D> {
             return Err(RankRefusal::Formulation(self.description.name));
         };
         let own = part.own();
-        let copies = whole.operator.beside(&own);
-        let team = part.team(&copies)?;
-        let operator =
-            Arc::new(whole.operator.part(own.clone(), &copies, |a| part.place(&copies, a)));
+        let on_planes: Vec<usize> = whole.planes.iter().map(|(_, particle)| *particle).collect();
+        let slots = whole.operator.slots(own.clone(), &part.bounds, &on_planes);
+        let team = part.team(&slots)?;
+        let operator = Arc::new(whole.operator.part(&slots));
         let solid = Arc::new(self.solid.part(own.clone()));
-        let (count, all) = (own.len(), own.len() + copies.len());
+        let (count, all) = (own.len(), slots.iter().count());
         let is_viscous = self.dissipation.is_viscous();
-        let matrices =
-            Matrices::Adjoint(Discrete { solid: solid.clone(), operator, planes: Vec::new() });
+        let planes = whole.planes.iter();
+        let planes = planes.map(|&(plane, on)| (plane, slots.place(on as u32) as usize)).collect();
+        let matrices = Matrices::Adjoint(Discrete { solid: solid.clone(), operator, planes });
         let length = self.rate.len() - (self.solid.len() - count) * width(Made::FIELDS, D);
         let mut share = Self {
             description: self.description,
             updated: None,
             loads: self.loads.part(&own),
             is_driven: self.is_driven,
+            has_images: self.has_images,
             team,
             prescribed: self.prescribed.part(&own),
             rigid: RigidBodies::new(Vec::new(), &solid),
@@ -69,12 +66,13 @@ impl<const D: usize> TotalLagrangian<D> {
             has_matrices: true,
             stages: self.stages.clone(),
             displacement: vec![Vector::zeros(); all],
-            velocity: vec![Vector::zeros(); if is_viscous { all } else { 0 }],
+            // Planes know how fast they move by a particle, which another rank may have.
+            velocity: vec![Vector::zeros(); if is_viscous || self.has_images { all } else { 0 }],
             acceleration: Vec::new(),
             strained: matrices.strained(count),
             gradient_rate: vec![Tensor::zeros(); if is_viscous { count } else { 0 }],
             stress: Vec::new(),
-            force: vec![Vector::zeros(); count],
+            force: vec![Vector::zeros(); slots.owned()],
             rate: vec![0.0; length],
             reaction: Vec::new(),
             initial: Vec::new(),

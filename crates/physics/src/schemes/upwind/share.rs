@@ -6,7 +6,7 @@ use piola_formulas::pairs::upwind::{UpwindSide, UpwindSlope};
 use super::Upwind;
 use crate::Vector;
 use crate::neighbors::NeighborList;
-use crate::operators::Support;
+use crate::operators::{Slots, Support};
 use crate::schemes::{Part, RankRefusal};
 
 impl<const D: usize> Upwind<D> {
@@ -17,16 +17,18 @@ impl<const D: usize> Upwind<D> {
             return Err(RankRefusal::Feature { what, instead });
         }
         let own = part.own();
-        let copies = self.support.list.beside(&own);
-        let team = part.team(&copies)?;
-        let (count, all) = (own.len(), own.len() + copies.len());
-        let slopes = if self.settings.reconstruction { all } else { 0 };
+        let rank = |b: usize| part.bounds.partition_point(|&bound| bound <= b) - 1;
+        let copies = self.support.list.beside(&own).into_iter().map(|b| (rank(b), b)).collect();
+        let slots = Slots::new(own.clone(), Vec::new(), copies);
+        let team = part.team(&slots)?;
+        let (count, all) = (own.len(), slots.iter().count());
+        let reconstructed = if self.settings.reconstruction { all } else { 0 };
         let loaded = self.loaded.iter().filter(|load| own.contains(&load.particle)).cloned();
         let mut share = Self {
             team,
             is_driven: self.is_driven,
             nearest: self.nearest[own.clone()].to_vec(),
-            areas: self.areas.part(own.clone(), |a| part.place(&copies, a)),
+            areas: self.areas.part(own.clone(), |slot| slots.place(slot)),
             largest_exchange: self.largest_exchange,
             fastest_reference: self.fastest_reference,
             prescribed: self.prescribed.part(&own),
@@ -34,7 +36,7 @@ impl<const D: usize> Upwind<D> {
             body_acceleration: vec![Vector::zeros(); count],
             loaded: loaded.map(|load| load.counted_from(own.start)).collect(),
             sides: vec![UpwindSide::zero(); all],
-            slopes: vec![UpwindSlope::zero(); slopes],
+            slopes: vec![UpwindSlope::zero(); reconstructed],
             observed: Vec::new(),
             body_forces: self.body_forces.clone(),
             initial_velocity: self.initial_velocity[own.clone()].to_vec(),

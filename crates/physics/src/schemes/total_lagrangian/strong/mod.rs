@@ -123,8 +123,12 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(super) fn ghost_powers(&self, speed: &[Vector<D>]) -> [f64; 2] {
         let edges = match &self.matrices {
             Matrices::Adjoint(discrete) => {
+                if !self.has_images {
+                    return [0.0; 2];
+                }
                 let rates = discrete.plane_data(speed);
-                return [0.0, discrete.operator.plane_power(&self.force, &rates)];
+                let power = discrete.operator.plane_power(&self.team, &self.force, &rates);
+                return [0.0, power];
             }
             Matrices::Strong(edges) => edges,
         };
