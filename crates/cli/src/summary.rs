@@ -6,9 +6,10 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use piola::case::Finished;
 use piola::observe::Series;
+use piola::schemes::RankCosts;
 use piola::time::Outcome;
 
-use crate::text::{count, duration, large, significant};
+use crate::text::{bytes, count, duration, large, significant};
 
 /// Outcome, time steps, wall time, energies, health and files of a run of `seconds` of wall time.
 pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> String {
@@ -50,6 +51,9 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
         .map(|timing| format!("{} {}", timing.stage, duration(timing.seconds)))
         .collect();
     line("wall time", &stages.join(", "));
+    if !summary.ranks.is_empty() {
+        line("ranks", &ranks(&summary.ranks));
+    }
     if let Some(costs) = finished.linear {
         let how = match costs.direct {
             true => format!("direct, {} entries of factors", large(costs.factor_entries as f64)),
@@ -95,6 +99,24 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
     }
     files(finished, folder, &mut text);
     text
+}
+
+/// How evenly ranks have computed, how long they have waited, and what they have told each other.
+fn ranks(all: &[RankCosts]) -> String {
+    let sum = |of: &dyn Fn(&RankCosts) -> f64| all.iter().map(of).sum::<f64>();
+    let (mean, most) = (
+        sum(&|rank| rank.computed) / all.len() as f64,
+        all.iter().map(|rank| rank.computed).fold(f64::MIN_POSITIVE, f64::max),
+    );
+    let waited = sum(&|rank| rank.waited) / sum(&|rank| rank.computed + rank.waited);
+    format!(
+        "{}, the slowest computed {} times the mean; {:.1} % of the time was waiting and sending; {} messages, {} sent",
+        all.len(),
+        significant(most / mean, 3),
+        100.0 * waited,
+        large(sum(&|rank| rank.messages as f64)),
+        bytes(sum(&|rank| rank.bytes as f64) as usize),
+    )
 }
 
 /// How many steps of its own each system has taken.

@@ -1,8 +1,8 @@
 //! `piola check`: what a run will do.
 
-use piola::case::{Case, Plan, Undamped};
+use piola::case::{BANDWIDTH, Case, LATENCY, Plan, Undamped};
 use piola::operators::Packing;
-use piola::schemes::{Particle, Phase};
+use piola::schemes::{Particle, Phase, RankShare};
 
 use super::{assemble, read, use_threads};
 use crate::arguments::{CheckArguments, StageForm};
@@ -114,9 +114,36 @@ pub fn plan_rows(case: &Case, plan: &Plan) -> Vec<[String; 2]> {
         )],
     );
     section("memory", vec![bytes(plan.memory)]);
+    section("ranks", ranks(plan));
     section("output", plan.outputs.clone());
     section("warning", plan.warnings.clone());
     rows
+}
+
+/// What each rank has, and what is to be expected of all.
+fn ranks(plan: &Plan) -> Vec<String> {
+    if plan.ranks.is_empty() {
+        return Vec::new();
+    }
+    let cells = |(number, rank): (usize, &RankShare)| {
+        let partners = count(rank.partners as u64, "rank");
+        vec![
+            format!("{number}:"),
+            count(rank.particles as u64, "particle"),
+            format!("and copies of {} of {partners},", rank.copies),
+            format!("{} an evaluation,", bytes(rank.bytes)),
+            format!("load {}", significant(rank.load, 3)),
+        ]
+    };
+    let rows: Vec<Vec<String>> = plan.ranks.iter().enumerate().map(cells).collect();
+    let mut lines = table::align(&rows, None, &[]);
+    lines.push(format!(
+        "efficiency {} predicted, with {} us a message and {} GB/s",
+        significant(plan.efficiency, 3),
+        LATENCY * 1e6,
+        BANDWIDTH * 1e-9
+    ));
+    lines
 }
 
 fn heading(case: &Case) -> String {

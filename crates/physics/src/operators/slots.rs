@@ -39,6 +39,11 @@ impl Slots {
         }
     }
 
+    /// How many ranks it has copies of.
+    pub fn partners(&self) -> usize {
+        self.copies.chunk_by(|one, other| one.0 == other.0).count()
+    }
+
     /// How many of them are its own.
     pub fn owned(&self) -> usize {
         self.own.len() + self.images.len()

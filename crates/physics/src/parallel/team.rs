@@ -5,7 +5,9 @@
 //! not rounded, every number is the same to the bit for any number of ranks.
 
 use std::cell::{Cell, RefCell};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Instant;
 
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use piola_formulas::pairs::{Of, Record};
@@ -30,6 +32,8 @@ struct Shared {
     messages: Mutex<[Vec<Message>; 2]>,
     /// Why the ranks cannot go on, from then on.
     fault: OnceLock<RankError>,
+    /// Nanoseconds of telling and waiting, messages and bytes that were sent.
+    costs: [AtomicU64; 3],
 }
 
 /// Who has copies of whose particles.
@@ -49,7 +53,8 @@ impl Team {
         let copied = halo.copied.iter().map(|(rank, _)| message(*rank)).collect();
         let messages = Mutex::new([lent, copied]);
         let (chunk, fault) = (super::chunk(all), OnceLock::new());
-        let shared = Shared { ranks, first, chunk, halo, messages, fault };
+        let costs = Default::default();
+        let shared = Shared { ranks, first, chunk, halo, messages, fault, costs };
         Self { shared: Some(Arc::new(shared)) }
     }
 
@@ -72,6 +77,14 @@ impl Team {
     pub fn own(&self, number: usize, count: usize) -> Option<usize> {
         let first = self.shared.as_ref().map_or(0, |shared| shared.first);
         number.checked_sub(first).filter(|&a| a < count)
+    }
+
+    /// Seconds of telling and waiting, messages and bytes that were sent.
+    pub fn costs(&self) -> (f64, [u64; 2]) {
+        let Some(shared) = &self.shared else { return Default::default() };
+        let [waited, messages, bytes] =
+            shared.costs.each_ref().map(|cost| cost.load(Ordering::Relaxed));
+        (waited as f64 * 1e-9, [messages, bytes])
     }
 
     /// Why the ranks cannot go on together: what they have computed since means nothing.
@@ -194,6 +207,8 @@ impl Shared {
         for (message, (_, copied)) in receive.iter_mut().zip(&self.halo.copied) {
             message.numbers.resize(copied * length, 0.0);
         }
+        let sent: usize = send.iter().map(|message| message.numbers.len()).sum();
+        self.count([0, send.len() as u64, (sent * size_of::<f64>()) as u64]);
         self.told(|| self.ranks.exchange(send, receive));
         let rows = receive.iter().flat_map(|message| message.numbers.chunks_exact(length));
         rows.enumerate().for_each(|(copy, numbers)| take(copy, numbers));
@@ -204,7 +219,10 @@ impl Shared {
         if self.fault.get().is_some() {
             return None;
         }
-        let fault = match ask() {
+        let start = Instant::now();
+        let told = ask();
+        self.count([start.elapsed().as_nanos() as u64, 0, 0]);
+        let fault = match told {
             Ok(told) => return Some(told),
             Err(fault) => fault,
         };
@@ -213,10 +231,18 @@ impl Shared {
         None
     }
 
+    /// Adds to the costs.
+    fn count(&self, more: [u64; 3]) {
+        for (cost, more) in self.costs.iter().zip(more) {
+            cost.fetch_add(more, Ordering::Relaxed);
+        }
+    }
+
     /// Adds the sums of the other ranks.
     fn add(&self, exact: &mut [Exact]) {
         let mut limbs: Vec<i64> =
             exact.iter_mut().flat_map(|part| part.limbs_mut().to_vec()).collect();
+        self.count([0, 1, (limbs.len() * size_of::<i64>()) as u64]);
         self.told(|| self.ranks.add(&mut limbs));
         let mut rest = limbs.as_slice();
         for part in exact {

@@ -4,7 +4,7 @@ use piola_device::DeviceError;
 use piola_ranks::RankError;
 use thiserror::Error;
 
-use super::{Health, Phase, StepLimit};
+use super::{Health, Phase, RankCosts, StepLimit};
 
 /// Why steps that are taken elsewhere cannot go on.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -53,6 +53,14 @@ pub trait DeviceSteps: Send {
     /// Whether [`Scheme::warning`](super::Scheme::warning) has something to say of the state that was looked at last.
     fn warns(&self) -> bool {
         false
+    }
+
+    /// What has taken the time of each rank, where there are several.
+    ///
+    /// # Errors
+    /// A rank is lost.
+    fn costs(&self) -> Result<Vec<RankCosts>, StepsError> {
+        Ok(Vec::new())
     }
 
     /// The parts of a step as lists of stages. What a device does while nothing waits for it is counted

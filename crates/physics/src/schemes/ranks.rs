@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use piola_ranks::{Message, RankError, Ranks};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Scheme;
@@ -48,6 +49,13 @@ impl Part {
         }
         bounds.push(count);
         Ok(bounds)
+    }
+
+    /// What each rank computes over the mean of all.
+    pub fn loads(scheme: &dyn Scheme, bounds: &[usize]) -> Vec<f64> {
+        let costs: Vec<f64> = bounds.windows(2).map(|ends| scheme.cost(ends[0]..ends[1])).collect();
+        let mean = costs.iter().sum::<f64>() / costs.len() as f64;
+        costs.iter().map(|cost| cost / mean).collect()
     }
 
     /// The particles of a rank.
@@ -110,6 +118,36 @@ impl Part {
         };
         Ok(Team::new(ranks.clone(), [self.own().start, self.bounds[size]], halo))
     }
+}
+
+/// What a rank has of a run, and what others tell it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RankShare {
+    /// Its particles.
+    pub particles: usize,
+    /// What its particles and their images see of other ranks.
+    pub copies: usize,
+    /// Ranks that have them.
+    pub partners: usize,
+    /// Bytes that come in an evaluation of the rates.
+    pub bytes: usize,
+    /// What it computes over the mean of all ranks.
+    pub load: f64,
+}
+
+/// What has taken a rank's time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RankCosts {
+    /// Its particles.
+    pub particles: usize,
+    /// Seconds in which it computed.
+    pub computed: f64,
+    /// Seconds in which it told others and waited for them.
+    pub waited: f64,
+    /// Messages that it sent.
+    pub messages: u64,
+    /// Bytes that it sent.
+    pub bytes: u64,
 }
 
 /// Why a run cannot be shared among ranks.

@@ -3,16 +3,16 @@
 use std::ops::Range;
 
 use piola_device::Device;
-use piola_ranks::RankError;
 use serde::{Deserialize, Serialize};
 
 use super::momentum::MOST_COMPONENTS;
 use super::{
     CoupledScheme, DeviceRefusal, DeviceSteps, NewmarkScheme, Part, PartitionedScheme, Phase,
-    RankRefusal, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
+    RankRefusal, RankShare, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
 use crate::geometry::Particles;
+use crate::parallel::Team;
 use crate::solve::Costs;
 
 /// A formulation bound to its particles, materials and kernel.
@@ -221,8 +221,16 @@ pub trait Scheme: Send + Sync {
         particles.len() as f64
     }
 
-    /// Why the ranks that compute it together cannot go on.
-    fn lost(&self) -> Option<RankError> {
+    /// What a rank would have whose particles begin and end where `bounds` has it.
+    ///
+    /// # Errors
+    /// Something of it cannot be shared.
+    fn shares(&self, _bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        Err(RankRefusal::Formulation(self.description().name))
+    }
+
+    /// Who computes it together.
+    fn team(&self) -> Option<&Team> {
         None
     }
 

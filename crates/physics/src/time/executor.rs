@@ -275,6 +275,7 @@ impl Executor {
                 Some(device) => device.phases().into_iter().cloned().collect(),
                 None => self.scheme.phases().into_iter().cloned().collect(),
             },
+            ranks: self.device.as_ref().and_then(|it| it.costs().ok()).unwrap_or_default(),
             retries: tally.retries.clone(),
             trace,
             resumed: *resumed,

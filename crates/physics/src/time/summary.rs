@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
 use super::history::Trace;
-use crate::schemes::{Health, Phase};
+use crate::schemes::{Health, Phase, RankCosts};
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +96,8 @@ pub struct Summary {
     pub timings: Vec<Timing>,
     /// The stages of a step, with the wall time that each took since the run started, or went on.
     pub phases: Vec<Phase>,
+    /// What has taken the time of each rank, where there are several.
+    pub ranks: Vec<RankCosts>,
     /// How often it went back, and why.
     pub retries: Vec<Retry>,
     /// The neighbourhood of the first bad particle over the last steps, if the run failed at one.

@@ -53,7 +53,7 @@ pub use functions::{Clouds, Functions, Named};
 use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
-pub use plan::{Plan, PlannedLimit, Undamped};
+pub use plan::{BANDWIDTH, LATENCY, Plan, PlannedLimit, Undamped};
 pub use sensitivity::SensitivityError;
 pub use session::{RunError, Session};
 pub use source::{Located, Place, SourceText};

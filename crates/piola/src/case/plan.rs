@@ -6,7 +6,7 @@ use super::assembly::{self, bodies::BodyReport};
 use super::model;
 use super::session::Session;
 use crate::neighbors::NeighborStatistics;
-use crate::schemes::{Particle, Scheme, StepLimit};
+use crate::schemes::{Part, Particle, RankShare, Scheme, StepLimit};
 use crate::time::{StepControl, supersonic};
 
 /// What will happen when a case runs.
@@ -36,10 +36,33 @@ pub struct Plan {
     pub seconds: f64,
     /// Memory of states and neighbour lists in bytes.
     pub memory: usize,
+    /// What each rank has, where there are several.
+    pub ranks: Vec<RankShare>,
+    /// The speed of the ranks over that of as many that have the same share each and tell each other nothing, as
+    /// predicted for a network with [`LATENCY`] and [`BANDWIDTH`].
+    pub efficiency: f64,
     /// What will be written, one line each.
     pub outputs: Vec<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
+}
+
+/// Time in s that a message of a network takes.
+pub const LATENCY: f64 = 1.5e-6;
+
+/// Bytes a second that a network carries.
+pub const BANDWIDTH: f64 = 12e9;
+
+/// The efficiency of ranks of which each evaluation of all particles takes this many seconds on one.
+fn efficiency(ranks: &[RankShare], evaluation: f64) -> f64 {
+    let size = ranks.len() as f64;
+    // What all ranks add up goes through a tree, twice: loads, and the look at the state.
+    let rounds = 4.0 * size.log2().ceil();
+    let slowest = ranks.iter().map(|rank| {
+        let told = rank.bytes as f64 / BANDWIDTH + LATENCY * (2.0 * rank.partners as f64 + rounds);
+        rank.load * evaluation / size + told
+    });
+    evaluation / size / slowest.fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// The fastest oscillation that the particles resolve and that nothing damps, in a run whose steps
@@ -177,7 +200,14 @@ impl Session {
         warnings.extend(undamped.and_then(|it| it.warning(integrator.name())));
         self.executor.look_anew();
         let scheme = &self.executor.scheme;
+        let ranks = self.case.ranks.as_ref().and_then(|ranks| {
+            let bounds = Part::bounds(scheme.as_ref(), usize::try_from(**ranks).ok()?).ok()?;
+            scheme.shares(&bounds).ok()
+        });
+        let ranks = ranks.unwrap_or_default();
         Plan {
+            efficiency: efficiency(&ranks, evaluation * rayon::current_num_threads() as f64),
+            ranks,
             bodies: self.built.bodies.clone(),
             neighbors: self.built.neighbors,
             poorly_supported: self

@@ -2,17 +2,15 @@
 
 use std::ops::Range;
 
-use piola_ranks::RankError;
-
 use super::fields::{ColumnsMut, Made};
 use super::inspect::convexity_is_lost;
 use super::{ENERGIES, LEDGER, LOAD_FACTOR, Matrices, TotalLagrangian};
 use crate::fields::FieldDescription;
-use crate::parallel;
+use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
     Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Part, Particle, Phase, RankRefusal,
-    Scheme, SchemeDescription, SplitScheme, StaticScheme, StepLimit,
+    RankShare, Scheme, SchemeDescription, SplitScheme, StaticScheme, StepLimit,
 };
 use crate::solve::Costs;
 
@@ -89,8 +87,12 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         particles.map(|a| self.matrices.neighbors(a) as f64).sum()
     }
 
-    fn lost(&self) -> Option<RankError> {
-        self.team.fault().cloned()
+    fn shares(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        self.planned(bounds)
+    }
+
+    fn team(&self) -> Option<&Team> {
+        Some(&self.team)
     }
 
     fn linear_costs(&self) -> Option<Costs> {

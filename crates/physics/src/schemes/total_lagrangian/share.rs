@@ -1,12 +1,14 @@
 //! The part of a rank.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::fields::Made;
 use super::rigid::RigidBodies;
 use super::{Discrete, Matrices, TotalLagrangian};
 use crate::fields::width;
-use crate::schemes::{Part, RankRefusal};
+use crate::operators::Slots;
+use crate::schemes::{Part, RankRefusal, RankShare};
 use crate::{Tensor, Vector};
 
 impl<const D: usize> TotalLagrangian<D> {
@@ -28,17 +30,45 @@ impl<const D: usize> TotalLagrangian<D> {
         features.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what)
     }
 
+    /// The gradients, if all of it can be shared.
+    fn whole(&self) -> Result<&Discrete<D>, RankRefusal> {
+        match (&self.matrices, self.unshared()) {
+            (Matrices::Adjoint(whole), None) => Ok(whole),
+            (_, Some([what, instead])) => Err(RankRefusal::Feature { what, instead }),
+            _ => Err(RankRefusal::Formulation(self.description.name)),
+        }
+    }
+
+    /// The slots of each rank.
+    fn slots(whole: &Discrete<D>, own: Range<usize>, bounds: &[usize]) -> Slots {
+        let on_planes: Vec<usize> = whole.planes.iter().map(|(_, particle)| *particle).collect();
+        whole.operator.slots(own, bounds, &on_planes)
+    }
+
+    /// What ranks would have whose particles begin and end where `bounds` has it.
+    pub(super) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        let whole = self.whole()?;
+        let vectors = 1
+            + usize::from(self.has_images)
+            + usize::from(self.dissipation.is_viscous() || self.has_images)
+                * (1 + usize::from(self.has_images));
+        let numbers = vectors * D + whole.operator.tensions() * D * D;
+        let ranks = bounds.windows(2).zip(Part::loads(self, bounds));
+        let share = |(ends, load): (&[usize], f64)| {
+            let slots = Self::slots(whole, ends[0]..ends[1], bounds);
+            let copies = slots.copies.len();
+            let bytes = copies * numbers * size_of::<f64>();
+            let (particles, partners) = (ends[1] - ends[0], slots.partners());
+            RankShare { particles, copies, partners, bytes, load }
+        };
+        Ok(ranks.map(share).collect())
+    }
+
     /// The particles of a rank, with the same coefficients.
     pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
-        if let Some([what, instead]) = self.unshared() {
-            return Err(RankRefusal::Feature { what, instead });
-        }
-        let Matrices::Adjoint(whole) = &self.matrices else {
-            return Err(RankRefusal::Formulation(self.description.name));
-        };
+        let whole = self.whole()?;
         let own = part.own();
-        let on_planes: Vec<usize> = whole.planes.iter().map(|(_, particle)| *particle).collect();
-        let slots = whole.operator.slots(own.clone(), &part.bounds, &on_planes);
+        let slots = Self::slots(whole, own.clone(), &part.bounds);
         let team = part.team(&slots)?;
         let operator = Arc::new(whole.operator.part(&slots));
         let solid = Arc::new(self.solid.part(own.clone()));

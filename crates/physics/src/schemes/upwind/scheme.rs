@@ -4,18 +4,17 @@ use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use std::ops::Range;
 
-use piola_ranks::RankError;
-
 use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, FIGURES, KEPT, LEDGER, Upwind};
+use crate::Tensor;
 use crate::fields::FieldDescription;
+use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, Health, Part, Particle, PartitionedScheme, Phase, RankRefusal, Scheme,
+    Capability, Health, Part, Particle, PartitionedScheme, Phase, RankRefusal, RankShare, Scheme,
     SchemeDescription, StepLimit, ThetaScheme,
 };
 use crate::solve::Costs;
-use crate::{Tensor, parallel};
 
 /// What the formulation is called and what it shows.
 pub const DESCRIPTION: SchemeDescription = SchemeDescription {
@@ -87,8 +86,12 @@ impl<const D: usize> Scheme for Upwind<D> {
         particles.map(|a| self.support.list.row(a).len() as f64).sum()
     }
 
-    fn lost(&self) -> Option<RankError> {
-        self.team.fault().cloned()
+    fn shares(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        self.planned(bounds)
+    }
+
+    fn team(&self) -> Option<&Team> {
+        Some(&self.team)
     }
 
     fn linear_costs(&self) -> Option<Costs> {

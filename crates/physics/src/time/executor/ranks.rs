@@ -4,13 +4,15 @@
 
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
+use std::time::Instant;
 
 use piola_ranks::{RankError, Ranks, Threads};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::Executor;
+use crate::parallel::Team;
 use crate::schemes::{
-    DeviceSteps, Health, Part, Phase, RankRefusal, Scheme, StepLimit, StepsError,
+    DeviceSteps, Health, Part, Phase, RankCosts, RankRefusal, Scheme, StepLimit, StepsError,
 };
 use crate::time::integrator::{Integrator, IntegratorKind};
 
@@ -27,6 +29,8 @@ enum Order {
     Fetch,
     /// Give the state before the last step.
     FetchBefore,
+    /// Tell what has taken time.
+    Costs,
     /// Nothing more.
     End,
 }
@@ -39,7 +43,8 @@ impl Order {
             Self::Inspect => vec![2.0],
             Self::Fetch => vec![3.0],
             Self::FetchBefore => vec![4.0],
-            Self::End => vec![5.0],
+            Self::Costs => vec![5.0],
+            Self::End => vec![6.0],
         }
     }
 
@@ -50,6 +55,7 @@ impl Order {
             [2.0] => Self::Inspect,
             [3.0] => Self::Fetch,
             [4.0] => Self::FetchBefore,
+            [5.0] => Self::Costs,
             _ => Self::End,
         }
     }
@@ -65,6 +71,8 @@ struct Worker {
     next: Vec<f64>,
     limits: Vec<StepLimit>,
     health: Health,
+    /// Seconds of steps and of looks at states.
+    taken: f64,
 }
 
 impl Worker {
@@ -77,9 +85,9 @@ impl Worker {
         let integrator = kind.build(scheme.as_mut()).map_err(|_| refused())?;
         let state = scheme.initial_state();
         let (before, next) = (state.clone(), state.clone());
-        let (limits, health) = (Vec::new(), Health::NEUTRAL);
+        let (limits, health, taken) = (Vec::new(), Health::NEUTRAL, 0.0);
         let ranks = part.ranks.clone();
-        Ok(Self { ranks, scheme, integrator, state, before, next, limits, health })
+        Ok(Self { ranks, scheme, integrator, state, before, next, limits, health, taken })
     }
 
     /// Does what rank 0 says, until it says no more.
@@ -98,6 +106,7 @@ impl Worker {
             Order::Put => self.state = self.ranks.scatter(&[])?,
             Order::Fetch => drop(self.ranks.gather(&self.state)?),
             Order::FetchBefore => drop(self.ranks.gather(&self.before)?),
+            Order::Costs => drop(self.ranks.gather(&self.costs())?),
             Order::Inspect => {
                 self.inspect()?;
             }
@@ -107,13 +116,27 @@ impl Worker {
         Ok(())
     }
 
+    /// Why the ranks cannot go on.
+    fn lost(&self) -> Option<RankError> {
+        self.scheme.team().and_then(Team::fault).cloned()
+    }
+
+    /// What has taken its time, as numbers.
+    fn costs(&self) -> Vec<f64> {
+        let (waited, sent) = self.scheme.team().map(Team::costs).unwrap_or_default();
+        let particles = self.scheme.particle_count() as f64;
+        let [messages, bytes] = sent.map(|count| count as f64);
+        vec![particles, self.taken - waited, waited, messages, bytes]
+    }
+
     fn step(&mut self, time: f64, step: f64) -> Result<(), RankError> {
-        let scheme = self.scheme.as_mut();
+        let (start, scheme) = (Instant::now(), self.scheme.as_mut());
         let taken = self.integrator.step(scheme, time, step, &self.state, &mut self.next);
+        self.taken += start.elapsed().as_secs_f64();
         std::mem::swap(&mut self.before, &mut self.state);
         std::mem::swap(&mut self.state, &mut self.next);
         // Explicit methods always find a state.
-        match (self.scheme.lost(), taken) {
+        match (self.lost(), taken) {
             (Some(lost), _) => Err(lost),
             (None, Ok(())) => Ok(()),
             (None, Err(_)) => Err(RankError::Lost(self.ranks.rank())),
@@ -122,8 +145,10 @@ impl Worker {
 
     /// Looks at the state; whether any rank has something to say of it, for rank 0.
     fn inspect(&mut self) -> Result<bool, RankError> {
+        let start = Instant::now();
         self.health = self.scheme.inspect(&self.state, &mut self.limits);
-        if let Some(lost) = self.scheme.lost() {
+        self.taken += start.elapsed().as_secs_f64();
+        if let Some(lost) = self.lost() {
             return Err(lost);
         }
         let own = f64::from(u8::from(self.scheme.warning().is_some()));
@@ -237,6 +262,22 @@ impl DeviceSteps for RankSteps {
         self.warns
     }
 
+    fn costs(&self) -> Result<Vec<RankCosts>, StepsError> {
+        self.worker.ranks.broadcast(Order::Costs.pack())?;
+        let told = self.worker.ranks.gather(&self.worker.costs())?;
+        let of_rank = |told: Vec<f64>| match *told {
+            [particles, computed, waited, messages, bytes] => RankCosts {
+                particles: particles as usize,
+                computed,
+                waited,
+                messages: messages as u64,
+                bytes: bytes as u64,
+            },
+            _ => RankCosts::default(),
+        };
+        Ok(told.into_iter().map(of_rank).collect())
+    }
+
     fn phases(&self) -> Vec<&Phase> {
         self.worker.scheme.phases()
     }
@@ -250,6 +291,11 @@ impl Drop for RankSteps {
     }
 }
 
+/// Lets `ranks` be of the particles of a formulation, of which all have the whole at first.
+fn part(scheme: &dyn Scheme, ranks: Arc<dyn Ranks>) -> Result<Part, RankRefusal> {
+    Ok(Part { bounds: Part::bounds(scheme, ranks.size())?, ranks })
+}
+
 impl Executor {
     /// Lets ranks take the steps from now on, which are threads of this process: each with its part of the particles, and
     /// of the threads of this pool.
@@ -258,10 +304,11 @@ impl Executor {
     /// [`RankRefusal`] for what does not run on several ranks, and where there are more ranks than chunks of particles.
     pub fn use_ranks(&mut self, count: usize) -> Result<(), RankRefusal> {
         let (scheme, integrator) = (self.scheme.as_ref(), self.integrator.name());
-        let bounds = Part::bounds(scheme, count)?;
+        // What cannot be shared is refused before there are threads.
+        scheme.shares(&Part::bounds(scheme, count)?)?;
         let ranks = Threads::group(count).into_iter();
-        let part = |rank| Part { ranks: Arc::new(rank), bounds: bounds.clone() };
-        let parts: Vec<Part> = ranks.map(part).collect();
+        let parts = ranks.map(|rank| part(scheme, Arc::new(rank)));
+        let parts = parts.collect::<Result<Vec<_>, _>>()?;
         let threads = (rayon::current_num_threads() / parts.len()).max(1);
         let pool = || ThreadPoolBuilder::new().num_threads(threads).build();
         let made: Vec<Result<Worker, RankRefusal>> = thread::scope(|scope| {
@@ -274,7 +321,6 @@ impl Executor {
         });
         let mut workers = made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter();
         let (Some(worker), Some(part)) = (workers.next(), parts.first()) else { return Ok(()) };
-        let rows = Rows::of(self.scheme.as_ref(), part);
         let others = workers.map(|mut worker| {
             let pool = pool();
             thread::spawn(move || {
@@ -286,7 +332,38 @@ impl Executor {
             })
         });
         let others = others.collect();
-        let steps = RankSteps { worker, rows, warns: false, pool: pool().ok(), others };
+        self.lead_with(worker, part, (pool().ok(), others))
+    }
+
+    /// Lets these ranks take the steps from now on, of which this process is number 0; the others [`serve`](Self::serve).
+    ///
+    /// # Errors
+    /// As [`Self::use_ranks`].
+    pub fn lead(&mut self, ranks: Arc<dyn Ranks>) -> Result<(), RankRefusal> {
+        let part = part(self.scheme.as_ref(), ranks)?;
+        let worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.name())?;
+        self.lead_with(worker, &part, (None, Vec::new()))
+    }
+
+    /// Takes part in a run of several ranks, of which this process is not number 0, until that ends it.
+    ///
+    /// # Errors
+    /// As [`Self::use_ranks`], and where a rank is lost.
+    pub fn serve(self, ranks: Arc<dyn Ranks>) -> Result<(), RankRefusal> {
+        let part = part(self.scheme.as_ref(), ranks)?;
+        let mut worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.name())?;
+        drop(self);
+        Ok(worker.serve()?)
+    }
+
+    fn lead_with(
+        &mut self,
+        worker: Worker,
+        part: &Part,
+        (pool, others): (Option<ThreadPool>, Vec<JoinHandle<()>>),
+    ) -> Result<(), RankRefusal> {
+        let rows = Rows::of(self.scheme.as_ref(), part);
+        let steps = RankSteps { worker, rows, warns: false, pool, others };
         self.use_steps(Box::new(steps)).map_err(|error| match error {
             StepsError::Ranks(error) => error.into(),
             StepsError::Device(_) => RankRefusal::Formulation(self.scheme.description().name),
