@@ -21,3 +21,15 @@ pub fn listen() -> Arc<AtomicBool> {
     }
     stop
 }
+
+/// Leaves it to another process to end the run: a first request to terminate is its, a second one ends at once.
+pub fn ignore() {
+    let told = AtomicBool::new(false);
+    let handler = move || {
+        if told.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(Exit::Interrupted.code()));
+        }
+    };
+    // Without it the process ends at the first, and with it the run.
+    let _ = ctrlc::set_handler(handler);
+}

@@ -19,6 +19,7 @@ mod exit;
 mod interrupt;
 mod mcp;
 mod progress;
+mod ranks;
 mod summary;
 mod table;
 mod terminal;

@@ -3,18 +3,20 @@
 use std::ffi::OsString;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
-use piola::case::RunError;
+use piola::case::{self, RunError, Session};
 use piola::time::{Outcome, Progress};
+use piola_ranks::Ranks;
 
-use super::{assemble, read, use_threads};
+use super::{assemble, read, refusal, use_threads};
 use crate::arguments::RunArguments;
 use crate::exit::{Exit, Fault};
 use crate::progress::{Audience, Display};
 use crate::summary::summary;
 use crate::text::count;
-use crate::{events, interrupt, terminal};
+use crate::{events, interrupt, ranks, terminal};
 
 /// Runs a case and writes its results.
 pub fn run(arguments: &RunArguments) -> Result<Exit, Fault> {
@@ -26,6 +28,10 @@ pub fn run(arguments: &RunArguments) -> Result<Exit, Fault> {
 }
 
 fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
+    let ranks = ranks::start()?;
+    if let Some(ranks) = ranks.as_ref().filter(|ranks| ranks.rank() > 0) {
+        return serve(arguments, ranks.clone());
+    }
     use_threads(arguments.case.threads);
     let case = read(&arguments.case)?;
     let path = &arguments.case.case;
@@ -39,7 +45,12 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
         (false, false) => Audience::Person,
     };
     let stop = interrupt::listen();
-    let mut session = assemble(path, &case)?;
+    let mut session = match ranks {
+        Some(ranks) => {
+            Session::on_ranks(&case, ranks).map_err(|problems| refusal(path, &problems))?
+        }
+        None => assemble(path, &case)?,
+    };
     let end = *case.time.end;
     if audience == Audience::Program {
         events::start(path, &folder, end);
@@ -79,6 +90,18 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
             Err(Fault::new(Exit::FailedRun, text))
         }
     }
+}
+
+/// Takes part in the run of rank 0, which tells of it, and of what all of them refuse.
+fn serve(arguments: &RunArguments, ranks: Arc<dyn Ranks>) -> Result<Exit, Fault> {
+    use_threads(arguments.case.threads);
+    let quiet = |fault: Fault| Fault { report: String::new(), ..fault };
+    let case = read(&arguments.case).map_err(quiet)?;
+    // Rank 0 ends the run of all.
+    interrupt::ignore();
+    let served = case::serve(&case, ranks);
+    served.map_err(|problems| quiet(refusal(&arguments.case.case, &problems)))?;
+    Ok(Exit::Success)
 }
 
 /// What a run that cannot write or go on ends with.

@@ -77,6 +77,11 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
         Self { gradients, forces: self.forces.part(slots, place) }
     }
 
+    /// Number of the pairs of a particle in both passes.
+    pub fn length(&self, a: usize) -> usize {
+        self.gradients.length(a) + self.forces.length(a)
+    }
+
     /// N.
     pub const fn sums(&self) -> usize {
         N

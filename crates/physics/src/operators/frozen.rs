@@ -88,6 +88,11 @@ impl<R: Record> FrozenRows<R> {
         Self { neighbors, numbers, rows: ranges, record: PhantomData }
     }
 
+    /// Number of neighbours in a row.
+    pub fn length(&self, row: usize) -> usize {
+        self.rows[row].count as usize
+    }
+
     /// Number of rows.
     pub fn count(&self) -> usize {
         self.rows.len()

@@ -178,6 +178,11 @@ impl<const D: usize> ReferenceGradient<D> {
         all.into_iter().map(|slot| slot as usize).collect()
     }
 
+    /// Number of the pairs of a particle that passes go through.
+    pub fn length(&self, a: usize) -> usize {
+        on_pairs!(&self.pairs, pairs => pairs.length(a))
+    }
+
     /// How many tensors forces gather of a particle.
     pub fn tensions(&self) -> usize {
         on_pairs!(&self.pairs, pairs => pairs.sums())

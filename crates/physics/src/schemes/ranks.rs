@@ -35,20 +35,7 @@ impl Part {
         }
         let cost = |chunk: usize| scheme.cost(chunk * length..((chunk + 1) * length).min(count));
         let costs: Vec<f64> = (0..chunks).map(cost).collect();
-        let (whole, mut sum) = (costs.iter().sum::<f64>(), 0.0);
-        let mut bounds = vec![0];
-        for (chunk, cost) in costs.iter().enumerate() {
-            // A rank ends where it has its share, and leaves a chunk for each of those that follow.
-            let next = bounds.len();
-            let is_full = sum + 0.5 * cost >= whole * next as f64 / size as f64;
-            let is_needed = chunks - chunk == size - next;
-            if next < size && chunk * length > bounds[next - 1] && (is_full || is_needed) {
-                bounds.push(chunk * length);
-            }
-            sum += cost;
-        }
-        bounds.push(count);
-        Ok(bounds)
+        Ok(cuts(&costs, size).into_iter().map(|chunk| (chunk * length).min(count)).collect())
     }
 
     /// What each rank computes over the mean of all.
@@ -120,6 +107,25 @@ impl Part {
     }
 }
 
+/// Where each of `size` ranks begins in a row of chunks of which the costs are known, and the end: each has one at least,
+/// and about the same cost.
+fn cuts(costs: &[f64], size: usize) -> Vec<usize> {
+    let (whole, mut sum) = (costs.iter().sum::<f64>(), 0.0);
+    let mut cuts = vec![0];
+    for (chunk, cost) in costs.iter().enumerate() {
+        // A rank ends where it has its share, and leaves a chunk for each of those that follow.
+        let next = cuts.len();
+        let is_full = sum + 0.5 * cost >= whole * next as f64 / size as f64;
+        let is_needed = costs.len() - chunk == size - next;
+        if next < size && chunk > cuts[next - 1] && (is_full || is_needed) {
+            cuts.push(chunk);
+        }
+        sum += cost;
+    }
+    cuts.push(costs.len());
+    cuts
+}
+
 /// What a rank has of a run, and what others tell it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RankShare {
@@ -188,4 +194,32 @@ pub enum RankRefusal {
     /// The ranks.
     #[error(transparent)]
     Ranks(#[from] RankError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_rank_has_a_chunk_and_about_its_share() {
+        let even = vec![1.0; 100];
+        // Chunks that are as costly as all others together, first, last and in the middle.
+        let heavy = |at: usize| (0..20).map(|k| if k == at { 19.0 } else { 1.0 }).collect();
+        let slope = (0..64).map(f64::from).collect();
+        for costs in [even, heavy(0), heavy(19), heavy(7), slope, vec![0.0; 9], vec![2.0; 7]] {
+            for size in 1..=7 {
+                let cuts = cuts(&costs, size);
+                assert_eq!((cuts.len(), cuts[0], cuts[size]), (size + 1, 0, costs.len()));
+                assert!(cuts.windows(2).all(|ends| ends[0] < ends[1]), "{cuts:?}");
+                let most = costs.iter().copied().fold(0.0, f64::max);
+                let share = costs.iter().sum::<f64>() / size as f64;
+                let own = cuts.windows(2).map(|ends| costs[ends[0]..ends[1]].iter().sum::<f64>());
+                // Either end is off by half a chunk at most, and one by its whole where ranks need one each.
+                assert!(
+                    own.clone().all(|own| own <= share + most),
+                    "{size}: {cuts:?} of {costs:?}"
+                );
+            }
+        }
+    }
 }

@@ -55,7 +55,7 @@ pub use model::{Case, Level};
 use overrides::Override;
 pub use plan::{BANDWIDTH, LATENCY, Plan, PlannedLimit, Undamped};
 pub use sensitivity::SensitivityError;
-pub use session::{RunError, Session};
+pub use session::{RunError, Session, serve};
 pub use source::{Located, Place, SourceText};
 pub use views::FieldView;
 

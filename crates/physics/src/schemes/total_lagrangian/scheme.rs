@@ -84,7 +84,10 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
 
     #[inline(never)]
     fn cost(&self, particles: Range<usize>) -> f64 {
-        particles.map(|a| self.matrices.neighbors(a) as f64).sum()
+        match &self.matrices {
+            Matrices::Adjoint(whole) => particles.map(|a| whole.operator.length(a) as f64).sum(),
+            Matrices::Strong(_) => particles.len() as f64,
+        }
     }
 
     fn shares(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
