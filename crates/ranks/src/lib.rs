@@ -7,11 +7,15 @@
 mod alone;
 mod exact;
 mod message;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod threads;
 
 pub use alone::Alone;
 pub use exact::{Exact, LIMBS};
 pub use message::{Message, RankError};
+#[cfg(feature = "mpi")]
+pub use mpi::Mpi;
 pub use threads::Threads;
 
 /// What a rank can tell the others. All ranks make the same calls in the same order, but for the partners of an exchange.
