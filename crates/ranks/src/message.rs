@@ -70,6 +70,12 @@ pub enum RankError {
         /// Parts.
         got: usize,
     },
+    /// MPI counts in 31 bits.
+    #[error("MPI does not take {0} numbers at once: take more ranks, so that each has fewer")]
+    TooLong(usize),
+    /// MPI is not there, or is used in a way that it does not allow.
+    #[error("MPI cannot be used: {0}")]
+    Mpi(&'static str),
 }
 
 /// Refuses an exchange that no rank `rank` of `size` can make, whatever the others do.

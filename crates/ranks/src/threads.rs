@@ -74,11 +74,16 @@ impl Lane {
 
     /// The first message, as soon as there is one.
     fn take(&self) -> Result<(Call, Vec<f64>), RankError> {
-        let is_empty = |state: &mut State| state.sent.is_empty() && state.lost.is_none();
-        let state = self.changed.wait_while(self.lock(), is_empty);
-        let mut state = state.unwrap_or_else(PoisonError::into_inner);
-        let lost = state.lost;
-        state.sent.pop_front().ok_or_else(|| RankError::Lost(lost.unwrap_or_default()))
+        let mut state = self.lock();
+        loop {
+            if let Some(message) = state.sent.pop_front() {
+                return Ok(message);
+            }
+            if let Some(lost) = state.lost {
+                return Err(RankError::Lost(lost));
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
     }
 }
 
@@ -129,6 +134,15 @@ impl Threads {
     /// Gives a buffer to later messages.
     fn reuse(&self, from: usize, buffer: Vec<f64>) {
         self.lane(from, self.rank).lock().spare.push(buffer);
+    }
+
+    /// What each rank has, by rank, of which the others have sent theirs.
+    fn collect(&self, call: Call, own: &[f64]) -> Result<Vec<Vec<f64>>, RankError> {
+        let of = |rank| match rank == self.rank {
+            true => Ok(own.to_vec()),
+            false => self.receive(call, rank),
+        };
+        (0..self.size).map(of).collect()
     }
 
     /// Makes a call, unless an earlier one has failed; leaves the others if it does.
@@ -241,16 +255,5 @@ impl Ranks for Threads {
                 .try_for_each(|to| self.send(Call::Broadcast, to, said.iter().copied()))?;
             Ok(said)
         })
-    }
-}
-
-impl Threads {
-    /// What each rank has, by rank, of which the others have sent theirs.
-    fn collect(&self, call: Call, own: &[f64]) -> Result<Vec<Vec<f64>>, RankError> {
-        let of = |rank| match rank == self.rank {
-            true => Ok(own.to_vec()),
-            false => self.receive(call, rank),
-        };
-        (0..self.size).map(of).collect()
     }
 }
