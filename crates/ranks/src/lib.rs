@@ -19,7 +19,7 @@ pub use mpi::Mpi;
 pub use threads::Threads;
 
 /// What a rank can tell the others. All ranks make the same calls in the same order, but for the partners of an exchange.
-/// All bits of numbers arrive, also of those that are NaN. After a call that has failed, none succeeds.
+/// All bits of numbers arrive, also of those that are NaN. Calls fail, too, if they do not fit together: [`RankError`].
 pub trait Ranks: Send + Sync {
     /// The number of this rank, from 0.
     fn rank(&self) -> usize;
@@ -34,7 +34,7 @@ pub trait Ranks: Send + Sync {
     /// A rank is lost.
     fn exchange(&self, send: &[Message], receive: &mut [Message]) -> Result<(), RankError>;
 
-    /// Adds up what all ranks have, entry by entry; each gets the sums.
+    /// Adds up what all ranks have, entry by entry and wrapping around; each gets the sums.
     ///
     /// # Errors
     /// A rank is lost.
