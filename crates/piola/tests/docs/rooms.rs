@@ -11,7 +11,7 @@ type Arrows = BTreeMap<String, BTreeSet<String>>;
 const LIBRARY: [&str; 3] = ["piola", "report", "physics"];
 
 /// The crates below the library, `piola_` before each.
-const CRATES: [&str; 2] = ["device", "formulas"];
+const CRATES: [&str; 3] = ["device", "formulas", "ranks"];
 
 /// The table: the last part of the path in the first column, and the names in the last one.
 fn described(architecture: &str) -> Arrows {

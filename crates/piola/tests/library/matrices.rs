@@ -176,7 +176,7 @@ fn forces_with_images_are_the_derivatives_of_the_energy() {
         }
     }
     let rates = [[0.7, 0.0], [0.0; 2]];
-    let plane_power = operator.plane_power(&forces, &rates);
+    let plane_power = operator.plane_power(&piola::parallel::Team::default(), &forces, &rates);
     operator.fold(&mut forces);
     let power: f64 = forces.iter().zip(&direction).map(|(f, d)| -f.dot(d)).sum();
     // The energy is quadratic, so that a central difference is exact.

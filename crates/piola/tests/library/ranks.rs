@@ -62,7 +62,7 @@ material = { kind = "neo_hookean", density = 800.0, young_modulus = 3e5, poisson
 initial = { velocity = ["0.3 * sin(3 * x)", "0.1 * x"] }
 [[body]]
 name = "other"
-shape = { kind = "box", min = [3.0, 0.0], max = [3.6, 0.7] }
+shape = { kind = "box", min = [3.0, 2.0], max = [3.6, 2.7] }
 spacing = 0.06
 lattice = { on = "cells", jitter = 0.1, seed = 4 }
 material = { kind = "neo_hookean", density = 500.0, young_modulus = 1e5, poisson_ratio = 0.4 }
@@ -70,15 +70,18 @@ material = { kind = "neo_hookean", density = 500.0, young_modulus = 1e5, poisson
 kind = "dual_support"
 [[load]]
 name = "gravity"
+body = "plate"
 kind = "body_force"
 acceleration = ["cos(9 * t)", "-2.0 * x"]
 [[load]]
 name = "pull"
+body = "plate"
 kind = "traction"
 where = { kind = "plane", point = [2.0, 0.0], normal = [1.0, 0.0] }
 traction = ["2e3 * t + 300.0 * y", "100.0"]
 [[boundary]]
 name = "wall"
+body = "plate"
 where = { kind = "plane", point = [0.0, 0.0], normal = [-1.0, 0.0] }
 velocity = { x = "0.2 * sin(20 * t)", y = "0" }
 [[probe]]
@@ -103,7 +106,7 @@ fn displacements_are_the_same_on_any_number_of_ranks() {
 
 #[test]
 fn a_pressure_that_follows_is_the_same_on_any_number_of_ranks() {
-    let pressure = "load.pull={ kind = 'pressure', where = { kind = 'plane', point = [2.0, 0.0], normal = [1.0, 0.0] }, \
+    let pressure = "load.pull={ kind = 'pressure', body = 'plate', where = { kind = 'plane', point = [2.0, 0.0], normal = [1.0, 0.0] }, \
                     pressure = '4e3 * (1 + y)' }";
     same_on_any_number(PLATE, &[pressure, "scheme.gradients='plain'", "scheme.hourglass=0.3"]);
 }
@@ -113,10 +116,24 @@ fn a_periodic_plate_is_the_same_on_any_number_of_ranks() {
     let sets = [
         "domain={ periodic = { y = [0.0, 0.7] } }",
         "body.plate.lattice={ on = 'cells', jitter = 0.2, seed = 5 }",
-        "load.pull={ kind = 'body_force', acceleration = ['0', 'x'] }",
+        "load.pull={ kind = 'body_force', body = 'plate', acceleration = ['0', 'x'] }",
         "boundary.wall.where={ kind = 'ball', center = [0.1, 0.3], radius = 0.2 }",
     ];
     same_on_any_number(PLATE, &sets);
+}
+
+#[test]
+fn mirrors_are_the_same_on_any_number_of_ranks() {
+    // Below the plane that moves there is another that does not.
+    let sets = [
+        "boundary+={ name = 'bottom', body = 'plate', where = { kind = 'plane', point = [0.0, 0.0], normal = [0.0, -1.0] }, \
+         velocity = { y = '0.1 * sin(30 * t)' }, mirror = true }",
+        "boundary+={ name = 'top', body = 'plate', where = { kind = 'plane', point = [0.0, 0.7], normal = [0.0, 1.0] }, \
+         velocity = { y = '0' }, mirror = true }",
+        "boundary.wall.velocity={ x = '0.2 * sin(20 * t)' }",
+    ];
+    same_on_any_number(PLATE, &sets);
+    same_on_any_number(PLATE, &[&sets[..], &["scheme.viscosity=25.0"]].concat());
 }
 
 /// A block that hits a wall and shears.
@@ -132,6 +149,7 @@ material = { kind = "gamma_law", density = 1000.0, gamma = 5.0, wave_speed = 14.
 initial = { velocity = ["-1.0 - 0.2 * y", "0.1 * z", "0.0"] }
 [scheme]
 kind = "upwind"
+smoothing_length = 1.1
 tau_velocity = 0.4
 tau_pressure = 0.3
 reconstruction = true
