@@ -79,5 +79,5 @@ fn what_mpirun_has_not_started_is_no_process_of_it() {
 fn another_mpi_is_refused() {
     let Some(output) = run(mpirun(1).env("PMI_SIZE", "4")) else { return };
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && said.contains("of another MPI"), "{output:?}");
+    assert!(!output.status.success() && said.contains("do not find each other"), "{output:?}");
 }
