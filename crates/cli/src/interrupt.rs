@@ -8,28 +8,27 @@ use crate::terminal;
 
 /// Listens for Ctrl-C and for requests to terminate. The flag is set by the first one.
 pub fn listen() -> Arc<AtomicBool> {
+    listen_and(|| {
+        terminal::report("\nstopping after this step; press Ctrl-C again to stop at once\n");
+    })
+}
+
+/// The same, of a process beside others that tell of it.
+pub fn listen_quietly() -> Arc<AtomicBool> {
+    listen_and(|| {})
+}
+
+fn listen_and(tell: impl Fn() + Send + 'static) -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let handler = move || {
         if flag.swap(true, Ordering::SeqCst) {
             std::process::exit(i32::from(Exit::Interrupted.code()));
         }
-        terminal::report("\nstopping after this step; press Ctrl-C again to stop at once\n");
+        tell();
     };
     if let Err(error) = ctrlc::set_handler(handler) {
         terminal::report(&format!("warning: Ctrl-C will not write the state: {error}\n"));
     }
     stop
-}
-
-/// Leaves it to another process to end the run: a first request to terminate is its, a second one ends at once.
-pub fn ignore() {
-    let told = AtomicBool::new(false);
-    let handler = move || {
-        if told.swap(true, Ordering::SeqCst) {
-            std::process::exit(i32::from(Exit::Interrupted.code()));
-        }
-    };
-    // Without it the process ends at the first, and with it the run.
-    let _ = ctrlc::set_handler(handler);
 }

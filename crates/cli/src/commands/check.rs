@@ -138,7 +138,7 @@ fn ranks(plan: &Plan) -> Vec<String> {
     let rows: Vec<Vec<String>> = plan.ranks.iter().enumerate().map(cells).collect();
     let mut lines = table::align(&rows, None, &[]);
     lines.push(format!(
-        "efficiency {} predicted, with {} us a message and {} GB/s",
+        "efficiency {} predicted for ranks with as many threads each as this one, {} us a message and {} GB/s",
         significant(plan.efficiency, 3),
         LATENCY * 1e6,
         BANDWIDTH * 1e-9

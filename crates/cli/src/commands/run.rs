@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use piola::case::{self, RunError, Session};
+use piola::case::{self, RunError, Session, Unserved};
 use piola::time::{Outcome, Progress};
 use piola_ranks::Ranks;
 
@@ -20,20 +20,26 @@ use crate::{events, interrupt, ranks, terminal};
 
 /// Runs a case and writes its results.
 pub fn run(arguments: &RunArguments) -> Result<Exit, Fault> {
-    let ended = execute(arguments);
-    if let (true, Err(fault)) = (arguments.json_progress, &ended) {
-        events::error(fault);
+    let ranks = ranks::start()?;
+    let ended = match ranks.as_ref().filter(|ranks| ranks.rank() > 0) {
+        Some(ranks) => serve(arguments, ranks),
+        None => execute(arguments, ranks.as_ref()),
+    };
+    let Err(fault) = ended else { return ended };
+    if arguments.json_progress && !fault.report.is_empty() {
+        events::error(&fault);
     }
-    ended
+    // Ranks that have failed are ended with the last that knows of them: what there is to tell is told before.
+    terminal::report(&terminal::coloured(&fault.report));
+    Err(Fault { report: String::new(), ..fault })
 }
 
-fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
-    let ranks = ranks::start()?;
-    if let Some(ranks) = ranks.as_ref().filter(|ranks| ranks.rank() > 0) {
-        return serve(arguments, ranks.clone());
-    }
+fn execute(arguments: &RunArguments, ranks: Option<&Arc<dyn Ranks>>) -> Result<Exit, Fault> {
     use_threads(arguments.case.threads);
-    let case = read(&arguments.case)?;
+    let decline = |fault: &Fault| {
+        ranks.iter().for_each(|ranks| case::decline(ranks.as_ref(), &fault.report));
+    };
+    let case = read(&arguments.case).inspect_err(decline)?;
     let path = &arguments.case.case;
     let folder = match &arguments.out {
         Some(folder) => folder.clone(),
@@ -47,7 +53,7 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
     let stop = interrupt::listen();
     let mut session = match ranks {
         Some(ranks) => {
-            Session::on_ranks(&case, ranks).map_err(|problems| refusal(path, &problems))?
+            Session::on_ranks(&case, ranks.clone()).map_err(|problems| refusal(path, &problems))?
         }
         None => assemble(path, &case)?,
     };
@@ -92,15 +98,20 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Fault> {
     }
 }
 
-/// Takes part in the run of rank 0, which tells of it, and of what all of them refuse.
-fn serve(arguments: &RunArguments, ranks: Arc<dyn Ranks>) -> Result<Exit, Fault> {
+/// Takes part in the run of rank 0, which tells of it, and of what keeps any of them from beginning.
+fn serve(arguments: &RunArguments, ranks: &Arc<dyn Ranks>) -> Result<Exit, Fault> {
     use_threads(arguments.case.threads);
-    let quiet = |fault: Fault| Fault { report: String::new(), ..fault };
-    let case = read(&arguments.case).map_err(quiet)?;
-    // Rank 0 ends the run of all.
-    interrupt::ignore();
-    let served = case::serve(&case, ranks);
-    served.map_err(|problems| quiet(refusal(&arguments.case.case, &problems)))?;
+    let case = read(&arguments.case).map_err(|fault| {
+        case::decline(ranks.as_ref(), &fault.report);
+        Fault { report: String::new(), ..fault }
+    })?;
+    let stop = interrupt::listen_quietly();
+    case::serve(&case, ranks.clone(), stop).map_err(|unserved| match unserved {
+        Unserved::Refused => Fault { exit: Exit::BadCase, report: String::new() },
+        Unserved::Lost(lost) => {
+            Fault::new(Exit::FailedRun, format_args!("rank {}: {lost}", ranks.rank()))
+        }
+    })?;
     Ok(Exit::Success)
 }
 

@@ -69,8 +69,14 @@ pub struct ExactSums {
 }
 
 impl ExactSums {
+    /// Nothing yet.
+    pub const NONE: Self = Self { sums: Vec::new() };
+
     /// Adds a part.
     pub fn add<T: Sums>(&mut self, part: &T) {
+        if T::NUMBERS == 0 {
+            return;
+        }
         let (mut part, mut sums) = (*part, self.parts::<T>().iter_mut());
         part.each(&mut |number| {
             if let (Some(sum), true) = (sums.next(), *number != 0.0) {

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use piola_formulas::pairs::{Of, Record};
-use piola_ranks::{Exact, Message, RankError, Ranks};
+use piola_ranks::{Exact, LIMBS, Message, RankError, Ranks};
 
 use super::{ExactSums, Parts, Reduce, Sums, add_sums, add_sums_over_parts, reduce};
 
@@ -30,6 +30,7 @@ struct Shared {
     chunk: usize,
     halo: Halo,
     messages: Mutex<[Vec<Message>; 2]>,
+    limbs: Mutex<Vec<i64>>,
     /// Why the ranks cannot go on, from then on.
     fault: OnceLock<RankError>,
     /// Nanoseconds of telling and waiting, messages and bytes that were sent.
@@ -54,7 +55,8 @@ impl Team {
         let messages = Mutex::new([lent, copied]);
         let (chunk, fault) = (super::chunk(all), OnceLock::new());
         let costs = Default::default();
-        let shared = Shared { ranks, first, chunk, halo, messages, fault, costs };
+        let limbs = Mutex::default();
+        let shared = Shared { ranks, first, chunk, halo, messages, limbs, fault, costs };
         Self { shared: Some(Arc::new(shared)) }
     }
 
@@ -124,11 +126,17 @@ impl Team {
     }
 
     /// The sum over all ranks of what has been added on each.
-    pub fn close<T: Sums>(&self, mut exact: ExactSums) -> T {
+    pub fn close<T: Sums>(&self, exact: ExactSums) -> T {
+        let [total] = self.close_all([exact]);
+        total
+    }
+
+    /// The same of several, told at once.
+    pub fn close_all<T: Sums, const K: usize>(&self, mut exact: [ExactSums; K]) -> [T; K] {
         if let (Some(shared), true) = (&self.shared, T::NUMBERS > 0) {
-            shared.add(exact.parts::<T>());
+            shared.add(&mut exact.each_mut().map(|sums| sums.parts::<T>()));
         }
-        exact.total()
+        exact.map(|sums| sums.total())
     }
 
     /// What rows have together over the particles of all ranks, in their order. Numbers of `pack` tell the others what own
@@ -239,17 +247,17 @@ impl Shared {
     }
 
     /// Adds the sums of the other ranks.
-    fn add(&self, exact: &mut [Exact]) {
-        let mut limbs: Vec<i64> =
-            exact.iter_mut().flat_map(|part| part.limbs_mut().to_vec()).collect();
-        self.count([0, 1, (limbs.len() * size_of::<i64>()) as u64]);
+    fn add(&self, exact: &mut [&mut [Exact]]) {
+        let mut limbs = self.limbs.lock().unwrap_or_else(PoisonError::into_inner);
+        limbs.clear();
+        for part in exact.iter_mut().flat_map(|sums| sums.iter_mut()) {
+            limbs.extend_from_slice(part.limbs_mut());
+        }
+        self.count([0, 1, size_of_val(limbs.as_slice()) as u64]);
         self.told(|| self.ranks.add(&mut limbs));
-        let mut rest = limbs.as_slice();
-        for part in exact {
-            let own = part.limbs_mut();
-            let (added, others) = rest.split_at(own.len());
-            own.copy_from_slice(added);
-            rest = others;
+        let parts = exact.iter_mut().flat_map(|sums| sums.iter_mut());
+        for (part, added) in parts.zip(limbs.chunks_exact(LIMBS)) {
+            part.limbs_mut().copy_from_slice(added);
         }
     }
 }

@@ -55,6 +55,11 @@ pub trait DeviceSteps: Send {
         false
     }
 
+    /// Whether a rank was asked to end the run.
+    fn stops(&self) -> bool {
+        false
+    }
+
     /// What has taken the time of each rank, where there are several.
     ///
     /// # Errors

@@ -38,11 +38,24 @@ impl Part {
         Ok(cuts(&costs, size).into_iter().map(|chunk| (chunk * length).min(count)).collect())
     }
 
-    /// What each rank computes over the mean of all.
-    pub fn loads(scheme: &dyn Scheme, bounds: &[usize]) -> Vec<f64> {
-        let costs: Vec<f64> = bounds.windows(2).map(|ends| scheme.cost(ends[0]..ends[1])).collect();
-        let mean = costs.iter().sum::<f64>() / costs.len() as f64;
-        costs.iter().map(|cost| cost / mean).collect()
+    /// What ranks would have whose particles begin and end where `bounds` has it, and which have these slots, and of a copy
+    /// so many numbers in an evaluation.
+    pub fn planned(
+        scheme: &dyn Scheme,
+        bounds: &[usize],
+        numbers: usize,
+        slots: impl Fn(Range<usize>) -> Slots,
+    ) -> Vec<RankShare> {
+        let own = || bounds.windows(2).map(|ends| ends[0]..ends[1]);
+        let costs: Vec<f64> = own().map(|own| scheme.cost(own)).collect();
+        let mean = (costs.iter().sum::<f64>() / costs.len() as f64).max(f64::MIN_POSITIVE);
+        let share = |(own, cost): (Range<usize>, &f64)| {
+            let (particles, slots) = (own.len(), slots(own));
+            let (copies, partners) = (slots.copies.len(), slots.partners());
+            let bytes = copies * numbers * size_of::<f64>();
+            RankShare { particles, copies, partners, bytes, load: cost / mean }
+        };
+        own().zip(&costs).map(share).collect()
     }
 
     /// The particles of a rank.

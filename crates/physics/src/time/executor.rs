@@ -224,7 +224,11 @@ impl Executor {
         stop: &AtomicBool,
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Summary, ObserveError> {
-        while !stop.load(Ordering::Relaxed) && self.outcome.is_none() {
+        let asked = |device: &Box<dyn DeviceSteps>| device.stops();
+        while !stop.load(Ordering::Relaxed)
+            && !self.device.as_ref().is_some_and(asked)
+            && self.outcome.is_none()
+        {
             let before = self.run.clock.step;
             self.step()?;
             if self.run.clock.step != before {
@@ -333,13 +337,12 @@ impl Executor {
         }
         let speeds = tally.start_speeds;
         let broken = self.broken(&health, &self.run.state, &self.run.clock, speeds);
-        if broken.is_some() {
-            return broken;
+        let warns = self.device.as_ref().is_some_and(|device| device.warns());
+        if broken.is_some() || !self.run.tally.warned && warns {
+            self.ask();
         }
-        if !self.run.tally.warned && self.device.as_ref().is_some_and(|device| device.warns()) {
-            // What it is about is asked of the formulation.
-            self.bring();
-            self.scheme.inspect(&self.run.state, &mut Vec::new());
+        if broken.is_some() {
+            return self.broken(&health, &self.run.state, &self.run.clock, speeds).or(broken);
         }
         let Run { clock, tally, .. } = &mut self.run;
         if let (false, Some(warning)) = (tally.warned, self.scheme.warning()) {
@@ -361,7 +364,9 @@ impl Executor {
         let chosen = match self.choose(&self.limits, &self.run.clock, &self.run.tally) {
             Ok(chosen) => chosen,
             Err(failure) => {
-                self.outcome = Some(Outcome::Failed(failure));
+                self.ask();
+                let told = self.choose(&self.limits, &self.run.clock, &self.run.tally).err();
+                self.outcome = Some(Outcome::Failed(told.unwrap_or(failure)));
                 return false;
             }
         };

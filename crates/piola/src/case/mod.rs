@@ -22,6 +22,7 @@ mod outputs;
 mod overrides;
 pub mod page;
 mod plan;
+mod ranks;
 mod record;
 pub mod reference;
 mod render;
@@ -54,8 +55,9 @@ use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
 pub use plan::{BANDWIDTH, LATENCY, Plan, PlannedLimit, Undamped};
+pub use ranks::{Unserved, decline, serve};
 pub use sensitivity::SensitivityError;
-pub use session::{RunError, Session, serve};
+pub use session::{RunError, Session};
 pub use source::{Located, Place, SourceText};
 pub use views::FieldView;
 

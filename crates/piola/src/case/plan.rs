@@ -53,11 +53,14 @@ pub const LATENCY: f64 = 1.5e-6;
 /// Bytes a second that a network carries.
 pub const BANDWIDTH: f64 = 12e9;
 
-/// The efficiency of ranks of which each evaluation of all particles takes this many seconds on one.
+/// Messages of all to all in a step: what to do, how it has gone, the look at the state, and sums of the ledger.
+const ROUNDS: f64 = 8.0;
+
+/// The efficiency of ranks with as many threads each as take this many seconds for an evaluation of all particles.
 fn efficiency(ranks: &[RankShare], evaluation: f64) -> f64 {
     let size = ranks.len() as f64;
-    // What all ranks add up goes through a tree, twice: loads, and the look at the state.
-    let rounds = 4.0 * size.log2().ceil();
+    // They go through a tree.
+    let rounds = ROUNDS * size.log2().ceil();
     let slowest = ranks.iter().map(|rank| {
         let told = rank.bytes as f64 / BANDWIDTH + LATENCY * (2.0 * rank.partners as f64 + rounds);
         rank.load * evaluation / size + told
@@ -206,7 +209,7 @@ impl Session {
         });
         let ranks = ranks.unwrap_or_default();
         Plan {
-            efficiency: efficiency(&ranks, evaluation * rayon::current_num_threads() as f64),
+            efficiency: efficiency(&ranks, evaluation),
             ranks,
             bodies: self.built.bodies.clone(),
             neighbors: self.built.neighbors,

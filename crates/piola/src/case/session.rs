@@ -14,13 +14,14 @@ use super::diagnostics::Problem;
 use super::finished::{Finished, removed, unbalanced};
 use super::model::Case;
 use super::outputs::Outputs;
+use super::ranks;
 use super::resume::{self, Resumed};
-use super::source::{Located, Place};
+use super::source::Located;
 use super::views::Rows;
 use super::{Problems, report};
 use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
-use crate::schemes::{DeviceRefusal, RankRefusal, Scheme};
+use crate::schemes::{DeviceRefusal, Scheme};
 use crate::time::{
     Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
 };
@@ -100,39 +101,37 @@ impl Session {
     /// Everything that appears only when particles exist: a body without particles, a selection that selects nothing,
     /// a particle without a gradient, a prestress that the material cannot carry.
     pub fn new(case: &Case) -> Result<Self, Problems> {
-        Self::led(case, |executor| match &case.ranks {
-            Some(ranks) => use_ranks(executor, case, ranks),
-            None => Ok(()),
-        })
+        let start = Instant::now();
+        let (mut executor, built) = executor(case)?;
+        let refuse = |problem| case.refuse(vec![problem]);
+        let device = case.device.as_ref().map(|name| use_device(&mut executor, name));
+        let device = device.transpose().map_err(refuse)?;
+        ranks::use_threads(&mut executor, case).map_err(refuse)?;
+        Ok(Self::of(case, (executor, built), device, start))
     }
 
     /// As [`Session::new`], of a run whose steps this process and others take together, of which it is rank 0: the others
-    /// [`serve`].
+    /// [`serve`](super::serve).
     ///
     /// # Errors
-    /// As [`Session::new`], and if the case cannot be shared, or the others have another one.
+    /// As [`Session::new`], and if the case cannot be shared, or the others cannot begin or have another one.
     pub fn on_ranks(case: &Case, ranks: Arc<dyn Ranks>) -> Result<Self, Problems> {
-        Self::led(case, |executor| lead(executor, case, ranks))
+        let start = Instant::now();
+        let (mut executor, built) = ranks::begin(case, ranks.as_ref())?;
+        ranks::lead(&mut executor, case, ranks)?;
+        Ok(Self::of(case, (executor, built), None, start))
     }
 
-    fn led(
+    fn of(
         case: &Case,
-        lead: impl FnOnce(&mut Executor) -> Result<(), Problem>,
-    ) -> Result<Self, Problems> {
-        let start = Instant::now();
-        let (mut executor, built) = executor(case)?;
-        let device = match &case.device {
-            Some(name) => {
-                let used = use_device(&mut executor, name);
-                Some(used.map_err(|problem| case.refuse(vec![problem]))?)
-            }
-            None => None,
-        };
-        lead(&mut executor).map_err(|problem| case.refuse(vec![problem]))?;
+        (mut executor, built): (Executor, Built),
+        device: Option<String>,
+        start: Instant,
+    ) -> Self {
         let (tables, observers) = observers(case, &built, executor.scheme.as_ref(), None);
         let own = observers.len();
         observers.into_iter().for_each(|observer| executor.observe(observer));
-        Ok(Self {
+        Self {
             case: case.clone(),
             built,
             executor,
@@ -144,7 +143,7 @@ impl Session {
             resumed: None,
             has_begun: false,
             rows_of_bodies: Vec::new(),
-        })
+        }
     }
 
     /// The case it was built from.
@@ -360,19 +359,8 @@ fn use_device(executor: &mut Executor, name: &Located<String>) -> Result<String,
     })
 }
 
-/// Takes part in a run of which another process is rank 0 and has the [session](Session::on_ranks), until that ends it.
-///
-/// # Errors
-/// As [`Session::on_ranks`], and if a rank is lost.
-pub fn serve(case: &Case, ranks: Arc<dyn Ranks>) -> Result<(), Problems> {
-    let refuse = |problem| case.refuse(vec![problem]);
-    let (executor, _) = executor(case)?;
-    agree(case, ranks.as_ref()).map_err(refuse)?;
-    executor.serve(ranks).map_err(|refusal| refuse(refused(case.scheme.place, &refusal)))
-}
-
 /// A run at its start, with what it was built of.
-fn executor(case: &Case) -> Result<(Executor, Built), Problems> {
+pub(super) fn executor(case: &Case) -> Result<(Executor, Built), Problems> {
     let (scheme, integrator, built) = assembly::build(case)?;
     let control = assembly::step_control(case);
     let mut executor = Executor::new(scheme, integrator, control, *case.time.end);
@@ -381,58 +369,6 @@ fn executor(case: &Case) -> Result<(Executor, Built), Problems> {
     executor.max_speed = case.time.max_speed;
     executor.retries = case.time.retries as usize;
     Ok((executor, built))
-}
-
-/// Lets a run take its steps on several ranks, which are threads of this process.
-fn use_ranks(executor: &mut Executor, case: &Case, ranks: &Located<u64>) -> Result<(), Problem> {
-    alone(case, ranks.place)?;
-    let count = usize::try_from(**ranks).unwrap_or(usize::MAX);
-    executor.use_ranks(count).map_err(|refusal| refused(ranks.place, &refusal))
-}
-
-/// Lets a run take its steps on several ranks, of which this process is number 0.
-fn lead(executor: &mut Executor, case: &Case, ranks: Arc<dyn Ranks>) -> Result<(), Problem> {
-    agree(case, ranks.as_ref())?;
-    if let Some(threads) = &case.ranks {
-        let message = "the ranks are processes of MPI: leave out `--ranks` and `compute.ranks`";
-        return Err(Problem::new(threads.place, message.to_owned(), "beside MPI"));
-    }
-    alone(case, case.scheme.place)?;
-    executor.lead(ranks).map_err(|refusal| refused(case.scheme.place, &refusal))
-}
-
-/// Whether there is no device beside ranks.
-fn alone(case: &Case, place: Place) -> Result<(), Problem> {
-    let message = "a run has either several ranks or a device: leave out one of them";
-    match &case.device {
-        Some(_) => Err(Problem::new(place, message.to_owned(), "beside `device`")),
-        None => Ok(()),
-    }
-}
-
-/// Whether all ranks have the same case, and the same version of the program.
-fn agree(case: &Case, ranks: &dyn Ranks) -> Result<(), Problem> {
-    let own = format!("{} {}", env!("CARGO_PKG_VERSION"), case.fingerprint());
-    let own: Vec<f64> = own.bytes().map(f64::from).collect();
-    let differs = |message: String| Err(Problem::new(case.scheme.place, message, "the case"));
-    match ranks.gather_to_all(&own) {
-        Err(lost) => differs(lost.to_string()),
-        Ok(all) => match all.iter().position(|other| *other != own) {
-            None => Ok(()),
-            Some(rank) => differs(format!(
-                "rank {rank} has another case, or another version of the program: give all of them the same"
-            )),
-        },
-    }
-}
-
-/// Why a case does not run on several ranks.
-fn refused(place: Place, refusal: &RankRefusal) -> Problem {
-    let label = match refusal {
-        RankRefusal::TooMany { .. } => "too many",
-        _ => "this case does not run on several ranks",
-    };
-    Problem::new(place, refusal.to_string(), label)
 }
 
 /// The observers that a case asks for, and the tables that they fill.

@@ -26,14 +26,16 @@ fn run(
             "{:?}",
             finished.summary.outcome
         );
-        assert!(finished.summary.steps > 20, "{} steps", finished.summary.steps);
+        let summary = &finished.summary;
+        assert!(summary.steps > 9, "{} steps", summary.steps);
         let fields = session.scheme().description().fields;
         let columns = fields.iter().map(|field| {
             let values = session.column(field.name).unwrap().values;
             (field.name.to_owned(), values.iter().map(|value| value.to_bits()).collect())
         });
         let columns = columns.collect();
-        (format!("{:?}", finished.tables), columns)
+        let told = (summary.step_range, summary.worst, &summary.warnings, &summary.retries);
+        (format!("{:?} {told:?}", finished.tables), columns)
     })
 }
 
@@ -177,4 +179,97 @@ table_every = 0.01
 fn upwind_is_the_same_on_any_number_of_ranks() {
     same_on_any_number(BLOCK, &[]);
     same_on_any_number(BLOCK, &["scheme.reconstruction=false", "time.integrator='ssp_rk3'"]);
+}
+
+#[test]
+fn steps_that_nothing_damps_are_the_same_on_any_number_of_ranks() {
+    let sets =
+        ["scheme.reconstruction=false", "scheme.tau_velocity=0.0", "scheme.tau_pressure=0.0"];
+    same_on_any_number(BLOCK, &sets);
+}
+
+/// More than a thread's work for each rank, and more chunks than are summed side by side.
+#[test]
+fn many_particles_are_the_same_on_any_number_of_ranks() {
+    let sets = ["body.plate.spacing=0.0045", "time.end=8e-4", "output.table_every=1e-4"];
+    let alone = run(PLATE, &sets, 1, 1);
+    for (ranks, threads) in [(2, 4), (5, 5)] {
+        assert!(alone == run(PLATE, &sets, ranks, threads), "{ranks} ranks");
+    }
+}
+
+/// What is changed between two steps goes to all ranks, also if it is that of some.
+#[test]
+fn what_is_set_between_steps_reaches_all_ranks() {
+    let changed = |ranks: usize| {
+        let overrides = [
+            format!("compute.ranks={ranks}"),
+            "scheme.tau_velocity=0.0".into(),
+            "scheme.tau_pressure=0.0".into(),
+        ];
+        let options = LoadOptions { overrides: overrides.to_vec(), ..LoadOptions::default() };
+        let case =
+            case::parse(BLOCK, "shared.toml", &options).unwrap_or_else(|told| panic!("{told}"));
+        let mut session = Session::new(&case).unwrap_or_else(|told| panic!("{told}"));
+        session.run_until(0.02).unwrap();
+        let mut velocity = session.column("velocity").unwrap().values;
+        velocity[..30].iter_mut().for_each(|component| *component *= 0.5);
+        session.set("velocity", &velocity).unwrap();
+        session.run_until(0.06).unwrap();
+        session.column("velocity").unwrap().values.into_iter().map(f64::to_bits).collect::<Vec<_>>()
+    };
+    let alone = changed(1);
+    assert!(changed(3) == alone && changed(4) == alone);
+}
+
+/// A body that is pressed until it collapses fails in the same words, and retries as often.
+#[test]
+fn failures_are_the_same_on_any_number_of_ranks() {
+    let sets = [
+        "body.block.initial={ velocity = ['-60.0 * x', '-30.0 * y', '0'] }",
+        "body.block.material={ kind = 'linear', density = 1000.0, bulk_modulus = 2e5 }",
+        "time.on_failure='retry'",
+        "time.retries=2",
+    ];
+    let outcome = |ranks: usize| {
+        let overrides = sets.iter().map(|set| (*set).to_owned());
+        let overrides = overrides.chain([format!("compute.ranks={ranks}")]).collect();
+        let options = LoadOptions { overrides, ..LoadOptions::default() };
+        let case =
+            case::parse(BLOCK, "shared.toml", &options).unwrap_or_else(|told| panic!("{told}"));
+        let mut session = Session::new(&case).unwrap_or_else(|told| panic!("{told}"));
+        while session.step().unwrap() {}
+        let summary = session.finish().unwrap().summary;
+        assert_eq!(summary.retries.len(), 2, "{:?}", summary.outcome);
+        format!("{:?} {:?} {:?}", summary.outcome, summary.retries, summary.warnings)
+    };
+    let alone = outcome(1);
+    assert!(alone.contains("Failed"), "{alone}");
+    assert_eq!(outcome(3), alone);
+}
+
+#[test]
+fn what_does_not_run_on_several_ranks_is_named() {
+    let refused = |text: &str, set: &[&str], what: &str| {
+        let overrides =
+            ["compute.ranks=2"].iter().chain(set).map(|set| (*set).to_owned()).collect();
+        let options = LoadOptions { overrides, ..LoadOptions::default() };
+        let case =
+            case::parse(text, "shared.toml", &options).unwrap_or_else(|told| panic!("{told}"));
+        let told = match Session::new(&case) {
+            Ok(_) => panic!("accepted: {what}"),
+            Err(told) => told.to_string(),
+        };
+        assert!(told.contains(what), "{told}");
+    };
+    let implicit = ["time.integrator='newmark'", "time.step=1e-3", "time.cfl="];
+    refused(
+        PLATE,
+        &implicit,
+        "statics and implicit steps do not run on several ranks yet: take explicit steps",
+    );
+    let spring = "load.pull={ kind = 'spring', body = 'plate', to = [0.0, 0.0], stiffness = 10.0 }";
+    refused(PLATE, &[spring], "springs do not act on several ranks yet: leave them out");
+    let few = ["body.block.spacing=0.3"];
+    refused(BLOCK, &[few[0], "compute.ranks=9"], "ranks are too many for");
 }

@@ -109,9 +109,8 @@ impl<const D: usize> TotalLagrangianInput<D> {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
-    /// Builds operators, scratch and the initial state; what is allocated in an explicit step
-    /// afterwards is a number a chunk of particles for each sum of the ledger, unless matrices are made
-    /// in each step.
+    /// Builds operators, scratch and the initial state; nothing is allocated in an explicit step afterwards, unless
+    /// matrices are made in each step.
     ///
     /// # Errors
     /// [`TotalLagrangianError`] for arrays that do not fit together, particles without mass or

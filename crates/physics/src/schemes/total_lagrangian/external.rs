@@ -7,9 +7,9 @@ use super::{
 };
 use crate::Vector;
 use crate::boundaries::Spring;
-use crate::parallel::{self, ExactSums, Reduce as _};
+use crate::parallel::{self, ExactSums, Reduce as _, add_sums};
 use crate::schemes::ledger::{Found, Total, Totals};
-use crate::schemes::outside::{Acted, Acts, over_all, prescribe, push};
+use crate::schemes::outside::{Acted, over_all, prescribe, push};
 
 impl<const D: usize> TotalLagrangian<D> {
     /// Body forces at particle a in m/s^2.
@@ -18,9 +18,9 @@ impl<const D: usize> TotalLagrangian<D> {
         self.loads.acceleration(&self.solid, a, time)
     }
 
-    /// How many particles body forces pull: all or none.
-    fn pulled(&self) -> usize {
-        if self.loads.body_forces.is_empty() { 0 } else { self.solid.len() }
+    /// Whether body forces pull.
+    fn is_pulled(&self) -> bool {
+        !self.loads.body_forces.is_empty()
     }
 
     /// The forces in N of pressures at the gradients of the moment, with the particles they act on.
@@ -64,40 +64,52 @@ impl<const D: usize> TotalLagrangian<D> {
             velocity: velocity[a],
         };
         // What is not there costs nothing.
-        let (team, weight) =
-            (&self.team, |a: usize, mass: f64| self.body_acceleration(a, time) * mass);
-        totals.drive(BODY_FORCE, &over_all(team, self.pulled(), particle, weight));
-        let drag = |a: usize, mass: f64| velocity[a] * (-damping * mass);
-        let dragged = if damping > 0.0 { count } else { 0 };
-        totals.drive(DAMPING, &over_all(team, dragged, particle, drag));
-        let power = |a: usize| {
-            let [gradient, rate] = [&self.strained.gradient[a], &self.gradient_rate[a]];
-            let stress = self.dissipation.stress(solid, a, gradient, rate);
-            stress.dot(rate) * solid.particles.volume[a]
-        };
-        let viscous = if self.dissipation.is_viscous() { count } else { 0 };
-        totals.drive(VISCOSITY, &Total::of(-team.sum(viscous, power)));
-        let mut acts = Acts::<4>::default();
-        push(self.tractions(time), particle, own.velocity, |total| acts.add(0, total));
-        push(self.pressures(time), particle, own.velocity, |total| acts.add(1, total));
+        let rows = [count, self.team.chunk(count)];
+        let [mut body, mut dragged, mut viscous, mut images] = [const { ExactSums::NONE }; 4];
+        if self.is_pulled() {
+            let weight = |a: usize, mass: f64| self.body_acceleration(a, time) * mass;
+            over_all(rows, particle, weight, &mut body);
+        }
+        if damping > 0.0 {
+            let drag = |a: usize, mass: f64| velocity[a] * (-damping * mass);
+            over_all(rows, particle, drag, &mut dragged);
+        }
+        if self.dissipation.is_viscous() {
+            let power = |a: usize, total: &mut Total| {
+                let [gradient, rate] = [&self.strained.gradient[a], &self.gradient_rate[a]];
+                let stress = self.dissipation.stress(solid, a, gradient, rate);
+                total.power -= stress.dot(rate) * solid.particles.volume[a];
+            };
+            add_sums(rows, power, &mut viscous);
+        }
+        let has_more = self.has_images || self.matrices.edges().is_some_and(|it| it.data() > 0);
+        if has_more {
+            // What bodies beyond planes and ends do on this one.
+            over_all(rows, particle, |a, _| self.force[a], &mut images);
+        }
+        let [mut traction, mut pressure, mut spring, mut boundary] = [const { ExactSums::NONE }; 4];
+        push(self.tractions(time), particle, own.velocity, &mut traction);
+        push(self.pressures(time), particle, own.velocity, &mut pressure);
         for (load, pull) in self.pulls(at) {
             let whole: f64 = load.particles.iter().map(|&a| solid.mass[a as usize]).sum();
             let share = |&a: &u32| (a as usize, pull * (solid.mass[a as usize] / whole));
-            let shares = load.particles.iter().map(share);
-            push(shares, particle, own.velocity, |total| acts.add(2, total));
+            push(load.particles.iter().map(share), particle, own.velocity, &mut spring);
         }
-        prescribe(&self.prescribed, time, particle, own.velocity, |total| acts.add(3, total));
-        let [mut traction, pressure, spring, mut boundary] = match self.is_driven {
-            true => acts.close(team),
+        prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
+        let acts = self.is_pulled() || damping > 0.0 || self.dissipation.is_viscous();
+        let all = [body, dragged, viscous, images, traction, pressure, spring, boundary];
+        let all: [Total; 8] = match acts || has_more || self.is_driven {
+            true => self.team.close_all(all),
             false => Default::default(),
         };
+        let [body, dragged, viscous, images, mut traction, pressure, spring, mut boundary] = all;
         let [of_tractions, of_motion] = self.ghost_powers(velocity);
-        (traction.power, boundary.power) =
-            (traction.power + of_tractions, boundary.power + of_motion);
-        if self.has_images || self.matrices.edges().is_some_and(|edges| edges.data() > 0) {
-            // What bodies beyond planes and ends do on this one.
-            boundary.force.add(&over_all(team, count, particle, |a, _| self.force[a]).force);
-        }
+        traction.power += of_tractions;
+        boundary.power += of_motion;
+        boundary.force.add(&images.force);
+        totals.drive(BODY_FORCE, &body);
+        totals.drive(DAMPING, &dragged);
+        totals.drive(VISCOSITY, &viscous);
         totals.drive(SPRING, &spring);
         let moved = [at.displacement, velocity];
         self.rigid.accelerate(time, solid, moved, own.velocity, &mut boundary);
@@ -130,19 +142,28 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         let kick = &*own.kick;
         let growth = |(a, force): (usize, Vector<D>)| force.dot(&kick[a]);
-        let body = |a: usize| solid.mass[a] * self.body_acceleration(a, time).dot(&kick[a]);
-        let team = &self.team;
-        totals.grow(BODY_FORCE, team.sum(self.pulled(), body));
-        let drag = |a: usize| solid.mass[a] * own.velocity[a].dot(&kick[a]);
-        let dragged = if self.dissipation.damping > 0.0 { count } else { 0 };
-        totals.grow(DAMPING, -self.dissipation.damping * team.sum(dragged, drag));
-        let mut growths = ExactSums::default();
-        self.pressures(time).for_each(|load| growths.add(&[growth(load), 0.0]));
-        self.tractions(time).for_each(|load| growths.add(&[0.0, growth(load)]));
-        let [pressure, mut traction] = match self.is_driven {
-            true => team.close::<[f64; 2]>(growths),
-            false => [0.0; 2],
-        };
+        let (rows, damping) = ([count, self.team.chunk(count)], self.dissipation.damping);
+        let [mut body, mut dragged, mut pressure, mut traction] = [const { ExactSums::NONE }; 4];
+        if self.is_pulled() {
+            let add = |a: usize, sum: &mut f64| {
+                *sum += solid.mass[a] * self.body_acceleration(a, time).dot(&kick[a]);
+            };
+            add_sums(rows, add, &mut body);
+        }
+        if damping > 0.0 {
+            let add =
+                |a: usize, sum: &mut f64| *sum += solid.mass[a] * own.velocity[a].dot(&kick[a]);
+            add_sums(rows, add, &mut dragged);
+        }
+        self.pressures(time).for_each(|load| pressure.add(&growth(load)));
+        self.tractions(time).for_each(|load| traction.add(&growth(load)));
+        let [body, dragged, pressure, mut traction] =
+            match self.is_pulled() || damping > 0.0 || self.is_driven {
+                true => self.team.close_all([body, dragged, pressure, traction]),
+                false => [0.0; 4],
+            };
+        totals.grow(BODY_FORCE, body);
+        totals.grow(DAMPING, -damping * dragged);
         totals.grow(PRESSURE, pressure);
         let springs = self.loads.springs.iter().map(|spring| {
             let mean = |of: &[Vector<D>]| spring.mean(&solid.mass, |a| of[a]);

@@ -48,20 +48,11 @@ impl<const D: usize> TotalLagrangian<D> {
     /// What ranks would have whose particles begin and end where `bounds` has it.
     pub(super) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
         let whole = self.whole()?;
-        let vectors = 1
-            + usize::from(self.has_images)
-            + usize::from(self.dissipation.is_viscous() || self.has_images)
-                * (1 + usize::from(self.has_images));
+        // Where there are images, copies are fetched before and after these are made.
+        let fields = 1 + usize::from(self.dissipation.is_viscous() || self.has_images);
+        let vectors = fields * (1 + usize::from(self.has_images));
         let numbers = vectors * D + whole.operator.tensions() * D * D;
-        let ranks = bounds.windows(2).zip(Part::loads(self, bounds));
-        let share = |(ends, load): (&[usize], f64)| {
-            let slots = Self::slots(whole, ends[0]..ends[1], bounds);
-            let copies = slots.copies.len();
-            let bytes = copies * numbers * size_of::<f64>();
-            let (particles, partners) = (ends[1] - ends[0], slots.partners());
-            RankShare { particles, copies, partners, bytes, load }
-        };
-        Ok(ranks.map(share).collect())
+        Ok(Part::planned(self, bounds, numbers, |own| Self::slots(whole, own, bounds)))
     }
 
     /// The particles of a rank, with the same coefficients.

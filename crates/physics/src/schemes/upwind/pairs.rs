@@ -6,8 +6,9 @@ use piola_formulas::pairs::upwind::{Exchange, ExchangeSum, ExchangeSums, Reconst
 use super::fields::ColumnsMut;
 use super::{BODY_FORCE, BOUNDARY_MOTION, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
 use crate::operators::{Among, FrozenRows, Sum, Term, gather_parts};
+use crate::parallel::ExactSums;
 use crate::schemes::ledger::{Entry, Total, Totals};
-use crate::schemes::outside::{Acted, Acts, prescribe, push};
+use crate::schemes::outside::{Acted, prescribe, push};
 
 /// The mechanisms of the pass, in the order of its sums.
 const MECHANISMS: [Entry; 3] = [BODY_FORCE, UPWIND_VELOCITY, UPWIND_PRESSURE];
@@ -99,12 +100,14 @@ impl<const D: usize> Upwind<D> {
             position: self.sides[a].position,
             velocity: self.sides[a].velocity,
         };
-        let mut acts = Acts::<2>::default();
+        let [mut traction, mut boundary] = [const { ExactSums::NONE }; 2];
         let loads = self.loaded.iter().map(|load| (load.particle, load.force(time)));
-        push(loads, particle, own.velocity, |total| acts.add(0, total));
-        prescribe(&self.prescribed, time, particle, own.velocity, |total| acts.add(1, total));
-        let [traction, boundary] =
-            if self.is_driven { acts.close(&self.team) } else { Default::default() };
+        push(loads, particle, own.velocity, &mut traction);
+        prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
+        let [traction, boundary] = match self.is_driven {
+            true => self.team.close_all([traction, boundary]),
+            false => Default::default(),
+        };
         totals.drive(TRACTION, &traction);
         totals.drive(BOUNDARY_MOTION, &boundary);
     }

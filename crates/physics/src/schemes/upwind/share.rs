@@ -12,36 +12,29 @@ use crate::operators::{Slots, Support};
 use crate::schemes::{Part, RankRefusal, RankShare};
 
 impl<const D: usize> Upwind<D> {
-    /// The slots of a rank, if all of it can be shared.
-    fn slots(&self, own: Range<usize>, bounds: &[usize]) -> Result<Slots, RankRefusal> {
-        if self.implicit.is_some() {
-            let (what, instead) = ("implicit steps do not run", "take explicit steps");
-            return Err(RankRefusal::Feature { what, instead });
-        }
+    /// The slots of a rank.
+    fn slots(&self, own: Range<usize>, bounds: &[usize]) -> Slots {
         let rank = |b: usize| bounds.partition_point(|&bound| bound <= b) - 1;
         let copies = self.support.list.beside(&own).into_iter().map(|b| (rank(b), b)).collect();
-        Ok(Slots::new(own, Vec::new(), copies))
+        Slots::new(own, Vec::new(), copies)
     }
 
     /// What ranks would have whose particles begin and end where `bounds` has it.
     pub(super) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        if self.implicit.is_some() {
+            let (what, instead) = ("implicit steps do not run", "take explicit steps");
+            return Err(RankRefusal::Feature { what, instead });
+        }
         let slopes = usize::from(self.settings.reconstruction);
         let numbers = UpwindSide::<D>::NUMBERS + slopes * UpwindSlope::<D>::NUMBERS;
-        let ranks = bounds.windows(2).zip(Part::loads(self, bounds));
-        let share = |(ends, load): (&[usize], f64)| {
-            let slots = self.slots(ends[0]..ends[1], bounds)?;
-            let copies = slots.copies.len();
-            let bytes = copies * numbers * size_of::<f64>();
-            let (particles, partners) = (ends[1] - ends[0], slots.partners());
-            Ok(RankShare { particles, copies, partners, bytes, load })
-        };
-        ranks.map(share).collect()
+        Ok(Part::planned(self, bounds, numbers, |own| self.slots(own, bounds)))
     }
 
     /// The particles of a rank, with the same coefficients.
     pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
+        self.planned(&[0, self.particles.len()])?;
         let own = part.own();
-        let slots = self.slots(own.clone(), &part.bounds)?;
+        let slots = self.slots(own.clone(), &part.bounds);
         let team = part.team(&slots)?;
         let (count, all) = (own.len(), slots.iter().count());
         let reconstructed = if self.settings.reconstruction { all } else { 0 };

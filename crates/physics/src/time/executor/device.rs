@@ -72,6 +72,14 @@ impl Executor {
         Ok(self.scheme.inspect(&self.run.state, &mut self.limits))
     }
 
+    /// Lets the formulation here look at the state, which a device or ranks have looked at: for what it has to say of that.
+    pub(super) fn ask(&mut self) {
+        if self.device.is_some() {
+            self.bring();
+            self.scheme.inspect(&self.run.state, &mut Vec::new());
+        }
+    }
+
     /// Goes back to the state before the last step, which led to a failure. What the device says if it
     /// cannot: then the run is at the last mark.
     pub(super) fn step_back(&mut self) -> Option<Failure> {

@@ -2,7 +2,9 @@
 //!
 //! Rank 0 has the run: clock, observers, files. It tells the others what to do, and does the same with its own particles.
 
+use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
@@ -48,16 +50,17 @@ impl Order {
         }
     }
 
-    fn unpack(said: &[f64]) -> Self {
-        match *said {
+    fn unpack(said: &[f64]) -> Option<Self> {
+        Some(match *said {
             [0.0] => Self::Put,
             [1.0, time, step] => Self::Step { time, step },
             [2.0] => Self::Inspect,
             [3.0] => Self::Fetch,
             [4.0] => Self::FetchBefore,
             [5.0] => Self::Costs,
-            _ => Self::End,
-        }
+            [6.0] => Self::End,
+            _ => return None,
+        })
     }
 }
 
@@ -65,6 +68,7 @@ impl Order {
 struct Worker {
     ranks: Arc<dyn Ranks>,
     scheme: Box<dyn Scheme>,
+    kind: IntegratorKind,
     integrator: Box<dyn Integrator>,
     state: Vec<f64>,
     before: Vec<f64>,
@@ -73,6 +77,8 @@ struct Worker {
     health: Health,
     /// Seconds of steps and of looks at states.
     taken: f64,
+    /// What asks this rank to end the run, if it is a process.
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Worker {
@@ -84,18 +90,38 @@ impl Worker {
         let kind = kinds.find(|kind| kind.name() == integrator).ok_or_else(refused)?;
         let integrator = kind.build(scheme.as_mut()).map_err(|_| refused())?;
         let state = scheme.initial_state();
-        let (before, next) = (state.clone(), state.clone());
-        let (limits, health, taken) = (Vec::new(), Health::NEUTRAL, 0.0);
-        let ranks = part.ranks.clone();
-        Ok(Self { ranks, scheme, integrator, state, before, next, limits, health, taken })
+        Ok(Self {
+            ranks: part.ranks.clone(),
+            before: state.clone(),
+            next: state.clone(),
+            scheme,
+            kind,
+            integrator,
+            state,
+            limits: Vec::new(),
+            health: Health::NEUTRAL,
+            taken: 0.0,
+            stop: None,
+        })
+    }
+
+    /// Goes on from another state. What the integrator remembers of the one before may be right for the particles of some
+    /// ranks only, which then would not take part in what the others tell each other.
+    fn take(&mut self, state: Vec<f64>) {
+        self.state = state;
+        if let Ok(integrator) = self.kind.build(self.scheme.as_mut()) {
+            self.integrator = integrator;
+        }
     }
 
     /// Does what rank 0 says, until it says no more.
     fn serve(&mut self) -> Result<(), RankError> {
         loop {
             match Order::unpack(&self.ranks.broadcast(Vec::new())?) {
-                Order::End => return Ok(()),
-                order => self.obey(order)?,
+                // What is no order comes from a rank that has failed.
+                None => return Err(RankError::Lost(0)),
+                Some(Order::End) => return Ok(()),
+                Some(order) => self.obey(order)?,
             }
         }
     }
@@ -103,7 +129,10 @@ impl Worker {
     /// Does what all ranks do. What comes to rank 0, and goes out from it, does so beside this.
     fn obey(&mut self, order: Order) -> Result<(), RankError> {
         match order {
-            Order::Put => self.state = self.ranks.scatter(&[])?,
+            Order::Put => {
+                let state = self.ranks.scatter(&[])?;
+                self.take(state);
+            }
             Order::Fetch => drop(self.ranks.gather(&self.state)?),
             Order::FetchBefore => drop(self.ranks.gather(&self.before)?),
             Order::Costs => drop(self.ranks.gather(&self.costs())?),
@@ -143,17 +172,18 @@ impl Worker {
         }
     }
 
-    /// Looks at the state; whether any rank has something to say of it, for rank 0.
-    fn inspect(&mut self) -> Result<bool, RankError> {
+    /// Looks at the state. For rank 0: whether any rank has something to say of it, and whether any is asked to stop.
+    fn inspect(&mut self) -> Result<[bool; 2], RankError> {
         let start = Instant::now();
         self.health = self.scheme.inspect(&self.state, &mut self.limits);
         self.taken += start.elapsed().as_secs_f64();
         if let Some(lost) = self.lost() {
             return Err(lost);
         }
-        let own = f64::from(u8::from(self.scheme.warning().is_some()));
-        let told = self.ranks.gather(&[own])?;
-        Ok(told.iter().flatten().any(|said| *said > 0.0))
+        let stops = self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed));
+        let own = [self.scheme.warning().is_some(), stops].map(|said| f64::from(u8::from(said)));
+        let told = self.ranks.gather(&own)?;
+        Ok([0, 1].map(|what| told.iter().any(|said| said.get(what).is_some_and(|it| *it > 0.0))))
     }
 }
 
@@ -162,7 +192,8 @@ struct RankSteps {
     worker: Worker,
     /// Where the rows of each rank stand in a state of all.
     rows: Rows,
-    warns: bool,
+    /// Whether any rank has something to say of the state, and whether any is asked to stop.
+    told: [bool; 2],
     /// The threads that rank 0 computes with, if the ranks are threads.
     pool: Option<ThreadPool>,
     others: Vec<JoinHandle<()>>,
@@ -170,7 +201,7 @@ struct RankSteps {
 
 /// Where the rows of each rank stand in a state of all.
 struct Rows {
-    stretches: Vec<Vec<std::ops::Range<usize>>>,
+    stretches: Vec<Vec<Range<usize>>>,
     tail: usize,
 }
 
@@ -183,7 +214,7 @@ impl Rows {
 
     /// What each rank has of a state: its rows of each column, and what stands behind all columns.
     fn split(&self, state: &[f64]) -> Vec<Vec<f64>> {
-        let of_rank = |own: &Vec<std::ops::Range<usize>>| {
+        let of_rank = |own: &Vec<Range<usize>>| {
             let rows = own.iter().flat_map(|stretch| &state[stretch.clone()]);
             rows.chain(&state[self.tail..]).copied().collect()
         };
@@ -210,19 +241,16 @@ impl Rows {
 impl RankSteps {
     /// Says what all do, and does it.
     fn order(&mut self, order: Order) -> Result<(), RankError> {
-        let Self { worker, pool, warns, .. } = self;
+        let Self { worker, pool, told, .. } = self;
         worker.ranks.broadcast(order.pack())?;
-        let mut run = || match order {
+        let run = || match order {
             Order::Inspect => {
-                *warns = worker.inspect()?;
+                *told = worker.inspect()?;
                 Ok(())
             }
             order => worker.obey(order),
         };
-        match pool {
-            Some(pool) => pool.install(run),
-            None => run(),
-        }
+        on(pool.as_ref(), run)
     }
 
     /// Brings a state here.
@@ -236,7 +264,8 @@ impl RankSteps {
 impl DeviceSteps for RankSteps {
     fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
         self.worker.ranks.broadcast(Order::Put.pack())?;
-        self.worker.state = self.worker.ranks.scatter(&self.rows.split(state))?;
+        let own = self.worker.ranks.scatter(&self.rows.split(state))?;
+        self.worker.take(own);
         Ok(())
     }
 
@@ -259,7 +288,11 @@ impl DeviceSteps for RankSteps {
     }
 
     fn warns(&self) -> bool {
-        self.warns
+        self.told[0]
+    }
+
+    fn stops(&self) -> bool {
+        self.told[1]
     }
 
     fn costs(&self) -> Result<Vec<RankCosts>, StepsError> {
@@ -285,9 +318,19 @@ impl DeviceSteps for RankSteps {
 
 impl Drop for RankSteps {
     fn drop(&mut self) {
-        // Those that are lost do not hear it, and have ended.
-        drop(self.worker.ranks.broadcast(Order::End.pack()));
+        // Those that are lost do not hear it, and have ended. Where this rank fails the others may wait for something else.
+        if !thread::panicking() {
+            drop(self.worker.ranks.broadcast(Order::End.pack()));
+        }
         self.others.drain(..).for_each(|other| drop(other.join()));
+    }
+}
+
+/// Runs `body` on the threads of a pool, if there is one.
+fn on<T: Send>(pool: Option<&ThreadPool>, body: impl FnOnce() -> T + Send) -> T {
+    match pool {
+        Some(pool) => pool.install(body),
+        None => body(),
     }
 }
 
@@ -306,33 +349,30 @@ impl Executor {
         let (scheme, integrator) = (self.scheme.as_ref(), self.integrator.name());
         // What cannot be shared is refused before there are threads.
         scheme.shares(&Part::bounds(scheme, count)?)?;
-        let ranks = Threads::group(count).into_iter();
-        let parts = ranks.map(|rank| part(scheme, Arc::new(rank)));
-        let parts = parts.collect::<Result<Vec<_>, _>>()?;
-        let threads = (rayon::current_num_threads() / parts.len()).max(1);
-        let pool = || ThreadPoolBuilder::new().num_threads(threads).build();
-        let made: Vec<Result<Worker, RankRefusal>> = thread::scope(|scope| {
-            let make = |part| scope.spawn(move || Worker::new(scheme, part, integrator));
-            let made: Vec<_> = parts.iter().map(make).collect();
+        let threads = (rayon::current_num_threads() / count).max(1);
+        let pool = || ThreadPoolBuilder::new().num_threads(threads).build().ok();
+        let make = |rank: Threads| {
+            // Whoever fails lets go of its rank, so that those who wait for it are told.
+            let part = part(scheme, Arc::new(rank))?;
+            let pool = pool();
+            let worker = on(pool.as_ref(), || Worker::new(scheme, &part, integrator))?;
+            Ok((worker, part, pool))
+        };
+        let made: Vec<Result<_, RankRefusal>> = thread::scope(|scope| {
+            let ranks = Threads::group(count).into_iter();
+            let made: Vec<_> = ranks.map(|rank| scope.spawn(|| make(rank))).collect();
             let join = |(rank, made): (usize, thread::ScopedJoinHandle<'_, _>)| {
                 made.join().unwrap_or_else(|_| Err(RankError::Lost(rank).into()))
             };
             made.into_iter().enumerate().map(join).collect()
         });
-        let mut workers = made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter();
-        let (Some(worker), Some(part)) = (workers.next(), parts.first()) else { return Ok(()) };
-        let others = workers.map(|mut worker| {
-            let pool = pool();
-            thread::spawn(move || {
-                // Whoever waits for a rank that has ended is told.
-                let _ended = match pool {
-                    Ok(pool) => pool.install(|| worker.serve()),
-                    Err(_) => worker.serve(),
-                };
-            })
-        });
-        let others = others.collect();
-        self.lead_with(worker, part, (pool().ok(), others))
+        let mut made = made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter();
+        let Some((worker, part, pool)) = made.next() else { return Ok(()) };
+        let serve = |(mut worker, _, pool): (Worker, Part, Option<ThreadPool>)| {
+            thread::spawn(move || drop(on(pool.as_ref(), || worker.serve())))
+        };
+        let others = made.map(serve).collect();
+        self.lead_with(worker, &part, (pool, others))
     }
 
     /// Lets these ranks take the steps from now on, of which this process is number 0; the others [`serve`](Self::serve).
@@ -345,13 +385,15 @@ impl Executor {
         self.lead_with(worker, &part, (None, Vec::new()))
     }
 
-    /// Takes part in a run of several ranks, of which this process is not number 0, until that ends it.
+    /// Takes part in a run of several ranks, of which this process is not number 0, until that ends it, which it does soon
+    /// after `stop` is set.
     ///
     /// # Errors
     /// As [`Self::use_ranks`], and where a rank is lost.
-    pub fn serve(self, ranks: Arc<dyn Ranks>) -> Result<(), RankRefusal> {
+    pub fn serve(self, ranks: Arc<dyn Ranks>, stop: Arc<AtomicBool>) -> Result<(), RankRefusal> {
         let part = part(self.scheme.as_ref(), ranks)?;
         let mut worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.name())?;
+        worker.stop = Some(stop);
         drop(self);
         Ok(worker.serve()?)
     }
@@ -363,7 +405,7 @@ impl Executor {
         (pool, others): (Option<ThreadPool>, Vec<JoinHandle<()>>),
     ) -> Result<(), RankRefusal> {
         let rows = Rows::of(self.scheme.as_ref(), part);
-        let steps = RankSteps { worker, rows, warns: false, pool, others };
+        let steps = RankSteps { worker, rows, told: [false; 2], pool, others };
         self.use_steps(Box::new(steps)).map_err(|error| match error {
             StepsError::Ranks(error) => error.into(),
             StepsError::Device(_) => RankRefusal::Formulation(self.scheme.description().name),
