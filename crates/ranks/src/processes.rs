@@ -33,9 +33,12 @@ fn told(number: impl Fn(&str) -> Option<usize>) -> Option<usize> {
 mod tests {
     use super::*;
 
+    /// What starts processes, what it tells one of them, and how many there are by that.
+    type Start = (&'static str, &'static [(&'static str, &'static str)], Option<usize>);
+
     #[test]
     fn what_starts_processes_tells_how_many_they_are() {
-        let cases: [(&str, &[(&str, &str)], Option<usize>); 12] = [
+        let cases: [Start; 12] = [
             ("by hand", &[], None),
             ("mpirun of Open MPI", &[(SIZES[0], "4"), (RANK, "0")], Some(4)),
             ("mpirun of one process", &[(SIZES[0], "1"), (RANK, "0")], Some(1)),
