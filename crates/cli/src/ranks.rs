@@ -12,13 +12,9 @@ use crate::exit::{Exit, Fault};
 /// MPI cannot be used.
 #[cfg(feature = "mpi")]
 pub fn start() -> Result<Option<Arc<dyn Ranks>>, Fault> {
-    let started = piola_ranks::Mpi::start().map_err(|error| Fault::new(Exit::FailedRun, error))?;
+    let started = piola_mpi::Mpi::start().map_err(|error| Fault::new(Exit::FailedRun, error))?;
     Ok(started.filter(|ranks| ranks.size() > 1).map(|ranks| Arc::new(ranks) as Arc<dyn Ranks>))
 }
-
-/// Variables by which what starts processes tells them how many they are.
-#[cfg(not(feature = "mpi"))]
-const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
 
 /// No rank: the program is built without MPI.
 ///
@@ -26,14 +22,14 @@ const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
 /// There are others, which would all do the same.
 #[cfg(not(feature = "mpi"))]
 pub fn start() -> Result<Option<Arc<dyn Ranks>>, Fault> {
-    let told = SIZES.iter().filter_map(|name| std::env::var(name).ok()?.parse::<usize>().ok());
-    match told.max().unwrap_or(1) {
-        0 | 1 => Ok(None),
-        size => Err(Fault::new(
+    match piola_ranks::processes() {
+        None | Some(0 | 1) => Ok(None),
+        Some(size) => Err(Fault::new(
             Exit::BadCase,
             format_args!(
-                "{size} processes were started, but this program is built without MPI, so that each would do all: build \
-                 it with `cargo build --release --features mpi`, or start one process with `--ranks {size}`"
+                "this is one of {size} processes, but the program is built without MPI, so that each of them would do \
+                 the whole run: build it with `cargo build --release --features mpi`, or start a single process, with \
+                 `--ranks {size}`"
             ),
         )),
     }

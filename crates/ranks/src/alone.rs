@@ -1,7 +1,6 @@
 //! A single rank.
 
-use super::message::{check, check_length, check_parts};
-use super::{Message, RankError, Ranks};
+use super::{Message, RankError, Ranks, check_exchange, check_length, check_parts};
 
 /// The only rank of a run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,7 +16,7 @@ impl Ranks for Alone {
     }
 
     fn exchange(&self, send: &[Message], receive: &mut [Message]) -> Result<(), RankError> {
-        check(send, receive, 0, 1)?;
+        check_exchange(send, receive, 0, 1)?;
         for (sent, received) in send.iter().zip(receive) {
             check_length(0, received.numbers.len(), sent.numbers.len())?;
             received.numbers.copy_from_slice(&sent.numbers);

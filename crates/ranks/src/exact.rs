@@ -39,7 +39,7 @@ const MOST: u32 = 1 << 30;
 pub struct Exact {
     /// The number is the sum of `limbs[k]` 2³²ᵏ⁻¹⁰⁷⁴ over the first [`DIGITS`]. A NaN counts as both infinities.
     limbs: [i64; LIMBS],
-    /// No entry but the last of the number is larger than this times 2³², in magnitude.
+    /// No entry but the last of the number is larger than this times 2³², in magnitude: all are 0 if it is.
     load: u32,
 }
 
@@ -81,18 +81,6 @@ impl Exact {
         self.limbs[DIGITS + 1] += i64::from(term != f64::INFINITY);
     }
 
-    /// Adds the terms of another sum.
-    pub fn merge(&mut self, other: &Self) {
-        if self.load + other.load > MOST {
-            self.carry();
-        }
-        self.load += other.load;
-        self.limbs
-            .iter_mut()
-            .zip(&other.limbs)
-            .for_each(|(limb, part)| *limb = limb.wrapping_add(*part));
-    }
-
     /// The entries, which may be replaced by their sums over up to 2³⁰ ranks, entry by entry: the sum is then that over
     /// the terms of all of them.
     pub fn limbs_mut(&mut self) -> &mut [i64; LIMBS] {
@@ -130,6 +118,9 @@ impl Exact {
         if positive || negative {
             let infinite = if negative { f64::NEG_INFINITY } else { f64::INFINITY };
             return if positive && negative { f64::NAN } else { infinite };
+        }
+        if self.load == 0 {
+            return 0.0;
         }
         let mut sum = self.clone();
         sum.carry();

@@ -1,4 +1,5 @@
-//! Ranks that compute a run together: processes of MPI, or threads of one process with a memory of their own each.
+//! Ranks that compute a run together: threads of one process with a memory of their own each, or processes, as those of
+//! MPI are in the crate `piola-mpi`.
 //!
 //! A rank owns a part of the particles and has copies of those of other ranks that its own see. What ranks tell each
 //! other goes through [`Ranks`], and nothing that a run computes depends on how many there are: sums over particles
@@ -7,15 +8,13 @@
 mod alone;
 mod exact;
 mod message;
-#[cfg(feature = "mpi")]
-mod mpi;
+mod processes;
 mod threads;
 
 pub use alone::Alone;
 pub use exact::{Exact, LIMBS};
-pub use message::{Message, RankError};
-#[cfg(feature = "mpi")]
-pub use mpi::Mpi;
+pub use message::{Message, RankError, check_exchange, check_length, check_parts};
+pub use processes::processes;
 pub use threads::Threads;
 
 /// What a rank can tell the others. All ranks make the same calls in the same order, but for the partners of an exchange.

@@ -79,7 +79,10 @@ pub enum RankError {
 }
 
 /// Refuses an exchange that no rank `rank` of `size` can make, whatever the others do.
-pub(crate) fn check(
+///
+/// # Errors
+/// [`RankError::Nobody`] and [`RankError::Own`].
+pub fn check_exchange(
     send: &[Message],
     receive: &[Message],
     rank: usize,
@@ -96,12 +99,18 @@ pub(crate) fn check(
 }
 
 /// Refuses a message of another length than there is room for.
-pub(crate) fn check_length(rank: usize, expected: usize, got: usize) -> Result<(), RankError> {
+///
+/// # Errors
+/// [`RankError::Length`].
+pub fn check_length(rank: usize, expected: usize, got: usize) -> Result<(), RankError> {
     if got == expected { Ok(()) } else { Err(RankError::Length { rank, expected, got }) }
 }
 
 /// Refuses to share out anything but one part for each rank.
-pub(crate) fn check_parts(all: &[Vec<f64>], size: usize) -> Result<(), RankError> {
+///
+/// # Errors
+/// [`RankError::Parts`].
+pub fn check_parts(all: &[Vec<f64>], size: usize) -> Result<(), RankError> {
     if all.len() == size {
         Ok(())
     } else {

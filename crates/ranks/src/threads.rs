@@ -3,8 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use super::message::{check, check_length, check_parts};
-use super::{Message, RankError, Ranks};
+use super::{Message, RankError, Ranks, check_exchange, check_length, check_parts};
 
 /// A rank that is a thread of this process.
 ///
@@ -183,7 +182,7 @@ impl Ranks for Threads {
 
     fn exchange(&self, send: &[Message], receive: &mut [Message]) -> Result<(), RankError> {
         self.attempt(|| {
-            check(send, receive, self.rank, self.size)?;
+            check_exchange(send, receive, self.rank, self.size)?;
             for message in send {
                 self.send(Call::Exchange, message.rank, message.numbers.iter().copied())?;
             }

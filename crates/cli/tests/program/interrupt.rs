@@ -1,66 +1,10 @@
 //! Ctrl-C and requests to terminate, on systems that have signals.
 #![cfg(unix)]
 
-use std::fs;
 use std::io::Read;
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
+use crate::running::Program;
 use crate::support::{BAR, Place, assert_contains};
-
-/// Nothing here takes longer, unless it hangs.
-const PATIENCE: Duration = Duration::from_secs(30);
-
-/// A running program, which does not outlive its test.
-struct Program(Child);
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        // It may have ended already.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-impl Program {
-    fn start(place: &Place, arguments: &str) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_piola"));
-        command.args(arguments.split_whitespace()).current_dir(place.path(""));
-        // Both outputs are far below what a pipe holds, so that nobody has to read meanwhile.
-        Self(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
-    }
-
-    /// Waits until the file at `path` satisfies `ready`.
-    fn wait_for(&mut self, path: &Path, ready: impl Fn(&str) -> bool) {
-        let start = Instant::now();
-        while !fs::read_to_string(path).is_ok_and(|text| ready(&text)) {
-            assert!(start.elapsed() < PATIENCE, "{} is not as expected", path.display());
-            assert_eq!(self.0.try_wait().unwrap(), None, "the program has ended");
-            sleep(Duration::from_millis(5));
-        }
-    }
-
-    /// Sends `signal` and waits for the end; the exit code, stdout and stderr.
-    fn stop(mut self, signal: &str) -> (Option<i32>, String, String) {
-        // The signal goes out through the shell, whose `kill` every system has.
-        let kill = format!("kill -{signal} {}", self.0.id());
-        assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
-        let start = Instant::now();
-        let status = loop {
-            if let Some(status) = self.0.try_wait().unwrap() {
-                break status;
-            }
-            assert!(start.elapsed() < PATIENCE, "the program goes on after SIG{signal}");
-            sleep(Duration::from_millis(5));
-        };
-        let (mut stdout, mut stderr) = (String::new(), String::new());
-        self.0.stdout.take().unwrap().read_to_string(&mut stdout).unwrap();
-        self.0.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
-        (status.code(), stdout, stderr)
-    }
-}
 
 /// Overrides for a run that never ends: upwinding damps it, so that it does not blow up either.
 const ENDLESS: [&str; 4] =
@@ -71,7 +15,7 @@ fn an_interrupted_run_leaves_its_state() {
     for signal in ["INT", "TERM"] {
         let place = Place::with_bar();
         let mut program =
-            Program::start(&place, &format!("run bar/case.toml --set {}", ENDLESS.join(" --set ")));
+            Program::piola(&place, &format!("run bar/case.toml --set {}", ENDLESS.join(" --set ")));
         let series = place.path("results/bar/particles.pvd");
         program.wait_for(&series, |text| text.matches("<DataSet").count() > 1);
         let (code, stdout, _) = program.stop(signal);
@@ -98,7 +42,7 @@ fn an_interrupted_verification_says_so() {
     let place = Place::new();
     let coarse = BAR.replace("set = [\"time.end=0.01\"]", &format!("set = {ENDLESS:?}"));
     place.write("bar/case.toml", coarse);
-    let mut program = Program::start(&place, "verify bar");
+    let mut program = Program::piola(&place, "verify bar");
     let mut first = [0; 7];
     program.0.stderr.as_mut().unwrap().read_exact(&mut first).unwrap();
     assert_eq!(&first, b"running");
@@ -115,7 +59,7 @@ fn an_interrupted_sweep_keeps_what_it_has() {
         format!("sweep bar/case.toml --over time.end=0.01,1e6,2e6 --out out --set {endless}");
     // Outputs are rare enough for the short member too.
     let arguments = arguments.replace("every=100", "every=0.01").replace("1e6", "200");
-    let mut program = Program::start(&place, &arguments.replace("2e6", "201"));
+    let mut program = Program::piola(&place, &arguments.replace("2e6", "201"));
     program.wait_for(&place.path("out/sweep.csv"), |text| text.contains(",completed,"));
     program.wait_for(&place.path("out/time.end=200/steps.csv"), |text| text.lines().count() > 2);
     let (code, stdout, stderr) = program.stop("INT");

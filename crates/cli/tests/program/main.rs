@@ -7,11 +7,14 @@ mod check_and_new;
 mod generated;
 mod interrupt;
 mod mcp;
+#[cfg(all(unix, feature = "mpi"))]
+mod mpi;
 mod page;
 mod report;
 mod repository;
 mod resume;
 mod run;
+mod running;
 mod support;
 mod sweep;
 mod verify;

@@ -1,14 +1,13 @@
 //! Runs that are killed, and runs that programs watch.
 #![cfg(unix)]
 
-use std::fs;
-use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
 use serde_json::Value;
 
+use crate::running::send;
 use crate::support::{BAR, Place, assert_contains};
 
 /// The tiny bar for some ten thousand steps, with a checkpoint every thousand.
@@ -24,28 +23,6 @@ fn long_bar() -> Place {
         .replacen("\n[[boundary]]", checkpoint, 1);
     place.write("bar/case.toml", text);
     place
-}
-
-fn steps_of_newest(place: &Place) -> Option<u64> {
-    let folder = fs::read_dir(place.path("results/bar/checkpoints")).ok()?;
-    let name = |path: PathBuf| path.file_name()?.to_str()?.strip_prefix("step_")?.parse().ok();
-    folder.filter_map(|entry| name(entry.ok()?.path())).max()
-}
-
-/// The bytes of all results that do not tell the time of day.
-fn results(place: &Place, folder: &str) -> Vec<(String, Vec<u8>)> {
-    let mut all = Vec::new();
-    for part in ["", "particles", "plots"] {
-        let Ok(entries) = fs::read_dir(place.path(folder).join(part)) else { continue };
-        for path in entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
-            let name = path.strip_prefix(place.path(folder)).unwrap().display().to_string();
-            if name != "run.json" && name != "report.html" {
-                all.push((name, fs::read(path).unwrap()));
-            }
-        }
-    }
-    all.sort();
-    all
 }
 
 /// Killed a hundred times at random moments, a run loses what came after its last checkpoint and
@@ -71,7 +48,7 @@ fn a_run_survives_a_hundred_kills() {
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(!stderr.contains("panicked") && !stderr.contains("error"), "{count}: {stderr}");
         finished += u64::from(ended.is_some_and(|status| status.success()));
-        let now = steps_of_newest(&place);
+        let now = place.newest_checkpoint("results/bar");
         assert!(now >= newest, "kill {count}: {now:?} after {newest:?}");
         after_checkpoint += u64::from(now.is_some());
         newest = now;
@@ -80,7 +57,7 @@ fn a_run_survives_a_hundred_kills() {
     assert!(finished < 100, "some kills hit a run that was under way");
     let (stdout, _) = place.run("run bar/case.toml --resume", 0);
     assert_contains(&stdout, &["completed", "resumed     from t = "]);
-    assert_eq!(results(&place, "results/bar"), results(&place, "whole"));
+    assert_eq!(place.results("results/bar"), place.results("whole"));
 }
 
 #[test]
@@ -94,16 +71,15 @@ fn a_terminated_run_goes_on_where_it_stopped() {
     while !place.path("results/bar/particles.pvd").exists() {
         sleep(Duration::from_millis(1));
     }
-    let kill = format!("kill -TERM {}", child.id());
-    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    send("TERM", child.id());
     let output = child.wait_with_output().unwrap();
     let stdout = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(130), "{stdout}");
-    assert!(steps_of_newest(&place).is_some(), "{stdout}");
+    assert!(place.newest_checkpoint("results/bar").is_some(), "{stdout}");
     // Its extra frame at the moment it stopped is none of the whole run's.
     let (stdout, _) = place.run("run bar/case.toml --resume", 0);
     assert_contains(&stdout, &["completed", "resumed     from t = "]);
-    assert_eq!(results(&place, "results/bar"), results(&place, "whole"));
+    assert_eq!(place.results("results/bar"), place.results("whole"));
     let record: Value = serde_json::from_str(&place.read("results/bar/run.json")).unwrap();
     assert_eq!(record["resumed_at"].as_array().unwrap().len(), 1);
 }
@@ -112,10 +88,10 @@ fn a_terminated_run_goes_on_where_it_stopped() {
 fn resuming_another_case_is_refused() {
     let place = long_bar();
     place.run("run bar/case.toml", 0);
-    let before = results(&place, "results/bar");
+    let before = place.results("results/bar");
     let (_, stderr) = place.run("run bar/case.toml --resume --set scheme.tau_velocity=0.25", 2);
     assert_contains(&stderr, &["belongs to another case", "nothing was changed", "--out"]);
-    assert_eq!(results(&place, "results/bar"), before);
+    assert_eq!(place.results("results/bar"), before);
 }
 
 /// Every line is an object with an `event`, in the order start, progress, end.

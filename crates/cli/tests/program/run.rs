@@ -133,3 +133,23 @@ fn names_that_are_not_utf8_are_fine() {
     let (stdout, _) = ended(command.arg(name), 0);
     assert_contains(&stdout, &["1 passed"]);
 }
+
+/// Each of several processes would do the whole run, and write it to the same folder.
+#[cfg(not(feature = "mpi"))]
+#[test]
+fn one_of_several_processes_needs_mpi() {
+    let place = Place::with_bar();
+    for (variable, value) in [
+        ("OMPI_COMM_WORLD_SIZE", "3"),
+        ("PMI_SIZE", "3"),
+        ("SLURM_STEP_NUM_TASKS", "3"),
+        ("PMIX_RANK", "2"),
+    ] {
+        let (_, stderr) = ended(place.piola("run bar/case.toml").env(variable, value), 2);
+        assert_contains(&stderr, &["one of 3 processes", "--features mpi", "`--ranks 3`"]);
+        assert!(!place.path("results").exists());
+    }
+    // A shell in an allocation of Slurm, and a command that needs no others.
+    ended(place.piola("run bar/case.toml --out alone").env("SLURM_STEP_NUM_TASKS", "1"), 0);
+    ended(place.piola("check bar/case.toml").env("PMI_SIZE", "3"), 0);
+}

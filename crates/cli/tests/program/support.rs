@@ -1,5 +1,6 @@
 //! What the tests share: a tiny case, and the program in a folder of its own.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -97,6 +98,25 @@ impl Place {
     pub fn read(&self, name: &str) -> String {
         let path = self.path(name);
         fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    /// The bytes of all results in a folder that do not tell the time of day, by name.
+    pub fn results(&self, folder: &str) -> BTreeMap<String, Vec<u8>> {
+        let folder = self.path(folder);
+        let entries = ["", "particles", "plots"].map(|part| fs::read_dir(folder.join(part)));
+        let paths = entries.into_iter().flatten().flatten().map(|entry| entry.unwrap().path());
+        let files = paths.filter(|path| path.is_file()).map(|path| {
+            let name = path.strip_prefix(&folder).unwrap().display().to_string();
+            (name, fs::read(path).unwrap())
+        });
+        files.filter(|(name, _)| name != "run.json" && name != "report.html").collect()
+    }
+
+    /// The steps before the newest checkpoint in a folder of results, if there is one.
+    pub fn newest_checkpoint(&self, folder: &str) -> Option<u64> {
+        let folder = fs::read_dir(self.path(folder).join("checkpoints")).ok()?;
+        let name = |path: PathBuf| path.file_name()?.to_str()?.strip_prefix("step_")?.parse().ok();
+        folder.filter_map(|entry| name(entry.ok()?.path())).max()
     }
 
     /// The program with these arguments, separated by blanks.

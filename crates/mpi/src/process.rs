@@ -1,25 +1,19 @@
 //! Ranks that are processes of MPI.
 
-use std::env;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, ThreadId};
 
-use ::mpi::Count;
-use ::mpi::collective::SystemOperation;
-use ::mpi::datatype::{Equivalence, PartitionMut};
-use ::mpi::environment::{Threading, Universe, initialize_with_threading};
-use ::mpi::request::multiple_scope;
-use ::mpi::topology::{Process, SimpleCommunicator};
-use ::mpi::traits::*;
+use mpi::Count;
+use mpi::collective::SystemOperation;
+use mpi::datatype::{Equivalence, PartitionMut};
+use mpi::environment::{Threading, Universe, initialize_with_threading};
+use mpi::request::multiple_scope;
+use mpi::topology::{Process, SimpleCommunicator};
+use mpi::traits::*;
 
-use super::message::{check, check_length, check_parts};
-use super::{Message, RankError, Ranks};
-
-/// How many processes there are, as what starts them tells them: Open MPI, and all that speak PMI (MPICH, Intel, Slurm).
-const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
-
-/// The number of a process, by those that speak PMIx.
-const RANK: &str = "PMIX_RANK";
+use piola_ranks::{
+    Message, RankError, Ranks, check_exchange, check_length, check_parts, processes,
+};
 
 /// What a rank that has panicked, or whose call has failed, ends all with.
 const FAILED: i32 = 1;
@@ -51,9 +45,7 @@ impl Mpi {
     /// # Errors
     /// MPI was started before, does not allow for threads, or is another one than that of `mpirun`.
     pub fn start() -> Result<Option<Self>, RankError> {
-        if SIZES.into_iter().chain([RANK]).all(|name| env::var_os(name).is_none()) {
-            return Ok(None);
-        }
+        let Some(told) = processes() else { return Ok(None) };
         let (universe, threading) = initialize_with_threading(Threading::Funneled)
             .ok_or(RankError::Mpi("it was started before: start it once"))?;
         if threading < Threading::Funneled {
@@ -61,10 +53,11 @@ impl Mpi {
         }
         let world = universe.world();
         let (rank, size) = (world.rank() as usize, world.size() as usize);
-        let mut told = SIZES.iter().filter_map(|name| env::var(name).ok()?.parse().ok());
-        if told.any(|told: usize| told != size) {
+        // Those that another MPI has started do not find each other.
+        if size < told {
             return Err(RankError::Mpi(
-                "`mpirun` is of another MPI than the one this program was built with: use that of the latter",
+                "the processes do not find each other: start them by the `mpirun` of the MPI that this program was built \
+                 with, or under Slurm by `srun --mpi=pmix`",
             ));
         }
         let thread = thread::current().id();
@@ -128,7 +121,7 @@ impl Ranks for Mpi {
 
     fn exchange(&self, send: &[Message], receive: &mut [Message]) -> Result<(), RankError> {
         self.attempt(|world| {
-            check(send, receive, self.rank, self.size)?;
+            check_exchange(send, receive, self.rank, self.size)?;
             send.iter().chain(&*receive).try_for_each(|m| count(m.numbers.len()).map(drop))?;
             let mut lengths = Ok(());
             multiple_scope(send.len() + receive.len(), |scope, requests| {
