@@ -10,8 +10,8 @@ use crate::geometry::Particles;
 /// outside, or on the common face.
 const DEPTH: f64 = 0.5;
 
-/// The pairs of bodies that overlap, a problem each; walls may overlap one another. Of two bodies from files nothing is
-/// known but their particles: they are not compared.
+/// The pairs of bodies that overlap, a problem each. Walls may overlap one another; those in the buffer of an opening are
+/// told of with it. Of two bodies from files nothing is known but their particles: they are not compared.
 pub(super) fn overlaps<const D: usize>(case: &Case, particles: &Particles<D>) -> Vec<Problem> {
     // Particles are stored body by body.
     let start = |body: usize| particles.body.partition_point(|&of| (of as usize) < body);
@@ -29,8 +29,11 @@ pub(super) fn overlaps<const D: usize>(case: &Case, particles: &Particles<D>) ->
         for (other, outer) in case.bodies.iter().enumerate() {
             let (low, high) = &boxes[other];
             let is_near = (0..D).all(|axis| min[axis] <= high[axis] && low[axis] <= max[axis]);
-            let are_walls = body.wall.is_some() && outer.wall.is_some();
-            if other == number || !is_near || are_walls || found.contains(&[other, number]) {
+            let is_exempt = |one: &Body, two: &Body| {
+                one.wall.is_some() && (two.wall.is_some() || two.opening.is_some())
+            };
+            let may_overlap = is_exempt(body, outer) || is_exempt(outer, body);
+            if other == number || !is_near || may_overlap || found.contains(&[other, number]) {
                 continue;
             }
             let first = rows[other].start;
