@@ -7,9 +7,12 @@ The sides are Wigley's with fuller ends and sections, under water
 
 and vertical above it, up to a flat deck."""
 
-import struct
 import sys
 from math import cos, pi, sin
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+import stl
 
 numbers = [float(text) for text in sys.argv[1:]]
 length, beam, draught, freeboard, along, down = numbers + [1.2, 0.5, 0.2, 0.15, 40, 12][len(numbers) :]
@@ -50,13 +53,8 @@ def cone(facet):
     return (a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) / 6
 
 
-single = struct.Struct("<3f")
-surface = [[single.unpack(single.pack(*corner)) for corner in facet] for facet in facets()]
-with open("hull.stl", "wb") as file:
-    file.write(b"a hull".ljust(80) + struct.pack("<I", len(surface)))
-    for facet in surface:
-        # The normal is that of the corners, whatever stands here.
-        file.write(bytes(12) + b"".join(single.pack(*corner) for corner in facet) + bytes(2))
+surface = stl.rounded(facets())
+stl.write("hull.stl", "a hull", surface)
 
 # The cones to what is under water fill it, as their tip is in the plane of the water line.
 cones = [(cone(facet), sum(corner[2] for corner in facet) / 4) for facet in surface]

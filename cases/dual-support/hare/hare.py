@@ -1,9 +1,12 @@
 """Makes the surface of a hare, ellipsoids that run into each other, as a binary STL, and prints its volume and centroid:
 python hare.py [cells over the height]"""
 
-import struct
 import sys
 from math import exp, log, sqrt
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+import stl
 
 CELLS = int(sys.argv[1]) if len(sys.argv) > 1 else 19
 SHARP = 24.0  # the larger, the less the ellipsoids run into each other, 1/m
@@ -98,13 +101,8 @@ def dot(u, v):
     return sum(p * q for p, q in zip(u, v))
 
 
-single = struct.Struct("<3f")
-surface = [[single.unpack(single.pack(*corner)) for corner in facet] for facet in facets()]
-with open("hare.stl", "wb") as file:
-    file.write(b"a hare".ljust(80) + struct.pack("<I", len(surface)))
-    for facet in surface:
-        # The normal is that of the corners, whatever stands here.
-        file.write(bytes(12) + b"".join(single.pack(*corner) for corner in facet) + bytes(2))
+surface = stl.rounded(facets())
+stl.write("hare.stl", "a hare", surface)
 
 # Cones from the origin to the facets.
 cones = [dot(facet[0], normal([(0.0,) * 3, facet[1], facet[2]])) / 6.0 for facet in surface]

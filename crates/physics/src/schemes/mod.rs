@@ -26,6 +26,7 @@ pub mod transport_velocity;
 pub mod upwind;
 pub mod world;
 
+#[doc(hidden)]
 pub use compiled::{Doors, compiled};
 pub use coupled::CoupledScheme;
 pub use description::{Capability, NEWTON_ITERATIONS, SchemeDescription};

@@ -13,6 +13,7 @@ mod functions;
 mod hostile;
 mod implicit;
 mod integrators;
+mod overlaps;
 mod overrides;
 mod solids;
 mod sweeps;

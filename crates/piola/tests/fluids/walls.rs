@@ -265,6 +265,17 @@ fn a_particle_that_touches_a_wall_comes_to_rest_in_front_of_it() {
     assert!((speed - 1.0).abs() < 0.02, "nothing holds it along the wall: {speed}");
 }
 
+/// With an odd number of particles across one is on the axis of the bar, and its neighbours flow out to all sides.
+/// Nothing but (80) stops it: after 12 us it was 0.6 spacings behind the face.
+#[test]
+fn the_axis_of_a_flattened_bar_stays_in_front_of_the_wall() {
+    let bar = include_str!("../../../../cases/ctvf/taylor-bar/case.toml");
+    let finished = run(bar, &["parameters.across=5", "time.end=20e-6"]);
+    assert_eq!(finished.summary.outcome, Outcome::Completed);
+    let bottom = values(&finished, "bottom.position.z");
+    assert!(bottom.iter().all(|z| *z > 0.0), "{bottom:?}");
+}
+
 /// Fluid between two cylinders of radii 1/2 and 1, of which the surface of the inner one runs with 1/2: between them
 /// `u = (1/r - r)/3`, and the outer one has the moment `4 pi mu/3`.
 const CYLINDERS: &str = r#"

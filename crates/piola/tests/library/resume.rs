@@ -105,13 +105,16 @@ fn cases() -> Vec<PathBuf> {
 #[test]
 fn every_case_resumes_to_the_bit() {
     // Most of a run is on one thread: as many cases at a time as there are cores.
+    cases().par_iter().for_each(|path| resumes_to_the_bit(path, None));
+}
+
+/// Which cases run on several ranks.
+#[test]
+fn solids_in_explicit_steps_are_shared() {
     let cases = cases();
-    let shared: Vec<&str> = cases
-        .par_iter()
-        .filter(|path| resumes_to_the_bit(path, None))
-        .filter_map(|path| path.parent()?.file_name()?.to_str())
-        .collect();
-    assert_eq!(shared, SHARED);
+    let shared = cases.par_iter().filter(|path| on_ranks(path, None, &[]).is_some());
+    let names = shared.filter_map(|path| path.parent()?.file_name()?.to_str());
+    assert_eq!(names.collect::<Vec<&str>>(), SHARED);
 }
 
 /// The cases of which several ranks have a part each.
@@ -145,7 +148,7 @@ fn implicit_steps_resume_to_the_bit() {
     ];
     for (name, variant) in runs {
         let path = all.iter().find(|path| path.ends_with(name)).unwrap();
-        let _is_shared = resumes_to_the_bit(path, Some(variant));
+        resumes_to_the_bit(path, Some(variant));
     }
 }
 
@@ -156,20 +159,17 @@ fn solids_of_each_kind_in_a_fluid_resume_to_the_bit() {
     let all = cases();
     let slab = all.iter().find(|path| path.ends_with("slab/case.toml")).unwrap();
     let variants = ["upwind", "upwind-damped", "upwind-implicit", "hypoelastic-fine"];
-    variants.par_iter().for_each(|variant| {
-        let _is_shared = resumes_to_the_bit(slab, Some(variant));
-    });
+    variants.par_iter().for_each(|variant| resumes_to_the_bit(slab, Some(variant)));
 }
 
-/// Whether part of it was on several ranks.
-fn resumes_to_the_bit(path: &Path, variant: Option<&str>) -> bool {
+fn resumes_to_the_bit(path: &Path, variant: Option<&str>) {
     // What is drawn and packed only takes time here; one picture and five files have it all.
     let set = ["output.compression='none'"];
     let case = load(path, variant, &set);
     let end = *case.time.end;
     if end == 0.0 {
         // Nothing moves, and there is nothing to break off.
-        return false;
+        return;
     }
     let sparse = |mut case: Case| {
         case.output.every.value = end / 5.0;
@@ -203,7 +203,6 @@ fn resumes_to_the_bit(path: &Path, variant: Option<&str>) -> bool {
     assert_eq!(last.ranks.is_empty(), shared.is_none(), "{}", path.display());
     last.ranks.clear();
     assert_eq!(last, unbroken, "{}", path.display());
-    shared.is_some()
 }
 
 /// A wave in a bar that is over in a blink, in a folder of its own.

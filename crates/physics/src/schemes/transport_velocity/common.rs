@@ -4,6 +4,7 @@
 use piola_formulas::pairs::Record;
 use piola_formulas::pairs::fluid::FluidSide;
 
+use super::barrier::Hold;
 use super::fields::{Columns, ColumnsMut};
 use super::shifting::Iteration;
 use super::sides::Side;
@@ -53,6 +54,8 @@ pub struct Common<const D: usize> {
     // Scratch, by place.
     pub(super) sides: Vec<Side<D>>,
     pub(super) forces: Vec<Forces<D>>,
+    /// What walls do to what touches them; empty without walls.
+    pub(super) holds: Vec<Hold<D>>,
     /// Where free surfaces are, if they are looked for, and scratch of the search.
     pub(super) openings: Vec<Opening<D>>,
     pub(super) found: Vec<(Vector<D>, bool)>,
@@ -78,12 +81,14 @@ impl<const D: usize> Common<D> {
         (at_rest, densities): (Vec<AtRest>, &[f64]),
     ) -> Self {
         let count = particles.len();
+        let touched = if walls.is_empty() { 0 } else { count };
         let looked_for = if settings.free_surface { count } else { 0 };
         let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
         Self {
             mass: mass.collect(),
             sides: vec![FluidSide::zero(); count],
             forces: vec![Forces::default(); count],
+            holds: vec![Hold::default(); touched],
             wall_values: vec![WallValues::default(); walls.len()],
             openings: vec![Opening::default(); looked_for],
             found: vec![(Vector::zeros(), false); looked_for],
@@ -154,6 +159,7 @@ impl<const D: usize> Common<D> {
     /// Bytes of arrays by particle.
     pub(super) fn memory(&self) -> usize {
         let particle = size_of::<Side<D>>() + size_of::<Forces<D>>() + 2 * size_of::<f64>();
-        self.support.memory() + self.particles.len() * particle
+        let held = self.holds.len() * size_of::<Hold<D>>();
+        self.support.memory() + self.particles.len() * particle + held
     }
 }

@@ -29,6 +29,7 @@
 //! Walls are layers of ghost particles, CTVF (46) to (52). Everything that a state needs to go on
 //! is in its columns: r, u, rho, p, du/dt and d.
 
+mod barrier;
 mod build;
 mod common;
 mod continua;

@@ -37,6 +37,10 @@ pub enum Pass<O> {
     Reach,
     /// SPST.
     Shift,
+    /// What walls do to what touches them.
+    HoldOff,
+    /// What they get for it.
+    Bear,
     /// Accelerations, densities and shifting go into the state, their powers into the ledger.
     Store,
     /// One of the matter.
@@ -123,6 +127,11 @@ pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> S
             let reads = &["crowding", "fastest"];
             ("shift", [reads, &["side.density"], &[], &["side.shifting_velocity"]])
         }
+        Pass::HoldOff => {
+            let reads = &["forces", "side.velocity", "side.shifting_velocity", "wall_motion"];
+            ("hold_off", [reads, &["position"], &[], &["barrier", "side.shifting_velocity"]])
+        }
+        Pass::Bear => ("bear", [&["forces", "barrier"], &["barrier"], &["forces"], &[]]),
         Pass::Store => {
             let reads =
                 &["forces", "side.density", "side.pressure", "side.shifting_velocity", "velocity"];
@@ -153,9 +162,8 @@ impl<const D: usize> Common<D> {
         }
     }
 
-    /// The passes of walls, of body forces, and those of shifting by SPST, where there are such.
-    pub(super) fn passes<O>(&self) -> [Vec<Pass<O>>; 3] {
-        let only = |is_on: bool, pass: Pass<O>| if is_on { vec![pass] } else { Vec::new() };
+    /// The passes of walls, of body forces, of shifting by SPST, and of what touches walls, where there are such.
+    pub(super) fn passes<O>(&self) -> [Vec<Pass<O>>; 4] {
         let shift = match (self.settings.shifting, self.settings.free_surface) {
             (Shifting::Sun { .. }, true) => {
                 vec![Pass::Sharpen, Pass::Surfaces, Pass::Reach, Pass::Shift]
@@ -163,8 +171,15 @@ impl<const D: usize> Common<D> {
             (Shifting::Sun { .. }, false) => vec![Pass::Shift],
             _ => Vec::new(),
         };
-        let walls = only(!self.walls.is_empty(), Pass::Walls);
-        [walls, only(!self.body_forces.is_empty(), Pass::BodyForces), shift]
+        let (walls, barrier) = match self.walls.is_empty() {
+            true => (Vec::new(), Vec::new()),
+            false => (vec![Pass::Walls], vec![Pass::HoldOff, Pass::Bear]),
+        };
+        let body_forces = match self.body_forces.is_empty() {
+            true => Vec::new(),
+            false => vec![Pass::BodyForces],
+        };
+        [walls, body_forces, shift, barrier]
     }
 }
 
@@ -227,6 +242,8 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             Pass::Surfaces => common.mark_surfaces(),
             Pass::Reach => common.reach_surfaces(),
             Pass::Shift => common.shift(),
+            Pass::HoldOff => common.hold_off(),
+            Pass::Bear => common.bear(),
             Pass::Store => matter.store(common, state, totals),
             Pass::Own(pass) => matter.run(pass, common, Instant { time, step }, state, totals),
         }

@@ -84,8 +84,8 @@ pub enum WorldError {
     },
     /// Two bodies are in the same place.
     #[error(
-        "the body of the system `{system}` overlaps another one: particle {id} is at \
-         {position:?} m, inside it or closer to its particles than in two adjacent bodies"
+        "the bodies of the system `{system}` and others overlap: particle {id} of these, at {position:?} m, lies inside \
+         one of `{system}`, or closer to its particles than in two adjacent bodies"
     )]
     Overlap {
         /// Name of the system.

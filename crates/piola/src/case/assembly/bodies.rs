@@ -78,7 +78,7 @@ pub(super) fn particles<const D: usize>(
         }
     }
     if problems.is_empty() {
-        problems = overlaps(case, &all);
+        problems = overlaps(case, domain, &all);
     }
     if problems.is_empty() { Ok((all, reports)) } else { Err(problems) }
 }

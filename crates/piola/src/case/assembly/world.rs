@@ -1,6 +1,7 @@
 //! Several systems built one by one and put together.
 
 use super::bodies::{self, BodyReport};
+use super::overlap::REMEDY;
 use super::{Built, Parts, beyond_stable, domain, fluids, integrator, probes, system};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case, StepControl};
@@ -61,9 +62,7 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
             }
         };
         let help = match &error {
-            WorldError::Overlap { .. } => {
-                "cut one out of the other, with a shape of the kind `difference`"
-            }
+            WorldError::Overlap { .. } => REMEDY,
             WorldError::Interface { error: InterfaceError::Spacings { .. }, .. } => {
                 "make the two spacings more alike"
             }

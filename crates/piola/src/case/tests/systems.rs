@@ -249,7 +249,7 @@ fn what_does_not_fit_together_is_named_in_its_place() {
         (
             "min = [0.0, 0.5], max = [1.0, 0.8]",
             "min = [0.0, 0.4], max = [1.0, 0.7]",
-            "overlaps another",
+            "the bodies of the system `block` and others overlap: particle",
         ),
         ("max = [1.0, 0.8]", "max = [1.0, 0.6]", "refine the spacing"),
     ];

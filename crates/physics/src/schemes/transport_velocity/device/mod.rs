@@ -17,7 +17,7 @@ use piola_formulas::pairs::fluid::{ForceConstants, RateConstants};
 use self::passes::{FIGURES, drift_terms, kick_terms};
 use super::Fluid;
 use super::escape::Room;
-use super::fluid::{ACCELERATING, Barrier, DRIFTING, LEDGER};
+use super::fluid::{ACCELERATING, DRIFTING, Ends, LEDGER};
 use super::inspect::step_limits;
 use super::ledger::{Drift, Kick};
 use super::shifting::Speed;
@@ -68,8 +68,8 @@ struct Plan<const D: usize> {
 struct OnDevice<const D: usize> {
     plan: Plan<D>,
     machine: Machine,
-    drift: Stages<Pass<Barrier>>,
-    accelerate: Stages<Pass<Barrier>>,
+    drift: Stages<Pass<Ends>>,
+    accelerate: Stages<Pass<Ends>>,
     /// Number of particles.
     count: usize,
     /// Where each column begins in a state, with its name and that of its copy.
@@ -137,7 +137,7 @@ impl<const D: usize> OnDevice<D> {
 
     fn run(
         &mut self,
-        pass: Pass<Barrier>,
+        pass: Pass<Ends>,
         Instant { time, step }: Instant,
         totals: &mut Totals,
     ) -> Result<(), DeviceError> {
@@ -194,10 +194,8 @@ impl<const D: usize> OnDevice<D> {
                 let (scale, most) = self.speed.of(self.fastest);
                 self.start("shift", &[("scale", scale), ("most", most)])
             }
-            Pass::Own(Barrier::HoldOff) => self.start("hold_off", &[]),
-            Pass::Own(Barrier::Bear) => {
-                ["add_holds", "bear"].iter().try_for_each(|pass| self.start(pass, &[]))
-            }
+            Pass::HoldOff => self.start("hold_off", &[]),
+            Pass::Bear => ["add_holds", "bear"].iter().try_for_each(|pass| self.start(pass, &[])),
             Pass::Store => {
                 self.start("store", &[])?;
                 let sums = self.machine.sums(kick_terms(D), self.count)?;

@@ -6,8 +6,9 @@ use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
 use piola_formulas::pairs::{Components, One};
 use piola_formulas::{Number, fluid};
 
+use super::super::barrier::TOUCH;
 use super::super::escape::{Room, TOLERANCE};
-use super::super::fluid::{ACCELERATING, TOUCH};
+use super::super::fluid::ACCELERATING;
 use super::super::walls::{BESIDE, is_in_cell};
 use super::Plan;
 use super::passes::{FORCES, Vector, flat, one, side, side_width, square, take};

@@ -1,6 +1,5 @@
 //! A weakly compressible fluid in the transport-velocity formulation, CTVF section 2.
 
-mod barrier;
 mod damping;
 mod density;
 mod drift;
@@ -30,8 +29,6 @@ use crate::schemes::{
     Accounts, Capability, DeviceRefusal, DeviceSteps, Passage, SchemeDescription,
 };
 
-use barrier::Hold;
-pub(super) use barrier::TOUCH;
 use damping::Damping;
 use open::Open;
 pub use open::{Flow, Nesting, OpenBoundaries, OpenBoundary, Refined};
@@ -127,19 +124,13 @@ pub struct WeaklyCompressible<const D: usize> {
     rates: Vec<Rates>,
     /// Velocity of each wall particle that viscous forces see.
     shear: Vec<Vector<D>>,
-    /// What walls do to fluid that touches them; empty without walls.
-    holds: Vec<Hold<D>>,
     open: Open<D>,
     damping: Damping<D>,
 }
 
 /// Passes of fluids alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Barrier {
-    /// What walls do to fluid that touches them.
-    HoldOff,
-    /// What they get for it.
-    Bear,
+pub enum Ends {
     /// Particles go through open boundaries.
     Exchange,
     /// Values of the particles in their buffers.
@@ -169,7 +160,7 @@ impl<const D: usize> WeaklyCompressible<D> {
 
 impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     type Input = Fluid;
-    type Own = Barrier;
+    type Own = Ends;
 
     const DESCRIPTION: &'static SchemeDescription = &DESCRIPTION;
     const ACCELERATING: [Option<Entry>; ACCELERATIONS] = {
@@ -193,7 +184,6 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
             densities: vec![0.0; count],
             rates: vec![Rates::default(); count],
             shear: vec![Vector::zeros(); touched],
-            holds: vec![Hold::default(); touched],
             open: Open::none(),
             damping: Damping::default(),
         })
@@ -260,53 +250,41 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         Self::starved(self, common, state)
     }
 
-    fn passes(&self, common: &Common<D>) -> [Vec<Pass<Barrier>>; 2] {
+    fn passes(&self, common: &Common<D>) -> [Vec<Pass<Ends>>; 2] {
         let settings = &common.settings;
         let has_rates = settings.density == DensityRule::Continuity || !settings.is_algebraic();
-        let [walls, body_forces, shift] = common.passes();
+        let [walls, body_forces, shift, barrier] = common.passes();
         let rates = if has_rates { vec![Pass::Rates] } else { Vec::new() };
-        let barrier = match self.holds.is_empty() {
-            true => Vec::new(),
-            false => vec![Pass::Own(Barrier::HoldOff), Pass::Own(Barrier::Bear)],
-        };
         let only = |pass| if self.open.is_empty() { Vec::new() } else { vec![Pass::Own(pass)] };
-        let buffers = only(Barrier::Buffers);
+        let buffers = only(Ends::Buffers);
         let drift = [common.spread(), walls.clone(), buffers.clone(), rates, vec![Pass::Move]];
         let (found, stored) = (vec![Pass::Remove, Pass::Load, Pass::State], vec![Pass::Store]);
-        let (forces, part) = (vec![Pass::Forces], only(Barrier::Part));
-        let exchange = only(Barrier::Exchange);
+        let (forces, part) = (vec![Pass::Forces], only(Ends::Part));
+        let exchange = only(Ends::Exchange);
         let damp = match self.damping.is_empty() {
             true => Vec::new(),
-            false => vec![Pass::Own(Barrier::Damp)],
+            false => vec![Pass::Own(Ends::Damp)],
         };
         let pushed = [forces, part, body_forces, damp].concat();
         let accelerate = [exchange, found, walls, buffers, pushed, shift, barrier, stored];
         [drift.concat(), accelerate.concat()]
     }
 
-    fn stage(pass: Barrier) -> Stage {
+    fn stage(pass: Ends) -> Stage {
         match pass {
-            Barrier::HoldOff => {
-                let reads = &["forces", "side.velocity", "side.shifting_velocity", "wall_motion"];
-                let shows = &["barrier", "side.shifting_velocity"];
-                stage("hold_off", [reads, &["position"], &[], shows])
-            }
-            Barrier::Bear => {
-                stage("bear", [&["forces", "barrier"], &["barrier"], &["forces"], &[]])
-            }
-            Barrier::Exchange => {
+            Ends::Exchange => {
                 let all = &["position", "velocity", "density", "pressure"];
                 stage("exchange", [all, &[], &[], all])
             }
-            Barrier::Buffers => {
+            Ends::Buffers => {
                 let shows = &["side.velocity", "side.density", "side.pressure"];
                 stage("buffers", [&["position"], shows, &["buffers"], shows])
             }
-            Barrier::Damp => {
+            Ends::Damp => {
                 let reads = &["position", "side.velocity", "forces"];
                 stage("damp", [reads, &[], &["forces", "damping"], &[]])
             }
-            Barrier::Part => {
+            Ends::Part => {
                 let gathers = &["side.velocity", "side.density", "side.pressure"];
                 stage("part", [&["forces", "buffers"], gathers, &["openings"], &[]])
             }
@@ -315,19 +293,17 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
 
     fn run(
         &mut self,
-        pass: Barrier,
+        pass: Ends,
         common: &mut Common<D>,
         at: Instant,
         state: &mut [f64],
         totals: &mut Totals,
     ) {
         match pass {
-            Barrier::Exchange => totals.book(OPENINGS, &self.exchange(common, at.time, state)),
-            Barrier::Buffers => self.fill_buffers(common, at.time),
-            Barrier::Part => self.part_forces(common),
-            Barrier::Damp => self.damp(common),
-            Barrier::HoldOff => self.hold_off(common),
-            Barrier::Bear => self.bear(common),
+            Ends::Exchange => totals.book(OPENINGS, &self.exchange(common, at.time, state)),
+            Ends::Buffers => self.fill_buffers(common, at.time),
+            Ends::Part => self.part_forces(common),
+            Ends::Damp => self.damp(common),
         }
     }
 
@@ -386,7 +362,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     }
 
     fn figures(&self, common: &Common<D>, state: &[f64], figures: &mut Vec<f64>) {
-        figures.push(self.behind_count(common, state));
+        figures.push(common.behind_count(state));
         figures.extend(self.exchanged(common, state));
     }
 
@@ -414,7 +390,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     }
 
     fn memory() -> usize {
-        size_of::<Rates>() + size_of::<Hold<D>>() + size_of::<Vector<D>>() + size_of::<f64>()
+        size_of::<Rates>() + size_of::<Vector<D>>() + size_of::<f64>()
     }
 
     fn to_device(

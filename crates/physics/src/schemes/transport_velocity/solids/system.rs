@@ -150,7 +150,7 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
 
     fn passes(&self, common: &Common<D>) -> [Vec<Pass<Stress>>; 2] {
         let only = |is_on: bool, pass| if is_on { vec![Pass::Own(pass)] } else { Vec::new() };
-        let [walls, body_forces, shift] = common.passes();
+        let [walls, body_forces, shift, barrier] = common.passes();
         let is_held = self.held.iter().next().is_some();
         let correct = only(!self.corrections.is_empty(), Stress::Correct);
         let prescribe = if is_held { vec![Pass::Prescribe] } else { Vec::new() };
@@ -164,8 +164,9 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
             walls,
             forces,
             body_forces,
-            only(is_held, Stress::Hold),
             shift,
+            barrier,
+            only(is_held, Stress::Hold),
             stored,
         ];
         [drift.concat(), accelerate.concat()]

@@ -1,19 +1,18 @@
-//! What keeps fluid in front of walls, theory (80).
+//! What keeps particles in front of walls, theory (80).
 
 use piola_formulas::kernels::Needs;
 
-use super::WeaklyCompressible;
+use super::extent::Extent;
+use super::{Common, Shifting};
 use crate::operators::{Among, NeighborBlock, visit};
-use crate::schemes::transport_velocity::extent::Extent;
-use crate::schemes::transport_velocity::{Common, Shifting};
 use crate::{Vector, parallel};
 
 /// What of a spacing in front of a face a particle touches it.
-pub(in super::super) const TOUCH: f64 = 0.25;
+pub(super) const TOUCH: f64 = 0.25;
 /// What of a spacing behind a face a particle counts as behind it: more than round-off.
 const BEHIND: f64 = 0.01;
 
-/// What walls do to a particle of the fluid that touches them.
+/// What walls do to a particle that touches them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hold<const D: usize> {
     /// Its acceleration in m/s^2.
@@ -30,32 +29,33 @@ impl<const D: usize> Default for Hold<D> {
     }
 }
 
-impl<const D: usize> WeaklyCompressible<D> {
-    /// Holds off particles of the fluid that touch a wall: closer than a quarter of a spacing to the face
+impl<const D: usize> Common<D> {
+    /// Holds off particles that touch a wall: closer than a quarter of a spacing to the face
     /// their acceleration into it vanishes, and their velocity into it decays in dx/c,
     ///
     /// `a <- a + n max(0, - a . n - (u_n + min(d . n, 0))/tau)`, `tau = dx/c`, theory (80),
     ///
     /// with u relative to the wall: what comes with up to a quarter of c comes to rest in front of the face.
-    /// Deviations by (27) are cut, `d <- d - n min(d . n, 0)`. The wall gets what it does to the fluid.
+    /// Deviations by (27) are cut, `d <- d - n min(d . n, 0)`. The wall gets what it does to them.
     ///
     /// The pressure of a particle that has no neighbours but walls follows from nothing, so that
-    /// a film of single particles is pulled in by its own tension.
-    pub(super) fn hold_off(&mut self, common: &mut Common<D>) {
+    /// a film of single particles is pulled in by its own tension. The rates of a particle of a solid hardly depend on
+    /// its own velocity: nothing else stops one that moves into the wall ahead of its neighbours.
+    pub(super) fn hold_off(&mut self) {
         let mut holds = std::mem::take(&mut self.holds);
-        let list = common.support.list();
+        let list = self.support.list();
         parallel::for_each_chunk(&mut holds, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 *row = match list.is_passive(place) {
                     true => Hold::default(),
-                    false => self.hold_at(common, place, &mut block),
+                    false => self.hold_at(place, &mut block),
                 };
             }
         });
-        if let Shifting::Sun { .. } = common.settings.shifting {
-            parallel::for_each_pair_of_chunks(&mut common.sides, &mut holds, |_, sides, holds| {
+        if let Shifting::Sun { .. } = self.settings.shifting {
+            parallel::for_each_pair_of_chunks(&mut self.sides, &mut holds, |_, sides, holds| {
                 for (side, hold) in sides.iter_mut().zip(holds) {
                     side.deviation -= hold.deviation;
                 }
@@ -64,15 +64,15 @@ impl<const D: usize> WeaklyCompressible<D> {
         self.holds = holds;
     }
 
-    /// Adds what walls do to the fluid to the forces of both.
-    pub(super) fn bear(&self, common: &mut Common<D>) {
+    /// Adds what walls do to what touches them to the forces of both.
+    pub(super) fn bear(&mut self) {
         let holds = &self.holds;
         let holds_any = |place: usize| f64::from(u8::from(holds[place].wall != u32::MAX));
         if parallel::maximum(holds.len(), 0.0, holds_any) == 0.0 {
             return;
         }
-        let mut forces = std::mem::take(&mut common.forces);
-        let (list, sides, holds) = (common.support.list(), &common.sides, &self.holds);
+        let mut forces = std::mem::take(&mut self.forces);
+        let (list, sides, holds) = (self.support.list(), &self.sides, &self.holds);
         parallel::for_each_chunk(&mut forces, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
@@ -87,27 +87,27 @@ impl<const D: usize> WeaklyCompressible<D> {
                         row.walls -= holds[other].acceleration * ratio;
                     }
                 };
-                let (pairs, needs) = (&common.support, Needs::Nothing);
+                let (pairs, needs) = (&self.support, Needs::Nothing);
                 visit(pairs, place, Among::Active, needs, &mut block, add);
             }
         });
-        common.forces = forces;
+        self.forces = forces;
     }
 
     /// What walls do to the particle at `place`. In a corner several faces do.
-    fn hold_at(&self, common: &Common<D>, place: usize, block: &mut NeighborBlock<D>) -> Hold<D> {
+    fn hold_at(&self, place: usize, block: &mut NeighborBlock<D>) -> Hold<D> {
         let mut hold = Hold::default();
-        let [_, walls] = common.support.places_of(place);
+        let [_, walls] = self.support.places_of(place);
         if walls.is_empty() {
             return hold;
         }
-        let load = common.forces[place].total();
-        let (pairs, needs) = (&common.support, Needs::Nothing);
+        let load = self.forces[place].total();
+        let (pairs, needs) = (&self.support, Needs::Nothing);
         visit(pairs, place, Among::Passive, needs, block, |wall, pair| {
-            self.hold_by(common, wall, &pair.separation, place, &load, &mut hold);
+            self.hold_by(wall, &pair.separation, place, &load, &mut hold);
         });
         // What follows another level is not shifted into walls, but its forces are that level's.
-        match common.is_wall[common.support.list().numbers()[place] as usize] {
+        match self.is_wall[self.support.list().numbers()[place] as usize] {
             true => Hold { deviation: hold.deviation, ..Hold::default() },
             false => hold,
         }
@@ -117,27 +117,27 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// `separation` from it under a `load` of m/s^2.
     fn hold_by(
         &self,
-        common: &Common<D>,
         wall: usize,
         separation: &Vector<D>,
         place: usize,
         load: &Vector<D>,
         hold: &mut Hold<D>,
     ) {
-        let (side, spacing) = (&common.sides[place], common.particles.spacing[0]);
-        let Some(index) = common.wall_of(common.support.list().numbers()[wall]) else { return };
-        let Some((height, normal)) = common.over(index, separation) else { return };
+        let (side, spacing) = (&self.sides[place], self.particles.spacing[0]);
+        let numbers = self.support.list().numbers();
+        let Some(index) = self.wall_of(numbers[wall]) else { return };
+        let Some((height, normal)) = self.over(index, separation) else { return };
         if !(-spacing..TOUCH * spacing).contains(&height) {
             return;
         }
-        let motion = &common.wall_values[index].motion;
+        let motion = &self.wall_values[index].motion;
         let shift = (side.deviation - hold.deviation).dot(normal).min(0.0);
         let mut approach = (side.velocity - motion).dot(normal);
-        match common.settings.shifting {
+        match self.settings.shifting {
             Shifting::Sun { .. } => hold.deviation += normal * shift,
             _ => approach += shift,
         }
-        let rate = self.fluid.wave_speed / spacing;
+        let rate = self.at_rest(numbers[place] as usize).wave_speed / spacing;
         let push = -(load + hold.acceleration).dot(normal) - approach * rate;
         if push > 0.0 {
             hold.acceleration += normal * push;
@@ -145,35 +145,30 @@ impl<const D: usize> WeaklyCompressible<D> {
         }
     }
 
-    /// Number of particles of the fluid that are behind a face of a wall in `state`.
-    pub(super) fn behind_count(&self, common: &Common<D>, state: &[f64]) -> f64 {
+    /// Number of particles that are behind a face of a wall in `state`.
+    pub(super) fn behind_count(&self, state: &[f64]) -> f64 {
         if self.holds.is_empty() {
             return 0.0;
         }
-        let (list, Some(walls)) = (common.support.list(), common.extent_of_walls(state)) else {
+        let (list, Some(walls)) = (self.support.list(), self.extent_of_walls(state)) else {
             return 0.0;
         };
         parallel::sum(list.numbers().len(), |place| {
-            let counts = !common.is_wall[list.numbers()[place] as usize];
-            f64::from(u8::from(counts && is_behind(common, place, state, &walls)))
+            let counts = !self.is_wall[list.numbers()[place] as usize];
+            f64::from(u8::from(counts && self.is_behind(place, state, &walls)))
         })
     }
-}
 
-/// Whether the particle at `place` is behind the face of the wall particle that is nearest, in the box around walls.
-fn is_behind<const D: usize>(
-    common: &Common<D>,
-    place: usize,
-    state: &[f64],
-    walls: &Extent<D>,
-) -> bool {
-    let list = common.support.list();
-    let at = common.columns(state);
-    let position = |place: usize| at.position[list.numbers()[place] as usize];
-    // Candidates of the list are all that are near, at any state since it was made.
-    common.wall_behind(place, f64::INFINITY, position).is_some_and(|(number, way)| {
-        let inside = common.wall_of(number).and_then(|index| common.inside(index, &way));
-        inside.is_some_and(|(height, _)| height < -BEHIND * common.particles.spacing[0])
-            && walls.contains(&position(place), list.domain())
-    })
+    /// Whether the particle at `place` is behind the face of the wall particle that is nearest, in the box around walls.
+    fn is_behind(&self, place: usize, state: &[f64], walls: &Extent<D>) -> bool {
+        let list = self.support.list();
+        let at = self.columns(state);
+        let position = |place: usize| at.position[list.numbers()[place] as usize];
+        // Candidates of the list are all that are near, at any state since it was made.
+        self.wall_behind(place, f64::INFINITY, position).is_some_and(|(number, way)| {
+            let inside = self.wall_of(number).and_then(|index| self.inside(index, &way));
+            inside.is_some_and(|(height, _)| height < -BEHIND * self.particles.spacing[0])
+                && walls.contains(&position(place), list.domain())
+        })
+    }
 }
