@@ -81,8 +81,8 @@ impl Part {
 
     /// The rows of this rank of a state of all, and what stands behind all columns.
     pub fn rows_of(&self, scheme: &dyn Scheme, state: &[f64]) -> Vec<f64> {
-        let rows =
-            self.stretches(scheme, self.ranks.rank()).chain([scheme.ledger_start()..state.len()]);
+        let tail = std::iter::once(scheme.ledger_start()..state.len());
+        let rows = self.stretches(scheme, self.ranks.rank()).chain(tail);
         rows.flat_map(|stretch| &state[stretch]).copied().collect()
     }
 

@@ -224,9 +224,8 @@ impl Executor {
         stop: &AtomicBool,
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Summary, ObserveError> {
-        let asked = |device: &Box<dyn DeviceSteps>| device.stops();
         while !stop.load(Ordering::Relaxed)
-            && !self.device.as_ref().is_some_and(asked)
+            && !self.device.as_ref().is_some_and(|device| device.stops())
             && self.outcome.is_none()
         {
             let before = self.run.clock.step;

@@ -67,12 +67,17 @@ pub(super) fn begin(case: &Case, ranks: &dyn Ranks) -> Result<(Executor, Built),
 /// # Errors
 /// What the first says that is not, or who has another run.
 fn agree(ranks: &dyn Ranks, own: Result<&[u8], &str>) -> Result<(), String> {
+    // Of a report its first line, which is the sentence.
+    let sentence = |why: &str| {
+        let first = why.lines().next().unwrap_or_default();
+        first.trim_start_matches("error: ").to_owned()
+    };
     let (is_ready, bytes) = match own {
-        Ok(identity) => (1.0, identity),
-        Err(why) => (0.0, why.as_bytes()),
+        Ok(identity) => (1.0, identity.to_vec()),
+        Err(why) => (0.0, sentence(why).into_bytes()),
     };
     let told: Vec<f64> =
-        std::iter::once(is_ready).chain(bytes.iter().copied().map(f64::from)).collect();
+        std::iter::once(is_ready).chain(bytes.into_iter().map(f64::from)).collect();
     let all = ranks.gather_to_all(&told).map_err(|lost| lost.to_string())?;
     let is_other = |other: &Vec<f64>| other.first() == Some(&1.0) && *other != all[0];
     for (rank, told) in all.iter().enumerate() {

@@ -193,7 +193,7 @@ fn steps_that_nothing_damps_are_the_same_on_any_number_of_ranks() {
 /// More than a thread's work for each rank.
 #[test]
 fn many_particles_are_the_same_on_any_number_of_ranks() {
-    let sets = ["body.plate.spacing=0.017", "time.end=4e-3", "output.table_every=1e-3"];
+    let sets = ["body.plate.spacing=0.017", "time.end=8e-3", "output.table_every=2e-3"];
     let alone = run(PLATE, &sets, 1, 1);
     for (ranks, threads) in [(2, 4), (3, 9)] {
         assert!(alone == run(PLATE, &sets, ranks, threads), "{ranks} ranks");

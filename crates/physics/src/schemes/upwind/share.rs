@@ -65,7 +65,7 @@ impl<const D: usize> Upwind<D> {
                 domain: self.support.domain,
             },
             least_squares: self.least_squares.as_ref().map(|all| all.part(own.clone())),
-            settings: self.settings.clone(),
+            settings: self.settings,
             materials: self.materials.clone(),
             reference: self.reference[own].to_vec(),
             stages: self.stages.clone(),
