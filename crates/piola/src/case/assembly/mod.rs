@@ -120,7 +120,7 @@ fn beyond_stable(case: &Case) -> Option<String> {
     let is_explicit = case.time.rule.is_none();
     (is_explicit && number > 1.0).then(|| {
         format!(
-            "`time.cfl = {number}` makes steps {number} times as long as the stable step of the explicit \
+            "`time.cfl = {number}` allows steps {number} times as long as the stable step of the explicit \
              integrator, whose short waves then grow until the run breaks down: set it below 1"
         )
     })
