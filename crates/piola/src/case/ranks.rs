@@ -67,10 +67,11 @@ pub(super) fn begin(case: &Case, ranks: &dyn Ranks) -> Result<(Executor, Built),
 /// # Errors
 /// What the first says that is not, or who has another run.
 fn agree(ranks: &dyn Ranks, own: Result<&[u8], &str>) -> Result<(), String> {
-    // Of a report its first line, which is the sentence.
+    // Of a report its sentence, and the place.
     let sentence = |why: &str| {
-        let first = why.lines().next().unwrap_or_default();
-        first.trim_start_matches("error: ").to_owned()
+        let first = why.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        let place = why.lines().find_map(|line| line.trim_start().strip_prefix("--> "));
+        place.map_or_else(|| first.to_owned(), |place| format!("{first} ({place})"))
     };
     let (is_ready, bytes) = match own {
         Ok(identity) => (1.0, identity.to_vec()),
