@@ -167,7 +167,7 @@ pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
 
 /// Adds up what a row has over `0..count`, as [`sum`]: `add(i, sums)` adds the terms of row i.
 pub fn sums<T: Sums>(count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
-    let mut exact = ExactSums::default();
+    let mut exact = ExactSums::NONE;
     add_sums([count, chunk(count)], add, &mut exact);
     exact.total()
 }
@@ -263,7 +263,7 @@ pub fn sums_over_parts<T: Sums, P: Parts>(
     parts: P,
     body: impl Fn(usize, P, &mut T) + Sync,
 ) -> T {
-    let mut exact = ExactSums::default();
+    let mut exact = ExactSums::NONE;
     add_sums_over_parts([count, chunk(count)], parts, body, &mut exact);
     exact.total()
 }

@@ -62,7 +62,6 @@ thread_local! {
 }
 
 /// Sums without rounding, whose parts may come in any order and from anywhere.
-#[derive(Default)]
 pub struct ExactSums {
     /// As many as there are numbers; none as long as nothing was added.
     sums: Vec<Exact>,

@@ -13,7 +13,7 @@ use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use piola_formulas::pairs::{Of, Record};
 use piola_ranks::{Exact, LIMBS, Message, RankError, Ranks};
 
-use super::{ExactSums, Parts, Reduce, Sums, add_sums, add_sums_over_parts, reduce};
+use super::{ExactSums, Parts, Reduce, Sums, add_sums_over_parts, reduce};
 
 /// Those that compute a system together.
 #[derive(Clone, Default)]
@@ -60,11 +60,6 @@ impl Team {
         Self { shared: Some(Arc::new(shared)) }
     }
 
-    /// Whether one computes alone.
-    pub fn is_alone(&self) -> bool {
-        self.shared.is_none()
-    }
-
     /// The number of particle `a` among those of all ranks.
     pub fn number(&self, a: usize) -> usize {
         self.shared.as_ref().map_or(a, |shared| shared.first + a)
@@ -94,33 +89,22 @@ impl Team {
         self.shared.as_ref()?.fault.get()
     }
 
-    /// The sum of `term` over the particles of all ranks, of which `count` are its own, as [`sum`](super::sum).
-    pub fn sum(&self, count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-        self.sums(count, |i, sum: &mut f64| *sum += term(i))
-    }
-
-    /// The sums of what rows have over the particles of all ranks, as [`sums`](super::sums).
-    pub fn sums<T: Sums>(&self, count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
-        let mut exact = ExactSums::default();
-        add_sums([count, self.chunk(count)], add, &mut exact);
-        self.close(exact)
-    }
-
-    /// The same of a loop that changes arrays, as [`sums_over_parts`](super::sums_over_parts).
+    /// The sums of a loop over the particles of all ranks that changes arrays, as
+    /// [`sums_over_parts`](super::sums_over_parts), of which `count` are its own.
     pub fn sums_over_parts<T: Sums, P: Parts>(
         &self,
         count: usize,
         parts: P,
         body: impl Fn(usize, P, &mut T) + Sync,
     ) -> T {
-        let mut exact = ExactSums::default();
+        let mut exact = ExactSums::NONE;
         add_sums_over_parts([count, self.chunk(count)], parts, body, &mut exact);
         self.close(exact)
     }
 
     /// The sum of terms of all ranks, none of which is rounded.
     pub fn total<T: Sums>(&self, terms: impl Iterator<Item = T>) -> T {
-        let mut exact = ExactSums::default();
+        let mut exact = ExactSums::NONE;
         terms.for_each(|term| exact.add(&term));
         self.close(exact)
     }

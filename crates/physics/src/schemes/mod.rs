@@ -38,7 +38,7 @@ pub use ledger::{Accounts, Filled, Ledger, LedgerFault};
 pub use momentum::{MomentumComponent, momentum_components};
 pub use newmark::{Newmark, NewmarkScheme, UnstableWeights};
 pub use observation::Observation;
-pub use ranks::{Part, RankCosts, RankRefusal, RankShare};
+pub use ranks::{Part, RankCosts, RankRefusal, RankRows, RankShare};
 pub use rule::ImplicitRule;
 pub use scheme::{Behind, Escape, Health, Particle, Passage, Scheme, StepLimit};
 pub use split::{PartitionedScheme, SplitScheme};

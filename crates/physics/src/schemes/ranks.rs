@@ -58,32 +58,10 @@ impl Part {
         own().zip(&costs).map(share).collect()
     }
 
-    /// The particles of a rank.
-    pub fn of_rank(&self, rank: usize) -> Range<usize> {
-        self.bounds[rank]..self.bounds[rank + 1]
-    }
-
     /// The particles of this rank.
     pub fn own(&self) -> Range<usize> {
-        self.of_rank(self.ranks.rank())
-    }
-
-    /// Where the rows of a rank stand in a state of all.
-    pub fn stretches(
-        &self,
-        scheme: &dyn Scheme,
-        rank: usize,
-    ) -> impl Iterator<Item = Range<usize>> {
-        let rows = self.of_rank(rank);
-        let fields = scheme.description().fields.iter();
-        fields.filter_map(move |field| scheme.stretch(field, &rows))
-    }
-
-    /// The rows of this rank of a state of all, and what stands behind all columns.
-    pub fn rows_of(&self, scheme: &dyn Scheme, state: &[f64]) -> Vec<f64> {
-        let tail = std::iter::once(scheme.ledger_start()..state.len());
-        let rows = self.stretches(scheme, self.ranks.rank()).chain(tail);
-        rows.flat_map(|stretch| &state[stretch]).copied().collect()
+        let rank = self.ranks.rank();
+        self.bounds[rank]..self.bounds[rank + 1]
     }
 
     /// The team of this rank, which has these slots. All ranks call this together.
@@ -117,6 +95,52 @@ impl Part {
             copied: others().map(|rank| (rank, of_rank(rank).len())).collect(),
         };
         Ok(Team::new(ranks.clone(), [self.own().start, self.bounds[size]], halo))
+    }
+}
+
+/// Where the rows of each rank stand in a state of all.
+pub struct RankRows {
+    /// The stretches of each rank, one of each column.
+    stretches: Vec<Vec<Range<usize>>>,
+    /// Where that begins which stands behind all columns.
+    tail: usize,
+}
+
+impl RankRows {
+    /// Those of ranks whose particles begin and end where `bounds` has it.
+    pub fn of(scheme: &dyn Scheme, bounds: &[usize]) -> Self {
+        let of_rank = |ends: &[usize]| {
+            let fields = scheme.description().fields.iter();
+            fields.filter_map(|field| scheme.stretch(field, &(ends[0]..ends[1]))).collect()
+        };
+        Self { stretches: bounds.windows(2).map(of_rank).collect(), tail: scheme.ledger_start() }
+    }
+
+    /// What a rank has of a state: its rows of each column, and what stands behind all columns.
+    pub fn part(&self, rank: usize, state: &[f64]) -> Vec<f64> {
+        let rows = self.stretches[rank].iter().flat_map(|stretch| &state[stretch.clone()]);
+        rows.chain(&state[self.tail..]).copied().collect()
+    }
+
+    /// What each rank has of a state.
+    pub fn split(&self, state: &[f64]) -> Vec<Vec<f64>> {
+        (0..self.stretches.len()).map(|rank| self.part(rank, state)).collect()
+    }
+
+    /// Puts a state together, of which rank 0 has what stands behind all columns.
+    pub fn join(&self, parts: &[Vec<f64>], state: &mut [f64]) {
+        for (own, part) in self.stretches.iter().zip(parts) {
+            let mut rest = part.as_slice();
+            for stretch in own {
+                let (rows, others) = rest.split_at(stretch.len());
+                state[stretch.clone()].copy_from_slice(rows);
+                rest = others;
+            }
+        }
+        if let Some(first) = parts.first() {
+            let tail = &mut state[self.tail..];
+            tail.copy_from_slice(&first[first.len() - tail.len()..]);
+        }
     }
 }
 

@@ -1,7 +1,11 @@
 //! Runs that several ranks share, compared with those of one.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
 
+use std::sync::mpsc;
+use std::time::Duration;
+
 use piola::case::{self, LoadOptions, Session};
+use piola::time::{Moment, ObserveError, Observer, Schedule};
 
 /// What a run leaves: its tables, and every column of its last state.
 fn run(
@@ -248,6 +252,38 @@ fn failures_are_the_same_on_any_number_of_ranks() {
     let alone = outcome(1);
     assert!(alone.contains("Failed"), "{alone}");
     assert_eq!(outcome(3), alone);
+}
+
+/// An observer that panics.
+struct Panicking;
+
+impl Observer for Panicking {
+    fn schedule(&self) -> &Schedule {
+        &Schedule::Every(0.01)
+    }
+
+    fn observe(&mut self, _: &mut Moment<'_, '_>) -> Result<(), ObserveError> {
+        panic!("an observer panics");
+    }
+}
+
+/// The ranks of a run that panics end with it.
+#[test]
+fn a_panic_does_not_leave_ranks_waiting() {
+    let (told, ended) = mpsc::channel();
+    std::thread::spawn(move || {
+        let unwound = std::panic::catch_unwind(|| {
+            let options =
+                LoadOptions { overrides: vec!["compute.ranks=3".into()], ..LoadOptions::default() };
+            let case =
+                case::parse(BLOCK, "shared.toml", &options).unwrap_or_else(|told| panic!("{told}"));
+            let mut session = Session::new(&case).unwrap_or_else(|told| panic!("{told}"));
+            session.observe(Box::new(Panicking));
+            session.step().map(drop)
+        });
+        told.send(unwound.is_err())
+    });
+    assert_eq!(ended.recv_timeout(Duration::from_secs(60)), Ok(true));
 }
 
 #[test]

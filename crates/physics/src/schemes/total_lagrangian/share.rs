@@ -8,7 +8,7 @@ use super::rigid::RigidBodies;
 use super::{Discrete, Matrices, TotalLagrangian};
 use crate::fields::width;
 use crate::operators::Slots;
-use crate::schemes::{Part, RankRefusal, RankShare};
+use crate::schemes::{Part, RankRefusal, RankRows, RankShare};
 use crate::{Tensor, Vector};
 
 impl<const D: usize> TotalLagrangian<D> {
@@ -101,7 +101,7 @@ impl<const D: usize> TotalLagrangian<D> {
             matrices,
             solid,
         };
-        share.initial = part.rows_of(self, &self.initial);
+        share.initial = RankRows::of(self, &part.bounds).part(part.ranks.rank(), &self.initial);
         Ok(share)
     }
 }

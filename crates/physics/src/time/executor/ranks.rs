@@ -2,7 +2,6 @@
 //!
 //! Rank 0 has the run: clock, observers, files. It tells the others what to do, and does the same with its own particles.
 
-use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -14,7 +13,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::Executor;
 use crate::parallel::Team;
 use crate::schemes::{
-    DeviceSteps, Health, Part, Phase, RankCosts, RankRefusal, Scheme, StepLimit, StepsError,
+    DeviceSteps, Health, Part, Phase, RankCosts, RankRefusal, RankRows, Scheme, StepLimit,
+    StepsError,
 };
 use crate::time::integrator::{Integrator, IntegratorKind};
 
@@ -191,51 +191,12 @@ impl Worker {
 struct RankSteps {
     worker: Worker,
     /// Where the rows of each rank stand in a state of all.
-    rows: Rows,
+    rows: RankRows,
     /// Whether any rank has something to say of the state, and whether any is asked to stop.
     told: [bool; 2],
     /// The threads that rank 0 computes with, if the ranks are threads.
     pool: Option<ThreadPool>,
     others: Vec<JoinHandle<()>>,
-}
-
-/// Where the rows of each rank stand in a state of all.
-struct Rows {
-    stretches: Vec<Vec<Range<usize>>>,
-    tail: usize,
-}
-
-impl Rows {
-    fn of(scheme: &dyn Scheme, part: &Part) -> Self {
-        let of_rank = |rank| part.stretches(scheme, rank).collect();
-        let stretches = (0..part.ranks.size()).map(of_rank).collect();
-        Self { stretches, tail: scheme.ledger_start() }
-    }
-
-    /// What each rank has of a state: its rows of each column, and what stands behind all columns.
-    fn split(&self, state: &[f64]) -> Vec<Vec<f64>> {
-        let of_rank = |own: &Vec<Range<usize>>| {
-            let rows = own.iter().flat_map(|stretch| &state[stretch.clone()]);
-            rows.chain(&state[self.tail..]).copied().collect()
-        };
-        self.stretches.iter().map(of_rank).collect()
-    }
-
-    /// Puts a state together, of which rank 0 has what stands behind all columns.
-    fn join(&self, parts: &[Vec<f64>], state: &mut [f64]) {
-        for (own, part) in self.stretches.iter().zip(parts) {
-            let mut rest = part.as_slice();
-            for stretch in own {
-                let (rows, others) = rest.split_at(stretch.len());
-                state[stretch.clone()].copy_from_slice(rows);
-                rest = others;
-            }
-        }
-        if let Some(first) = parts.first() {
-            let tail = &mut state[self.tail..];
-            tail.copy_from_slice(&first[first.len() - tail.len()..]);
-        }
-    }
 }
 
 impl RankSteps {
@@ -318,10 +279,13 @@ impl DeviceSteps for RankSteps {
 
 impl Drop for RankSteps {
     fn drop(&mut self) {
-        // Those that are lost do not hear it, and have ended. Where this rank fails the others may wait for something else.
-        if !thread::panicking() {
-            drop(self.worker.ranks.broadcast(Order::End.pack()));
+        // Where this rank fails the others wait for something else, and are told when it lets go of the ranks, which it does
+        // after this.
+        if thread::panicking() {
+            return;
         }
+        // Those that are lost do not hear it, and have ended.
+        drop(self.worker.ranks.broadcast(Order::End.pack()));
         self.others.drain(..).for_each(|other| drop(other.join()));
     }
 }
@@ -404,7 +368,7 @@ impl Executor {
         part: &Part,
         (pool, others): (Option<ThreadPool>, Vec<JoinHandle<()>>),
     ) -> Result<(), RankRefusal> {
-        let rows = Rows::of(self.scheme.as_ref(), part);
+        let rows = RankRows::of(self.scheme.as_ref(), &part.bounds);
         let steps = RankSteps { worker, rows, told: [false; 2], pool, others };
         self.use_steps(Box::new(steps)).map_err(|error| match error {
             StepsError::Ranks(error) => error.into(),
