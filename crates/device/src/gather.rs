@@ -4,9 +4,11 @@
 //! neighbour k in lane k mod 8, added by halves, or one after the other. On a GPU eight threads work on
 //! a particle, elsewhere one.
 
+use std::marker::PhantomData;
+
 use piola_formulas::Number;
 use piola_formulas::kernels::Kernel;
-use piola_formulas::pairs::{Moving, MovingPair, Of, PairLaw, Record};
+use piola_formulas::pairs::{self, Moving, MovingPair, Of, PairLaw, Record};
 
 use crate::pass::{Pass, Use, filled, flat, width};
 use crate::record::Traced;
@@ -14,6 +16,7 @@ use crate::text::Language;
 
 mod text;
 
+pub use text::Pairs;
 use text::{Loop, Met};
 
 /// The space in which particles move.
@@ -37,7 +40,7 @@ impl<const D: usize> Space<D> {
     }
 
     /// The pair of two positions.
-    fn pair(&self, here: &[Traced], there: &[Traced]) -> Moving<Traced, D> {
+    fn between(&self, here: &[Traced], there: &[Traced]) -> Moving<Traced, D> {
         let mut pair = MovingPair::<D>::zero();
         for axis in 0..D {
             let distance = self.shorter_way(axis, here[axis] - there[axis]);
@@ -74,10 +77,82 @@ pub enum Order {
     Fold,
 }
 
+/// Who meets whom on a device, and what is known of each pair.
+pub trait Meets {
+    /// What is known of a pair.
+    type Pair: Record;
+
+    /// How a loop goes through the neighbours of the particles `over` which it runs.
+    fn pairs(&self, over: Among) -> Pairs;
+
+    /// What the numbers that a loop reads of a pair say of it.
+    fn pair(&self, read: &[Traced]) -> Of<Self::Pair, Traced>;
+}
+
+impl<const D: usize> Meets for Space<D> {
+    type Pair = MovingPair<D>;
+
+    fn pairs(&self, over: Among) -> Pairs {
+        Pairs::Moving(D, over)
+    }
+
+    fn pair(&self, read: &[Traced]) -> Moving<Traced, D> {
+        let (here, there) = read.split_at(D);
+        self.between(here, there)
+    }
+}
+
+/// Neighbours that do not change, with what is known of each pair, where a device has them.
+#[derive(Clone, Debug)]
+pub struct Frozen<P> {
+    /// The columns.
+    pub rows: Rows,
+    record: PhantomData<P>,
+}
+
+impl<P: Record> Frozen<P> {
+    /// Those in columns whose names begin with that of `rows`.
+    ///
+    /// # Panics
+    /// When the rows have other numbers: that is a fault of whoever declared them.
+    pub fn new(rows: Rows) -> Self {
+        assert_eq!(rows.kept.len(), P::NUMBERS, "`{}` has the numbers of its pairs", rows.numbers);
+        Self { rows, record: PhantomData }
+    }
+}
+
+impl<P: Record> Meets for Frozen<P> {
+    type Pair = pairs::Frozen<P>;
+
+    fn pairs(&self, _over: Among) -> Pairs {
+        Pairs::Frozen(self.rows.clone())
+    }
+
+    /// What fills up the last eight on a processor is not gone through here.
+    fn pair(&self, read: &[Traced]) -> Of<Self::Pair, Traced> {
+        (filled::<P>(read), Traced::from(1.0))
+    }
+}
+
+/// Columns of rows that do not change, in blocks of eight neighbours, number by number.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    /// The first block of each row.
+    pub first: &'static str,
+    /// The number of neighbours of each row.
+    pub count: &'static str,
+    /// The neighbours.
+    pub neighbors: &'static str,
+    /// What is known of pairs.
+    pub numbers: &'static str,
+    /// Where each number of a pair stands among those of a block; of those that are zero in all pairs nothing is there.
+    pub kept: Vec<Option<usize>>,
+}
+
 /// What a term of a fold is made of: the pair of two particles, what each of them shows, and their slots.
-pub struct Meeting<'a, const D: usize> {
+pub struct Meeting<'a, P: Record> {
     /// The pair.
-    pub pair: Moving<Traced, D>,
+    pub pair: Of<P, Traced>,
     /// Columns of the particle in the middle.
     pub me: &'a [Traced],
     /// Columns of its neighbour.
@@ -87,10 +162,10 @@ pub struct Meeting<'a, const D: usize> {
 }
 
 /// A pass over neighbours, put together term by term.
-pub struct Gather<'a, R: Record, const D: usize> {
-    space: &'a Space<D>,
+pub struct Gather<'a, R: Record, M> {
+    meets: &'a M,
     text: Loop,
-    sums: std::marker::PhantomData<R>,
+    sums: PhantomData<R>,
 }
 
 fn names<R: Record>(prefix: &str) -> Vec<String> {
@@ -99,18 +174,18 @@ fn names<R: Record>(prefix: &str) -> Vec<String> {
     names
 }
 
-impl<'a, R: Record, const D: usize> Gather<'a, R, D> {
+impl<'a, R: Record, M: Meets> Gather<'a, R, M> {
     /// A pass without terms.
     pub fn new(
         language: Language,
         name: &'static str,
-        space: &'a Space<D>,
+        meets: &'a M,
         over: Among,
         order: Order,
     ) -> Self {
         let sums = [names::<R>("s"), names::<R>("d")];
-        let text = Loop::new(language, name, D, (over, order), sums);
-        Self { space, text, sums: std::marker::PhantomData }
+        let text = Loop::new(language, name, meets.pairs(over), order, sums);
+        Self { meets, text, sums: PhantomData }
     }
 
     /// Only particles with something above one half in a column have sums; rows of the others stay.
@@ -122,7 +197,7 @@ impl<'a, R: Record, const D: usize> Gather<'a, R, D> {
 
     /// Adds a law that is summed over some neighbours. The columns make up its side, in their order.
     #[must_use]
-    pub fn term<L: PairLaw<Pair = MovingPair<D>, Sums = R>>(
+    pub fn term<L: PairLaw<Pair = M::Pair, Sums = R>>(
         self,
         law: &L,
         columns: &[Use],
@@ -143,14 +218,13 @@ impl<'a, R: Record, const D: usize> Gather<'a, R, D> {
         mine: &[Use],
         others: &[Use],
         among: Among,
-        f: impl FnOnce(&Meeting<'_, D>, &mut Of<R, Traced>),
+        f: impl FnOnce(&Meeting<'_, M::Pair>, &mut Of<R, Traced>),
     ) -> Self {
-        let space = self.space;
+        let meets = self.meets;
         let term = |met: &Met<'_>| {
             let mut sums = filled::<R>(met.sums);
-            let pair = space.pair(met.here, met.there);
             let Met { me, other, slots, .. } = *met;
-            f(&Meeting { pair, me, other, slots }, &mut sums);
+            f(&Meeting { pair: meets.pair(met.pair), me, other, slots }, &mut sums);
             flat::<R>(&sums)
         };
         self.text.term([mine, others], among, Box::new(term));

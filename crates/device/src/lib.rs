@@ -33,7 +33,7 @@ mod text;
 
 pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices, missing};
 pub use error::DeviceError;
-pub use gather::{Among, Gather, Meeting, Order, Space};
+pub use gather::{Among, Frozen, Gather, Meeting, Meets, Order, Rows, Space};
 pub use law::{Law, Outputs};
 pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, local, own, spread, through};

@@ -14,14 +14,18 @@ use crate::text::{Language, Precision};
 /// Threads a block.
 const BLOCK: u32 = 128;
 
+/// Who asks for neighbours.
+const MOVES: &str = "particles that move past each other have lists";
+
 /// A device with the passes of a formulation and the columns that they work on, by name, beside those of
-/// [`Lists`].
+/// [`Lists`], if particles move past each other.
 #[derive(Debug)]
 pub struct Machine {
     device: Device,
     kernels: HashMap<&'static str, (Kernel, Pass)>,
     numbers: HashMap<&'static str, Column<f64>>,
-    lists: Lists,
+    indices: HashMap<&'static str, Column<u32>>,
+    lists: Option<Lists>,
     /// Particles a chunk of sums.
     chunk: usize,
 }
@@ -33,7 +37,7 @@ impl Machine {
     /// When the device's compiler refuses their text.
     pub fn new(
         device: Device,
-        lists: Lists,
+        lists: Option<Lists>,
         passes: impl FnOnce(Language) -> Vec<Pass>,
         chunk: usize,
     ) -> Result<Self, DeviceError> {
@@ -46,7 +50,8 @@ impl Machine {
         for pass in passes {
             kernels.insert(pass.name, (program.kernel(pass.name)?, pass));
         }
-        Ok(Self { device, kernels, numbers: HashMap::new(), lists, chunk })
+        let (numbers, indices) = (HashMap::new(), HashMap::new());
+        Ok(Self { device, kernels, numbers, indices, lists, chunk })
     }
 
     /// The device.
@@ -60,6 +65,15 @@ impl Machine {
     /// When the memory does not suffice.
     pub fn add(&mut self, name: &'static str, numbers: &[f64]) -> Result<(), DeviceError> {
         self.numbers.insert(name, self.device.upload(numbers)?);
+        Ok(())
+    }
+
+    /// Makes a column of these indices.
+    ///
+    /// # Errors
+    /// When the memory does not suffice.
+    pub fn add_indices(&mut self, name: &'static str, indices: &[u32]) -> Result<(), DeviceError> {
+        self.indices.insert(name, self.device.upload(indices)?);
         Ok(())
     }
 
@@ -84,16 +98,22 @@ impl Machine {
     ///
     /// # Errors
     /// When the device refuses.
+    ///
+    /// # Panics
+    /// When there are no lists: whoever asks has given them.
     pub fn build(&mut self, positions: &str) -> Result<(), DeviceError> {
-        self.lists.build(&self.numbers[positions])
+        self.lists.as_mut().expect(MOVES).build(&self.numbers[positions])
     }
 
     /// Picks neighbours at a column of positions by slot.
     ///
     /// # Errors
     /// When the device refuses.
+    ///
+    /// # Panics
+    /// When there are no lists: whoever asks has given them.
     pub fn pick(&mut self, positions: &str) -> Result<(), DeviceError> {
-        self.lists.pick(&self.numbers[positions])
+        self.lists.as_mut().expect(MOVES).pick(&self.numbers[positions])
     }
 
     /// Replaces the numbers of a column.
@@ -142,12 +162,15 @@ impl Machine {
                 let given = scalars.iter().find(|(known, _)| *known == name);
                 Argument::Number(given.unwrap_or_else(|| missing(name)).1)
             }
-            Ask::Numbers("made_at") => Argument::Doubles(self.lists.made_at()),
             Ask::Numbers(name) => {
-                Argument::Doubles(self.numbers.get(name).unwrap_or_else(|| missing(name)))
+                let of_lists = || self.lists.as_ref().filter(|_| name == "made_at");
+                let column = self.numbers.get(name).or_else(|| Some(of_lists()?.made_at()));
+                Argument::Doubles(column.unwrap_or_else(|| missing(name)))
             }
             Ask::Indices(name) => {
-                Argument::Indices(self.lists.indices(name).unwrap_or_else(|| missing(name)))
+                let of_lists = || self.lists.as_ref()?.indices(name);
+                let column = self.indices.get(name).or_else(of_lists);
+                Argument::Indices(column.unwrap_or_else(|| missing(name)))
             }
         };
         let arguments: Vec<Argument<'_>> = pass.asks.iter().map(argument).collect();

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Among, Order};
+use super::{Among, Order, Rows};
 use crate::law::{Function, Law};
 use crate::pass::{Arguments, At, Pass, Use};
 use crate::record::Traced;
@@ -35,12 +35,19 @@ impl Among {
     }
 }
 
+/// How a loop goes through neighbours.
+pub enum Pairs {
+    /// Those of particles that move in so many dimensions, of some of them.
+    Moving(usize, Among),
+    /// Those of rows that do not change.
+    Frozen(Rows),
+}
+
 /// A loop over neighbours, of whatever sums: the part of a [`Gather`](super::Gather) that is compiled once.
 pub(super) struct Loop {
     language: Language,
     pub name: &'static str,
-    dimension: usize,
-    over: Among,
+    pairs: Pairs,
     order: Order,
     terms: Vec<Term>,
     start: Option<(Law, Vec<Use>)>,
@@ -58,8 +65,8 @@ struct Term {
 
 /// The numbers of which a term is made.
 pub(super) struct Met<'a> {
-    pub here: &'a [Traced],
-    pub there: &'a [Traced],
+    /// What is known of the pair: the places of both, or the numbers of a row.
+    pub pair: &'a [Traced],
     pub slots: [Traced; 2],
     pub me: &'a [Traced],
     pub other: &'a [Traced],
@@ -86,33 +93,42 @@ impl Loop {
     pub fn new(
         language: Language,
         name: &'static str,
-        dimension: usize,
-        (over, order): (Among, Order),
+        pairs: Pairs,
+        order: Order,
         sums: [Vec<String>; 2],
     ) -> Self {
         let (terms, start, only) = (Vec::new(), None, None);
-        Self { language, name, dimension, over, order, terms, start, only, sums }
+        Self { language, name, pairs, order, terms, start, only, sums }
     }
 
-    fn axes(&self, of: &str) -> Vec<String> {
-        (0..self.dimension).map(|axis| format!("{of}_{axis}")).collect()
+    /// Names of what is known of a pair.
+    fn pair_names(&self) -> Vec<String> {
+        let axes = |of: &'static str, dimension: usize| {
+            (0..dimension).map(move |axis| format!("{of}_{axis}"))
+        };
+        match &self.pairs {
+            Pairs::Moving(dimension, _) => {
+                axes("here", *dimension).chain(axes("there", *dimension)).collect()
+            }
+            Pairs::Frozen(rows) => axes("pair", rows.kept.len()).collect(),
+        }
     }
 
     /// Adds a term of columns of a particle and of its neighbours.
     pub fn term(&mut self, [mine, others]: [&[Use]; 2], among: Among, f: OfTerm<'_>) {
         let [sums, results] = &self.sums;
         let (my, its) = (names("my_", mine), names("its_", others));
-        let (wide, count) = (my.len(), sums.len());
+        let (pair, wide, count) = (self.pair_names(), my.len(), sums.len());
+        let known = pair.len();
         let slots = vec!["slot_a".to_string(), "slot_b".to_string()];
-        let inputs = [self.axes("here"), self.axes("there"), slots, my, its, sums.clone()];
+        let inputs = [pair, slots, my, its, sums.clone()];
         let name = format!("{}_pair_{}", self.name, self.terms.len());
         let law = Law::record(name, inputs.concat(), |x| {
-            let (here, x) = x.split_at(self.dimension);
-            let (there, x) = x.split_at(self.dimension);
+            let (pair, x) = x.split_at(known);
             let (slots, x) = x.split_at(2);
             let (me, x) = x.split_at(wide);
             let (other, sums) = x.split_at(x.len() - count);
-            let met = Met { here, there, slots: [slots[0], slots[1]], me, other, sums };
+            let met = Met { pair, slots: [slots[0], slots[1]], me, other, sums };
             results.iter().cloned().zip(f(&met)).collect()
         });
         let (mine, others) = (mine.to_vec(), others.to_vec());
@@ -150,14 +166,22 @@ impl Loop {
 
     fn write(self, close: &Law, scalars: &[&'static str], columns: &[Use], writes: &[Use]) -> Pass {
         let (language, is_gpu) = (self.language, self.has_lanes());
-        let dimension = self.dimension;
         let mut arguments = Arguments::default();
         scalars.iter().for_each(|name| arguments.scalar(name));
-        [NUMBERS, PASSIVE, ENTRIES].iter().for_each(|name| arguments.indices(name));
-        for term in &self.terms {
-            term.among.rows().iter().flatten().for_each(|name| arguments.indices(name));
+        match &self.pairs {
+            Pairs::Moving(..) => {
+                [NUMBERS, PASSIVE, ENTRIES].iter().for_each(|name| arguments.indices(name));
+                for term in &self.terms {
+                    term.among.rows().iter().flatten().for_each(|name| arguments.indices(name));
+                }
+                arguments.numbers(POSITION, true);
+            }
+            Pairs::Frozen(rows) => {
+                let Rows { first, count, neighbors, numbers, .. } = rows;
+                [first, count, neighbors].iter().for_each(|name| arguments.indices(name));
+                arguments.numbers(numbers, true);
+            }
         }
-        arguments.numbers(POSITION, true);
         let started = self.start.iter().flat_map(|(_, columns)| columns);
         let mine = self.terms.iter().flat_map(|term| &term.mine).chain(started).chain(columns);
         let others = self.terms.iter().flat_map(|term| &term.others);
@@ -176,26 +200,31 @@ impl Loop {
         laws.for_each(|law| text += &law.text(language, Precision::Double));
         let name = self.name;
         let _ = writeln!(text, "KERNEL void {name}({})\n{{", arguments.text(language));
-        let wanted = self.over.condition();
-        let wanted = match self.only {
-            Some(only) => format!("{wanted} && {only}[a] > 0.5"),
-            None => wanted.to_string(),
+        let passive = match &self.pairs {
+            Pairs::Moving(_, over) => Some(format!("{PASSIVE}[{NUMBERS}[a]] {}", over.condition())),
+            Pairs::Frozen(_) => None,
         };
+        let only = self.only.map(|only| format!("{only}[a] > 0.5"));
+        let wanted: Vec<String> = passive.into_iter().chain(only).collect();
         text += &match is_gpu {
             true => format!(
                 "    const int thread = blockIdx.x * blockDim.x + threadIdx.x;\n    \
                  const int lane = thread % 8;\n    \
                  const unsigned group = 0xffu << (threadIdx.x & 24);\n    \
                  const int a = thread / 8 < n ? thread / 8 : 0;\n    \
-                 const int is_on = thread / 8 < n && passive[numbers[a]] {wanted};\n    {{\n"
+                 const int is_on = {};\n    {{\n",
+                [&["thread / 8 < n".to_string()], &*wanted].concat().join(" && ")
             ),
-            false => format!("    EACH(a, n) if (passive[numbers[a]] {wanted}) {{\n"),
+            false if wanted.is_empty() => "    EACH(a, n) {\n".into(),
+            false => format!("    EACH(a, n) if ({}) {{\n", wanted.join(" && ")),
         };
-        for axis in 0..self.dimension {
-            let _ = writeln!(
-                text,
-                "    const real here_{axis} = {POSITION}[a * {dimension} + {axis}];"
-            );
+        if let Pairs::Moving(dimension, _) = self.pairs {
+            for axis in 0..dimension {
+                let _ = writeln!(
+                    text,
+                    "    const real here_{axis} = {POSITION}[a * {dimension} + {axis}];"
+                );
+            }
         }
         let mut mine: Vec<Use> = Vec::new();
         let started = self.start.iter().flat_map(|(_, columns)| columns);
@@ -220,8 +249,15 @@ impl Loop {
             let _ = writeln!(text, "    {}({});", law.name, join(inputs.chain(pointers)));
         }
         for term in &self.terms {
-            for rows in term.among.rows() {
-                self.write_term(term, *rows, sums, &mut text);
+            match &self.pairs {
+                Pairs::Moving(..) => {
+                    for rows in term.among.rows() {
+                        self.write_term(term, *rows, sums, &mut text);
+                    }
+                }
+                Pairs::Frozen(Rows { first, count, .. }) => {
+                    self.write_term(term, [first, count], sums, &mut text);
+                }
             }
         }
         for sum in sums {
@@ -269,6 +305,33 @@ impl Loop {
         self.language == Language::Cuda && self.order != Order::Fold
     }
 
+    /// What is known of the pair of a particle and its neighbour `b`, number `k` of its row.
+    fn write_pair(&self, first: &str, text: &mut String) {
+        match &self.pairs {
+            Pairs::Moving(dimension, _) => {
+                for axis in 0..*dimension {
+                    let _ = writeln!(
+                        text,
+                        "        const real there_{axis} = {POSITION}[b * {dimension} + {axis}];"
+                    );
+                }
+            }
+            Pairs::Frozen(Rows { numbers, kept, .. }) => {
+                let width = kept.iter().flatten().count();
+                let _ = writeln!(text, "        const unsigned block = {first}[a] + k / 8;");
+                for (number, place) in kept.iter().enumerate() {
+                    let _ = match place {
+                        Some(place) => writeln!(
+                            text,
+                            "        const real pair_{number} = {numbers}[(block * {width} + {place}) * 8 + k % 8];"
+                        ),
+                        None => writeln!(text, "        const real pair_{number} = 0;"),
+                    };
+                }
+            }
+        }
+    }
+
     fn write_term(
         &self,
         term: &Term,
@@ -276,12 +339,20 @@ impl Loop {
         sums: &[String],
         text: &mut String,
     ) {
-        let (is_gpu, dimension) = (self.has_lanes(), self.dimension);
+        let is_gpu = self.has_lanes();
+        // Where the neighbour of a place in the row stands.
+        let entry = |k: &str| match &self.pairs {
+            Pairs::Moving(..) => format!("{ENTRIES}[{first}[a] + {k}]"),
+            Pairs::Frozen(rows) => {
+                format!("{}[({first}[a] + ({k}) / 8) * 8 + ({k}) % 8]", rows.neighbors)
+            }
+        };
         let _ = match (is_gpu, self.order) {
             (true, Order::Lanes) => writeln!(
                 text,
                 "    for (unsigned k = lane, end = is_on ? {count}[a] : 0, next = k < end ? \
-                 {ENTRIES}[{first}[a] + k] : 0; k < end; k += 8) {{"
+                 {} : 0; k < end; k += 8) {{",
+                entry("k")
             ),
             (true, Order::Single) => writeln!(
                 text,
@@ -297,16 +368,12 @@ impl Loop {
             (true, Order::Lanes) => writeln!(
                 text,
                 "        const unsigned b = next;\n        \
-                 next = k + 8 < end ? {ENTRIES}[{first}[a] + k + 8] : 0;"
+                 next = k + 8 < end ? {} : 0;",
+                entry("k + 8")
             ),
-            _ => writeln!(text, "        const unsigned b = {ENTRIES}[{first}[a] + k];"),
+            _ => writeln!(text, "        const unsigned b = {};", entry("k")),
         };
-        for axis in 0..self.dimension {
-            let _ = writeln!(
-                text,
-                "        const real there_{axis} = {POSITION}[b * {dimension} + {axis}];"
-            );
-        }
+        self.write_pair(first, text);
         for column in &term.others {
             load(text, "        ", column, "its_", "b");
         }
@@ -325,7 +392,7 @@ impl Loop {
         if is_single {
             let _ = writeln!(text, "        real {};", given.join(", "));
         }
-        let inputs = [self.axes("here"), self.axes("there"), slots, mine, others, kept].concat();
+        let inputs = [self.pair_names(), slots, mine, others, kept].concat();
         let pointers = given.iter().map(|sum| format!("&{sum}"));
         let call = join(inputs.into_iter().chain(pointers));
         let _ = writeln!(text, "        {}({call});", term.law.name);

@@ -39,7 +39,7 @@ fn gathers(language: Language) -> [Pass; 2] {
     let periods = [Some(2.0), None];
     let space = Space { kernel: Kernel::WendlandC2, smoothing_length: 0.1, periods };
     let side = [own("side", 8)];
-    let density = Gather::<One, 2>::new(language, "density", &space, Among::Active, Order::Single)
+    let density = Gather::<One, _>::new(language, "density", &space, Among::Active, Order::Single)
         .term(&Density::<2>, &side, Among::All)
         .close(&[], &[], &[own("summed", 1)], |sum, _| vec![*sum]);
     let law = Forces::<2, FULL, false, true>(ForceConstants {
@@ -53,7 +53,7 @@ fn gathers(language: Language) -> [Pass; 2] {
         crowding: 0.02,
     });
     let forces =
-        Gather::<ForceSum<2>, 2>::new(language, "forces", &space, Among::All, Order::Lanes)
+        Gather::<ForceSum<2>, _>::new(language, "forces", &space, Among::All, Order::Lanes)
             .only("near")
             .term(&law, &side, Among::Active)
             .close(&["scale"], &[], &[own("force", 2)], |sums, x| {

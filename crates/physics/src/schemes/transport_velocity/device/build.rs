@@ -141,7 +141,7 @@ impl<const D: usize> TransportVelocity<D> {
         let skin = MovingSupport::<D>::SKIN * support;
         let lists = Lists::new(&device, &common.is_wall, support, skin, &periods)?;
         let mut machine =
-            Machine::new(device, lists, |language| plan.passes(language), chunk(count))?;
+            Machine::new(device, Some(lists), |language| plan.passes(language), chunk(count))?;
         for (_, (name, before, width)) in &columns {
             machine.add_zeros(name, count * width)?;
             machine.add_zeros(before, count * width)?;

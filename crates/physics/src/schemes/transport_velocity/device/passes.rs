@@ -157,7 +157,7 @@ impl<const D: usize> Plan<D> {
     fn densities(&self, language: Language, space: &Space<D>) -> Pass {
         let columns = [own("side", side_width(D))];
         let centre = self.kernel.value(D, 0.0, self.smoothing_length);
-        Gather::<One, D>::new(language, "densities", space, Among::Active, Order::Single)
+        Gather::<One, _>::new(language, "densities", space, Among::Active, Order::Single)
             .start(&columns, |mut x| side::<D>(&mut x).mass() * centre)
             .term(&Density::<D>, &columns, Among::All)
             .close(&[], &[], &[own("summed", 1)], |sum, _| vec![*sum])
@@ -190,7 +190,7 @@ impl<const D: usize> Plan<D> {
         let (corrects, moves, falls) = self.rate_kind;
         let columns = [own("side", side_width(D)), own("half_force", D)];
         let gather =
-            Gather::<RateSum<D>, D>::new(language, "rates", space, Among::Active, Order::Lanes);
+            Gather::<RateSum<D>, _>::new(language, "rates", space, Among::Active, Order::Lanes);
         macro_rules! of {
             ($corrects:literal, $moves:literal, $falls:literal) => {{
                 let law = Rates::<D, $corrects, $moves, $falls>(constants);
@@ -293,7 +293,7 @@ impl<const D: usize> Plan<D> {
         let columns = [own("side", side_width(D))];
         let of_walls = [own("side", side_width(D)), own("shear", D)];
         let gather =
-            Gather::<ForceSum<D>, D>::new(language, "forces", space, Among::Active, Order::Lanes);
+            Gather::<ForceSum<D>, _>::new(language, "forces", space, Among::Active, Order::Lanes);
         macro_rules! of {
             ($kind:expr, $artificial:literal, $crowding:literal) => {{
                 let law = Forces::<D, { $kind }, $artificial, $crowding>(constants);

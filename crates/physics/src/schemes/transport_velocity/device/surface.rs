@@ -47,7 +47,7 @@ impl<const D: usize> Plan<D> {
     fn see(&self, language: Language, space: &Space<D>) -> Pass {
         let mark = [own("mark", 1)];
         let writes = [own("near", 1), own("normal", D), own("surface", 1)];
-        Gather::<(One, One), D>::new(language, "see", space, Among::Active, Order::Lanes)
+        Gather::<(One, One), _>::new(language, "see", space, Among::Active, Order::Lanes)
             .fold(&[], &mark, Among::All, |meeting, (marks, count)| {
                 *marks += meeting.other[0];
                 *count += Traced::from(1.0);
@@ -68,7 +68,7 @@ impl<const D: usize> Plan<D> {
         let law = SurfaceNormal::<D>;
         let centre = self.kernel.value(D, 0.0, self.smoothing_length);
         let writes = [own("normal", D), own("alone", 1)];
-        Gather::<Sums<D>, D>::new(language, "normals", space, Among::Active, Order::Single)
+        Gather::<Sums<D>, _>::new(language, "normals", space, Among::Active, Order::Single)
             .only("near")
             .start(&columns, |mut x| {
                 let me = side::<D>(&mut x);
@@ -99,7 +99,7 @@ impl<const D: usize> Plan<D> {
         let mine = [own("normal", D)];
         let columns = [own("normal", D), own("alone", 1)];
         let writes = [own("surface", 1)];
-        Gather::<One, D>::new(language, "cover", space, Among::Active, Order::Lanes)
+        Gather::<One, _>::new(language, "cover", space, Among::Active, Order::Lanes)
             .only("near")
             .fold(&mine, &[], Among::All, |meeting, covering| {
                 let normal = Vector::<D>::from_column_slice(meeting.me);
@@ -120,7 +120,7 @@ impl<const D: usize> Plan<D> {
     fn see_surfaces(&self, language: Language, space: &Space<D>) -> Pass {
         let surface = [own("surface", 1)];
         let writes = [own("close_by", 1), own("reach", 1)];
-        Gather::<One, D>::new(language, "see_surfaces", space, Among::Active, Order::Lanes)
+        Gather::<One, _>::new(language, "see_surfaces", space, Among::Active, Order::Lanes)
             .fold(&[], &surface, Among::Active, |meeting, seen| *seen += meeting.other[0])
             .close(&[], &surface, &writes, |seen, x| {
                 let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
@@ -134,7 +134,7 @@ impl<const D: usize> Plan<D> {
     /// How far the nearest surface is, `h_b` of CTVF algorithm 1.
     fn reach(&self, language: Language, space: &Space<D>) -> Pass {
         let surface = [own("surface", 1)];
-        Gather::<One, D>::new(language, "reach_surfaces", space, Among::Active, Order::Fold)
+        Gather::<One, _>::new(language, "reach_surfaces", space, Among::Active, Order::Fold)
             .only("close_by")
             .start(&[], |_| Traced::from(f64::INFINITY))
             .fold(&[], &surface, Among::Active, |meeting, nearest| {
@@ -157,7 +157,7 @@ impl<const D: usize> Plan<D> {
             smoothing_length: self.smoothing_length,
             crowding: self.force_constants.crowding,
         };
-        Gather::<Components<D>, D>::new(language, "crowd", space, Among::Active, Order::Single)
+        Gather::<Components<D>, _>::new(language, "crowd", space, Among::Active, Order::Single)
             .only("close_by")
             .fold(&mine, &others, Among::All, |meeting, sum| {
                 let mut other = meeting.other;

@@ -110,7 +110,7 @@ impl<const D: usize> Plan<D> {
         let of = |column, width| through("numbers", column, width);
         let columns =
             [of("mass", 1), of("sliding", D), of("faces", self.faces_width()), of("gravity", D)];
-        let gather = Gather::<Surroundings<D>, D>::new(
+        let gather = Gather::<Surroundings<D>, _>::new(
             language,
             "walls",
             space,
@@ -154,7 +154,7 @@ impl<const D: usize> Plan<D> {
         let law = Wall::<D>::of(&constants);
         let columns = [own("side", side_width(D)), own("shear", D)];
         let writes = [own("force", FORCES * D)];
-        Gather::<Components<D>, D>::new(language, "reactions", space, Among::Passive, Order::Lanes)
+        Gather::<Components<D>, _>::new(language, "reactions", space, Among::Passive, Order::Lanes)
             .term(&law, &columns, Among::Active)
             .close(&[], &[], &writes, |walls, _| {
                 let mut all = vec![Traced::from(0.0); FORCES * D];
@@ -170,7 +170,7 @@ impl<const D: usize> Plan<D> {
         let spacing = self.spacing;
         let writes = [own("hold", 2 * D + 1), own("side", side_width(D))];
         type Holds<const D: usize> = ((Components<D>, Components<D>), One);
-        Gather::<Holds<D>, D>::new(language, "hold_off", space, Among::Active, Order::Fold)
+        Gather::<Holds<D>, _>::new(language, "hold_off", space, Among::Active, Order::Fold)
             .start(&[], |_| {
                 let nothing = Vector::<D>::repeat(Traced::from(0.0));
                 ((nothing, nothing), Traced::from(-1.0))
@@ -234,7 +234,7 @@ impl<const D: usize> Plan<D> {
         let mine = [own("side", side_width(D))];
         let others = [own("hold", 2 * D + 1), own("side", side_width(D))];
         let force = [own("force", FORCES * D)];
-        Gather::<Components<D>, D>::new(language, "bear", space, Among::Passive, Order::Fold)
+        Gather::<Components<D>, _>::new(language, "bear", space, Among::Passive, Order::Fold)
             .start(&force, |mut x| forces::<D>(&mut x)[4])
             .fold(&mine, &others, Among::Active, |meeting, sum| {
                 let (mut mine, mut other) = (meeting.me, meeting.other);
@@ -259,7 +259,7 @@ impl<const D: usize> Plan<D> {
     fn escape(&self, language: Language, space: &Space<D>, room: &Room<D>) -> Pass {
         let others = [through("numbers", "faces", self.faces_width())];
         let spacing = self.spacing;
-        Gather::<(One, One), D>::new(language, "escape", space, Among::Active, Order::Fold)
+        Gather::<(One, One), _>::new(language, "escape", space, Among::Active, Order::Fold)
             .start(&[], |_| (Traced::from(f64::INFINITY), Traced::from(0.0)))
             .fold(&[], &others, Among::Passive, |meeting, (nearest, is_through)| {
                 let mut other = meeting.other;
