@@ -15,9 +15,12 @@ mod number;
 pub mod pairs;
 mod power;
 pub mod riemann;
+mod slope;
 pub mod tensor;
+pub mod viscous;
 pub mod volumetric;
 pub mod waves;
 
 pub use lanes::{Lanes, Lanes4, Mask4, WIDTH};
 pub use number::{Number, Scalar};
+pub use slope::Slope;

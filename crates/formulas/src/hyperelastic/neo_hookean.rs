@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, SMatrix};
 
 use super::kinematics::{Kinematics, scaled, trace};
+use super::reduced::{larger, smaller};
 use super::{HyperelasticResponse, LameConstants, MooneyRivlin};
 use crate::{Number, tensor};
 
@@ -44,16 +45,17 @@ impl NeoHookeanLogarithmic {
     ///
     /// With `m = F^-T N` the acoustic tensor of direction N is
     /// `mu I + (mu + lambda - lambda ln J) m (x) m`, and `|m|` is one over the principal stretch.
-    pub fn wave_moduli<const D: usize>(&self, gradient: &SMatrix<f64, D, D>) -> [f64; 2] {
+    pub fn wave_moduli<T: Number, const D: usize>(&self, gradient: &SMatrix<T, D, D>) -> [T; 2] {
         let LameConstants { lambda, mu } = self.0;
         let deformation = gradient + SMatrix::identity();
         let strain = tensor::right_cauchy_green(&deformation);
-        let factor = mu + lambda - lambda * tensor::determinant(&deformation).ln();
+        let factor = -(tensor::determinant(&deformation).ln() * lambda) + (mu + lambda);
         let along = [tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain)]
-            .map(|square| mu + factor / square);
+            .map(|square| factor / square + mu);
         // Across a direction there is nothing but shear.
-        let across = if D > 1 { mu } else { along[0] };
-        [along[0].min(along[1]).min(across), along[0].max(along[1]).max(across)]
+        let across = if D > 1 { T::from(mu) } else { along[0] };
+        let [one, other] = along;
+        [smaller(smaller(one, other), across), larger(larger(one, other), across)]
     }
 }
 

@@ -2,10 +2,11 @@
 
 use nalgebra::{Matrix3, SMatrix};
 use num_dual::Dual64;
+use num_traits::Zero as _;
 
 use super::{HyperelasticLaw, HyperelasticResponse};
 use crate::volumetric::StressState;
-use crate::{Scalar, tensor};
+use crate::{Number, Scalar, Slope, tensor};
 
 /// Derivatives of the first Piola-Kirchhoff stress: entry `[k][l]` is `dP/dF_kl`, Pa.
 pub type Tangent<const D: usize> = [[SMatrix<f64, D, D>; D]; D];
@@ -113,6 +114,20 @@ impl<const D: usize> Reduced<D> {
         tangent
     }
 
+    /// Whether nothing is free in the missing dimensions, so that no stretch across has to be found.
+    pub fn is_held(&self) -> bool {
+        D == 3 || !self.state.is_free_across()
+    }
+
+    /// The stress where the law [is held](Self::is_held), in numbers of any type.
+    pub fn held_stress<T: Number>(
+        &self,
+        displacement_gradient: &SMatrix<T, D, D>,
+    ) -> SMatrix<T, D, D> {
+        let stress = self.law.stress(&self.embedded(displacement_gradient, T::zero()));
+        SMatrix::from_fn(|i, j| stress[(i, j)])
+    }
+
     /// Smallest and largest modulus of plane waves that travel in the principal directions, Pa: eigenvalues
     /// of the acoustic tensors `N . dP/dF . N`. Where the smallest is negative the law has lost its
     /// convexity there, and no wave travels.
@@ -121,31 +136,43 @@ impl<const D: usize> Reduced<D> {
     /// `W_ii` along, and across `(l_i W_i - l_j W_j)/(l_i^2 - l_j^2)`, which for equal stretches is
     /// `(W_ii - W_ij + W_i/l_i)/2`.
     pub fn wave_moduli(&self, displacement_gradient: &SMatrix<f64, D, D>) -> [f64; 2] {
-        if let (HyperelasticLaw::NeoHookeanLogarithmic(own), false) =
-            (&self.law, self.state.is_free_across())
-        {
+        self.moduli_by(displacement_gradient, |gradient| self.stress(gradient))
+    }
+
+    /// The same where the law [is held](Self::is_held), in numbers of any type.
+    pub fn held_wave_moduli<T: Number>(&self, displacement_gradient: &SMatrix<T, D, D>) -> [T; 2] {
+        self.moduli_by(displacement_gradient, |gradient| self.held_stress(gradient))
+    }
+
+    fn moduli_by<T: Number>(
+        &self,
+        displacement_gradient: &SMatrix<T, D, D>,
+        stress: impl Fn(&SMatrix<Slope<T>, D, D>) -> SMatrix<Slope<T>, D, D>,
+    ) -> [T; 2] {
+        if let (HyperelasticLaw::NeoHookeanLogarithmic(own), true) = (&self.law, self.is_held()) {
             return own.wave_moduli(displacement_gradient);
         }
         let stretches = principal_stretches(displacement_gradient);
-        let mut moduli = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut see = |modulus: f64| moduli = [moduli[0].min(modulus), moduli[1].max(modulus)];
-        let slopes: [SMatrix<Dual64, D, D>; D] = std::array::from_fn(|i| {
-            let mut gradient = SMatrix::<Dual64, D, D>::zeros();
-            for k in 0..D {
-                gradient[(k, k)] = Dual64::from_re(stretches[k] - 1.0);
-            }
-            gradient[(i, i)] = gradient[(i, i)].derivative();
-            self.stress(&gradient)
+        let mut moduli = [f64::INFINITY, f64::NEG_INFINITY].map(T::from);
+        let mut see =
+            |modulus: T| moduli = [smaller(modulus, moduli[0]), larger(modulus, moduli[1])];
+        let slopes: [SMatrix<Slope<T>, D, D>; D] = std::array::from_fn(|i| {
+            let of = |k: usize| match k == i {
+                true => Slope::variable(stretches[k] - 1.0),
+                false => Slope::constant(stretches[k] - 1.0),
+            };
+            stress(&SMatrix::from_fn(|k, l| if k == l { of(k) } else { Slope::zero() }))
         });
         for i in 0..D {
-            see(slopes[i][(i, i)].eps);
+            see(slopes[i][(i, i)].slope);
             for j in 0..i {
                 let (along, across) = (slopes[i][(i, i)], slopes[j][(j, j)]);
                 let [one, other] = [stretches[i], stretches[j]];
-                see(match (one - other).abs() > SAME_STRETCH * one {
-                    true => (one * along.re - other * across.re) / (one * one - other * other),
-                    false => 0.5 * (along.eps - slopes[i][(j, j)].eps + along.re / one),
-                });
+                see(T::choose(
+                    (one * SAME_STRETCH).less((one - other).abs()),
+                    || (one * along.value - other * across.value) / (one * one - other * other),
+                    || (along.slope - slopes[i][(j, j)].slope + along.value / one) * 0.5,
+                ));
             }
         }
         moduli
@@ -155,7 +182,7 @@ impl<const D: usize> Reduced<D> {
     pub fn in_three<T: Scalar>(&self, resolved: &SMatrix<T, D, D>) -> Matrix3<T> {
         let real = self.embedded(&resolved.map(T::re), 0.0);
         let embedded = self.embedded(resolved, T::zero());
-        if !self.state.is_free_across() || D == 3 {
+        if self.is_held() {
             return embedded;
         }
         let Some((across, slope)) = self.strain_across(real) else {
@@ -171,7 +198,7 @@ impl<const D: usize> Reduced<D> {
         self.embedded(resolved, across)
     }
 
-    fn embedded<T: Scalar>(&self, resolved: &SMatrix<T, D, D>, across: T) -> Matrix3<T> {
+    fn embedded<T: Number>(&self, resolved: &SMatrix<T, D, D>, across: T) -> Matrix3<T> {
         Matrix3::from_fn(|i, j| match (i < D && j < D, i == j) {
             (true, _) => resolved[(i, j)],
             (false, true) => across,
@@ -246,9 +273,19 @@ impl<const D: usize> Reduced<D> {
 const SAME_STRETCH: f64 = 1e-6;
 
 /// Principal stretches of a displacement gradient.
-fn principal_stretches<const D: usize>(gradient: &SMatrix<f64, D, D>) -> [f64; D] {
+fn principal_stretches<T: Number, const D: usize>(gradient: &SMatrix<T, D, D>) -> [T; D] {
     let strain = tensor::right_cauchy_green(&(gradient + SMatrix::identity()));
     let (least, most) = (tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain));
     let squares = [least, most, strain.trace() - least - most];
-    std::array::from_fn(|i| squares[i].max(0.0).sqrt())
+    std::array::from_fn(|i| larger(squares[i], T::zero()).sqrt())
+}
+
+/// The smaller of two numbers; the second one where the first is none.
+pub(super) fn smaller<T: Number>(one: T, other: T) -> T {
+    T::select(one.less(other), one, other)
+}
+
+/// The larger of two numbers; the second one where the first is none.
+pub(super) fn larger<T: Number>(one: T, other: T) -> T {
+    T::select(other.less(one), one, other)
 }

@@ -1,6 +1,5 @@
 //! Velocity components with prescribed values (Dirichlet conditions).
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::function::{SpaceTime, padded};
@@ -58,11 +57,11 @@ impl PrescribedComponents {
         Self { entries }
     }
 
-    /// Those of particles that follow each other, numbered from the first of them.
-    pub fn part(&self, own: &Range<usize>) -> Self {
-        let entries = self.entries.iter().filter(|entry| own.contains(&entry.particle)).cloned();
-        let moved = |entry: Entry| Entry { particle: entry.particle - own.start, ..entry };
-        Self { entries: entries.map(moved).collect() }
+    /// Those of some particles, of which `place` says where they stand now, in the same order.
+    pub fn part(&self, place: impl Fn(usize) -> Option<usize>) -> Self {
+        let moved =
+            |entry: &Entry| Some(Entry { particle: place(entry.particle)?, ..entry.clone() });
+        Self { entries: self.entries.iter().filter_map(moved).collect() }
     }
 
     /// Gives velocities the prescribed values of a time.

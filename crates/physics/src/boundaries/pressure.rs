@@ -49,9 +49,9 @@ pub(crate) struct Pressed<const D: usize> {
 }
 
 impl<const D: usize> Pressed<D> {
-    /// The same of particles that are counted from a later one.
-    pub fn counted_from(self, first: usize) -> Self {
-        Self { particle: self.particle - first, ..self }
+    /// The same on another particle.
+    pub fn on(self, particle: usize) -> Self {
+        Self { particle, ..self }
     }
 
     /// `p N` at a time in s, in N.

@@ -70,9 +70,9 @@ pub(crate) struct Loaded<const D: usize> {
 }
 
 impl<const D: usize> Loaded<D> {
-    /// The same of particles that are counted from a later one.
-    pub fn counted_from(self, first: usize) -> Self {
-        Self { particle: self.particle - first, ..self }
+    /// The same on another particle.
+    pub fn on(self, particle: usize) -> Self {
+        Self { particle, ..self }
     }
 
     /// The force in N at a time in s.

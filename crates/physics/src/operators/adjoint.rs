@@ -17,11 +17,11 @@ use crate::{Tensor, Vector};
 
 /// Pairs with N coefficients: `G_ab`, and `w_ab X_ab`.
 #[derive(Clone, Debug)]
-pub(super) struct AdjointPairs<const D: usize, const N: usize> {
+pub(crate) struct AdjointPairs<const D: usize, const N: usize> {
     /// Supports.
-    gradients: FrozenRows<Each<Components<D>, N>>,
+    pub gradients: FrozenRows<Each<Components<D>, N>>,
     /// Supports and dual supports: the coefficients as the other has them, and `2 (c_a w_ab + c_b w_ba)` in N/m.
-    forces: FrozenRows<(Each<Components<D>, N>, One)>,
+    pub forces: FrozenRows<(Each<Components<D>, N>, One)>,
 }
 
 impl<const D: usize, const N: usize> AdjointPairs<D, N> {

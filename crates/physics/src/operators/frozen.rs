@@ -1,8 +1,10 @@
 //! Pairs of lists that do not change.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::marker::PhantomData;
 
+use piola_device::{DeviceError, Machine};
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::{self, Of, Record};
 use piola_formulas::{Lanes as _, Lanes4, WIDTH};
@@ -38,6 +40,39 @@ pub struct FrozenRows<R> {
     numbers: Vec<Lanes>,
     rows: Vec<Row>,
     record: PhantomData<R>,
+}
+
+/// What columns of a device have of such rows.
+pub struct Columns<'a> {
+    /// The first block of each row.
+    pub first: Vec<u32>,
+    /// The number of neighbours of each row.
+    pub count: Vec<u32>,
+    /// The neighbours.
+    pub neighbors: &'a [u32],
+    /// What is known of pairs, without what is zero in all of them.
+    pub numbers: Cow<'a, [f64]>,
+}
+
+impl Columns<'_> {
+    /// Bytes of all of them.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.first)
+            + size_of_val(&*self.count)
+            + size_of_val(self.neighbors)
+            + size_of_val(&*self.numbers)
+    }
+
+    /// Copies them to a device.
+    ///
+    /// # Errors
+    /// When its memory does not suffice.
+    pub fn add(&self, machine: &mut Machine, rows: &piola_device::Rows) -> Result<(), DeviceError> {
+        machine.add_indices(rows.first, &self.first)?;
+        machine.add_indices(rows.count, &self.count)?;
+        machine.add_indices(rows.neighbors, self.neighbors)?;
+        machine.add(rows.numbers, &self.numbers)
+    }
 }
 
 impl<R: Record> FrozenRows<R> {
@@ -86,6 +121,33 @@ impl<R: Record> FrozenRows<R> {
             numbers.extend_from_slice(&self.numbers[own.start * R::NUMBERS..own.end * R::NUMBERS]);
         }
         Self { neighbors, numbers, rows: ranges, record: PhantomData }
+    }
+
+    /// The rows as columns of a device of these names, and what is in them.
+    pub fn columns(&self, names: [&'static str; 4]) -> (piola_device::Frozen<R>, Columns<'_>) {
+        let is_used = |number: &usize| {
+            let own = self.numbers.iter().skip(*number).step_by(R::NUMBERS);
+            own.flatten().any(|value| *value != 0.0)
+        };
+        let used: Vec<usize> = (0..R::NUMBERS).filter(is_used).collect();
+        let numbers = match used.len() == R::NUMBERS {
+            true => Cow::Borrowed(self.numbers.as_flattened()),
+            false => {
+                let blocks = self.numbers.chunks_exact(R::NUMBERS);
+                blocks.flat_map(|block| used.iter().flat_map(|&number| block[number])).collect()
+            }
+        };
+        let [first, count, neighbors, of_pairs] = names;
+        let place = |number| used.iter().position(|used| *used == number);
+        let kept = (0..R::NUMBERS).map(place).collect();
+        let rows = piola_device::Rows { first, count, neighbors, numbers: of_pairs, kept };
+        let columns = Columns {
+            first: self.rows.iter().map(|row| row.first).collect(),
+            count: self.rows.iter().map(|row| row.count).collect(),
+            neighbors: self.neighbors.as_flattened(),
+            numbers,
+        };
+        (piola_device::Frozen::new(rows), columns)
     }
 
     /// Number of neighbours in a row.

@@ -32,6 +32,7 @@ mod stencil;
 mod support;
 mod trace;
 
+pub(crate) use adjoint::AdjointPairs;
 pub use areas::PairAreas;
 pub use block::NeighborBlock;
 pub use boundary_values::{BoundaryValueError, ModifiedMatrix, POOR_CONDITION, raise_ghosts};
@@ -40,7 +41,7 @@ pub use directed::{DirectedSupport, nearest_radii};
 pub use dual_gradient::DualGradient;
 pub(crate) use dual_gradient::dual_row;
 pub use error::OperatorError;
-pub use frozen::{FrozenRows, LANES, Lanes, Row};
+pub use frozen::{Columns, FrozenRows, LANES, Lanes, Row};
 pub use gather::{
     Among, OfCenter, OfOther, Pairs, Same, Source, Sum, Term, add_at, gather, gather_parts, sum_at,
     visit,
@@ -51,6 +52,7 @@ pub use lattice_areas::{exposed_areas, lattice_areas};
 pub use least_squares::LeastSquares;
 pub use moving::{MovingSupport, Remaining};
 pub use packing::{Packing, PackingError, pack};
+pub(crate) use reference::{Pairs as ReferencePairs, stabilised};
 pub use reference::{PlaneData, ReferenceGradient, Strained};
 pub use relax::relax;
 pub use slots::Slots;

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector};
-use piola_formulas::Scalar;
 use piola_formulas::kernels::Kernel;
+use piola_formulas::{Number, Scalar};
 
 use super::adjoint::AdjointPairs;
 use super::directed::DirectedSupport;
@@ -42,13 +42,13 @@ pub struct ReferenceGradient<const D: usize> {
     /// Reference positions of particles, and behind them of images.
     positions: Vec<Vector<D>>,
     images: Vec<Image<D>>,
-    pairs: Pairs<D>,
+    pub(crate) pairs: Pairs<D>,
     centers: Vec<Center<D>>,
 }
 
 /// The pairs that passes go through: with one sum, and with two.
 #[derive(Clone, Debug)]
-enum Pairs<const D: usize> {
+pub(crate) enum Pairs<const D: usize> {
     Plain(AdjointPairs<D, 1>),
     Consistent(AdjointPairs<D, 2>),
 }
@@ -377,28 +377,32 @@ impl<const D: usize> ReferenceGradient<D> {
         tension: Tensor<D>,
         stiffness: f64,
     ) -> [Tensor<D>; N] {
-        let mut derivatives = [Tensor::zeros(); N];
-        derivatives[0] = tension;
-        if stiffness != 0.0 {
-            let moment = sums[0] * self.centers[a].shape;
-            match derivatives.as_mut_slice() {
-                [of_gradient, of_moment] => {
-                    *of_gradient += (moment - sums[1]) * stiffness;
-                    *of_moment = sums[0] * -stiffness;
-                }
-                // The moment is the product itself.
-                all => all[0] -= moment * stiffness,
+        match stiffness != 0.0 {
+            true => stabilised(sums, tension, &self.centers[a].shape, stiffness),
+            false => {
+                let mut derivatives = [Tensor::zeros(); N];
+                derivatives[0] = tension;
+                derivatives
             }
         }
-        derivatives
     }
 
     /// Forces in N on particles, and behind them on images, of displacements and of what
     /// [`Self::strain`] makes of them; that of images is zero.
     pub fn forces(&self, field: &[Vector<D>], tension: &[Tensor<D>], force: &mut [Vector<D>]) {
-        let none = [Vector::zeros(); 2];
-        let own = |a: usize| self.centers.get(a).map_or(none, |center| center.coefficients);
+        let own = |slot: usize| self.own_coefficients(slot);
         on_pairs!(&self.pairs, pairs => pairs.forces(field, own, tension, force));
+    }
+
+    /// `sum_b G_ab` and `sum_b w_ab X_ab` of a particle in 1/m; of an image zero.
+    #[inline]
+    pub(crate) fn own_coefficients(&self, slot: usize) -> [Vector<D>; 2] {
+        self.centers.get(slot).map_or([Vector::zeros(); 2], |center| center.coefficients)
+    }
+
+    /// The images of particles.
+    pub(crate) fn all_images(&self) -> &[Image<D>] {
+        &self.images
     }
 
     /// The hourglass coefficient of a particle in J.
@@ -440,4 +444,26 @@ impl<const D: usize> ReferenceGradient<D> {
             + size_of_val(self.images.as_slice())
             + size_of_val(self.centers.as_slice())
     }
+}
+
+/// The derivatives by the sums of a particle of the energy of its material, which has the `tension`, and of its hourglass
+/// energy with the stiffness 2 c: `T + 2 c (A S - M)` and `- 2 c A`, or of the only sum, where M is `A S`, `T - 2 c A S`.
+#[inline]
+pub(crate) fn stabilised<T: Number, const D: usize, const N: usize>(
+    sums: &[SMatrix<T, D, D>; N],
+    tension: SMatrix<T, D, D>,
+    shape: &SMatrix<T, D, D>,
+    stiffness: T,
+) -> [SMatrix<T, D, D>; N] {
+    let moment = sums[0] * shape;
+    let mut derivatives = [tension; N];
+    match derivatives.as_mut_slice() {
+        [of_gradient, of_moment] => {
+            *of_gradient += (moment - sums[1]).map(|entry| entry * stiffness);
+            *of_moment = sums[0].map(|entry| entry * -stiffness);
+        }
+        // The moment is the product itself.
+        all => all[0] -= moment.map(|entry| entry * stiffness),
+    }
+    derivatives
 }

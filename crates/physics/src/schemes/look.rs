@@ -27,7 +27,7 @@ pub(crate) struct Most {
 
 impl Most {
     /// What is less than anything that is seen.
-    const NOTHING: Self = Self { value: f64::NEG_INFINITY, particle: 0 };
+    pub const NOTHING: Self = Self { value: f64::NEG_INFINITY, particle: 0 };
 
     /// Sees another; what is not a number is not seen.
     #[inline]
@@ -106,7 +106,17 @@ pub(crate) fn look<const D: usize, const N: usize>(
         sight.own.iter_mut().zip(seen.figures).for_each(|(most, value)| most.see(value, particle));
     };
     let sight = team.reduce(count, see, Sight::pack, Sight::unpack);
-    let [speed, wave_speed, ratio, mismatch] = sight.common;
+    judged(sight.first_not_finite, sight.common, sight.own, least)
+}
+
+/// What follows from the first particle that is not finite, from the largest squared speed, wave speed, negative volume
+/// ratio and mismatch, and from the largest figures of the formulation, which are no less than `least`.
+pub(crate) fn judged<const N: usize>(
+    first_not_finite: Option<usize>,
+    [speed, wave_speed, ratio, mismatch]: [Most; 4],
+    mut own: [Most; N],
+    least: [f64; N],
+) -> (Health, [Most; N]) {
     let speed = speed.at_least(0.0);
     let health = Health {
         largest_speed: speed.value.sqrt(),
@@ -115,10 +125,9 @@ pub(crate) fn look<const D: usize, const N: usize>(
         smallest_ratio: -ratio.value,
         smallest_ratio_particle: ratio.particle,
         ratio_mismatch: mismatch.at_least(0.0).value,
-        first_not_finite: sight.first_not_finite,
+        first_not_finite,
         first_escaped: None,
     };
-    let mut own = sight.own;
     own.iter_mut().zip(least).for_each(|(most, least)| *most = most.at_least(least));
     (health, own)
 }

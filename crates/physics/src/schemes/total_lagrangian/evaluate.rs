@@ -54,7 +54,7 @@ impl<const D: usize> TotalLagrangian<D> {
         discrete.operator.strain(&self.displacement, &mut self.strained, |a, gradient| {
             let mut stress = solid.mixture(a).stress(gradient);
             if is_viscous {
-                stress += dissipation.stress(solid, a, gradient, &rates[a]);
+                stress += dissipation.at(solid, a).stress(gradient, &rates[a]);
             }
             stress * solid.particles.volume[a]
         });

@@ -23,18 +23,6 @@ impl<const D: usize> TotalLagrangian<D> {
         !self.loads.body_forces.is_empty()
     }
 
-    /// The forces in N of pressures at the gradients of the moment, with the particles they act on.
-    fn pressures(&self, time: f64) -> impl Iterator<Item = (usize, Vector<D>)> {
-        let gradient = &self.strained.gradient;
-        let pressed = self.loads.pressed.iter();
-        pressed.map(move |part| (part.particle, part.force(time, &gradient[part.particle])))
-    }
-
-    /// The forces in N of tractions, with the particles they act on.
-    fn tractions(&self, time: f64) -> impl Iterator<Item = (usize, Vector<D>)> {
-        self.loads.loaded.iter().map(move |load| (load.particle, load.force(time)))
-    }
-
     /// What springs do to the centres of their particles.
     fn pulls(&self, at: &Columns<'_, D>) -> impl Iterator<Item = (&Spring<D>, Vector<D>)> {
         self.loads.springs.iter().map(move |spring| {
@@ -77,7 +65,7 @@ impl<const D: usize> TotalLagrangian<D> {
         if self.dissipation.is_viscous() {
             let power = |a: usize, total: &mut Total| {
                 let [gradient, rate] = [&self.strained.gradient[a], &self.gradient_rate[a]];
-                let stress = self.dissipation.stress(solid, a, gradient, rate);
+                let stress = self.dissipation.at(solid, a).stress(gradient, rate);
                 total.power -= stress.dot(rate) * solid.particles.volume[a];
             };
             add_sums(rows, power, &mut viscous);
@@ -88,8 +76,13 @@ impl<const D: usize> TotalLagrangian<D> {
             over_all(rows, particle, |a, _| self.force[a], &mut images);
         }
         let [mut traction, mut pressure, mut spring, mut boundary] = [const { ExactSums::NONE }; 4];
-        push(self.tractions(time), particle, own.velocity, &mut traction);
-        push(self.pressures(time), particle, own.velocity, &mut pressure);
+        push(self.loads.tractions(time), particle, own.velocity, &mut traction);
+        push(
+            self.loads.pressures(time, &self.strained.gradient),
+            particle,
+            own.velocity,
+            &mut pressure,
+        );
         for (load, pull) in self.pulls(at) {
             let whole: f64 = load.particles.iter().map(|&a| solid.mass[a as usize]).sum();
             let share = |&a: &u32| (a as usize, pull * (solid.mass[a as usize] / whole));
@@ -155,8 +148,10 @@ impl<const D: usize> TotalLagrangian<D> {
                 |a: usize, sum: &mut f64| *sum += solid.mass[a] * own.velocity[a].dot(&kick[a]);
             add_sums(rows, add, &mut dragged);
         }
-        self.pressures(time).for_each(|load| pressure.add(&growth(load)));
-        self.tractions(time).for_each(|load| traction.add(&growth(load)));
+        self.loads
+            .pressures(time, &self.strained.gradient)
+            .for_each(|load| pressure.add(&growth(load)));
+        self.loads.tractions(time).for_each(|load| traction.add(&growth(load)));
         let [body, dragged, pressure, mut traction] =
             match self.is_pulled() || damping > 0.0 || self.is_driven {
                 true => self.team.close_all([body, dragged, pressure, traction]),

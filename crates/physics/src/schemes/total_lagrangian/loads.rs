@@ -1,13 +1,11 @@
 //! What acts on a body from outside, as a function of the time or of the load factor.
 
-use std::ops::Range;
-
 use super::Solid;
-use crate::Vector;
 use crate::boundaries::pressure::{Pressed, pressed_force};
 use crate::boundaries::traction::Loaded;
 use crate::boundaries::{BodyForce, Spring, padded};
 use crate::operators::ReferenceGradient;
+use crate::{Tensor, Vector};
 
 /// Dead loads, follower pressures, and springs.
 #[derive(Clone, Default)]
@@ -19,16 +17,31 @@ pub(super) struct Loads<const D: usize> {
 }
 
 impl<const D: usize> Loads<D> {
-    /// Those on particles that follow each other, numbered from the first of them; of springs none.
-    pub fn part(&self, own: &Range<usize>) -> Self {
-        let loaded = self.loaded.iter().filter(|load| own.contains(&load.particle)).cloned();
-        let pressed = self.pressed.iter().filter(|part| own.contains(&part.particle)).cloned();
+    /// Those on some particles, of which `place` says where they stand now; of springs none.
+    pub fn part(&self, place: impl Fn(usize) -> Option<usize>) -> Self {
+        let loaded = self.loaded.iter().filter_map(|it| Some(it.clone().on(place(it.particle)?)));
+        let pressed = self.pressed.iter().filter_map(|it| Some(it.clone().on(place(it.particle)?)));
         Self {
             body_forces: self.body_forces.clone(),
-            loaded: loaded.map(|load| load.counted_from(own.start)).collect(),
-            pressed: pressed.map(|part| part.counted_from(own.start)).collect(),
+            loaded: loaded.collect(),
+            pressed: pressed.collect(),
             springs: Vec::new(),
         }
+    }
+
+    /// The forces in N of pressures at displacement gradients, with the particles they act on.
+    pub fn pressures(
+        &self,
+        time: f64,
+        gradient: &[Tensor<D>],
+    ) -> impl Iterator<Item = (usize, Vector<D>)> {
+        let pressed = self.pressed.iter();
+        pressed.map(move |part| (part.particle, part.force(time, &gradient[part.particle])))
+    }
+
+    /// The forces in N of tractions, with the particles they act on.
+    pub fn tractions(&self, time: f64) -> impl Iterator<Item = (usize, Vector<D>)> {
+        self.loaded.iter().map(move |load| (load.particle, load.force(time)))
     }
 
     /// Whether nothing acts but body forces.

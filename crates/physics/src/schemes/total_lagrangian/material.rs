@@ -1,9 +1,9 @@
 //! What particles are made of, and what a material makes of a deformation.
 
 use nalgebra::{Matrix3, SMatrix};
-use piola_formulas::Scalar;
 use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse, LameConstants, Reduced};
 use piola_formulas::tensor;
+use piola_formulas::{Number, Scalar};
 
 use crate::Tensor;
 
@@ -67,6 +67,32 @@ impl<const D: usize> Mixture<D> {
                 false => material.law.wave_moduli(&Tensor::zeros()),
             };
             sums.iter_mut().zip(moduli).for_each(|(sum, modulus)| *sum += share * modulus);
+        }
+        sums
+    }
+
+    /// Whether no stretch across has to be found in any of its materials.
+    pub fn is_held(&self) -> bool {
+        self.0.iter().all(|(material, _)| material.law.is_held())
+    }
+
+    /// [`Self::stress`] where the mixture [is held](Self::is_held), in numbers of any type.
+    pub fn held_stress<T: Number>(&self, gradient: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
+        let part = |(material, share): &(Material<D>, f64)| {
+            material.law.held_stress(gradient).map(|entry| entry * *share)
+        };
+        self.0.iter().map(part).fold(SMatrix::zeros(), |sum, part| sum + part)
+    }
+
+    /// [`Self::wave_moduli`] where the mixture [is held](Self::is_held), in numbers of any type.
+    pub fn held_wave_moduli<T: Number>(&self, gradient: &SMatrix<T, D, D>) -> [T; 2] {
+        let mut sums = [T::zero(); 2];
+        for (material, share) in &self.0 {
+            let moduli = match material.law.law().is_objective() {
+                true => material.law.held_wave_moduli(gradient),
+                false => material.law.wave_moduli(&Tensor::zeros()).map(T::from),
+            };
+            sums.iter_mut().zip(moduli).for_each(|(sum, modulus)| *sum += modulus * *share);
         }
         sums
     }

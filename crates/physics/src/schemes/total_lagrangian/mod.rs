@@ -25,6 +25,7 @@
 
 mod build;
 mod check;
+mod device;
 mod discrete;
 mod dissipation;
 mod equilibrium;

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use piola_device::Device;
+
 use super::fields::{ColumnsMut, Made};
 use super::inspect::convexity_is_lost;
 use super::{ENERGIES, LEDGER, LOAD_FACTOR, Matrices, TotalLagrangian};
@@ -9,8 +11,9 @@ use crate::fields::FieldDescription;
 use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, Health, NEWTON_ITERATIONS, NewmarkScheme, Part, Particle, Phase, RankRefusal,
-    RankShare, Scheme, SchemeDescription, SplitScheme, StaticScheme, StepLimit,
+    Capability, DeviceRefusal, DeviceSteps, Health, NEWTON_ITERATIONS, NewmarkScheme, Part,
+    Particle, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme, StaticScheme,
+    StepLimit,
 };
 use crate::solve::Costs;
 
@@ -80,6 +83,11 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     #[inline(never)]
     fn share(&self, part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
         Ok(Box::new(self.shared(part)?))
+    }
+
+    #[inline(never)]
+    fn on_device(&self, device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        self.solid_to_device(device)
     }
 
     #[inline(never)]

@@ -65,6 +65,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let solid = Arc::new(self.solid.part(own.clone()));
         let (count, all) = (own.len(), slots.iter().count());
         let is_viscous = self.dissipation.is_viscous();
+        let place = |a: usize| own.contains(&a).then(|| a - own.start);
         let planes = whole.planes.iter();
         let planes = planes.map(|&(plane, on)| (plane, slots.place(on as u32) as usize)).collect();
         let matrices = Matrices::Adjoint(Discrete { solid: solid.clone(), operator, planes });
@@ -72,11 +73,11 @@ impl<const D: usize> TotalLagrangian<D> {
         let mut share = Self {
             description: self.description,
             updated: None,
-            loads: self.loads.part(&own),
+            loads: self.loads.part(place),
             is_driven: self.is_driven,
             has_images: self.has_images,
             team,
-            prescribed: self.prescribed.part(&own),
+            prescribed: self.prescribed.part(place),
             rigid: RigidBodies::new(Vec::new(), &solid),
             statics: None,
             is_static: false,

@@ -20,7 +20,7 @@ pub struct Solid<const D: usize> {
     /// Mass of each particle in kg (per unit of the missing dimensions).
     pub mass: Vec<f64>,
     /// Moduli of the slowest and the fastest wave at rest of each mixture, Pa.
-    moduli_at_rest: Vec<[f64; 2]>,
+    pub(super) moduli_at_rest: Vec<[f64; 2]>,
 }
 
 impl<const D: usize> Solid<D> {

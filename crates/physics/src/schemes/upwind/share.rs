@@ -38,7 +38,9 @@ impl<const D: usize> Upwind<D> {
         let team = part.team(&slots)?;
         let (count, all) = (own.len(), slots.iter().count());
         let reconstructed = if self.settings.reconstruction { all } else { 0 };
-        let loaded = self.loaded.iter().filter(|load| own.contains(&load.particle)).cloned();
+        let place = |a: usize| own.contains(&a).then(|| a - own.start);
+        let loaded = self.loaded.iter();
+        let loaded = loaded.filter_map(|load| Some(load.clone().on(place(load.particle)?)));
         let mut share = Self {
             team,
             is_driven: self.is_driven,
@@ -46,10 +48,10 @@ impl<const D: usize> Upwind<D> {
             areas: self.areas.part(own.clone(), |slot| slots.place(slot)),
             largest_exchange: self.largest_exchange,
             fastest_reference: self.fastest_reference,
-            prescribed: self.prescribed.part(&own),
+            prescribed: self.prescribed.part(place),
             steady_body_force: self.steady_body_force,
             body_acceleration: vec![Vector::zeros(); count],
-            loaded: loaded.map(|load| load.counted_from(own.start)).collect(),
+            loaded: loaded.collect(),
             sides: vec![UpwindSide::zero(); all],
             slopes: vec![UpwindSlope::zero(); reconstructed],
             observed: Vec::new(),

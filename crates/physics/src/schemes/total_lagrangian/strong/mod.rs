@@ -62,7 +62,7 @@ impl<const D: usize> TotalLagrangian<D> {
             for (a, tension) in (first..).zip(rows) {
                 let mut stress = elastic[a];
                 if is_viscous {
-                    stress += dissipation.stress(solid, a, &gradient[a], &rates[a]);
+                    stress += dissipation.at(solid, a).stress(&gradient[a], &rates[a]);
                 }
                 *tension = stress * volume[a];
             }

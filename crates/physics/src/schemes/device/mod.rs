@@ -1,10 +1,18 @@
 //! What a formulation offers to a device, and what whoever takes its steps elsewhere offers to a run.
 
+mod memory;
+mod numbers;
+mod state;
+
 use piola_device::DeviceError;
 use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::{Health, Phase, RankCosts, StepLimit};
+
+pub(crate) use memory::fits;
+pub(crate) use numbers::{Recorded, are_finite, entries, one, square, take, tensor};
+pub(crate) use state::{StateColumn, StateColumns};
 
 /// Why steps that are taken elsewhere cannot go on.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -1,0 +1,46 @@
+//! What laws of one particle read from the numbers of a pass.
+
+use nalgebra::{SMatrix, SVector};
+use piola_device::Traced;
+use piola_formulas::Number;
+
+/// A vector of numbers that are recorded.
+pub(crate) type Recorded<const D: usize> = SVector<Traced, D>;
+
+/// Takes a vector from the front of some numbers.
+pub(crate) fn take<const D: usize>(numbers: &mut &[Traced]) -> Recorded<D> {
+    let (own, rest) = numbers.split_at(D);
+    *numbers = rest;
+    SVector::from_column_slice(own)
+}
+
+/// Takes a number from the front.
+pub(crate) fn one(numbers: &mut &[Traced]) -> Traced {
+    let (own, rest) = numbers.split_at(1);
+    *numbers = rest;
+    own[0]
+}
+
+/// Takes a tensor from the front, row by row.
+pub(crate) fn tensor<const D: usize>(numbers: &mut &[Traced]) -> SMatrix<Traced, D, D> {
+    let (own, rest) = numbers.split_at(D * D);
+    *numbers = rest;
+    SMatrix::from_row_slice(own)
+}
+
+/// The numbers of a tensor, row by row.
+pub(crate) fn entries<const D: usize>(tensor: &SMatrix<Traced, D, D>) -> Vec<Traced> {
+    (0..D * D).map(|k| tensor[(k / D, k % D)]).collect()
+}
+
+/// The square of a length.
+pub(crate) fn square<const D: usize>(vector: &Recorded<D>) -> Traced {
+    vector.dot(vector)
+}
+
+/// Whether all of some numbers are finite.
+pub(crate) fn are_finite(numbers: &[Traced]) -> <Traced as Number>::Mask {
+    let finite = |number: &Traced| number.abs().at_most(Traced::from(f64::MAX));
+    let (first, rest) = numbers.split_first().expect("there are numbers to look at");
+    rest.iter().fold(finite(first), |all, number| all & finite(number))
+}

@@ -1,0 +1,91 @@
+//! The state of a run on a device.
+
+use std::ops::Range;
+
+use piola_device::{DeviceError, Machine};
+
+/// A column of a state on a device.
+#[derive(Clone, Debug)]
+pub(crate) struct StateColumn {
+    /// Its name there.
+    pub name: &'static str,
+    /// The name of what it was before the last step.
+    pub before: &'static str,
+    /// Where it stands in a state.
+    pub place: Range<usize>,
+}
+
+/// The columns of a state on a device, and its tail here, with what both were before the last step.
+#[derive(Debug)]
+pub(crate) struct StateColumns {
+    columns: Vec<StateColumn>,
+    /// The end of the state.
+    pub tail: Vec<f64>,
+    tail_before: Vec<f64>,
+}
+
+impl StateColumns {
+    /// Columns with a tail of this length.
+    pub fn new(columns: Vec<StateColumn>, tail: usize) -> Self {
+        Self { columns, tail: vec![0.0; tail], tail_before: vec![0.0; tail] }
+    }
+
+    /// Bytes that they take on a device.
+    pub fn bytes(columns: &[StateColumn]) -> impl Iterator<Item = (&'static str, usize)> {
+        columns.iter().map(|column| (column.name, 2 * size_of::<f64>() * column.place.len()))
+    }
+
+    /// Makes room for them, behind which there is room for `more(name)` numbers.
+    pub fn make(
+        &self,
+        machine: &mut Machine,
+        more: impl Fn(&str) -> usize,
+    ) -> Result<(), DeviceError> {
+        self.columns.iter().try_for_each(|column| {
+            let length = column.place.len() + more(column.name);
+            machine.add_zeros(column.name, length)?;
+            machine.add_zeros(column.before, length)
+        })
+    }
+
+    /// Takes a state over.
+    pub fn put(&mut self, machine: &mut Machine, state: &[f64]) -> Result<(), DeviceError> {
+        let rest = state.len() - self.tail.len();
+        self.tail.copy_from_slice(&state[rest..]);
+        self.columns
+            .iter()
+            .try_for_each(|column| machine.write(column.name, &state[column.place.clone()]))
+    }
+
+    /// Keeps what a state is before a step.
+    pub fn mark(&mut self, machine: &mut Machine) -> Result<(), DeviceError> {
+        self.tail_before.copy_from_slice(&self.tail);
+        self.columns.iter().try_for_each(|column| machine.copy(column.name, column.before))
+    }
+
+    /// Gives the state.
+    pub fn give(&self, machine: &Machine, state: &mut [f64]) -> Result<(), DeviceError> {
+        self.give_of(machine, |column| column.name, &self.tail, state)
+    }
+
+    /// Gives the state before the last step.
+    pub fn give_before(&self, machine: &Machine, state: &mut [f64]) -> Result<(), DeviceError> {
+        self.give_of(machine, |column| column.before, &self.tail_before, state)
+    }
+
+    fn give_of(
+        &self,
+        machine: &Machine,
+        name: impl Fn(&StateColumn) -> &'static str,
+        tail: &[f64],
+        state: &mut [f64],
+    ) -> Result<(), DeviceError> {
+        for column in &self.columns {
+            let from = machine.column(name(column));
+            machine.device().read(from, &mut state[column.place.clone()])?;
+        }
+        let rest = state.len() - tail.len();
+        state[rest..].copy_from_slice(tail);
+        Ok(())
+    }
+}

@@ -1,0 +1,213 @@
+//! From a solid to its passes and columns on a device, or what has none there.
+
+use piola_device::{Device, Machine, Rows};
+
+use super::super::{Discrete, FIGURES as BEHIND, LEDGER, Matrices, TotalLagrangian};
+use super::OnDevice;
+use super::listed::Listed;
+use super::passes::{DUALS, FIGURES, FOLDS, Plan, SUPPORTS};
+use crate::fields;
+use crate::operators::{AdjointPairs, Columns, FrozenRows, ReferencePairs};
+use crate::parallel::chunk;
+use crate::schemes::Scheme as _;
+use crate::schemes::device::{DeviceRefusal, DeviceSteps, StateColumn, StateColumns, fits};
+
+/// Most mixtures whose stresses stand in one pass.
+const MOST_MIXTURES: usize = 16;
+
+/// A column with the numbers that it begins with.
+type Filled = (&'static str, Vec<f64>);
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// What has no steps on a device, with what a case has to be like instead.
+    fn device_refusal(&self) -> Option<DeviceRefusal> {
+        let mixtures = &self.solid.mixtures;
+        let features = [
+            (self.statics.is_some(), "statics and implicit steps", "take explicit steps"),
+            (self.matrices.edges().is_some(), "the strong form", "choose `form = \"adjoint\"`"),
+            (!self.rigid.is_empty(), "a rigid body", "leave it out"),
+            (!self.loads.springs.is_empty(), "a spring", "leave it out"),
+            (
+                !mixtures.iter().all(|mixture| mixture.is_held()),
+                "a material that is free across",
+                "hold it across, as in plane strain",
+            ),
+            (
+                mixtures.len() > MOST_MIXTURES,
+                "a joint of bodies with more than 16 mixtures of materials",
+                "do not join them",
+            ),
+        ];
+        let found = features.into_iter().find(|(is_there, ..)| *is_there);
+        found.map(|(_, what, instead)| DeviceRefusal::Stage { what: what.into(), instead })
+    }
+
+    /// The steps of the solid on a device.
+    pub(in super::super) fn solid_to_device(
+        &self,
+        device: Device,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        match (&self.matrices, self.device_refusal()) {
+            (Matrices::Adjoint(discrete), None) => match &discrete.operator.pairs {
+                ReferencePairs::Plain(pairs) => self.on(device, discrete, pairs),
+                ReferencePairs::Consistent(pairs) => self.on(device, discrete, pairs),
+            },
+            (_, Some(refusal)) => Err(refusal),
+            _ => Err(DeviceRefusal::Formulation(self.description.name)),
+        }
+    }
+
+    fn device_plan(&self, discrete: &Discrete<D>, listed: &Listed<D>) -> Plan<D> {
+        let (solid, dissipation) = (&self.solid, &self.dissipation);
+        let is_viscous = dissipation.is_viscous();
+        Plan {
+            mixtures: solid.mixtures.clone(),
+            moduli_at_rest: solid.moduli_at_rest.clone(),
+            is_stabilised: (0..solid.len()).any(|a| discrete.operator.hourglass(a) != 0.0),
+            viscosity: is_viscous.then_some(dissipation.viscosity),
+            is_quadratic: dissipation.artificial_viscosity[1] > 0.0,
+            damping: dissipation.damping,
+            is_pulled: !self.loads.body_forces.is_empty(),
+            has_images: self.has_images,
+            is_pressed: listed.is_pressed(),
+        }
+    }
+
+    fn on<const N: usize>(
+        &self,
+        device: Device,
+        discrete: &Discrete<D>,
+        pairs: &AdjointPairs<D, N>,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        let (solid, operator) = (&*self.solid, &*discrete.operator);
+        let (count, images) = (solid.len(), operator.all_images());
+        let listed = Listed::new(self, &discrete.planes);
+        let plan = self.device_plan(discrete, &listed);
+        let mut mirrored = vec![Vec::new(); if images.is_empty() { 0 } else { count }];
+        for (slot, image) in (count as u32..).zip(images) {
+            mirrored[image.source as usize].push((slot, image.sign.into()));
+        }
+        let folds = FrozenRows::new(mirrored.into_iter());
+        let (supports, of_supports) = pairs.gradients.columns(SUPPORTS);
+        let (duals, of_duals) = pairs.forces.columns(DUALS);
+        let (folds, of_folds) = folds.columns(FOLDS);
+        let rows: [(&Rows, &Columns<'_>); 3] =
+            [(&supports.rows, &of_supports), (&duals.rows, &of_duals), (&folds.rows, &of_folds)];
+        let (columns, scratch) = (self.device_columns(), self.scratch::<N>(&plan, &listed));
+        let filled = self.filled::<N>(&plan, discrete);
+        let of_rows = rows.iter().map(|(rows, columns)| (rows.numbers, columns.bytes()));
+        let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
+        let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
+        let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes));
+        fits(&device, all.chain(of_rows).chain(of_filled).collect())?;
+        let passes = |language| plan.passes(language, &supports, &duals, &folds);
+        let mut machine = Machine::new(device, None, passes, chunk(count))?;
+        let tail = LEDGER.length(D) + BEHIND;
+        let state = StateColumns::new(columns, tail);
+        state.make(&mut machine, |name| if name == "kick" { 0 } else { images.len() * D })?;
+        scratch.iter().try_for_each(|(name, length)| machine.add_zeros(name, *length))?;
+        filled.iter().try_for_each(|(name, numbers)| machine.add(name, numbers))?;
+        rows.iter().try_for_each(|(rows, columns)| columns.add(&mut machine, rows))?;
+        machine.add_indices("listed", &listed.particles)?;
+        let sources: Vec<u32> = images.iter().map(|image| image.source).collect();
+        let slots: Vec<u32> = (0..images.len()).map(|image| (count + image) as u32).collect();
+        machine.add_indices("image_source", &sources)?;
+        machine.add_indices("image_slot", &slots)?;
+        Ok(Box::new(OnDevice {
+            plan,
+            machine,
+            state,
+            stages: self.stages.clone(),
+            solid: self.solid.clone(),
+            loads: self.loads.clone(),
+            listed,
+            images: images.to_vec(),
+            stable: self.stable,
+            is_falling: false,
+            is_evaluated: false,
+            is_soft: false,
+        }))
+    }
+
+    /// Columns of the state.
+    fn device_columns(&self) -> Vec<StateColumn> {
+        let copies = [
+            ("displacement", "displacement_before"),
+            ("velocity", "velocity_before"),
+            ("kick", "kick_before"),
+        ];
+        let fields = self.description.fields;
+        let all = copies.map(|(name, before)| {
+            let field = fields.iter().find(|field| field.name == name);
+            let field = field.expect("these are columns of the formulation");
+            let place = fields::column(fields, D, self.particle_count(), field);
+            StateColumn { name, before, place }
+        });
+        all.into()
+    }
+
+    /// Columns of work with their lengths.
+    fn scratch<const N: usize>(
+        &self,
+        plan: &Plan<D>,
+        listed: &Listed<D>,
+    ) -> Vec<(&'static str, usize)> {
+        let (count, slots) = (self.solid.len(), self.force.len());
+        let rows = listed.particles.len();
+        let mut all = vec![
+            ("gradient", count * D * D),
+            ("tension", slots * N * D * D),
+            ("force", slots * D),
+            ("terms", count * plan.terms().max(FIGURES)),
+            ("shown", rows * (D + D * D)),
+            ("given", rows * D),
+            ("moved", rows * 2 * D),
+        ];
+        if plan.viscosity.is_some() {
+            all.push(("gradient_rate", count * D * D));
+        }
+        if plan.is_pulled {
+            all.push(("gravity", count * D));
+        }
+        all
+    }
+
+    /// Columns that do not change.
+    fn filled<const N: usize>(&self, plan: &Plan<D>, discrete: &Discrete<D>) -> Vec<Filled> {
+        let (solid, operator) = (&*self.solid, &*discrete.operator);
+        let (count, particles) = (solid.len(), &solid.particles);
+        let own = (0..self.force.len()).flat_map(|slot| {
+            let all = operator.own_coefficients(slot);
+            (0..N * D).map(move |k| all[k / D][k % D])
+        });
+        let place = particles.position.iter().flat_map(|place| place.iter().copied());
+        let mut all: Vec<Filled> = vec![
+            ("mass", solid.mass.clone()),
+            ("volume", particles.volume.clone()),
+            ("own_coefficients", own.collect()),
+            ("reference", place.collect()),
+        ];
+        if plan.mixtures.len() > 1 {
+            all.push(("mixture", solid.mixture.iter().map(|&own| f64::from(own)).collect()));
+        }
+        if plan.is_stabilised {
+            all.push(("hourglass", (0..count).map(|a| operator.hourglass(a)).collect()));
+            let entries = |a: usize| (0..D * D).map(move |k| operator.shape(a)[(k / D, k % D)]);
+            all.push(("shape", (0..count).flat_map(entries).collect()));
+        }
+        if plan.viscosity.is_some() {
+            let of = |a: usize| {
+                let own = self.dissipation.at(solid, a);
+                [own.linear, own.quadratic, self.dissipation.reference(solid, a)]
+            };
+            all.push(("viscous", (0..count).flat_map(of).collect()));
+        }
+        if plan.has_images {
+            let images = operator.all_images();
+            all.push(("image_sign", images.iter().flat_map(|image| image.sign).collect()));
+            let data = images.iter().flat_map(|image| image.data.as_flattened().to_vec());
+            all.push(("image_data", data.collect()));
+        }
+        all
+    }
+}
