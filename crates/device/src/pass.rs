@@ -79,7 +79,7 @@ impl Use {
     }
 
     /// Where number i of its row stands.
-    fn place(&self, i: usize) -> String {
+    pub(crate) fn place(&self, i: usize) -> String {
         let (column, width) = (self.column, self.width);
         match self.at {
             At::Own => format!("{column}[a * {width} + {i}]"),
@@ -97,13 +97,13 @@ pub(crate) fn width<R: Record>() -> usize {
 }
 
 /// A record of these numbers.
-pub(crate) fn filled<R: Record>(numbers: &[Traced]) -> Of<R, Traced> {
+pub fn filled<R: Record>(numbers: &[Traced]) -> Of<R, Traced> {
     let next = Cell::new(0);
     R::map([&R::zero::<f64>()], &|[_]: [f64; 1]| numbers[next.replace(next.get() + 1)])
 }
 
 /// The numbers of a record.
-pub(crate) fn flat<R: Record>(record: &Of<R, Traced>) -> Vec<Traced> {
+pub fn flat<R: Record>(record: &Of<R, Traced>) -> Vec<Traced> {
     let all = RefCell::new(Vec::new());
     R::map([record], &|[number]: [Traced; 1]| {
         all.borrow_mut().push(number);

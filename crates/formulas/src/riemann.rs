@@ -83,8 +83,8 @@ impl<T: Number, const D: usize> Interface<T, D> {
 /// Reference speed of the shock for the dissipation, `c / sqrt(lambda_min)`, Upwind (3.57), from
 /// the smallest eigenvalue of the right Cauchy-Green tensor.
 #[inline]
-pub fn stretched_wave_speed<T: Number>(speed: f64, smallest_eigenvalue: T) -> T {
-    smallest_eigenvalue.sqrt().recip() * T::from(speed)
+pub fn stretched_wave_speed<T: Number>(speed: T, smallest_eigenvalue: T) -> T {
+    smallest_eigenvalue.sqrt().recip() * speed
 }
 
 /// Fastest wave measured on the reference configuration in m/s, for the time step.

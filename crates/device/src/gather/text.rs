@@ -292,8 +292,7 @@ impl Loop {
         );
         for write in writes {
             for (i, number) in write.names("new_").iter().enumerate() {
-                let (column, width) = (write.column, write.width);
-                let _ = writeln!(text, "    {column}[a * {width} + {i}] = {number};");
+                let _ = writeln!(text, "    {} = {number};", write.place(i));
             }
         }
         text += "    }\n}\n";

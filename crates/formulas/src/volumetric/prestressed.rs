@@ -1,5 +1,7 @@
 //! A material seen from a configuration that is already stressed.
 
+use std::ops::Mul;
+
 use super::{VolumetricLaw, VolumetricResponse};
 use crate::Number;
 
@@ -10,11 +12,25 @@ use crate::Number;
 /// per particle, from [`VolumetricResponse::volume_ratio_at_pressure`]. The energy at `J = 1` is
 /// not zero but what the prestress stores.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prestressed {
+pub struct Prestressed<R = f64> {
     /// The law from its stress-free configuration.
     pub law: VolumetricLaw,
     /// Volume ratio `J0` > 0 of the prestressed configuration.
-    pub reference_ratio: f64,
+    pub reference_ratio: R,
+}
+
+impl<R: Copy> Prestressed<R> {
+    /// Pressure in Pa at a volume ratio, whatever number the ratio of the prestress is.
+    #[inline]
+    pub fn pressure_at<T: Number + Mul<R, Output = T>>(&self, volume_ratio: T) -> T {
+        self.law.pressure(volume_ratio * self.reference_ratio)
+    }
+
+    /// Tangent in Pa at a volume ratio, whatever number the ratio of the prestress is.
+    #[inline]
+    pub fn tangent_at<T: Number + Mul<R, Output = T>>(&self, volume_ratio: T) -> T {
+        self.law.tangent(volume_ratio * self.reference_ratio) * self.reference_ratio
+    }
 }
 
 impl Prestressed {
@@ -33,12 +49,12 @@ impl VolumetricResponse for Prestressed {
 
     #[inline]
     fn pressure<T: Number>(&self, volume_ratio: T) -> T {
-        self.law.pressure(volume_ratio * self.reference_ratio)
+        self.pressure_at(volume_ratio)
     }
 
     #[inline]
     fn tangent<T: Number>(&self, volume_ratio: T) -> T {
-        self.law.tangent(volume_ratio * self.reference_ratio) * self.reference_ratio
+        self.tangent_at(volume_ratio)
     }
 
     fn volume_ratio_at_pressure(&self, pressure: f64) -> Option<f64> {

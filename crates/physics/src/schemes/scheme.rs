@@ -200,11 +200,15 @@ pub trait Scheme: Send + Sync {
         None
     }
 
-    /// Its steps on a device.
+    /// Its steps on a device by the integrator of this name.
     ///
     /// # Errors
     /// Something of it has no body for devices, or the device refuses.
-    fn on_device(&self, _device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+    fn on_device(
+        &self,
+        _device: Device,
+        _integrator: &'static str,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         Err(DeviceRefusal::Formulation(self.description().name))
     }
 

@@ -1,5 +1,7 @@
 //! Explicit strong-stability-preserving Runge-Kutta methods, one for each table of stages.
 
+use piola_formulas::Number;
+
 use super::failure::Failure;
 use super::integrator::{Integrator, Unserved};
 use crate::parallel;
@@ -17,11 +19,23 @@ pub enum Blend {
     Share(f64),
 }
 
+impl Blend {
+    /// What the stage makes of a number and its rate.
+    #[inline(always)]
+    pub(crate) fn value<T: Number>(self, step: T, old: T, rate: T, new: T) -> T {
+        match self {
+            Self::Predict => old + step * rate,
+            Self::Halve => (old + new + step * rate) * 0.5,
+            Self::Share(share) => old + (new + step * rate - old) * share,
+        }
+    }
+}
+
 /// A stage of a method: how it is made, and the time it stands at, as a share of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Stage {
-    blend: Blend,
-    at: f64,
+pub(crate) struct Stage {
+    pub blend: Blend,
+    pub at: f64,
 }
 
 /// `u1 = u + dt f(u, t)`, `u_new = (u + u1 + dt f(u1, t + dt)) / 2`.
@@ -47,6 +61,15 @@ pub struct RungeKutta {
 }
 
 impl RungeKutta {
+    /// The stages of the method of a name, if it is one.
+    pub(crate) fn stages(name: &str) -> Option<&'static [Stage]> {
+        match name {
+            "tvd_rk2" => Some(&TVD_RK2),
+            "ssp_rk3" => Some(&SSP_RK3),
+            _ => None,
+        }
+    }
+
     /// The method of two stages for states of `length` numbers, theory (15), Upwind (4.1).
     ///
     /// Second order. An undamped mode of angular frequency w grows by the factor
@@ -68,20 +91,20 @@ impl RungeKutta {
 
 /// One stage: `new`, the state of the stage before, becomes that of this one.
 pub fn advance(blend: Blend, step: f64, old: &[f64], rate: &[f64], new: &mut [f64]) {
+    // One loop a blend, so that none is chosen within it.
     match blend {
-        Blend::Predict => each(old, rate, new, |old, rate, _| old + step * rate),
-        Blend::Halve => each(old, rate, new, |old, rate, new| 0.5 * (old + new + step * rate)),
-        Blend::Share(share) => {
-            each(old, rate, new, |old, rate, new| old + share * (new + step * rate - old));
-        }
+        Blend::Predict => each(Blend::Predict, step, old, rate, new),
+        Blend::Halve => each(Blend::Halve, step, old, rate, new),
+        Blend::Share(share) => each(Blend::Share(share), step, old, rate, new),
     }
 }
 
-fn each(old: &[f64], rate: &[f64], new: &mut [f64], value: impl Fn(f64, f64, f64) -> f64 + Sync) {
+#[inline(always)]
+fn each(blend: Blend, step: f64, old: &[f64], rate: &[f64], new: &mut [f64]) {
     parallel::for_each_chunk(new, |first, new| {
         let parts = old[first..].iter().zip(&rate[first..]);
         for (new, (old, rate)) in new.iter_mut().zip(parts) {
-            *new = value(*old, *rate, *new);
+            *new = blend.value(step, *old, *rate, *new);
         }
     });
 }

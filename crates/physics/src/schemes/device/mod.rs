@@ -1,5 +1,6 @@
 //! What a formulation offers to a device, and what whoever takes its steps elsewhere offers to a run.
 
+mod listed;
 mod memory;
 mod numbers;
 mod state;
@@ -9,10 +10,12 @@ use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::{Health, Phase, RankCosts, StepLimit};
+use crate::time::KickDriftKick;
 
+pub(crate) use listed::{Acting, Listed};
 pub(crate) use memory::fits;
-pub(crate) use numbers::{Recorded, are_finite, entries, one, square, take, tensor};
-pub(crate) use state::{StateColumn, StateColumns};
+pub(crate) use numbers::{Recorded, are_finite, entries, one, sighted, square, take, tensor};
+pub(crate) use state::{StateColumn, StateColumns, gravity};
 
 /// Why steps that are taken elsewhere cannot go on.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -87,22 +90,25 @@ pub trait DeviceSteps: Send {
 pub enum DeviceRefusal {
     /// The formulation has no steps on devices.
     #[error(
-        "the formulation `{0}` does not run on devices yet, only fluids of `transport_velocity` do: leave out \
-         `--device` and `compute.device`"
+        "the formulation `{0}` does not run on devices: leave out `--device` and `compute.device`"
     )]
     Formulation(&'static str),
-    /// The bodies are solids.
+    /// The bodies are solids that deform as hypoelastic ones do.
     #[error(
-        "solids do not run on devices yet, only fluids of `transport_velocity` do: leave out `--device` and \
-         `compute.device`"
+        "solids of `transport_velocity` do not run on devices yet: leave out `--device` and `compute.device`"
     )]
     Solids,
     /// The integrator has no steps on devices.
     #[error(
-        "the integrator `{0}` does not run on devices, only `kick_drift_kick` does: use that, or leave out \
+        "the integrator `{integrator}` does not run on devices with this formulation: use {able}, or leave out \
          `--device` and `compute.device`"
     )]
-    Integrator(&'static str),
+    Integrator {
+        /// Its name.
+        integrator: &'static str,
+        /// Those that do.
+        able: &'static str,
+    },
     /// Something of the case has no steps on devices.
     #[error(
         "{what} does not run on devices yet: {instead}, or leave out `--device` and `compute.device`"
@@ -135,6 +141,19 @@ pub enum DeviceRefusal {
     /// Whoever takes the steps.
     #[error(transparent)]
     Steps(#[from] StepsError),
+}
+
+impl DeviceRefusal {
+    /// Refuses all integrators but kick-drift-kick.
+    ///
+    /// # Errors
+    /// [`DeviceRefusal::Integrator`].
+    pub(crate) fn unless_kicked(integrator: &'static str) -> Result<(), Self> {
+        match integrator == KickDriftKick::NAME {
+            true => Ok(()),
+            false => Err(Self::Integrator { integrator, able: "`kick_drift_kick`" }),
+        }
+    }
 }
 
 impl From<DeviceError> for DeviceRefusal {

@@ -4,6 +4,9 @@ use nalgebra::{SMatrix, SVector};
 use piola_device::Traced;
 use piola_formulas::Number;
 
+use crate::schemes::Health;
+use crate::schemes::look::{Most, judged};
+
 /// A vector of numbers that are recorded.
 pub(crate) type Recorded<const D: usize> = SVector<Traced, D>;
 
@@ -43,4 +46,20 @@ pub(crate) fn are_finite(numbers: &[Traced]) -> <Traced as Number>::Mask {
     let finite = |number: &Traced| number.abs().at_most(Traced::from(f64::MAX));
     let (first, rest) = numbers.split_first().expect("there are numbers to look at");
     rest.iter().fold(finite(first), |all, number| all & finite(number))
+}
+
+/// What a look over a state has found largest: whether something is not finite, the squared speed, the speed of waves,
+/// the negative volume ratio and the mismatch, and the figures of the formulation, which are no less than `least`.
+pub(crate) fn sighted<const N: usize>(
+    all: &[(f64, usize)],
+    least: [f64; N],
+) -> (Health, [Most; N]) {
+    let most = |&(value, particle): &(f64, usize)| match value > f64::NEG_INFINITY {
+        true => Most { value, particle },
+        false => Most::NOTHING,
+    };
+    let first = (all[0].0 > 0.0).then_some(all[0].1);
+    let common = std::array::from_fn(|k| most(&all[1 + k]));
+    let own = std::array::from_fn(|k| most(&all[5 + k]));
+    judged(first, common, own, least)
 }

@@ -4,6 +4,22 @@ use std::ops::Range;
 
 use piola_device::{DeviceError, Machine};
 
+use crate::{Vector, parallel};
+
+/// The body force of each particle as numbers.
+pub(crate) fn gravity<const D: usize>(
+    count: usize,
+    acceleration: impl Fn(usize) -> Vector<D> + Sync,
+) -> Vec<f64> {
+    let mut all = vec![Vector::<D>::zeros(); count];
+    parallel::for_each_chunk(&mut all, |first, rows| {
+        for (a, row) in (first..).zip(rows) {
+            *row = acceleration(a);
+        }
+    });
+    all.iter().flat_map(|row| row.iter().copied()).collect()
+}
+
 /// A column of a state on a device.
 #[derive(Clone, Debug)]
 pub(crate) struct StateColumn {
@@ -61,6 +77,11 @@ impl StateColumns {
     pub fn mark(&mut self, machine: &mut Machine) -> Result<(), DeviceError> {
         self.tail_before.copy_from_slice(&self.tail);
         self.columns.iter().try_for_each(|column| machine.copy(column.name, column.before))
+    }
+
+    /// Changes the tail, of which the first one is what it was before the step.
+    pub fn advance_tail(&mut self, change: impl FnOnce(&[f64], &mut [f64])) {
+        change(&self.tail_before, &mut self.tail);
     }
 
     /// Gives the state.

@@ -86,7 +86,12 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     }
 
     #[inline(never)]
-    fn on_device(&self, device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+    fn on_device(
+        &self,
+        device: Device,
+        integrator: &'static str,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        DeviceRefusal::unless_kicked(integrator)?;
         self.solid_to_device(device)
     }
 

@@ -193,7 +193,12 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
     }
 
     #[inline(never)]
-    fn on_device(&self, device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+    fn on_device(
+        &self,
+        device: Device,
+        integrator: &'static str,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        DeviceRefusal::unless_kicked(integrator)?;
         M::to_device(self, device)
     }
 

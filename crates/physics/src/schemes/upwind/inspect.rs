@@ -4,8 +4,8 @@ use piola_formulas::volumetric::VolumetricResponse;
 use piola_formulas::{riemann, tensor};
 
 use super::fields::Columns;
-use super::{Upwind, WaveSpeed};
-use crate::schemes::look::{Seen, look};
+use super::{Settings, Upwind, WaveSpeed};
+use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, StepLimit};
 
 impl<const D: usize> Upwind<D> {
@@ -18,24 +18,16 @@ impl<const D: usize> Upwind<D> {
     ///   of the exchange coefficients, so `dt <= 1 / row sum`, theory (17); not scaled.
     pub(super) fn look(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let at = self.columns(state);
-        let (health, [crossing, fastest, shock]) =
+        let (health, figures) =
             look(&self.team, self.particles.len(), LEAST, |a| self.look_at(a, &at));
-        limits.clear();
-        limits.push(StepLimit::scaled("acoustic", -crossing.value, crossing.particle));
-        let settings = &self.settings;
-        let exchange = self.largest_exchange * shock.value;
-        let velocity_rate = settings.tau_velocity * exchange * self.fastest_reference;
-        // The pressure exchange is the velocity's times (c/c0)^2: it sees the current stiffness.
-        let pressure_rate = settings.tau_pressure
-            * self.largest_exchange
-            * fastest.value
-            * (fastest.value / self.fastest_reference);
-        let rate = velocity_rate.max(pressure_rate);
-        if rate > 0.0 {
-            let limit = StepLimit::scaled("upwind dissipation", 1.0 / rate, fastest.particle);
-            limits.push(StepLimit { scaled: false, ..limit });
-        }
+        self.bounds().write(figures, limits);
         health
+    }
+
+    /// What bounds steps, whatever the state.
+    pub(super) fn bounds(&self) -> Bounds {
+        let Self { settings, largest_exchange, fastest_reference, .. } = *self;
+        Bounds { settings, largest_exchange, fastest_reference }
     }
 
     /// What particle `a` contributes: the negative of the time in s in which a wave crosses `d_a`, the
@@ -76,5 +68,34 @@ impl<const D: usize> Upwind<D> {
     }
 }
 
+/// What bounds steps, whatever the state.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    settings: Settings,
+    largest_exchange: f64,
+    fastest_reference: f64,
+}
+
+impl Bounds {
+    /// The limits of a state, of what [`Upwind::look_at`] has found most of.
+    pub fn write(&self, [crossing, fastest, shock]: [Most; 3], limits: &mut Vec<StepLimit>) {
+        limits.clear();
+        limits.push(StepLimit::scaled("acoustic", -crossing.value, crossing.particle));
+        let settings = &self.settings;
+        let exchange = self.largest_exchange * shock.value;
+        let velocity_rate = settings.tau_velocity * exchange * self.fastest_reference;
+        // The pressure exchange is the velocity's times (c/c0)^2: it sees the current stiffness.
+        let pressure_rate = settings.tau_pressure
+            * self.largest_exchange
+            * fastest.value
+            * (fastest.value / self.fastest_reference);
+        let rate = velocity_rate.max(pressure_rate);
+        if rate > 0.0 {
+            let limit = StepLimit::scaled("upwind dissipation", 1.0 / rate, fastest.particle);
+            limits.push(StepLimit { scaled: false, ..limit });
+        }
+    }
+}
+
 /// Figures of nothing.
-const LEAST: [f64; 3] = [f64::NEG_INFINITY, 0.0, 1.0];
+pub(super) const LEAST: [f64; 3] = [f64::NEG_INFINITY, 0.0, 1.0];

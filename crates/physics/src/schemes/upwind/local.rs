@@ -54,22 +54,49 @@ impl<const D: usize> Upwind<D> {
     #[inline]
     pub(super) fn side<T: Number>(&self, a: usize, unknowns: &Unknowns<T, D>) -> Side<T, D> {
         let reference = &self.reference[a];
-        let wave_speed = match self.settings.wave_speed {
-            WaveSpeed::Constant => T::from(reference.wave_speed),
-            WaveSpeed::Stretch => {
-                let strain = tensor::right_cauchy_green(&unknowns.deformation);
-                let smallest = tensor::smallest_eigenvalue(&strain);
-                riemann::stretched_wave_speed(reference.wave_speed, smallest)
-            }
-        };
-        Side {
-            position: unknowns.position,
-            reference: self.particles.position[a].map(T::from),
-            velocity: unknowns.velocity,
-            cofactor: tensor::cofactor(&unknowns.deformation),
-            pressure: self.law(a).pressure(unknowns.ratio),
+        let constants = Constants {
+            place: self.particles.position[a].map(T::from),
             density: T::from(reference.density),
-            wave_speed,
+            wave_speed: T::from(reference.wave_speed),
+        };
+        let pressure = self.law(a).pressure(unknowns.ratio);
+        side(self.settings.wave_speed, constants, pressure, unknowns)
+    }
+}
+
+/// What of a particle does not change and its neighbours see.
+pub(super) struct Constants<T, const D: usize> {
+    /// Reference position X in m.
+    pub place: SVector<T, D>,
+    /// Reference density in kg/m^3.
+    pub density: T,
+    /// Wave speed at the reference in m/s.
+    pub wave_speed: T,
+}
+
+/// What a particle of these constants, this pressure in Pa and these unknowns shows its neighbours.
+#[inline]
+pub(super) fn side<T: Number, const D: usize>(
+    wave_speed: WaveSpeed,
+    constants: Constants<T, D>,
+    pressure: T,
+    unknowns: &Unknowns<T, D>,
+) -> Side<T, D> {
+    let wave_speed = match wave_speed {
+        WaveSpeed::Constant => constants.wave_speed,
+        WaveSpeed::Stretch => {
+            let strain = tensor::right_cauchy_green(&unknowns.deformation);
+            let smallest = tensor::smallest_eigenvalue(&strain);
+            riemann::stretched_wave_speed(constants.wave_speed, smallest)
         }
+    };
+    Side {
+        position: unknowns.position,
+        reference: constants.place,
+        velocity: unknowns.velocity,
+        cofactor: tensor::cofactor(&unknowns.deformation),
+        pressure,
+        density: constants.density,
+        wave_speed,
     }
 }

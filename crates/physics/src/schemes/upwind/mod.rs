@@ -17,6 +17,7 @@
 //! a free surface needs no treatment.
 
 mod build;
+mod device;
 mod fields;
 mod folding;
 mod implicit;

@@ -1,10 +1,14 @@
 //! The pass over pairs: forces, deformation rates and upwind dissipation in one gather.
 
+use nalgebra::{SMatrix, SVector};
+use piola_formulas::Number;
 use piola_formulas::pairs::AreaPair;
-use piola_formulas::pairs::upwind::{Exchange, ExchangeSum, ExchangeSums, Reconstructed};
+use piola_formulas::pairs::upwind::{Exchange, ExchangeSum, ExchangeSums, Reconstructed, Side};
 
 use super::fields::ColumnsMut;
-use super::{BODY_FORCE, BOUNDARY_MOTION, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind};
+use super::{
+    BODY_FORCE, BOUNDARY_MOTION, Settings, TRACTION, UPWIND_PRESSURE, UPWIND_VELOCITY, Upwind,
+};
 use crate::operators::{Among, FrozenRows, Sum, Term, gather_parts};
 use crate::parallel::ExactSums;
 use crate::schemes::ledger::{Entry, Total, Totals};
@@ -73,22 +77,18 @@ impl<const D: usize> Upwind<D> {
         [body_force, by_velocity, by_pressure]: &mut [Total; MECHANISMS.len()],
     ) {
         let me = &self.sides[a];
-        let (settings, volume) = (&self.settings, self.particles.volume[a]);
-        let by_itself = me.cofactor * self.areas.diagonal(a) * me.pressure;
-        let upwind_force = sums.upwind_force * settings.tau_velocity;
-        let upwind_volume_rate = sums.upwind_volume_rate * settings.tau_pressure;
-        let gravity = self.body_acceleration[a];
-        let mass = self.mass(a);
-        let acceleration = (sums.internal_force + by_itself + upwind_force) / mass + gravity;
-        own.velocity[k] = acceleration;
-        let deformation_rate = sums.volume_deformation_rate / volume;
-        let dilatation = me.cofactor.dot(&deformation_rate);
-        own.volume_ratio[k] = dilatation + upwind_volume_rate / volume;
+        let (gravity, mass) = (self.body_acceleration[a], self.mass(a));
+        let diagonal = self.areas.diagonal(a);
+        let body = Body { volume: self.particles.volume[a], mass, diagonal, gravity };
+        let rates = rates(&self.settings, me, sums, &body);
+        own.velocity[k] = rates.acceleration;
+        own.volume_ratio[k] = rates.volume_ratio;
         own.position[k] = me.velocity;
-        own.deformation_gradient[k] = deformation_rate;
+        own.deformation_gradient[k] = rates.deformation;
         body_force.push(&me.position, &me.velocity, &(gravity * mass));
-        by_velocity.power += upwind_force.dot(&me.velocity);
-        by_pressure.power -= me.pressure * upwind_volume_rate;
+        let [velocity, pressure] = rates.dissipation;
+        by_velocity.power += velocity;
+        by_pressure.power -= pressure;
     }
 
     /// Adds tractions and replaces the acceleration of prescribed components by the rate of
@@ -110,5 +110,51 @@ impl<const D: usize> Upwind<D> {
         };
         totals.drive(TRACTION, &traction);
         totals.drive(BOUNDARY_MOTION, &boundary);
+    }
+}
+
+/// What of a particle its neighbours do not see.
+pub(super) struct Body<T, const D: usize> {
+    /// Volume in m^D.
+    pub volume: T,
+    /// Mass in kg.
+    pub mass: T,
+    /// `V_a G_aa` in m^(D-1).
+    pub diagonal: SVector<T, D>,
+    /// Acceleration by body forces in m/s^2.
+    pub gravity: SVector<T, D>,
+}
+
+/// The rates of a particle.
+pub(super) struct Rates<T, const D: usize> {
+    /// That of the velocity in m/s^2.
+    pub acceleration: SVector<T, D>,
+    /// That of the evolved volume ratio in 1/s.
+    pub volume_ratio: T,
+    /// That of the deformation gradient in 1/s.
+    pub deformation: SMatrix<T, D, D>,
+    /// Powers in W of the velocity dissipation, and of the pressure dissipation with the other sign.
+    pub dissipation: [T; 2],
+}
+
+/// Turns the sums of a particle into its rates, theory (8) to (13).
+#[inline]
+pub(super) fn rates<T: Number, const D: usize>(
+    settings: &Settings,
+    me: &Side<T, D>,
+    sums: &ExchangeSums<T, D>,
+    body: &Body<T, D>,
+) -> Rates<T, D> {
+    let by_itself = me.cofactor * body.diagonal * me.pressure;
+    let upwind_force = sums.upwind_force.map(|force| force * settings.tau_velocity);
+    let upwind_volume_rate = sums.upwind_volume_rate * settings.tau_pressure;
+    let force = sums.internal_force + by_itself + upwind_force;
+    let deformation = sums.volume_deformation_rate / body.volume;
+    let dilatation = me.cofactor.dot(&deformation);
+    Rates {
+        acceleration: force / body.mass + body.gravity,
+        volume_ratio: dilatation + upwind_volume_rate / body.volume,
+        deformation,
+        dissipation: [upwind_force.dot(&me.velocity), me.pressure * upwind_volume_rate],
     }
 }

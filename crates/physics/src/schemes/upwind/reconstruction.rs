@@ -1,12 +1,13 @@
 //! The pass that finds slopes for the reconstruction at mid-edges, Upwind (3.50) to (3.53).
 
+use std::ops::Mul;
+
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::Number;
 use piola_formulas::pairs::Periods;
 use piola_formulas::pairs::upwind::{Slope, Slopes, UpwindSlope};
 
 use super::Upwind;
-use crate::Tensor;
 use crate::operators::{Among, Term, gather};
 
 impl<const D: usize> Upwind<D> {
@@ -29,10 +30,13 @@ impl<const D: usize> Upwind<D> {
 }
 
 /// The slope of these moments.
-pub(super) fn solved<T: Number, const D: usize>(
+pub(super) fn solved<T: Number, I: Copy, const D: usize>(
     moments: &Slope<T, D>,
-    inverse: &Tensor<D>,
-) -> Slope<T, D> {
+    inverse: &SMatrix<I, D, D>,
+) -> Slope<T, D>
+where
+    T: Mul<I, Output = T>,
+{
     let along = |row: &dyn Fn(usize) -> T, j: usize| {
         let mut sum = row(0) * inverse[(0, j)];
         for k in 1..D {

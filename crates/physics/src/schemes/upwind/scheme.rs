@@ -1,8 +1,9 @@
 //! The upwind formulation as integrators, clock and output see it.
 
-use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
-
 use std::ops::Range;
+
+use piola_device::Device;
+use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, FIGURES, KEPT, LEDGER, Upwind};
@@ -11,8 +12,8 @@ use crate::fields::FieldDescription;
 use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, Health, Part, Particle, PartitionedScheme, Phase, RankRefusal, RankShare, Scheme,
-    SchemeDescription, StepLimit, ThetaScheme,
+    Capability, DeviceRefusal, DeviceSteps, Health, Part, Particle, PartitionedScheme, Phase,
+    RankRefusal, RankShare, Scheme, SchemeDescription, StepLimit, ThetaScheme,
 };
 use crate::solve::Costs;
 
@@ -80,6 +81,15 @@ impl<const D: usize> Scheme for Upwind<D> {
     #[inline(never)]
     fn share(&self, part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
         Ok(Box::new(self.shared(part)?))
+    }
+
+    #[inline(never)]
+    fn on_device(
+        &self,
+        device: Device,
+        integrator: &'static str,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        self.body_to_device(device, integrator)
     }
 
     fn cost(&self, particles: Range<usize>) -> f64 {

@@ -10,7 +10,6 @@ use piola_device::Device;
 use super::Executor;
 use crate::schemes::{DeviceRefusal, DeviceSteps, Health, StepsError};
 use crate::time::failure::Failure;
-use crate::time::kick_drift_kick::KickDriftKick;
 use crate::time::run::Run;
 use crate::time::summary::Outcome;
 
@@ -20,10 +19,7 @@ impl Executor {
     /// # Errors
     /// The formulation or the integrator has no steps there, or the device refuses.
     pub fn use_device(&mut self, device: Device) -> Result<(), DeviceRefusal> {
-        let steps = self.scheme.on_device(device)?;
-        if self.integrator.name() != KickDriftKick::NAME {
-            return Err(DeviceRefusal::Integrator(self.integrator.name()));
-        }
+        let steps = self.scheme.on_device(device, self.integrator.name())?;
         Ok(self.use_steps(steps)?)
     }
 

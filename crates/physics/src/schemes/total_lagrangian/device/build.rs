@@ -4,7 +4,7 @@ use piola_device::{Device, Machine, Rows};
 
 use super::super::{Discrete, FIGURES as BEHIND, LEDGER, Matrices, TotalLagrangian};
 use super::OnDevice;
-use super::listed::Listed;
+use super::listed::Followed;
 use super::passes::{DUALS, FIGURES, FOLDS, Plan, SUPPORTS};
 use crate::fields;
 use crate::operators::{AdjointPairs, Columns, FrozenRows, ReferencePairs};
@@ -57,7 +57,7 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    fn device_plan(&self, discrete: &Discrete<D>, listed: &Listed<D>) -> Plan<D> {
+    fn device_plan(&self, discrete: &Discrete<D>) -> Plan<D> {
         let (solid, dissipation) = (&self.solid, &self.dissipation);
         let is_viscous = dissipation.is_viscous();
         Plan {
@@ -69,7 +69,7 @@ impl<const D: usize> TotalLagrangian<D> {
             damping: dissipation.damping,
             is_pulled: !self.loads.body_forces.is_empty(),
             has_images: self.has_images,
-            is_pressed: listed.is_pressed(),
+            is_pressed: !self.loads.pressed.is_empty(),
         }
     }
 
@@ -81,8 +81,8 @@ impl<const D: usize> TotalLagrangian<D> {
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         let (solid, operator) = (&*self.solid, &*discrete.operator);
         let (count, images) = (solid.len(), operator.all_images());
-        let listed = Listed::new(self, &discrete.planes);
-        let plan = self.device_plan(discrete, &listed);
+        let followed = Followed::new(self, &discrete.planes);
+        let plan = self.device_plan(discrete);
         let mut mirrored = vec![Vec::new(); if images.is_empty() { 0 } else { count }];
         for (slot, image) in (count as u32..).zip(images) {
             mirrored[image.source as usize].push((slot, image.sign.into()));
@@ -93,7 +93,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let (folds, of_folds) = folds.columns(FOLDS);
         let rows: [(&Rows, &Columns<'_>); 3] =
             [(&supports.rows, &of_supports), (&duals.rows, &of_duals), (&folds.rows, &of_folds)];
-        let (columns, scratch) = (self.device_columns(), self.scratch::<N>(&plan, &listed));
+        let (columns, scratch) =
+            (self.device_columns(), self.scratch::<N>(&plan, followed.listed.len()));
         let filled = self.filled::<N>(&plan, discrete);
         let of_rows = rows.iter().map(|(rows, columns)| (rows.numbers, columns.bytes()));
         let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
@@ -108,7 +109,7 @@ impl<const D: usize> TotalLagrangian<D> {
         scratch.iter().try_for_each(|(name, length)| machine.add_zeros(name, *length))?;
         filled.iter().try_for_each(|(name, numbers)| machine.add(name, numbers))?;
         rows.iter().try_for_each(|(rows, columns)| columns.add(&mut machine, rows))?;
-        machine.add_indices("listed", &listed.particles)?;
+        machine.add_indices("listed", &followed.listed.particles)?;
         let sources: Vec<u32> = images.iter().map(|image| image.source).collect();
         let slots: Vec<u32> = (0..images.len()).map(|image| (count + image) as u32).collect();
         machine.add_indices("image_source", &sources)?;
@@ -120,7 +121,7 @@ impl<const D: usize> TotalLagrangian<D> {
             stages: self.stages.clone(),
             solid: self.solid.clone(),
             loads: self.loads.clone(),
-            listed,
+            followed,
             images: images.to_vec(),
             stable: self.stable,
             is_falling: false,
@@ -147,13 +148,8 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// Columns of work with their lengths.
-    fn scratch<const N: usize>(
-        &self,
-        plan: &Plan<D>,
-        listed: &Listed<D>,
-    ) -> Vec<(&'static str, usize)> {
+    fn scratch<const N: usize>(&self, plan: &Plan<D>, rows: usize) -> Vec<(&'static str, usize)> {
         let (count, slots) = (self.solid.len(), self.force.len());
-        let rows = listed.particles.len();
         let mut all = vec![
             ("gradient", count * D * D),
             ("tension", slots * N * D * D),

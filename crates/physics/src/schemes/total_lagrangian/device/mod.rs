@@ -1,7 +1,7 @@
 //! Steps of a solid on a device.
 //!
 //! The passes are those of the processor: gathers of the same pair laws over the same rows, with the same stresses. What
-//! acts on few particles only, the processor finds, see [`Listed`].
+//! acts on few particles only, the processor finds, see [`Followed`].
 
 mod build;
 mod listed;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use piola_device::{DeviceError, Machine};
 
-use self::listed::{Acting, Listed};
+use self::listed::Followed;
 use self::passes::{DATA, FIGURES, Plan};
 use super::fields::Columns;
 use super::stable_step::Bound;
@@ -20,15 +20,14 @@ use super::{
     BODY_FORCE, BOUNDARY_MOTION, DAMPING, LEDGER, Loads, PRESSURE, SPRING, Solid, TRACTION,
     VISCOSITY,
 };
+use crate::Vector;
 use crate::operators::{Image, PlaneData};
-use crate::parallel::Team;
-use crate::schemes::device::{DeviceSteps, StateColumns};
+use crate::parallel::{Reduce as _, Team};
+use crate::schemes::device::{Acting, DeviceSteps, StateColumns, gravity, sighted};
 use crate::schemes::ledger::{Total, Totals};
-use crate::schemes::look::{Most, judged};
 use crate::schemes::momentum::momentum_components;
 use crate::schemes::stages::{Phase, Stages};
 use crate::schemes::{Health, StepLimit, StepsError};
-use crate::{Vector, parallel};
 
 /// A solid on a device.
 struct OnDevice<const D: usize> {
@@ -38,7 +37,7 @@ struct OnDevice<const D: usize> {
     stages: Stages<Pass>,
     solid: Arc<Solid<D>>,
     loads: Loads<D>,
-    listed: Listed<D>,
+    followed: Followed<D>,
     images: Vec<Image<D>>,
     stable: Bound,
     /// Whether the column of body forces is that of all times.
@@ -70,10 +69,10 @@ impl<const D: usize> OnDevice<D> {
         if !self.plan.has_images {
             return Ok(());
         }
-        let listed = &self.listed;
-        self.carry("carry_displacements", &listed.plane_data(&listed.displacement))?;
+        let followed = &self.followed;
+        self.carry("carry_displacements", &followed.plane_data(&followed.displacement))?;
         if self.plan.viscosity.is_some() {
-            self.carry("carry_velocities", &listed.plane_data(&listed.velocity))?;
+            self.carry("carry_velocities", &followed.plane_data(&followed.listed.velocity))?;
         }
         Ok(())
     }
@@ -83,15 +82,9 @@ impl<const D: usize> OnDevice<D> {
         if self.is_falling || !self.plan.is_pulled {
             return Ok(());
         }
-        let mut all = vec![Vector::<D>::zeros(); self.count()];
         let (loads, solid) = (&self.loads, &*self.solid);
-        parallel::for_each_chunk(&mut all, |first, rows| {
-            for (a, row) in (first..).zip(rows) {
-                *row = loads.acceleration(solid, a, time);
-            }
-        });
         self.is_falling = loads.body_forces.iter().all(|force| force.is_steady());
-        let all: Vec<f64> = all.iter().flat_map(|row| row.iter().copied()).collect();
+        let all = gravity(solid.len(), |a| loads.acceleration(solid, a, time));
         self.machine.write("gravity", &all)
     }
 
@@ -137,7 +130,7 @@ impl<const D: usize> OnDevice<D> {
         let mut dragged = driven(self.plan.damping > 0.0, true);
         dragged.growth *= -self.plan.damping;
         let beyond = driven(self.plan.has_images, false);
-        acting.add_force(&beyond.force);
+        acting.motion.force.add(&beyond.force);
         acting.motion.power += self.plane_power()?;
         totals.drive(BODY_FORCE, &body);
         totals.drive(DAMPING, &dragged);
@@ -151,25 +144,25 @@ impl<const D: usize> OnDevice<D> {
 
     /// Lets the processor change the accelerations of those particles on which something acts.
     fn act(&mut self, time: f64) -> Result<Acting, DeviceError> {
-        let listed = &mut self.listed;
-        let rows = listed.particles.len();
+        let rows = self.followed.listed.len();
         if rows > 0 {
+            let listed = &mut self.followed.listed;
             self.machine.start("show", rows, &[])?;
             let wide = if self.plan.is_pressed { D + D * D } else { D };
             let mut shown = vec![0.0; rows * wide];
             self.machine.device().read(self.machine.column("shown"), &mut shown)?;
             for (row, shown) in shown.chunks_exact(wide).enumerate() {
                 let (kick, gradient) = shown.split_at(D);
-                listed.kick[row].copy_from_slice(kick);
+                listed.acceleration[row].copy_from_slice(kick);
                 for (entry, value) in gradient.iter().enumerate() {
                     listed.gradient[row][(entry / D, entry % D)] = *value;
                 }
             }
         }
-        let acting = listed.act(time);
+        let acting = self.followed.act(time);
         if rows > 0 {
-            let given: Vec<f64> =
-                listed.kick.iter().flat_map(|kick| kick.iter().copied()).collect();
+            let kicks = self.followed.listed.acceleration.iter();
+            let given: Vec<f64> = kicks.flat_map(|kick| kick.iter().copied()).collect();
             self.machine.write("given", &given)?;
             self.machine.start("take", rows, &[])?;
         }
@@ -178,7 +171,7 @@ impl<const D: usize> OnDevice<D> {
 
     /// The power of planes that move, with the forces on images.
     fn plane_power(&self) -> Result<f64, DeviceError> {
-        let rates = self.listed.plane_data(&self.listed.velocity);
+        let rates = self.followed.plane_data(&self.followed.listed.velocity);
         if rates.as_flattened().iter().all(|rate| *rate == 0.0) {
             return Ok(0.0);
         }
@@ -202,14 +195,15 @@ impl<const D: usize> OnDevice<D> {
 
     /// Places and velocities that are prescribed.
     fn follow(&mut self) -> Result<(), DeviceError> {
-        if !self.listed.is_moved() {
+        let Followed { listed, displacement, .. } = &self.followed;
+        if listed.prescribed.is_empty() {
             return Ok(());
         }
-        let rows = self.listed.displacement.iter().zip(&self.listed.velocity);
+        let rows = displacement.iter().zip(&listed.velocity);
         let moved = rows.flat_map(|(place, velocity)| place.iter().chain(velocity).copied());
         let moved: Vec<f64> = moved.collect();
         self.machine.write("moved", &moved)?;
-        self.machine.start("follow", self.listed.particles.len(), &[])
+        self.machine.start("follow", self.followed.listed.len(), &[])
     }
 }
 
@@ -217,7 +211,7 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
     #[inline(never)]
     fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
         self.is_evaluated = false;
-        self.listed.put(&Columns::of(state, self.solid.len()));
+        self.followed.put(&Columns::of(state, self.solid.len()));
         Ok(self.state.put(&mut self.machine, state)?)
     }
 
@@ -227,13 +221,13 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         self.state.mark(&mut self.machine)?;
         self.start("kick_and_drift", &[("duration", half), ("step", step)])?;
         LEDGER.kick(D, half, &mut self.state.tail);
-        self.listed.kick(half);
-        self.listed.drift(time, step);
+        self.followed.kick(half);
+        self.followed.drift(time, step);
         self.follow()?;
         self.evaluate(time + step)?;
         self.start("kick_velocities", &[("duration", half)])?;
         LEDGER.kick(D, half, &mut self.state.tail);
-        self.listed.kick(half);
+        self.followed.kick(half);
         Ok(())
     }
 
@@ -253,16 +247,9 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
             self.start("strains", &[])?;
         }
         self.start("look", &[])?;
-        let [broken, all @ ..]: [(f64, usize); FIGURES] = self.machine.largest(self.count())?;
-        let [speed, wave_speed, ratio, stiffening, thickening, softening] = all.map(|all| {
-            let (value, particle) = all;
-            if value > f64::NEG_INFINITY { Most { value, particle } } else { Most::NOTHING }
-        });
-        let first = (broken.0 > 0.0).then_some(broken.1);
-        let common = [speed, wave_speed, ratio, Most { value: 0.0, particle: 0 }];
+        let all = self.machine.largest::<FIGURES>(self.count())?;
         let least = [0.0, 0.0, f64::NEG_INFINITY];
-        let (health, [stiffening, thickening, softening]) =
-            judged(first, common, [stiffening, thickening, softening], least);
+        let (health, [stiffening, thickening, softening]) = sighted(&all, least);
         self.is_soft |= softening.value > 0.0;
         limits.clear();
         limits.push(self.stable.limit(stiffening, thickening, self.solid.is_linear()));

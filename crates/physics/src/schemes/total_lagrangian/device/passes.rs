@@ -26,7 +26,7 @@ pub(super) const DATA: [&str; 6] =
     ["lower_x", "upper_x", "lower_y", "upper_y", "lower_z", "upper_z"];
 
 /// Numbers that a look over the state takes of a particle.
-pub(super) const FIGURES: usize = 7;
+pub(super) const FIGURES: usize = 8;
 
 /// What the passes depend on.
 pub(super) struct Plan<const D: usize> {
@@ -348,7 +348,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What a look takes of a particle: whether something is not finite; the square of the speed, the speed of waves and
-    /// the negative volume ratio; stiffening, thickening and softening.
+    /// the negative volume ratio, and that nothing has two ratios; stiffening, thickening and softening.
     fn look(&self, language: Language) -> Pass {
         let mut reads = vec![
             own("displacement", D),
@@ -389,7 +389,7 @@ impl<const D: usize> Plan<D> {
                 |value: Traced| Traced::select(is_finite & value.at_most(value), value, least);
             let broken = Traced::select(is_finite, least, Traced::from(1.0));
             let figures =
-                [square(&velocity), wave_speed, -ratio, stiffening, thickening, softening];
+                [square(&velocity), wave_speed, -ratio, zero, stiffening, thickening, softening];
             [broken].into_iter().chain(figures.map(seen)).collect()
         })
     }

@@ -230,7 +230,11 @@ impl<const D: usize> Scheme for Levels<D> {
     }
 
     #[inline(never)]
-    fn on_device(&self, _device: Device) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+    fn on_device(
+        &self,
+        _device: Device,
+        _integrator: &'static str,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         let (what, instead) =
             ("a fluid with regions of finer spacing", "leave out `scheme.refine`");
         Err(DeviceRefusal::Stage { what: what.into(), instead })

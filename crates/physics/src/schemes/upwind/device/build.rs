@@ -1,0 +1,138 @@
+//! From an upwind body to its passes and columns on a device, or what has none there.
+
+use piola_device::{Device, Machine};
+use piola_formulas::pairs::Record as _;
+use piola_formulas::pairs::upwind::{UpwindSide, UpwindSlope};
+
+use super::super::fields::Made;
+use super::super::{KEPT, LEDGER, Upwind};
+use super::OnDevice;
+use super::passes::{FIGURES, Method, PAIRS, Plan, shown, state, terms};
+use crate::boundaries::prescribed::Entry;
+use crate::fields;
+use crate::parallel::chunk;
+use crate::schemes::Scheme as _;
+use crate::schemes::device::{DeviceRefusal, DeviceSteps, Listed, StateColumn, StateColumns, fits};
+use crate::time::{KickDriftKick, RungeKutta};
+
+/// A column with the numbers that it begins with.
+type Filled = (&'static str, Vec<f64>);
+
+impl<const D: usize> Upwind<D> {
+    /// The steps of the body on a device.
+    pub(in super::super) fn body_to_device(
+        &self,
+        device: Device,
+        integrator: &'static str,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        let (kicks, able) = match self.is_conservative() {
+            true => (Some(Method::Kicks), "`kick_drift_kick`, `tvd_rk2` or `ssp_rk3`"),
+            false => (None, "`tvd_rk2` or `ssp_rk3`"),
+        };
+        let method = RungeKutta::stages(integrator)
+            .map(Method::RungeKutta)
+            .or_else(|| kicks.filter(|_| integrator == KickDriftKick::NAME))
+            .ok_or(DeviceRefusal::Integrator { integrator, able })?;
+        let count = self.particles.len();
+        let mass = |a: usize| self.mass(a);
+        let listed = Listed::new(&self.loaded, &[], &self.prescribed, [], mass);
+        let plan = Plan {
+            settings: self.settings,
+            periods: self.periods(),
+            laws: self.materials.iter().map(|material| material.law).collect(),
+            is_pulled: !self.body_forces.is_empty(),
+            method,
+        };
+        let (pairs, of_pairs) = self.areas.pairs.columns(PAIRS);
+        let (columns, scratch) = (self.device_columns(), self.scratch(&listed));
+        let filled = self.filled(&plan);
+        let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
+        let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
+        let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes)).chain(of_filled);
+        fits(&device, all.chain([(pairs.rows.numbers, of_pairs.bytes())]).collect())?;
+        let passes = |language| plan.passes(language, &pairs);
+        let mut machine = Machine::new(device, None, passes, chunk(count))?;
+        let tail = LEDGER.length(D) + KEPT;
+        let state = StateColumns::new(columns, tail);
+        state.make(&mut machine, |_| 0)?;
+        scratch.iter().try_for_each(|(name, length)| machine.add_zeros(name, *length))?;
+        filled.iter().try_for_each(|(name, numbers)| machine.add(name, numbers))?;
+        of_pairs.add(&mut machine, &pairs.rows)?;
+        machine.add_indices("listed", &listed.particles)?;
+        let component = |entry: &Entry| (entry.particle * D + entry.component) as u32;
+        let components: Vec<u32> = self.prescribed.iter().map(component).collect();
+        machine.add_indices("component", &components)?;
+        machine.add_zeros("value", components.len())?;
+        Ok(Box::new(OnDevice {
+            machine,
+            state,
+            stages: self.stages.clone(),
+            particles: self.particles.clone(),
+            body_forces: self.body_forces.clone(),
+            listed,
+            prescribed: self.prescribed.clone(),
+            limits: self.bounds(),
+            rate: vec![0.0; tail],
+            plan,
+            is_falling: false,
+            is_rated: false,
+        }))
+    }
+
+    /// Columns of the state.
+    fn device_columns(&self) -> Vec<StateColumn> {
+        let of = |([name, before, _], _): ([&'static str; 3], usize)| {
+            let known = |field: &&fields::FieldDescription| field.name.starts_with(name);
+            let field = Made::FIELDS.iter().find(known).expect("these are columns of the state");
+            let place = fields::column(Made::FIELDS, D, self.particle_count(), field);
+            StateColumn { name, before, place }
+        };
+        state::<D>().map(of).into()
+    }
+
+    /// Columns of work with their lengths.
+    fn scratch(&self, listed: &Listed<D>) -> Vec<(&'static str, usize)> {
+        let (count, rows) = (self.particles.len(), listed.len());
+        let mut all = vec![
+            ("side", count * UpwindSide::<D>::NUMBERS),
+            ("terms", count * terms(D).max(FIGURES)),
+            ("gravity", count * D),
+            ("shown", rows * shown(D)),
+            ("given", rows * D),
+        ];
+        all.extend(state::<D>().map(|([_, _, rate], width)| (rate, count * width)));
+        if self.settings.reconstruction {
+            all.push(("slope", count * UpwindSlope::<D>::NUMBERS));
+        }
+        all
+    }
+
+    /// Columns that do not change.
+    fn filled(&self, plan: &Plan<D>) -> Vec<Filled> {
+        let (count, particles) = (self.particles.len(), &self.particles);
+        let each = |of: &dyn Fn(usize) -> f64| (0..count).map(of).collect::<Vec<f64>>();
+        let place = particles.position.iter().flat_map(|place| place.iter().copied());
+        let diagonal = |a: usize| (0..D).map(move |i| self.areas.diagonal(a)[i]);
+        let mut all: Vec<Filled> = vec![
+            ("volume", particles.volume.clone()),
+            ("mass", each(&|a| self.mass(a))),
+            ("density", each(&|a| self.reference[a].density)),
+            ("wave_speed", each(&|a| self.reference[a].wave_speed)),
+            ("prestress", each(&|a| self.reference[a].ratio)),
+            ("nearest", self.nearest.clone()),
+            ("reference", place.collect()),
+            ("diagonal", (0..count).flat_map(diagonal).collect()),
+        ];
+        if plan.laws.len() > 1 {
+            all.push(("body", each(&|a| f64::from(particles.body[a]))));
+        }
+        if let Some(least_squares) = &self.least_squares {
+            let inverse = |a: usize| {
+                let inverse = least_squares.inverse(a);
+                (0..D * D).map(move |k| inverse[(k / D, k % D)])
+            };
+            all.push(("inverse", (0..count).flat_map(inverse).collect()));
+        }
+        all
+    }
+}

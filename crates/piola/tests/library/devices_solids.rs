@@ -1,0 +1,70 @@
+//! Solids on a device have the bits of the processor.
+//!
+//! They need a device, see `device`.
+
+use piola::case::Session;
+
+use super::device::device;
+use super::devices::{finish, load, session, tables};
+
+/// The bits of the columns that a run ends with, whatever the formulation.
+fn ends_with(session: &mut Session) -> Vec<u64> {
+    let columns = ["position", "velocity", "displacement", "acceleration"];
+    let of = |name: &&str| session.column(name).expect("solids have it").values;
+    let values: Vec<f64> = columns.iter().flat_map(of).collect();
+    values.into_iter().map(f64::to_bits).collect()
+}
+
+const PULL: &str = "load+={ kind = 'body_force', acceleration = ['sin(900 * t)', '-9.81 * x'] }";
+const PRESS: &str = "load+={ kind = 'pressure', where = { kind = 'plane', point = [0.0, 0.05], \
+                     normal = [0.0, 1.0] }, value = '1e4 * t' }";
+
+/// Solids of every formulation, with what may act on them.
+const CASES: [(&str, &[&str]); 21] = [
+    ("dual-support/free-vibration", &["parameters.dx=1"]),
+    ("dual-support/free-vibration", &["parameters.dx=1", "scheme.viscosity=1e4"]),
+    ("dual-support/free-vibration", &["parameters.dx=1", "scheme.artificial_viscosity=[1, 2]"]),
+    (
+        "dual-support/free-vibration",
+        &[
+            "parameters.dx=1",
+            "scheme.damping=3",
+            "load+={ kind = 'body_force', acceleration = ['0', '-9.81 * t', 'x'] }",
+        ],
+    ),
+    ("total-lagrangian/presets", &[]),
+    ("total-lagrangian/presets", &["scheme.kind='elastodynamics'"]),
+    ("total-lagrangian/presets", &["scheme.gradients='patch_consistent'", "scheme.hourglass=0.1"]),
+    ("elastodynamics/hole", &[]),
+    ("elastodynamics/wave-2d", &[]),
+    ("elastodynamics/wave-3d", &[]),
+    ("elastodynamics/pulse-3d", &[]),
+    ("elastodynamics/reflection-3d", &[]),
+    ("upwind/bar-sine", &[]),
+    ("upwind/bar-sine", &["scheme.tau_velocity=0.5", "scheme.tau_pressure=0.5"]),
+    ("upwind/piston", &[]),
+    ("upwind/piston", &["time.integrator='ssp_rk3'"]),
+    ("upwind/bar-step", &["time.integrator='tvd_rk2'"]),
+    ("upwind/column-impact", &["scheme.reconstruction=true"]),
+    ("upwind/dam-break", &[]),
+    ("upwind/column-impact-3d", &[]),
+    ("upwind/drop-3d", &["scheme.wave_speed='stretch'"]),
+];
+
+#[test]
+fn a_device_has_the_bits_of_the_processor() {
+    let Some(device) = device() else { return };
+    for (name, set) in CASES {
+        let set: Vec<&str> = set.iter().copied().chain(["time.max_steps=60"]).collect();
+        let [mut here, mut there] =
+            ["processor", &device].map(|device| session(&load(name, &set, device)));
+        for session in [&mut here, &mut there] {
+            (0..20).for_each(|_| drop(session.step()));
+        }
+        assert!(ends_with(&mut here) == ends_with(&mut there), "{name} {set:?}, on the way");
+        let [here, there] = [here, there].map(finish);
+        assert_eq!(here.summary.steps, there.summary.steps, "{name} {set:?}");
+        assert!(here.summary.steps >= 20, "{name} takes {} steps only", here.summary.steps);
+        assert!(tables(&here) == tables(&there), "{name} {set:?}");
+    }
+}
