@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::Number;
+use crate::frame::by_rotations;
 
 /// `C = I + 2 E` in the principal frame of its real part.
 ///
@@ -17,7 +18,7 @@ pub(super) struct Spectral<T> {
 
 impl<T: Number> Spectral<T> {
     pub fn new(strain: &Matrix3<T>) -> Self {
-        let rotation = T::Real::principal_frame(&strain.map(T::re)).map(T::lift);
+        let rotation = by_rotations(&strain.map(T::re)).map(T::lift);
         let excess = rotation.tr_mul(&(strain * rotation)).map(|entry| entry * 2.0);
         Self { rotation, excess }
     }
