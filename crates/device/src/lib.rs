@@ -4,11 +4,10 @@
 //! [`Traced`] numbers it is recorded as a [`Law`]: a list of operations, without those that would be
 //! done twice. A law can be [run](Law::run) here, with the bits of the function itself, or written as
 //! [text](Law::text) in C, OpenCL C or CUDA C++, in double or single precision. There is no second
-//! source of a formula.
+//! source of a formula. In double precision a device has the bits of the processor: the exponentials,
+//! logarithms and circular functions in the text are those of [`functions`](piola_formulas::functions).
 //!
 //! - [`laws`] is the list of all laws by name: kernels, elastic solids, volumetric materials, fluids.
-//! - [`Portable`] numbers compute exponentials and logarithms as the text does, so that a processor
-//!   has the bits of a device.
 //! - [`passes`] writes whole passes over particles, with their loops over neighbours, around laws.
 //! - [`lists`] are neighbours that a device finds.
 //! - [`Device`] is a GPU, or a processor with OpenCL, that compiles and runs them. Nothing of CUDA or
@@ -26,7 +25,6 @@ mod opencl;
 mod operators;
 mod pass;
 pub mod passes;
-mod portable;
 mod record;
 pub mod reduce;
 mod text;
@@ -37,6 +35,5 @@ pub use gather::{Among, Frozen, Gather, Meeting, Meets, Order, Rows, Space};
 pub use law::{Law, Outputs};
 pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, filled, flat, local, own, spread, through};
-pub use portable::{Bits, Portable};
 pub use record::{Traced, Truth};
 pub use text::{Language, Precision};

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use std::ops::{BitAnd, BitOr, Not};
 
 use piola_formulas::Number;
+use piola_formulas::functions::Bits;
 
 use crate::operators::operators;
-use crate::portable::Bits;
 
 /// A function of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -310,5 +310,9 @@ impl Bits for Traced {
 
     fn mantissa(self) -> Self {
         self.unary(Unary::Mantissa)
+    }
+
+    fn surely(_mask: Truth) -> bool {
+        false
     }
 }

@@ -2,10 +2,9 @@
 
 use std::fmt::Write;
 
-use piola_formulas::Number;
+use piola_formulas::functions::{self, ROOT_OF_HALF};
 
 use crate::law::Law;
-use crate::portable;
 use crate::record::{Binary, Operation, Unary};
 
 /// A language that laws are written in.
@@ -24,7 +23,7 @@ pub enum Language {
 pub enum Precision {
     /// 64 bits.
     Double,
-    /// 32 bits. Exponentials and logarithms are those of the machine.
+    /// 32 bits. Exponentials, logarithms and circular functions are those of the machine.
     Single,
 }
 
@@ -105,22 +104,32 @@ fn bits(language: Language) -> String {
     format!(
         "{prologue}\
          LAW double p_two_to(double k) {{ return {to}((({long})k + 1023) << 52); }}\n\
-         LAW double p_exponent(double x) {{ return (double)((({from}(x) >> 52) & 2047) - 1023); }}\n\
-         LAW double p_mantissa(double x) {{ return {to}(({from}(x) & 0xfffffffffffff) | 0x3ff0000000000000); }}\n"
+         LAW {long} p_steps(double x) {{ return ({long})((unsigned {long}){from}(x) - {ROOT_OF_HALF:#x}) >> 52; }}\n\
+         LAW double p_exponent(double x) {{ return (double)p_steps(x); }}\n\
+         LAW double p_mantissa(double x) {{ return {to}((unsigned {long}){from}(x) - ((unsigned {long})p_steps(x) << 52)); }}\n"
     )
 }
 
-/// A function of one or two portable numbers, as a law.
-fn portable_function(name: &str) -> Law {
-    let inputs: &[&str] = if name == "pow" { &["x", "y"] } else { &["x"] };
+/// The functions of the prologue.
+const FUNCTIONS: [&str; 8] = ["exp", "expm1", "log", "log1p", "pow", "sin", "cos", "atan2"];
+
+/// One of them as a law.
+fn function(name: &str) -> Law {
+    let inputs: &[&str] = match name {
+        "pow" => &["x", "y"],
+        "atan2" => &["y", "x"],
+        _ => &["x"],
+    };
     Law::record(format!("p_{name}"), inputs.iter().copied(), |x| {
         let value = match name {
-            "exp" => portable::exp(x[0]),
-            "expm1" => portable::exp_m1(x[0]),
-            "log" => portable::ln(x[0]),
-            "log1p" => portable::ln_1p(x[0]),
-            // By the two functions above it.
-            _ => (x[1] * x[0].ln()).exp(),
+            "exp" => functions::exp(x[0]),
+            "expm1" => functions::exp_m1(x[0]),
+            "log" => functions::ln(x[0]),
+            "log1p" => functions::ln_1p(x[0]),
+            "pow" => functions::power(x[0], x[1]),
+            "sin" => functions::sin(x[0]),
+            "cos" => functions::cos(x[0]),
+            _ => functions::atan2(x[0], x[1]),
         };
         vec![("value".into(), value)]
     })
@@ -128,7 +137,7 @@ fn portable_function(name: &str) -> Law {
 
 impl Language {
     /// What stands before all laws: types, names of what differs between languages, and in double
-    /// precision the functions of [`Portable`](crate::Portable) numbers.
+    /// precision the functions of numbers.
     pub fn prologue(self, precision: Precision) -> String {
         let mut text = match self {
             Self::C => C,
@@ -143,8 +152,8 @@ impl Language {
         );
         if precision == Precision::Double {
             text += &bits(self);
-            for name in ["exp", "expm1", "log", "log1p", "pow"] {
-                text += &portable_function(name).function(self, precision);
+            for name in FUNCTIONS {
+                text += &function(name).function(self, precision);
             }
         }
         text
@@ -261,7 +270,7 @@ impl Writer<'_> {
             | Operation::Final(..) => return,
             Operation::Unary(Unary::Negate, a) => ("real", format!("-{}", name(a))),
             Operation::Unary(function, a) => {
-                ("real", format!("{}({})", self.function_name(function), name(a)))
+                ("real", format!("{}({})", self.function_name(in_c(function)), name(a)))
             }
             Operation::Binary(function, a, b) => {
                 let sign = match function {
@@ -271,11 +280,12 @@ impl Writer<'_> {
                     Binary::Divide => "/",
                     Binary::Power | Binary::Atan2 => "",
                 };
-                let call = |function: &str| format!("{function}({}, {})", name(a), name(b));
+                let call = |function: &str| {
+                    format!("{}({}, {})", self.function_name(function), name(a), name(b))
+                };
                 let value = match function {
-                    Binary::Power if self.precision == Precision::Double => call("p_pow"),
-                    Binary::Power => call(&self.of_machine("pow")),
-                    Binary::Atan2 => call(&self.of_machine("atan2")),
+                    Binary::Power => call("pow"),
+                    Binary::Atan2 => call("atan2"),
                     _ => format!("{} {sign} {}", name(a), name(b)),
                 };
                 ("real", value)
@@ -292,32 +302,31 @@ impl Writer<'_> {
         let _ = writeln!(self.text, "{indent}const {kind} t{place} = {value};");
     }
 
-    /// The name of a function of the machine.
-    fn of_machine(&self, name: &str) -> String {
+    /// The name of a function of the prologue or of the machine.
+    fn function_name(&self, name: &str) -> String {
+        let is_of_machine = matches!(name, "fabs" | "sqrt");
         match (self.language, self.precision) {
+            (_, Precision::Double) if !is_of_machine => format!("p_{name}"),
             (Language::C | Language::Cuda, Precision::Single) => format!("{name}f"),
             _ => name.into(),
         }
     }
+}
 
-    fn function_name(&self, function: Unary) -> String {
-        let (name, is_portable) = match function {
-            Unary::Negate => unreachable!("it is an operator"),
-            Unary::Abs => ("fabs", false),
-            Unary::Sqrt => ("sqrt", false),
-            Unary::Sin => ("sin", false),
-            Unary::Cos => ("cos", false),
-            Unary::Exp => ("exp", true),
-            Unary::ExpM1 => ("expm1", true),
-            Unary::Ln => ("log", true),
-            Unary::Ln1p => ("log1p", true),
-            Unary::TwoTo => ("two_to", true),
-            Unary::Exponent => ("exponent", true),
-            Unary::Mantissa => ("mantissa", true),
-        };
-        match is_portable && self.precision == Precision::Double {
-            true => format!("p_{name}"),
-            false => self.of_machine(name),
-        }
+/// The name of a function in C.
+fn in_c(function: Unary) -> &'static str {
+    match function {
+        Unary::Negate => unreachable!("it is an operator"),
+        Unary::Abs => "fabs",
+        Unary::Sqrt => "sqrt",
+        Unary::Sin => "sin",
+        Unary::Cos => "cos",
+        Unary::Exp => "exp",
+        Unary::ExpM1 => "expm1",
+        Unary::Ln => "log",
+        Unary::Ln1p => "log1p",
+        Unary::TwoTo => "two_to",
+        Unary::Exponent => "exponent",
+        Unary::Mantissa => "mantissa",
     }
 }

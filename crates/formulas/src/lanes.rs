@@ -7,6 +7,7 @@ use std::ops::{
 use num_traits::{One, Zero};
 
 use crate::Number;
+use crate::functions::{self, Bits};
 
 /// Numbers in a vector register.
 pub const WIDTH: usize = 4;
@@ -50,12 +51,6 @@ impl Lanes4 {
     fn each(self, f: impl Fn(f64) -> f64) -> Self {
         let [a, b, c, d] = self.0;
         Self([f(a), f(b), f(c), f(d)])
-    }
-
-    #[inline(always)]
-    fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
-        Self([f(a, p), f(b, q), f(c, r), f(d, s)])
     }
 }
 
@@ -234,42 +229,64 @@ impl Number for Lanes4 {
 
     #[inline(always)]
     fn exp(self) -> Self {
-        self.each(f64::exp)
+        functions::exp(self)
     }
 
     #[inline(always)]
     fn exp_m1(self) -> Self {
-        self.each(f64::exp_m1)
+        functions::exp_m1(self)
     }
 
     #[inline(always)]
     fn ln(self) -> Self {
-        self.each(f64::ln)
+        functions::ln(self)
     }
 
     #[inline(always)]
     fn ln_1p(self) -> Self {
-        self.each(f64::ln_1p)
+        functions::ln_1p(self)
     }
 
     #[inline(always)]
     fn powf(self, exponent: f64) -> Self {
-        self.each(|x| x.powf(exponent))
+        functions::power(self, Self::from(exponent))
     }
 
     #[inline(always)]
     fn sin(self) -> Self {
-        self.each(f64::sin)
+        functions::sin(self)
     }
 
     #[inline(always)]
     fn cos(self) -> Self {
-        self.each(f64::cos)
+        functions::cos(self)
     }
 
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        self.with(x, f64::atan2)
+        functions::atan2(self, x)
+    }
+}
+
+impl Bits for Lanes4 {
+    #[inline(always)]
+    fn two_to(self) -> Self {
+        self.each(f64::two_to)
+    }
+
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        self.each(f64::exponent)
+    }
+
+    #[inline(always)]
+    fn mantissa(self) -> Self {
+        self.each(f64::mantissa)
+    }
+
+    #[inline(always)]
+    fn surely(mask: Mask4) -> bool {
+        mask == Mask4([true; WIDTH])
     }
 }
 
@@ -294,7 +311,10 @@ mod tests {
         check(x - y * 2.0, &|x, y| x - y * 2.0);
         check(x / (y + 7.0), &|x, y| x / (y + 7.0));
         check(x.abs().sqrt(), &|x, _| x.abs().sqrt());
-        check(x.exp_m1().atan2(y), &|x, y| x.exp_m1().atan2(y));
+        check(x.exp_m1().atan2(y), &|x, y| Number::atan2(Number::exp_m1(x), y));
+        check((x * 300.0).exp().ln_1p(), &|x, _| Number::ln_1p(Number::exp(x * 300.0)));
+        check(x.powf(3.0).ln(), &|x, _| Number::ln(Number::powf(x, 3.0)));
+        check(x.sin() + y.cos(), &|x, y| Number::sin(x) + Number::cos(y));
         let both = x.below(1.0) & !y.at_most(Lanes4::zero());
         check(Lanes4::select(both, x, y), &|x, y| if x < 1.0 && y > 0.0 { x } else { y });
         let either = x.above(1.0) | y.below(0.0);

@@ -7,6 +7,7 @@
 
 pub mod fluid;
 mod frame;
+pub mod functions;
 pub mod hyperelastic;
 pub mod hypoelastic;
 pub mod kernels;

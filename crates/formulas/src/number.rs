@@ -5,11 +5,10 @@ use std::ops::{
     Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign,
 };
 
-use nalgebra::{Matrix3, SymmetricEigen};
 use num_dual::DualNum;
 use num_traits::{One, Zero};
 
-use crate::frame;
+use crate::functions::dual;
 
 /// A number that a formula computes with: `f64`, a dual number that carries exact derivatives, or a
 /// number that records what is done to it.
@@ -122,11 +121,6 @@ pub trait Number:
 
     /// Angle of the point `(x, self)` with the first axis.
     fn atan2(self, x: Self) -> Self;
-
-    /// Eigenvectors, in columns, of the real part of a symmetric matrix.
-    fn principal_frame(symmetric: &Matrix3<Self>) -> Matrix3<Self> {
-        frame::by_rotations(symmetric)
-    }
 }
 
 /// A [`Number`] whose real part is a plain number, at which a program may look: `f64` and dual numbers.
@@ -201,48 +195,41 @@ impl<T: DualNum<Primitive = f64> + nalgebra::Scalar + Copy> Number for T {
 
     #[inline(always)]
     fn exp(self) -> Self {
-        DualNum::exp(&self)
+        dual::exp(self)
     }
 
     #[inline(always)]
     fn exp_m1(self) -> Self {
-        DualNum::exp_m1(&self)
+        dual::exp_m1(self)
     }
 
     #[inline(always)]
     fn ln(self) -> Self {
-        DualNum::ln(&self)
+        dual::ln(self)
     }
 
     #[inline(always)]
     fn ln_1p(self) -> Self {
-        DualNum::ln_1p(&self)
+        dual::ln_1p(self)
     }
 
     #[inline(always)]
     fn powf(self, exponent: f64) -> Self {
-        DualNum::powf(&self, exponent)
+        dual::power(self, exponent)
     }
 
     #[inline(always)]
     fn sin(self) -> Self {
-        DualNum::sin(&self)
+        dual::sin(self)
     }
 
     #[inline(always)]
     fn cos(self) -> Self {
-        DualNum::cos(&self)
+        dual::cos(self)
     }
 
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        DualNum::atan2(&self, x)
-    }
-
-    /// By the library: a matrix that is not finite has no frame, and any will carry the NaN on.
-    fn principal_frame(symmetric: &Matrix3<Self>) -> Matrix3<Self> {
-        SymmetricEigen::try_new(symmetric.map(Number::re), f64::EPSILON, 1000)
-            .map_or_else(Matrix3::identity, |eigen| eigen.eigenvectors)
-            .map(Self::from)
+        dual::atan2(self, x)
     }
 }

@@ -3,7 +3,7 @@
 use piola_device::passes::fluid::Fluid;
 use piola_device::passes::solid::{Body, Solid};
 use piola_device::passes::{Rows, Sliced};
-use piola_device::{Argument, Column, Device, DeviceError, Kernel, Portable, Precision};
+use piola_device::{Argument, Column, Device, DeviceError, Kernel, Precision};
 
 use super::cloud;
 use super::processor::{self, FLUID_RADIUS, SOLID_RADIUS, SPACING, State};
@@ -369,17 +369,13 @@ fn solid_bits(device: &Device, side: usize, steps: usize) -> Outcome<()> {
     let got = gpu.motion(device)?;
     let law = Solid::rubber();
     let plain = processor::solid_steps::<f64>(&law, &gpu.body, &gpu.states, steps);
-    let portable = processor::solid_steps::<Portable>(&law, &gpu.body, &gpu.states, steps);
     let of = |states: &[State<f64>]| -> Vec<f64> {
         let velocities = states.iter().flat_map(|(v, _)| *v);
         velocities.chain(states.iter().flat_map(|(_, u)| *u)).collect()
     };
     let plain = of(&plain);
-    let portable: Vec<State<f64>> =
-        portable.iter().map(|(v, u)| (v.map(|x| x.0), u.map(|x| x.0))).collect();
     let what = format!("solid, {} particles, {steps} steps", gpu.states.len());
-    compare(&format!("{what}, double, processor's portable numbers"), &got, &of(&portable));
-    compare(&format!("{what}, double, processor's f64"), &got, &plain);
+    compare(&format!("{what}, double"), &got, &plain);
     let single = GpuSolid::new(device, Precision::Single, side)?;
     single.advance(steps)?;
     let got = single.motion(device)?;

@@ -1,6 +1,6 @@
-use piola_device::{Law, Portable, laws, passes};
+use piola_device::{Law, laws, passes};
 use piola_formulas::Number;
-use piola_formulas::hyperelastic::{HyperelasticLaw, HyperelasticResponse};
+use piola_formulas::hyperelastic::HyperelasticResponse;
 use piola_formulas::kernels::Kernel;
 use piola_formulas::volumetric::VolumetricResponse;
 
@@ -35,16 +35,7 @@ fn stresses_have_the_bits_of_the_processor() {
                 let a: Vec<f64> = (0..9).map(|_| size * (2.0 * random() - 1.0)).collect();
                 let stress = solid.stress(&laws::matrix(&a));
                 let expected: Vec<f64> = (0..9).map(|k| stress[(k / 3, k % 3)]).collect();
-                if let HyperelasticLaw::Ogden(_) = solid {
-                    // Principal axes are found in another way, which leaves roundings of terms of the
-                    // size of the bulk modulus.
-                    let rounding = 64.0 * f64::EPSILON * 1e7 + 1e-13 * stress.norm();
-                    for (got, expected) in law.run(&a).iter().zip(&expected) {
-                        assert!((got - expected).abs() < rounding, "{got} {expected}");
-                    }
-                } else {
-                    compare(&law, &a, &expected);
-                }
+                compare(&law, &a, &expected);
             }
         }
     }
@@ -117,5 +108,4 @@ fn what_is_done_twice_is_recorded_once() {
     });
     assert_eq!(law.operations(), 4);
     assert_eq!(law.run(&[3.0]), [36.0]);
-    assert_eq!(law.run(&[Portable(3.0)]), [Portable(36.0)]);
 }

@@ -4,9 +4,9 @@
 mod bits;
 mod compiled;
 mod devices;
+mod functions;
 mod lists;
 mod passes;
-mod portable;
 mod text;
 
 /// Numbers in [0, 1) that are the same on every machine.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use piola_device::passes::fluid::{Fluid, SIDE};
 use piola_device::passes::solid::{Body, Solid};
 use piola_device::passes::{Rows, SLICE};
-use piola_device::{Argument, Column, Device, Language, Portable, Precision};
+use piola_device::{Argument, Column, Device, Language, Precision};
 
 use super::compiled::run;
 use super::devices::device;
@@ -114,7 +114,7 @@ fn fluid_steps(device: &Device, fluid: &Fluid, rows: &Rows, sides: &[[f64; 8]]) 
 }
 
 #[test]
-fn steps_of_a_solid_have_the_bits_of_portable_numbers() {
+fn steps_of_a_solid_have_the_bits_of_the_processor() {
     let (positions, solid) = (positions(), Solid::rubber());
     let rows = rows(&positions, 2.62 * SPACING);
     let mut random = random(9);
@@ -175,16 +175,14 @@ fn steps_of_a_solid_have_the_bits_of_portable_numbers() {
     .unwrap();
     let on_device = device().map(|device| solid_steps(&device, &solid, &body, &start));
     let compiled = run(&text, "").map(|output| parse(&output));
-    let mut states: Vec<([Portable; 3], [Portable; 3])> =
-        start.iter().map(|v| (v.map(Portable), [Portable(0.0); 3])).collect();
-    let mut tensions = vec![[Portable(0.0); 9]; n];
+    let mut states: Vec<_> = start.iter().map(|v| (*v, [0.0; 3])).collect();
+    let mut tensions = vec![[0.0; 9]; n];
     for _ in 0..20 {
-        let displacement: Vec<[Portable; 3]> = states.iter().map(|(_, u)| *u).collect();
+        let displacement: Vec<[f64; 3]> = states.iter().map(|(_, u)| *u).collect();
         solid.fill_tensions(&body, &displacement, 0, &mut tensions);
         solid.advance(&body, &tensions, 0, &mut states);
     }
-    let expected: Vec<f64> =
-        states.iter().flat_map(|(v, u)| [*v, *u].concat()).map(|number| number.0).collect();
+    let expected: Vec<f64> = states.iter().flat_map(|(v, u)| [*v, *u].concat()).collect();
     assert!(expected.iter().all(|x| x.is_finite()), "the numbers of the test are too large");
     for got in [on_device, compiled].into_iter().flatten() {
         assert_bits("solid", &got, &expected, &[]);

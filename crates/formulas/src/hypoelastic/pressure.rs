@@ -92,7 +92,7 @@ impl EquationOfState {
         let square = match self.law {
             PressureLaw::Linear => at_rest,
             PressureLaw::Tait { exponent } => {
-                at_rest * (density / self.density).powf(exponent - 1.0)
+                at_rest * Number::powf(density / self.density, exponent - 1.0)
             }
             PressureLaw::MieGrueneisen { slope, gruneisen } => {
                 let pressure = self.pressure_of_law(density, energy);
@@ -132,9 +132,10 @@ impl EquationOfState {
         let ratio = density / self.density;
         match self.law {
             // ln x + 1/x - 1 with the digits of small x - 1.
-            PressureLaw::Linear => square * ((ratio - 1.0).ln_1p() - (ratio - 1.0) / ratio),
+            PressureLaw::Linear => square * (Number::ln_1p(ratio - 1.0) - (ratio - 1.0) / ratio),
             PressureLaw::Tait { exponent } => {
-                let power = ((exponent - 1.0) * ratio.ln()).exp_m1() / (exponent - 1.0);
+                let logarithm = (exponent - 1.0) * Number::ln(ratio);
+                let power = Number::exp_m1(logarithm) / (exponent - 1.0);
                 square / exponent * (power - (ratio - 1.0) / ratio)
             }
             PressureLaw::MieGrueneisen { .. } => energy,
@@ -148,7 +149,7 @@ impl EquationOfState {
         let ratio = match self.law {
             PressureLaw::Linear => 1.0 - strength,
             PressureLaw::Tait { exponent } => {
-                (1.0 - exponent * strength).max(0.0).powf(exponent.recip())
+                Number::powf((1.0 - exponent * strength).max(0.0), exponent.recip())
             }
             PressureLaw::MieGrueneisen { .. } => 0.0,
         };

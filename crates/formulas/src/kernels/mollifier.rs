@@ -113,9 +113,12 @@ fn integral_over_unit_interval(integrand: impl Fn(f64) -> f64) -> f64 {
     (-POINTS_PER_SIDE..=POINTS_PER_SIDE)
         .map(|k| {
             let t = f64::from(k) * STEP;
-            let argument = 0.5 * PI * t.sinh();
-            let slope = 0.25 * PI * t.cosh() / argument.cosh().powi(2);
-            integrand(1.0 / (1.0 + (-2.0 * argument).exp())) * slope * STEP
+            let (rising, falling) = (Number::exp(t), Number::exp(-t));
+            // `exp(-2 x)` of `x = pi/2 sinh t`; the argument is `(1 + tanh x)/2`.
+            let power = Number::exp(-0.5 * PI * (rising - falling));
+            let sum = 1.0 + power;
+            let slope = 0.5 * PI * (rising + falling) * power / (sum * sum);
+            integrand(1.0 / sum) * slope * STEP
         })
         .sum()
 }

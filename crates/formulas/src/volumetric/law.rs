@@ -193,7 +193,7 @@ impl VolumetricResponse for VolumetricLaw {
         let ratio = match *self {
             Self::Linear { bulk_modulus } => 1.0 - pressure / bulk_modulus,
             Self::Gamma { bulk_modulus, gamma } => {
-                (1.0 + pressure / bulk_modulus).powf(-1.0 / gamma)
+                Number::powf(1.0 + pressure / bulk_modulus, -1.0 / gamma)
             }
         };
         (ratio > 0.0 && ratio.is_finite()).then_some(ratio)
