@@ -105,6 +105,15 @@ impl Machine {
         self.lists.as_mut().expect(MOVES).build(&self.numbers[positions])
     }
 
+    /// Sets which particles are passive, and which of them neither see others nor are seen, see
+    /// [`Lists::exclude`].
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn exclude(&mut self, passive: &[bool], excluded: &[bool]) -> Result<(), DeviceError> {
+        self.lists.as_mut().expect(MOVES).exclude(passive, excluded)
+    }
+
     /// Picks neighbours at a column of positions by slot.
     ///
     /// # Errors

@@ -15,6 +15,11 @@ type Outcome<T> = Result<T, DeviceError>;
 /// Threads a block; a multiple of the threads that share a row.
 const BLOCK: u32 = 128;
 
+/// The bit of a particle that is passive.
+const PASSIVE: u32 = 1 << 31;
+/// That of one which neither sees others nor is seen.
+const EXCLUDED: u32 = 1 << 30;
+
 /// Neighbours of moving particles, with the rule of the processor: a row has those inside the support
 /// at the current positions in the order of their numbers, first those that are not passive, then the
 /// passive ones, and a passive particle sees only the others. It does not depend on when the list
@@ -33,12 +38,12 @@ pub struct Lists {
     support: f64,
     reach: f64,
     periods: Column<f64>,
-    /// The highest bit of those that are passive, by number.
+    /// The bits of what particles are, by number; none of those that are not passive.
     passive: Column<u32>,
     numbers: Column<u32>,
     slots: Column<u32>,
     made_at: Column<f64>,
-    /// Number, and the highest bit of those that are passive, by slot.
+    /// Number, with these bits, by slot.
     keys: Column<u32>,
     bounds: [[Column<f64>; 2]; 2],
     axes: Column<f64>,
@@ -158,7 +163,7 @@ impl Lists {
             .map(|bounds| bounds.map_or(f64::INFINITY, |[lower, upper]| upper - lower))
             .collect();
         let passive: Vec<u32> =
-            passive.iter().map(|is_passive| u32::from(*is_passive) << 31).collect();
+            passive.iter().map(|is_passive| if *is_passive { PASSIVE } else { 0 }).collect();
         let part = || -> Outcome<_> {
             let length = dimension * PARTS[0];
             Ok([device.zeros(length)?, device.zeros(length)?])
@@ -193,6 +198,20 @@ impl Lists {
             support,
             reach,
         })
+    }
+
+    /// Sets which particles are passive, and which of them neither see others nor are seen, by number,
+    /// from the next build on.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn exclude(&mut self, passive: &[bool], excluded: &[bool]) -> Outcome<()> {
+        let bits = passive.iter().zip(excluded).map(|kinds| match kinds {
+            (_, true) => PASSIVE | EXCLUDED,
+            (true, false) => PASSIVE,
+            (false, false) => 0,
+        });
+        self.device.write(&mut self.passive, &bits.collect::<Vec<_>>())
     }
 
     /// Makes slots and candidates anew of positions in m by number, one particle after the other, inside

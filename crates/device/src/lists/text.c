@@ -63,7 +63,8 @@ KERNEL void list_put(const int n, GLOBAL const unsigned *cell, GLOBAL const unsi
     }
 }
 
-/* Slots: cell by cell, within one by key, which is the number and for passive particles the highest bit. */
+/* Slots: cell by cell, within one by key, which is the number with the bits of what a particle is: the highest one if it
+   is passive, the next one, too, if it is excluded. */
 KERNEL void list_order(const int n, GLOBAL const unsigned *RESTRICT passive, GLOBAL const unsigned *RESTRICT cell, GLOBAL const unsigned *RESTRICT start, GLOBAL const unsigned *RESTRICT member, GLOBAL const double *RESTRICT position, GLOBAL unsigned *RESTRICT number, GLOBAL unsigned *RESTRICT slot, GLOBAL unsigned *RESTRICT key, GLOBAL double *RESTRICT made_at)
 {
     EACH(k, n) {
@@ -104,7 +105,8 @@ KERNEL void list_before(const int n, const int threads, GLOBAL const unsigned *b
     }
 }
 
-/* Counts the candidates of each slot, and those of them that are not passive; then writes their keys. */
+/* Counts the candidates of each slot, and those of them that are not passive; then writes their keys. What is excluded
+   has none, and is none. */
 KERNEL void list_candidates(const int n, const int writes, const double reach, GLOBAL const double *RESTRICT period, GLOBAL const double *RESTRICT grid, GLOBAL const unsigned *RESTRICT start, GLOBAL const double *RESTRICT made_at, GLOBAL const unsigned *RESTRICT key, GLOBAL unsigned *RESTRICT count, GLOBAL unsigned *RESTRICT active, GLOBAL const unsigned *RESTRICT first, GLOBAL unsigned *RESTRICT passive_first, GLOBAL unsigned *RESTRICT found)
 {
     EACH(s, n) {
@@ -134,7 +136,8 @@ KERNEL void list_candidates(const int n, const int writes, const double reach, G
             const unsigned end = start[place + 1];
             for (unsigned b = start[place]; b < end; ++b) {
                 const unsigned its = key[b];
-                if (its != mine && ((its & mine) >> 31) == 0 && list_square(here, periods, made_at, b) < reach * reach) {
+                const int are_in = ((its | mine) & 0x40000000u) == 0;
+                if (its != mine && ((its & mine) >> 31) == 0 && are_in && list_square(here, periods, made_at, b) < reach * reach) {
                     if (writes) found[to + all] = its;
                     all += 1;
                     others += 1u - (its >> 31);

@@ -11,6 +11,7 @@ struct Cloud {
     /// Coordinates in m, particle by particle.
     positions: Vec<Vec<f64>>,
     passive: Vec<bool>,
+    excluded: Vec<bool>,
     support: f64,
     periodic: Vec<Option<[f64; 2]>>,
 }
@@ -24,7 +25,8 @@ impl Cloud {
         let positions =
             (0..count).map(|_| periodic.iter().map(|_| random()).collect()).collect::<Vec<_>>();
         let passive = (0..count).map(|number| number % 5 == 2).collect();
-        Self { positions, passive, support, periodic: periodic.to_vec() }
+        let excluded = vec![false; count];
+        Self { positions, passive, excluded, support, periodic: periodic.to_vec() }
     }
 
     /// Square of the shorter way, as the processor has it.
@@ -51,6 +53,7 @@ impl Cloud {
         let of = |a: usize, is_passive: bool| -> Vec<u32> {
             all.clone()
                 .filter(|&b| a != b && self.passive[b] == is_passive)
+                .filter(|&b| !(self.excluded[a] || self.excluded[b]))
                 .filter(|_| !(self.passive[a] && is_passive))
                 .filter(|&b| self.square(a, b) < radius * radius)
                 .map(|b| b as u32)
@@ -174,6 +177,25 @@ fn clusters_and_outliers_are_found() {
         position[1] *= 3.0;
     }
     cloud.check(&device, "a large space");
+}
+
+#[test]
+fn what_is_excluded_sees_nobody_and_is_not_seen() {
+    let Some(device) = device() else { return };
+    let mut cloud = Cloud::new(500, 0.12, &[UNIT, None]);
+    // Many of them in one place, which others are near to.
+    for a in (0..500).filter(|a| a % 7 == 3) {
+        cloud.positions[a] = vec![0.4, 0.5];
+    }
+    let (mut lists, passive) = (cloud.lists(&device), cloud.passive.clone());
+    for every in [Some(7), Some(14), None] {
+        let is_out = |a: usize| every.is_some_and(|every| a % every == 3);
+        cloud.excluded = (0..500).map(is_out).collect();
+        cloud.passive = (0..500).map(|a| passive[a] || is_out(a)).collect();
+        lists.exclude(&cloud.passive, &cloud.excluded).unwrap();
+        cloud.build(&mut lists, &device);
+        cloud.compare(&mut lists, &device, &format!("{every:?}"));
+    }
 }
 
 #[test]

@@ -243,6 +243,10 @@ impl Executor {
     /// A fault of an observer. What was observed before stays.
     pub fn finish(&mut self) -> Result<Summary, ObserveError> {
         self.look()?;
+        if !self.is_broken {
+            // Figures are of neighbours at this state; the formulation has looked at one that is broken.
+            self.ask();
+        }
         self.bring();
         let mut outcome = self.outcome.get_or_insert(Outcome::Interrupted).clone();
         let trace = match &outcome {

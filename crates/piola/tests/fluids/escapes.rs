@@ -1,11 +1,11 @@
 //! Fluid that gets out: it is named, or removed and accounted for; walls that will not hold it.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use piola::case::{self, Case, Finished, LoadOptions, Session};
 use piola::observe::Series;
 use piola::schemes::Behind;
-use piola::time::{Failure, Outcome};
+use piola::time::{Failure, Outcome, Progress};
 
 use super::device::device;
 
@@ -358,5 +358,32 @@ fn what_escapes_on_a_device_is_named_as_on_the_processor() {
         let expected = of("processor", more);
         assert!(matches!(expected.0, Outcome::Failed(Failure::Escaped { .. })), "{:?}", expected.0);
         assert_eq!(of(&device, more), expected);
+    }
+}
+
+/// Of the first eight particles that go through the floor two are taken out in step 22 and six in step 23.
+#[test]
+fn what_is_removed_on_a_device_is_counted_as_on_the_processor_wherever_the_run_ends() {
+    let Some(device) = device() else { return };
+    for steps in [21, 22, 23, 30, u64::MAX] {
+        let [expected, got] = ["processor", &device].map(|device| {
+            let set = [&format!("compute.device='{device}'"), "scheme.escaped='remove'"];
+            let session = Session::new(&read(BULLET, &set)).expect("the case can be built");
+            let stop = AtomicBool::new(false);
+            let mut progress =
+                |progress: &Progress| stop.store(progress.step >= steps, Ordering::Relaxed);
+            session.run(&stop, &mut progress).expect("no files are written")
+        });
+        assert_eq!(got.tables, expected.tables, "{steps}");
+        let last = |name: &str| values(&got, name).pop();
+        let told = [last("step.removed"), last("step.behind")].map(|number| number.expect("rows"));
+        let expected = match steps {
+            21 => [0.0, 8.0],
+            22 => [2.0, 6.0],
+            23 => [8.0, 0.0],
+            30 => [16.0, 0.0],
+            _ => [64.0, 0.0],
+        };
+        assert_eq!(told, expected, "{steps}");
     }
 }

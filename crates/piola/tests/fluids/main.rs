@@ -16,6 +16,7 @@ mod open;
 mod operators;
 mod planning;
 mod probes;
+mod removal;
 mod runs;
 mod shapes;
 mod solids;

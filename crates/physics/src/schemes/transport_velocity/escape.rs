@@ -1,7 +1,7 @@
 //! Particles that leave the others: through a wall, or out of the box around everything.
 
-use super::Common;
 use super::extent::Extent;
+use super::{ColumnsMut, Common};
 use crate::Vector;
 use crate::parallel;
 use crate::schemes::ledger::Total;
@@ -201,25 +201,13 @@ impl<const D: usize> Common<D> {
     /// Removes what has escaped in `state`, if that is what is to be done: such particles rest where
     /// they were found and nothing feels them. Their energy and momentum leave by ways of their own.
     pub(super) fn remove_escaped(&mut self, state: &mut [f64]) -> Total {
-        let mut total = Total::default();
         if !self.guard.as_ref().is_some_and(|(guard, _)| guard.removes) {
-            return total;
+            return Total::default();
         }
         self.load(state);
         let escaped = self.escaped(state);
-        let (own, _) = self.parts(state);
-        for number in escaped {
-            let mass = self.mass[number];
-            let (velocity, pressure) = (own.velocity[number], own.pressure[number]);
-            let energy = velocity.norm_squared() + self.compliance(number) * pressure * pressure;
-            total.power -= 0.5 * mass * energy;
-            add_moments(&own.position[number], &(velocity * -mass), &mut total.force);
-            for column in [&mut *own.velocity, own.deviation, own.kick] {
-                column[number] = Vector::zeros();
-            }
-            (own.pressure[number], own.density[number]) = (0.0, REMOVED);
-        }
-        total
+        let matter = |number| [self.mass[number], self.compliance(number)];
+        take_out(&escaped, matter, &mut self.parts(state).0)
     }
 
     /// Number of particles that have been removed in `state`.
@@ -227,4 +215,26 @@ impl<const D: usize> Common<D> {
         let density = self.columns(state).density;
         parallel::sum(self.removed.len(), |number| f64::from(Self::is_removed(density[number])))
     }
+}
+
+/// Takes particles (numbers) out of their columns, and returns what leaves with them. `matter` has the mass in kg and
+/// `1 / (rho0 c)^2` of each.
+pub(super) fn take_out<const D: usize>(
+    numbers: &[usize],
+    matter: impl Fn(usize) -> [f64; 2],
+    own: &mut ColumnsMut<'_, D>,
+) -> Total {
+    let mut total = Total::default();
+    for &number in numbers {
+        let [mass, compliance] = matter(number);
+        let (velocity, pressure) = (own.velocity[number], own.pressure[number]);
+        let energy = velocity.norm_squared() + compliance * pressure * pressure;
+        total.power -= 0.5 * mass * energy;
+        add_moments(&own.position[number], &(velocity * -mass), &mut total.force);
+        for column in [&mut *own.velocity, own.deviation, own.kick] {
+            column[number] = Vector::zeros();
+        }
+        (own.pressure[number], own.density[number]) = (0.0, REMOVED);
+    }
+    total
 }

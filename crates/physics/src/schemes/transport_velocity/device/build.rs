@@ -5,6 +5,7 @@ use piola_device::{Device, Machine};
 
 use super::super::{AtSurface, Continuum, DensityRule, Shifting, Slip, TransportVelocity};
 use super::passes::{FIGURES, FORCES, drift_terms, kick_terms, side_width};
+use super::removal::Removal;
 use super::{Named, OnDevice, Plan, walls};
 use crate::boundaries::BodyForce;
 use crate::fields;
@@ -96,10 +97,6 @@ impl<const D: usize> TransportVelocity<D> {
         if !common.sliding.iter().all(|entry| entry.value.is_steady()) {
             return refuse("a wall that slides by a function of time", "let it slide steadily");
         }
-        if common.guard.as_ref().is_some_and(|(guard, _)| guard.removes) {
-            let instead = "leave out `scheme.escaped = \"remove\"`";
-            return refuse("the removal of particles that escape", instead);
-        }
         if !common.body_forces.iter().all(BodyForce::is_uniform) {
             let instead = "use one that is the same everywhere";
             return refuse("a body force that depends on position", instead);
@@ -132,6 +129,7 @@ impl<const D: usize> TransportVelocity<D> {
             normals: self.most_normals(),
             spacing: common.particles.spacing[0],
             room: common.room(&self.start),
+            removes: common.guard.as_ref().is_some_and(|(guard, _)| guard.removes),
         };
         let count = common.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
@@ -139,7 +137,9 @@ impl<const D: usize> TransportVelocity<D> {
         self.fits(&device, &columns, &scratch)?;
         let support = list.support();
         let skin = MovingSupport::<D>::SKIN * support;
-        let lists = Lists::new(&device, &common.is_wall, support, skin, &periods)?;
+        let removal = plan.removes.then(|| Removal::new(common));
+        let is_wall = removal.as_ref().map_or(&common.is_wall, |removal| &removal.is_wall);
+        let lists = Lists::new(&device, is_wall, support, skin, &periods)?;
         let mut machine =
             Machine::new(device, Some(lists), |language| plan.passes(language), chunk(count))?;
         for (_, (name, before, width)) in &columns {
@@ -150,7 +150,7 @@ impl<const D: usize> TransportVelocity<D> {
             machine.add_zeros(name, count * width)?;
         }
         machine.add("mass", &common.mass)?;
-        let wall = common.is_wall.iter().map(|&is_wall| f64::from(u8::from(is_wall)));
+        let wall = is_wall.iter().map(|&is_wall| f64::from(u8::from(is_wall)));
         machine.add("wall", &wall.collect::<Vec<_>>())?;
         if normals > 0 {
             machine.add("faces", &self.face_numbers(faces, normals))?;
@@ -163,6 +163,7 @@ impl<const D: usize> TransportVelocity<D> {
             drift: self.drift.clone(),
             accelerate: self.accelerate.clone(),
             count,
+            length: self.start.len(),
             columns,
             tail_before: tail.clone(),
             tail,
@@ -173,6 +174,7 @@ impl<const D: usize> TransportVelocity<D> {
             body_forces: common.body_forces.clone(),
             bodies: common.particles.body.clone(),
             is_falling: false,
+            removal,
             skin,
         }))
     }

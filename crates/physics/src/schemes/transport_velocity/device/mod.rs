@@ -7,6 +7,7 @@
 
 mod build;
 mod passes;
+mod removal;
 mod surface;
 mod walls;
 
@@ -15,13 +16,14 @@ use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::fluid::{ForceConstants, RateConstants};
 
 use self::passes::{FIGURES, drift_terms, kick_terms};
-use super::Fluid;
+use self::removal::Removal;
 use super::escape::Room;
 use super::fluid::{ACCELERATING, DRIFTING, Ends, LEDGER};
 use super::inspect::step_limits;
 use super::ledger::{Drift, Kick};
 use super::shifting::Speed;
 use super::stages::{Instant, Pass};
+use super::{Continuum as _, Fluid, WeaklyCompressible};
 use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::parallel::Reduce as _;
@@ -59,8 +61,9 @@ struct Plan<const D: usize> {
     /// Most normals of a wall particle; 0 without walls.
     normals: usize,
     spacing: f64,
-    /// Where particles may be, if anybody asks.
+    /// Where particles may be, if anybody asks, and whether those that are elsewhere are taken out.
     room: Option<Room<D>>,
+    removes: bool,
     compliance: f64,
 }
 
@@ -72,6 +75,8 @@ struct OnDevice<const D: usize> {
     accelerate: Stages<Pass<Ends>>,
     /// Number of particles.
     count: usize,
+    /// Numbers of a state.
+    length: usize,
     /// Where each column begins in a state, with its name and that of its copy.
     columns: Vec<(usize, Named)>,
     /// The end of the state, and what it was before the last step.
@@ -88,6 +93,8 @@ struct OnDevice<const D: usize> {
     bodies: Vec<u32>,
     /// Whether the column of body forces is that of all times.
     is_falling: bool,
+    /// What is known of particles that may be taken out, if that is done.
+    removal: Option<Removal>,
     /// What lists reach beyond the support in m.
     skin: f64,
 }
@@ -142,6 +149,10 @@ impl<const D: usize> OnDevice<D> {
         totals: &mut Totals,
     ) -> Result<(), DeviceError> {
         match pass {
+            Pass::Remove => {
+                totals.book(WeaklyCompressible::<D>::REMOVED, &self.remove_escaped()?);
+                Ok(())
+            }
             Pass::Load => self.load(),
             Pass::State => {
                 if self.plan.sums_densities {
@@ -212,7 +223,7 @@ impl<const D: usize> OnDevice<D> {
                 ACCELERATING.iter().zip(&kick).for_each(|(entry, sum)| totals.drive(*entry, sum));
                 Ok(())
             }
-            // Body forces come with the forces; nothing is removed; all others are refused.
+            // Body forces come with the forces; all others are refused.
             _ => Ok(()),
         }
     }
@@ -239,13 +250,9 @@ impl<const D: usize> OnDevice<D> {
 impl<const D: usize> DeviceSteps for OnDevice<D> {
     #[inline(never)]
     fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
-        for &(start, (name, _, width)) in &self.columns {
-            self.machine.write(name, &state[start..][..self.count * width])?;
-        }
         let rest = state.len() - self.tail.len();
         self.tail.copy_from_slice(&state[rest..]);
-        self.is_picked = false;
-        Ok(())
+        Ok(self.take_over(state)?)
     }
 
     #[inline(never)]
@@ -270,7 +277,8 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
 
     #[inline(never)]
     fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
-        if self.plan.room.is_some() {
+        let asks = self.plan.room.is_some() && !self.plan.removes;
+        if asks {
             if !self.is_picked {
                 self.load()?;
             }
@@ -297,7 +305,7 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
             smallest_ratio: -ratio.0,
             smallest_ratio_particle: ratio.1,
             first_not_finite: (broken.0 > 0.0).then_some(broken.1),
-            first_escaped: (escaped.0 > 0.0 && !(broken.0 > 0.0)).then_some(escaped.1),
+            first_escaped: (asks && escaped.0 > 0.0 && !(broken.0 > 0.0)).then_some(escaped.1),
             ..Health::NEUTRAL
         })
     }

@@ -101,6 +101,7 @@ impl<const D: usize> Plan<D> {
             self.bear(language, space),
         ];
         all.extend(self.room.as_ref().map(|room| self.escape(language, space, room)));
+        all.extend(self.removes.then(|| self.tell_escaped(language)));
         all
     }
 
@@ -108,8 +109,10 @@ impl<const D: usize> Plan<D> {
     fn walls(&self, language: Language, space: &Space<D>) -> Pass {
         let sides = [own("side", side_width(D))];
         let of = |column, width| through("numbers", column, width);
-        let columns =
-            [of("mass", 1), of("sliding", D), of("faces", self.faces_width()), of("gravity", D)];
+        let faces = of("faces", self.faces_width());
+        let mut columns = vec![of("mass", 1), of("sliding", D), faces, of("gravity", D)];
+        // What has been removed is passive, too, and stays as it is.
+        columns.extend(self.removes.then_some(sides[0]));
         let gather = Gather::<Surroundings<D>, _>::new(
             language,
             "walls",
@@ -144,7 +147,14 @@ impl<const D: usize> Plan<D> {
             let density = fluid::density(pressure, self.fluid.density, self.fluid.wave_speed);
             side.set(mass, density, pressure);
             let shear = pick(is_wet, &shear, &sliding);
-            flat(&side).into_iter().chain(shear.iter().copied()).collect()
+            let mut side = flat(&side);
+            if self.removes {
+                let before = super::passes::side::<D>(&mut x);
+                let is_out = before.density.abs().at_most(zero);
+                let pick = |(old, new): (Traced, Traced)| Traced::select(is_out, old, new);
+                side = flat(&before).into_iter().zip(side).map(pick).collect();
+            }
+            side.into_iter().chain(shear.iter().copied()).collect()
         })
     }
 
