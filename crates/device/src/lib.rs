@@ -30,6 +30,7 @@ mod portable;
 mod record;
 pub mod reduce;
 mod text;
+mod work;
 
 pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices, missing};
 pub use error::DeviceError;
@@ -40,3 +41,4 @@ pub use pass::{Ask, At, Pass, Use, local, own, spread, through};
 pub use portable::{Bits, Portable};
 pub use record::{Traced, Truth};
 pub use text::{Language, Precision};
+pub use work::Work;
