@@ -52,8 +52,12 @@ pub enum Command {
         #[arg(value_name = "NAME")]
         name: PathBuf,
     },
-    /// List the devices for `--device`
-    Devices,
+    /// List the devices for `--device`, or show what a case runs on one
+    Devices {
+        /// What to show instead.
+        #[command(subcommand)]
+        command: Option<DevicesCommand>,
+    },
     /// Serve assistants that speak the Model Context Protocol over the standard input and output
     Mcp {
         /// The folder with the cases, outside of which nothing is written
@@ -77,9 +81,42 @@ pub enum Command {
     },
 }
 
-/// The case, with its changes.
+/// What to show of devices.
+#[derive(Debug, Subcommand)]
+pub enum DevicesCommand {
+    /// Show the passes of a case on a device, stage by stage, or the text of one; no device is needed
+    Show(ShowArguments),
+}
+
+/// Arguments of `piola devices show`.
 #[derive(Args, Debug)]
-pub struct CaseArguments {
+#[command(after_help = Exit::table())]
+pub struct ShowArguments {
+    /// The case.
+    #[command(flatten)]
+    pub file: CaseFile,
+    /// The stage or the pass whose text is shown [default: a table of all of them]
+    #[arg(value_name = "STAGE")]
+    pub stage: Option<String>,
+    /// The language of the text
+    #[arg(long, value_name = "LANGUAGE", default_value = "cuda")]
+    pub language: TextLanguage,
+}
+
+/// A language of passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum TextLanguage {
+    /// CUDA C++.
+    Cuda,
+    /// OpenCL C.
+    Opencl,
+    /// C99.
+    C,
+}
+
+/// A case file, with its changes.
+#[derive(Args, Debug)]
+pub struct CaseFile {
     /// The case file
     #[arg(value_name = "CASE", value_hint = ValueHint::FilePath)]
     pub case: PathBuf,
@@ -90,6 +127,14 @@ pub struct CaseArguments {
     /// Apply this variant of the case, or this member of a sweep (NAME.1, NAME.2, ...)
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
+}
+
+/// The case, and who computes it.
+#[derive(Args, Debug)]
+pub struct CaseArguments {
+    /// The case.
+    #[command(flatten)]
+    pub file: CaseFile,
     /// Number of threads [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

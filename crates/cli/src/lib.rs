@@ -6,7 +6,7 @@ use std::ffi::OsString;
 
 use clap::Parser;
 
-use arguments::{Arguments, Command};
+use arguments::{Arguments, Command, DevicesCommand};
 use exit::{Exit, Fault};
 
 pub use commands::check::{plan_rows, plan_text};
@@ -50,7 +50,10 @@ fn dispatch(command: Command) -> Result<Exit, Fault> {
         Command::Verify(arguments) => commands::verify::verify(&arguments),
         Command::Report { folder } => commands::report::report(&folder),
         Command::New { name } => commands::new::new(&name),
-        Command::Devices => commands::devices::devices(),
+        Command::Devices { command: None } => commands::devices::devices(),
+        Command::Devices { command: Some(DevicesCommand::Show(arguments)) } => {
+            commands::devices::show(&arguments)
+        }
         Command::Mcp { folder } => mcp::serve(&folder),
         Command::Schema => commands::generate::schema(),
         Command::Reference => commands::generate::reference(),

@@ -28,6 +28,7 @@ pub mod passes;
 mod record;
 pub mod reduce;
 mod text;
+mod work;
 
 pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices, missing};
 pub use error::DeviceError;
@@ -37,3 +38,4 @@ pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, filled, flat, local, own, spread, through};
 pub use record::{Traced, Truth};
 pub use text::{Language, Precision};
+pub use work::Work;

@@ -8,6 +8,7 @@ use piola_formulas::pairs::{Of, Record};
 use crate::law::{Function, Law};
 use crate::record::Traced;
 use crate::text::{Language, Precision};
+use crate::work::{self, Work};
 
 /// What a kernel is called with, in the order of its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +34,8 @@ pub struct Pass {
     pub asks: Vec<Ask>,
     /// Threads a row.
     pub threads: usize,
+    /// What it computes and touches.
+    pub work: Work,
 }
 
 /// How a pass finds its row of a column.
@@ -178,7 +181,10 @@ fn local_boxed(
         }
     }
     text += "    }\n}\n";
-    Pass { name, text, asks: arguments.asks, threads: 1 }
+    let mut work = Work { operations: law.operations(), ..Work::default() };
+    work::join(&mut work.reads, reads);
+    work::join(&mut work.writes, writes);
+    Pass { name, text, asks: arguments.asks, threads: 1, work }
 }
 
 /// Parameters of a kernel, each once. The first is the number of rows `n`.

@@ -4,6 +4,7 @@
 //! largest does not depend on an order, so that many threads look for it in a chunk.
 
 use crate::pass::{Ask, Pass};
+use crate::work::Work;
 
 /// Sums of the components of a column that stand apart: component s of chunk c is
 /// `chunk_sums[s * chunks + c]`. A row is a component of a chunk.
@@ -61,7 +62,7 @@ pub fn passes(chunk: usize) -> [Pass; 3] {
     );
     let pass = |name, text, asks: &[Ask]| {
         let asks = [Ask::Rows].iter().chain(asks).copied().collect();
-        Pass { name, text, asks, threads: 1 }
+        Pass { name, text, asks, threads: 1, work: Work::default() }
     };
     let (count, chunks) = (Ask::Scalar("count"), Ask::Scalar("chunks"));
     let [terms, parts] = ["terms", "largest_parts"].map(Ask::Numbers);

@@ -18,7 +18,7 @@ const LISTED: usize = 10;
 pub fn check(arguments: &CheckArguments) -> Result<Exit, Fault> {
     use_threads(arguments.case.threads);
     let case = read(&arguments.case)?;
-    let mut session = assemble(&arguments.case.case, &case)?;
+    let mut session = assemble(&arguments.case.file.case, &case)?;
     let text = match arguments.stages {
         Some(form) => stages(&session.scheme().phases(), form),
         None => plan_text(&case, &session.plan()),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use piola::case::{Case, LoadOptions, Problems, Session, load};
 
-use crate::arguments::CaseArguments;
+use crate::arguments::{CaseArguments, CaseFile};
 use crate::exit::{Exit, Fault};
 use crate::terminal;
 use crate::text::count;
@@ -34,12 +34,17 @@ fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
     let quoted = |name: &String| serde_json::Value::from(name.as_str()).to_string();
     let device = arguments.device.iter().map(|name| format!("compute.device={}", quoted(name)));
     let ranks = arguments.ranks.iter().map(|count| format!("compute.ranks={count}"));
+    read_file(&arguments.file, device.chain(ranks))
+}
+
+/// Reads a case file with its changes and more of them.
+fn read_file(file: &CaseFile, more: impl Iterator<Item = String>) -> Result<Case, Fault> {
     let options = LoadOptions {
-        overrides: arguments.set.iter().cloned().chain(device).chain(ranks).collect(),
-        variant: arguments.variant.clone(),
+        overrides: file.set.iter().cloned().chain(more).collect(),
+        variant: file.variant.clone(),
         ..LoadOptions::default()
     };
-    load(&arguments.case, &options).map_err(|problems| refusal(&arguments.case, &problems))
+    load(&file.case, &options).map_err(|problems| refusal(&file.case, &problems))
 }
 
 /// Builds what was read from `path`.

@@ -40,7 +40,7 @@ fn execute(arguments: &RunArguments, ranks: Option<&Arc<dyn Ranks>>) -> Result<E
         ranks.iter().for_each(|ranks| case::decline(ranks.as_ref(), &fault.report));
     };
     let case = read(&arguments.case).inspect_err(decline)?;
-    let path = &arguments.case.case;
+    let path = &arguments.case.file.case;
     let folder = match &arguments.out {
         Some(folder) => folder.clone(),
         None => default_folder(path, case.variant.as_deref()),

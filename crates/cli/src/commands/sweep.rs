@@ -31,7 +31,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<Exit, Fault> {
     let (keys, members) = members(arguments)?;
     let folder = match &arguments.out {
         Some(folder) => folder.clone(),
-        None => sweep_folder(&arguments.case.case, &members[0].case),
+        None => sweep_folder(&arguments.case.file.case, &members[0].case),
     };
     prepare(&folder)?;
     let stop = interrupt::listen();

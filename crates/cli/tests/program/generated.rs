@@ -50,6 +50,7 @@ fn manual_pages_tell_of_every_command() {
         ("piola", ["piola\\-verify(1)", "Exit codes"]),
         ("piola-run", ["\\-\\-resume", "newest sound checkpoint"]),
         ("piola-mcp", ["Model Context Protocol", "[default: .]"]),
+        ("piola-devices-show", ["\\-\\-language", "no device is needed"]),
     ] {
         let text = place.read(&format!("pages/man1/{page}.1"));
         assert!(text.starts_with(".ie") || text.contains(".TH"), "{text}");

@@ -4,6 +4,7 @@
 
 mod bad_cases;
 mod check_and_new;
+mod devices;
 mod generated;
 mod interrupt;
 mod mcp;

@@ -4,9 +4,10 @@ use std::fmt::Write;
 
 use super::{Among, Order, Rows};
 use crate::law::{Function, Law};
-use crate::pass::{Arguments, At, Pass, Use};
+use crate::pass::{Arguments, At, Pass, Use, own};
 use crate::record::Traced;
 use crate::text::{Language, Precision};
+use crate::work::{self, Work};
 
 /// Columns of positions by slot, of numbers by slot, and of who is passive by number.
 const POSITION: &str = "place";
@@ -296,7 +297,28 @@ impl Loop {
             }
         }
         text += "    }\n}\n";
-        Pass { name, text, asks: arguments.asks, threads: if is_gpu { 8 } else { 1 } }
+        let (threads, work) = (if is_gpu { 8 } else { 1 }, self.work(close, columns, writes));
+        Pass { name, text, asks: arguments.asks, threads, work }
+    }
+
+    /// What it computes and touches, with what is made of the sums.
+    fn work(&self, close: &Law, columns: &[Use], writes: &[Use]) -> Work {
+        let place = own(POSITION, self.dimension);
+        let (start, started) = self
+            .start
+            .as_ref()
+            .map_or((0, &[][..]), |(law, columns)| (law.operations(), columns.as_slice()));
+        let mut work = Work { operations: start + close.operations(), ..Work::default() };
+        let only = self.only.map(|only| own(only, 1));
+        work::join(&mut work.reads, only.iter().chain([&place]).chain(started).chain(columns));
+        work::join(&mut work.gathers, [&place]);
+        work::join(&mut work.writes, writes);
+        for term in &self.terms {
+            work.by_neighbor.push(term.law.operations());
+            work::join(&mut work.reads, &term.mine);
+            work::join(&mut work.gathers, &term.others);
+        }
+        work
     }
 
     /// Whether eight threads work on a particle.

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 use serde::{Deserialize, Serialize};
 
 use super::momentum::MOST_COMPONENTS;
 use super::{
-    CoupledScheme, DeviceRefusal, DeviceSteps, NewmarkScheme, Part, PartitionedScheme, Phase,
-    RankRefusal, RankShare, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
+    CoupledScheme, DeviceRefusal, DeviceStage, DeviceSteps, NewmarkScheme, Part, PartitionedScheme,
+    Phase, RankRefusal, RankShare, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
 use crate::geometry::Particles;
@@ -209,6 +209,15 @@ pub trait Scheme: Send + Sync {
         _device: Device,
         _integrator: &'static str,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        Err(DeviceRefusal::Formulation(self.description().name))
+    }
+
+    /// The stages of its steps on a device with their passes in a language, each once, and what a device does beside
+    /// them. No device is needed.
+    ///
+    /// # Errors
+    /// Something of it has no body for devices.
+    fn device_stages(&self, _language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         Err(DeviceRefusal::Formulation(self.description().name))
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 use piola_ranks::Ranks;
 use thiserror::Error;
 
@@ -21,7 +21,7 @@ use super::views::Rows;
 use super::{Problems, report};
 use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
-use crate::schemes::{DeviceRefusal, Scheme};
+use crate::schemes::{DeviceRefusal, DeviceStage, Scheme};
 use crate::time::{
     Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
 };
@@ -154,6 +154,15 @@ impl Session {
     /// The formulation, bound to its particles.
     pub fn scheme(&mut self) -> &mut dyn Scheme {
         self.executor.scheme.as_mut()
+    }
+
+    /// The stages of a step on a device with their passes as text in a language, whether the steps are taken on one or
+    /// not. No device is needed.
+    ///
+    /// # Errors
+    /// The case has no steps on devices.
+    pub fn device_stages(&self, language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        self.executor.device_stages(language)
     }
 
     /// Simulated time in s.

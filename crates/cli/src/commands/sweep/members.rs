@@ -43,13 +43,13 @@ pub fn members(arguments: &SweepArguments) -> Result<(Vec<String>, Vec<Member>),
 }
 
 fn read(arguments: &SweepArguments, options: &LoadOptions) -> Result<Case, Fault> {
-    let path = &arguments.case.case;
+    let path = &arguments.case.file.case;
     load(path, options).map_err(|problems| refusal(path, &problems))
 }
 
 /// The members of the sweep called `name` of the case file.
 fn of_case(arguments: &SweepArguments, name: &str) -> Result<(Vec<String>, Vec<Member>), Fault> {
-    let overrides = arguments.case.set.clone();
+    let overrides = arguments.case.file.set.clone();
     let options =
         |variant| LoadOptions { overrides: overrides.clone(), variant, ..LoadOptions::default() };
     // The first member is there if the sweep is; a wrong name is explained by reading it.
@@ -117,9 +117,9 @@ fn of_flags(arguments: &SweepArguments) -> Result<(Vec<String>, Vec<Member>), Fa
     }
     let mut members = Vec::new();
     for (name, values) in folder_names(&all).into_iter().zip(&all) {
-        let mut overrides = arguments.case.set.clone();
+        let mut overrides = arguments.case.file.set.clone();
         overrides.extend(values.iter().map(|(key, value)| format!("{key}={value}")));
-        let variant = arguments.case.variant.clone();
+        let variant = arguments.case.file.variant.clone();
         let case = read(arguments, &LoadOptions { overrides, variant, ..LoadOptions::default() })?;
         let values = values.iter().map(|(_, text)| MemberValue::new(text, &case)).collect();
         members.push(Member { name, values, case });

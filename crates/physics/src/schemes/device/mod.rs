@@ -5,7 +5,7 @@ mod memory;
 mod numbers;
 mod state;
 
-use piola_device::DeviceError;
+use piola_device::{DeviceError, Pass};
 use piola_ranks::RankError;
 use thiserror::Error;
 
@@ -82,6 +82,15 @@ pub trait DeviceSteps: Send {
     /// The parts of a step as lists of stages. What a device does while nothing waits for it is counted
     /// where somebody does next.
     fn phases(&self) -> Vec<&Phase>;
+}
+
+/// A stage of a step, or what runs beside the stages, with its passes on a device.
+#[derive(Clone, Debug)]
+pub struct DeviceStage {
+    /// Its name.
+    pub name: &'static str,
+    /// What is started on the device for it, in this order.
+    pub passes: Vec<Pass>,
 }
 
 /// Why a run cannot be on a device.

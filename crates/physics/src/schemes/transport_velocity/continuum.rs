@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 use piola_formulas::pairs::Record;
 use piola_formulas::pairs::wall::{Around, Extrapolation, Ghost, Surroundings};
 
@@ -18,7 +18,7 @@ use crate::fields::FieldDescription;
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
-use crate::schemes::{DeviceRefusal, DeviceSteps, Passage, SchemeDescription};
+use crate::schemes::{DeviceRefusal, DeviceStage, DeviceSteps, Passage, SchemeDescription};
 
 /// Matter bound to the particles that all kinds of it share.
 pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
@@ -225,6 +225,17 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         _system: &TransportVelocity<D, Self>,
         _device: Device,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        Err(DeviceRefusal::Solids)
+    }
+
+    /// The stages of its steps on a device in a language.
+    ///
+    /// # Errors
+    /// It has none.
+    fn device_stages(
+        _system: &TransportVelocity<D, Self>,
+        _language: Language,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         Err(DeviceRefusal::Solids)
     }
 }

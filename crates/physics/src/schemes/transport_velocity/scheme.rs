@@ -1,6 +1,6 @@
 //! The transport-velocity formulation as integrators, clock and output see it.
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 
 use super::fields::Made;
 use super::{Continuum, TransportVelocity};
@@ -8,8 +8,8 @@ use crate::fields::FieldDescription;
 use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Behind, DeviceRefusal, DeviceSteps, Escape, Health, Particle, Passage, Phase, Scheme,
-    SchemeDescription, SplitScheme, StepLimit,
+    Behind, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle, Passage, Phase,
+    Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
@@ -200,6 +200,11 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         DeviceRefusal::unless_kicked(integrator)?;
         M::to_device(self, device)
+    }
+
+    #[inline(never)]
+    fn device_stages(&self, language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        M::device_stages(self, language)
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

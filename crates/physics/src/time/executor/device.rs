@@ -5,10 +5,10 @@
 
 use std::sync::Arc;
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 
 use super::Executor;
-use crate::schemes::{DeviceRefusal, DeviceSteps, Health, StepsError};
+use crate::schemes::{DeviceRefusal, DeviceStage, DeviceSteps, Health, StepsError};
 use crate::time::failure::Failure;
 use crate::time::run::Run;
 use crate::time::summary::Outcome;
@@ -21,6 +21,24 @@ impl Executor {
     pub fn use_device(&mut self, device: Device) -> Result<(), DeviceRefusal> {
         let steps = self.scheme.on_device(device, self.integrator.name())?;
         Ok(self.use_steps(steps)?)
+    }
+
+    /// The stages of its steps on a device with their passes in a language, see [`Scheme::device_stages`](crate::schemes::Scheme::device_stages). No device is
+    /// needed.
+    ///
+    /// # Errors
+    /// The formulation or the integrator has no steps there.
+    pub fn device_stages(&self, language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        let stages = self.scheme.device_stages(language)?;
+        self.check_integrator()?;
+        Ok(stages)
+    }
+
+    fn check_integrator(&self) -> Result<(), DeviceRefusal> {
+        match self.integrator.name() {
+            KickDriftKick::NAME => Ok(()),
+            other => Err(DeviceRefusal::Integrator(other)),
+        }
     }
 
     /// Lets somebody else take the steps from now on.

@@ -71,11 +71,8 @@ fn refusal(shifting: Shifting) -> Option<DeviceRefusal> {
 }
 
 impl<const D: usize> TransportVelocity<D> {
-    /// The steps of the fluid on a device.
-    pub(in super::super) fn fluid_to_device(
-        &self,
-        device: Device,
-    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+    /// What the passes of the fluid depend on.
+    pub(super) fn device_plan(&self) -> Result<Plan<D>, DeviceRefusal> {
         let (common, fluid) = (&self.common, self.matter.fluid());
         if let Some(refusal) = refusal(common.settings.shifting) {
             return Err(refusal);
@@ -101,14 +98,13 @@ impl<const D: usize> TransportVelocity<D> {
             let instead = "use one that is the same everywhere";
             return refuse("a body force that depends on position", instead);
         }
-        let list = common.support.list();
-        let periods = *list.domain().periodic();
+        let periods = *common.support.list().domain().periodic();
         let corrections = common.settings.corrections;
         let evolves = common.settings.density == DensityRule::Continuity;
         let by_crowding = matches!(common.settings.shifting, Shifting::Sun { .. });
         let (rate_constants, rate_kind) = self.matter.rate_law(common);
         let (force_constants, force_kind) = self.matter.force_law(common);
-        let plan = Plan {
+        Ok(Plan {
             kernel: common.support.kernel(),
             smoothing_length: common.support.smoothing_length(),
             periods,
@@ -130,7 +126,16 @@ impl<const D: usize> TransportVelocity<D> {
             spacing: common.particles.spacing[0],
             room: common.room(&self.start),
             removes: common.guard.as_ref().is_some_and(|(guard, _)| guard.removes),
-        };
+        })
+    }
+
+    /// The steps of the fluid on a device.
+    pub(in super::super) fn fluid_to_device(
+        &self,
+        device: Device,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        let (common, plan) = (&self.common, self.device_plan()?);
+        let (list, periods) = (common.support.list(), plan.periods);
         let count = common.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
         let (columns, scratch) = (self.device_columns(), plan.scratch());

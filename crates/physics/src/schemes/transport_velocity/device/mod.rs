@@ -8,6 +8,7 @@
 mod build;
 mod passes;
 mod removal;
+mod stages;
 mod surface;
 mod walls;
 
@@ -155,27 +156,23 @@ impl<const D: usize> OnDevice<D> {
             }
             Pass::Load => self.load(),
             Pass::State => {
-                if self.plan.sums_densities {
-                    self.start("densities", &[])?;
-                }
-                self.start("state", &[])?;
+                self.launch(pass, &[])?;
                 let [(square, _)] = self.machine.largest(self.count)?;
                 self.fastest = square.max(0.0).sqrt();
                 Ok(())
             }
             Pass::Walls => {
                 self.fall(time)?;
-                self.start("walls", &[])
+                self.launch(pass, &[])
             }
             Pass::Rates => {
                 if self.plan.falls {
                     self.fall(time)?;
-                    self.start("fall", &[])?;
                 }
-                self.start("rates", &[])
+                self.launch(pass, &[])
             }
             Pass::Move => {
-                self.start("advance", &[("step", step)])?;
+                self.launch(pass, &[("step", step)])?;
                 self.is_picked = false;
                 let sums = self.machine.sums(drift_terms(D), self.count)?;
                 let mut drift = Drift::ZERO;
@@ -188,27 +185,14 @@ impl<const D: usize> OnDevice<D> {
             }
             Pass::Forces => {
                 self.fall(time)?;
-                self.start("forces", &[])?;
-                if self.plan.normals > 0 { self.start("reactions", &[]) } else { Ok(()) }
-            }
-            Pass::Sharpen => self.start("sharpen", &[]),
-            Pass::Surfaces => {
-                ["see", "normals", "cover"].iter().try_for_each(|pass| self.start(pass, &[]))
-            }
-            Pass::Reach => {
-                ["see_surfaces", "reach_surfaces"].iter().try_for_each(|pass| self.start(pass, &[]))
+                self.launch(pass, &[])
             }
             Pass::Shift => {
-                if self.plan.seeks_surfaces {
-                    self.start("crowd", &[])?;
-                }
                 let (scale, most) = self.speed.of(self.fastest);
-                self.start("shift", &[("scale", scale), ("most", most)])
+                self.launch(pass, &[("scale", scale), ("most", most)])
             }
-            Pass::HoldOff => self.start("hold_off", &[]),
-            Pass::Bear => ["add_holds", "bear"].iter().try_for_each(|pass| self.start(pass, &[])),
             Pass::Store => {
-                self.start("store", &[])?;
+                self.launch(pass, &[])?;
                 let sums = self.machine.sums(kick_terms(D), self.count)?;
                 let (mut kick, mut sums) = (Kick::ZERO, sums.into_iter());
                 let components = momentum_components(D).len();
@@ -223,8 +207,7 @@ impl<const D: usize> OnDevice<D> {
                 ACCELERATING.iter().zip(&kick).for_each(|(entry, sum)| totals.drive(*entry, sum));
                 Ok(())
             }
-            // Body forces come with the forces; all others are refused.
-            _ => Ok(()),
+            _ => self.launch(pass, &[]),
         }
     }
 
@@ -278,13 +261,10 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
     #[inline(never)]
     fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
         let asks = self.plan.room.is_some() && !self.plan.removes;
-        if asks {
-            if !self.is_picked {
-                self.load()?;
-            }
-            self.start("escape", &[])?;
+        if asks && !self.is_picked {
+            self.load()?;
         }
-        self.start("look", &[])?;
+        self.launch_look()?;
         let all: [(f64, usize); FIGURES] = self.machine.largest(self.count)?;
         let [mut speed, mut acceleration, ratio, broken, escaped] = all;
         for figure in [&mut speed, &mut acceleration] {

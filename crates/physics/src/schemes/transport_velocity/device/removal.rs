@@ -3,9 +3,10 @@
 //! In each step the device looks whether there are any. Only then the state comes here, and the code of the processor
 //! takes them out of it.
 
-use piola_device::{DeviceError, Language, Pass, local, own, spread, through};
+use piola_device::{DeviceError, Language, local, own, spread, through};
 
 use super::super::escape::take_out;
+use super::super::stages::Pass;
 use super::super::{Columns, ColumnsMut, Common};
 use super::passes::{if_fluid, one};
 use super::{OnDevice, Plan};
@@ -33,7 +34,7 @@ impl Removal {
 
 impl<const D: usize> Plan<D> {
     /// Which particles have escaped, by number, that are neither of walls nor gone.
-    pub(super) fn tell_escaped(&self, language: Language) -> Pass {
+    pub(super) fn tell_escaped(&self, language: Language) -> piola_device::Pass {
         let reads = [own("wall", 1), through("slots", "escaped", 1)];
         local(language, "tell_escaped", &[], &reads, &[spread("terms", 1)], |mut x| {
             let wall = one(&mut x);
@@ -76,8 +77,7 @@ impl<const D: usize> OnDevice<D> {
             return Ok(Total::default());
         }
         self.load()?;
-        self.start("escape", &[])?;
-        self.start("tell_escaped", &[])?;
+        self.launch(Pass::Remove, &[])?;
         let [(most, _)] = self.machine.largest(self.count)?;
         if most > 0.0 { self.take_out_escaped() } else { Ok(Total::default()) }
     }

@@ -9,7 +9,7 @@ mod rates;
 
 use std::sync::Arc;
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 use piola_formulas::pairs::sums::Density;
 
 use super::fields::Made;
@@ -26,7 +26,7 @@ use crate::fields::{FieldDescription, columns};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::{
-    Accounts, Capability, DeviceRefusal, DeviceSteps, Passage, SchemeDescription,
+    Accounts, Capability, DeviceRefusal, DeviceStage, DeviceSteps, Passage, SchemeDescription,
 };
 
 use damping::Damping;
@@ -398,6 +398,13 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         device: Device,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         system.fluid_to_device(device)
+    }
+
+    fn device_stages(
+        system: &TransportVelocity<D, Self>,
+        language: Language,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        system.fluid_stages(language)
     }
 }
 

@@ -1,15 +1,21 @@
 //! A fluid at several resolutions as integrators, clock and output see it.
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 
 use super::{Levels, refined};
 use crate::fields::FieldDescription;
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
-    DeviceRefusal, DeviceSteps, Escape, Health, Particle, Passage, Phase, Scheme,
+    DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle, Passage, Phase, Scheme,
     SchemeDescription, SplitScheme, StepLimit,
 };
+
+/// Why it is on no device.
+fn refusal() -> DeviceRefusal {
+    let (what, instead) = ("a fluid with regions of finer spacing", "leave out `scheme.refine`");
+    DeviceRefusal::Stage { what: what.into(), instead }
+}
 
 impl<const D: usize> Scheme for Levels<D> {
     fn description(&self) -> &'static SchemeDescription {
@@ -235,9 +241,11 @@ impl<const D: usize> Scheme for Levels<D> {
         _device: Device,
         _integrator: &'static str,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        let (what, instead) =
-            ("a fluid with regions of finer spacing", "leave out `scheme.refine`");
-        Err(DeviceRefusal::Stage { what: what.into(), instead })
+        Err(refusal())
+    }
+
+    fn device_stages(&self, _language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        Err(refusal())
     }
 
     fn settable(&self) -> &'static [&'static str] {
