@@ -114,6 +114,25 @@ pub enum TextLanguage {
     C,
 }
 
+/// A precision of pairs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum PairPrecision {
+    /// That of the processor.
+    Double,
+    /// Less memory and time.
+    Single,
+}
+
+impl PairPrecision {
+    /// Its name in a case file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Double => "double",
+            Self::Single => "single",
+        }
+    }
+}
+
 /// A case file, with its changes.
 #[derive(Args, Debug)]
 pub struct CaseFile {
@@ -141,6 +160,9 @@ pub struct CaseArguments {
     /// Compute on this device, as listed by `piola devices`, for example cuda:0
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
+    /// The precision of what the device computes of pairs of particles [default: double]
+    #[arg(long, value_name = "PRECISION", requires = "device")]
+    pub precision: Option<PairPrecision>,
     /// Share the particles among this many ranks, each with a part of the threads [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub ranks: Option<u32>,

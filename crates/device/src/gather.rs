@@ -10,9 +10,10 @@ use piola_formulas::Number;
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::{self, Moving, MovingPair, Of, PairLaw, Record};
 
+use crate::law::Law;
 use crate::pass::{Pass, Use, filled, flat, width};
 use crate::record::Traced;
-use crate::text::Language;
+use crate::text::Dialect;
 
 mod text;
 
@@ -39,11 +40,11 @@ impl<const D: usize> Space<D> {
         Traced::select(distance.below(-0.5 * period), distance + period, down)
     }
 
-    /// The pair of two positions.
-    fn between(&self, here: &[Traced], there: &[Traced]) -> Moving<Traced, D> {
+    /// The pair of two particles of this separation.
+    fn apart(&self, separation: &[Traced]) -> Moving<Traced, D> {
         let mut pair = MovingPair::<D>::zero();
         for axis in 0..D {
-            let distance = self.shorter_way(axis, here[axis] - there[axis]);
+            let distance = separation[axis];
             pair.separation[axis] = distance;
             let square = distance * distance;
             pair.square = if axis == 0 { square } else { pair.square + square };
@@ -93,12 +94,17 @@ impl<const D: usize> Meets for Space<D> {
     type Pair = MovingPair<D>;
 
     fn pairs(&self, over: Among) -> Pairs {
-        Pairs::Moving(D, over)
+        let way = |x: &[Traced]| {
+            let apart = |axis: usize| self.shorter_way(axis, x[axis] - x[D + axis]);
+            (0..D).map(|axis| (format!("way_{axis}"), apart(axis))).collect()
+        };
+        let axes = |of: &'static str| (0..D).map(move |axis| format!("{of}_{axis}"));
+        let separation = Law::record("separation", axes("here").chain(axes("there")), way);
+        Pairs::Moving { dimension: D, over, separation }
     }
 
     fn pair(&self, read: &[Traced]) -> Moving<Traced, D> {
-        let (here, there) = read.split_at(D);
-        self.between(here, there)
+        self.apart(read)
     }
 }
 
@@ -177,14 +183,14 @@ fn names<R: Record>(prefix: &str) -> Vec<String> {
 impl<'a, R: Record, M: Meets> Gather<'a, R, M> {
     /// A pass without terms.
     pub fn new(
-        language: Language,
+        dialect: impl Into<Dialect>,
         name: &'static str,
         meets: &'a M,
         over: Among,
         order: Order,
     ) -> Self {
         let sums = [names::<R>("s"), names::<R>("d")];
-        let text = Loop::new(language, name, meets.pairs(over), order, sums);
+        let text = Loop::new(dialect.into(), name, meets.pairs(over), order, sums);
         Self { meets, text, sums: PhantomData }
     }
 

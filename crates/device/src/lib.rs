@@ -37,5 +37,5 @@ pub use law::{Law, Outputs};
 pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, filled, flat, local, own, spread, through};
 pub use record::{Traced, Truth};
-pub use text::{Language, Precision};
+pub use text::{Dialect, Language, Precision};
 pub use work::Work;

@@ -9,10 +9,15 @@ use crate::error::DeviceError;
 use crate::lists::Lists;
 use crate::pass::{Ask, Pass};
 use crate::reduce;
-use crate::text::{Language, Precision};
+use crate::text::{Dialect, Precision};
 
 /// Threads a block.
 const BLOCK: u32 = 128;
+
+/// Numbers in single precision.
+fn singles(numbers: &[f64]) -> Vec<f32> {
+    numbers.iter().map(|number| *number as f32).collect()
+}
 
 /// Who asks for neighbours.
 const MOVES: &str = "particles that move past each other have lists";
@@ -24,6 +29,9 @@ pub struct Machine {
     device: Device,
     kernels: HashMap<&'static str, (Kernel, Pass)>,
     numbers: HashMap<&'static str, Column<f64>>,
+    singles: HashMap<&'static str, Column<f32>>,
+    /// Which columns are in single precision.
+    narrow: &'static [&'static str],
     indices: HashMap<&'static str, Column<u32>>,
     lists: Option<Lists>,
     /// Particles a chunk of sums.
@@ -31,17 +39,21 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Compiles passes for a device, with those that sum over chunks of this many particles.
+    /// Compiles passes for a device, with those that sum over chunks of this many particles. Columns of the names
+    /// `narrow` are in single precision, and what is computed of pairs, too, if there are any.
     ///
     /// # Errors
     /// When the device's compiler refuses their text.
     pub fn new(
         device: Device,
         lists: Option<Lists>,
-        passes: impl FnOnce(Language) -> Vec<Pass>,
+        narrow: &'static [&'static str],
+        passes: impl FnOnce(Dialect) -> Vec<Pass>,
         chunk: usize,
     ) -> Result<Self, DeviceError> {
-        let passes = passes(device.language()).into_iter().chain(reduce::passes(chunk));
+        let passes = passes(Dialect { language: device.language(), narrow })
+            .into_iter()
+            .chain(reduce::passes(chunk));
         let passes: Vec<Pass> = passes.collect();
         let mut text = device.language().prologue(Precision::Double);
         passes.iter().for_each(|pass| text += &pass.text);
@@ -50,8 +62,8 @@ impl Machine {
         for pass in passes {
             kernels.insert(pass.name, (program.kernel(pass.name)?, pass));
         }
-        let (numbers, indices) = (HashMap::new(), HashMap::new());
-        Ok(Self { device, kernels, numbers, indices, lists, chunk })
+        let (numbers, singles, indices) = (HashMap::new(), HashMap::new(), HashMap::new());
+        Ok(Self { device, kernels, numbers, singles, narrow, indices, lists, chunk })
     }
 
     /// The device.
@@ -64,7 +76,10 @@ impl Machine {
     /// # Errors
     /// When the memory does not suffice.
     pub fn add(&mut self, name: &'static str, numbers: &[f64]) -> Result<(), DeviceError> {
-        self.numbers.insert(name, self.device.upload(numbers)?);
+        match self.narrow.contains(&name) {
+            true => drop(self.singles.insert(name, self.device.upload(&singles(numbers))?)),
+            false => drop(self.numbers.insert(name, self.device.upload(numbers)?)),
+        }
         Ok(())
     }
 
@@ -82,11 +97,14 @@ impl Machine {
     /// # Errors
     /// When the memory does not suffice.
     pub fn add_zeros(&mut self, name: &'static str, length: usize) -> Result<(), DeviceError> {
-        self.numbers.insert(name, self.device.zeros(length)?);
+        match self.narrow.contains(&name) {
+            true => drop(self.singles.insert(name, self.device.zeros(length)?)),
+            false => drop(self.numbers.insert(name, self.device.zeros(length)?)),
+        }
         Ok(())
     }
 
-    /// A column.
+    /// A column in double precision.
     ///
     /// # Panics
     /// When there is none of that name: whoever asks has added it.
@@ -130,9 +148,10 @@ impl Machine {
     /// # Errors
     /// When the device refuses.
     pub fn write(&mut self, name: &'static str, numbers: &[f64]) -> Result<(), DeviceError> {
-        match self.numbers.get_mut(name) {
-            Some(column) => self.device.write(column, numbers),
-            None => self.add(name, numbers),
+        match (self.numbers.get_mut(name), self.singles.get_mut(name)) {
+            (Some(column), _) => self.device.write(column, numbers),
+            (_, Some(column)) => self.device.write(column, &singles(numbers)),
+            (None, None) => self.add(name, numbers),
         }
     }
 
@@ -175,6 +194,9 @@ impl Machine {
                 let of_lists = || self.lists.as_ref().filter(|_| name == "made_at");
                 let column = self.numbers.get(name).or_else(|| Some(of_lists()?.made_at()));
                 Argument::Doubles(column.unwrap_or_else(|| missing(name)))
+            }
+            Ask::Singles(name) => {
+                Argument::Singles(self.singles.get(name).unwrap_or_else(|| missing(name)))
             }
             Ask::Indices(name) => {
                 let of_lists = || self.lists.as_ref()?.indices(name);

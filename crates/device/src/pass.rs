@@ -7,7 +7,7 @@ use piola_formulas::pairs::{Of, Record};
 
 use crate::law::{Function, Law};
 use crate::record::Traced;
-use crate::text::{Language, Precision};
+use crate::text::{Dialect, Language, Precision};
 use crate::work::{self, Work};
 
 /// What a kernel is called with, in the order of its parameters.
@@ -19,6 +19,8 @@ pub enum Ask {
     Scalar(&'static str),
     /// A column of numbers.
     Numbers(&'static str),
+    /// A column of numbers in single precision.
+    Singles(&'static str),
     /// A column of indices.
     Indices(&'static str),
 }
@@ -118,19 +120,19 @@ pub fn flat<R: Record>(record: &Of<R, Traced>) -> Vec<Traced> {
 /// A pass that looks at no neighbours: `law` takes the scalars, then the numbers of all columns that are
 /// read, and gives those of all that are written.
 pub fn local(
-    language: Language,
+    dialect: impl Into<Dialect>,
     name: &'static str,
     scalars: &[&'static str],
     reads: &[Use],
     writes: &[Use],
     law: impl FnOnce(&[Traced]) -> Vec<Traced>,
 ) -> Pass {
-    local_boxed(language, name, scalars, [reads, writes], Box::new(law))
+    local_boxed(dialect.into(), name, scalars, [reads, writes], Box::new(law))
 }
 
 /// As [`local`], compiled once.
 fn local_boxed(
-    language: Language,
+    dialect: Dialect,
     name: &'static str,
     scalars: &[&'static str],
     [reads, writes]: [&[Use]; 2],
@@ -144,7 +146,7 @@ fn local_boxed(
         assert_eq!(results.len(), outputs.len(), "the pass `{name}` writes what it says");
         outputs.iter().cloned().zip(results).collect()
     });
-    let mut arguments = Arguments::default();
+    let mut arguments = Arguments::new(dialect);
     scalars.iter().for_each(|name| arguments.scalar(name));
     for column in reads.iter().chain(writes) {
         if let At::Through(index) = column.at {
@@ -153,9 +155,8 @@ fn local_boxed(
     }
     reads.iter().for_each(|read| arguments.numbers(read.column, true));
     writes.iter().for_each(|write| arguments.numbers(write.column, false));
-    let mut text = law.text(language, Precision::Double);
-    let _ =
-        writeln!(text, "KERNEL void {name}({})\n{{\n    EACH(a, n) {{", arguments.text(language));
+    let mut text = law.text(dialect.language, Precision::Double);
+    let _ = writeln!(text, "KERNEL void {name}({})\n{{\n    EACH(a, n) {{", arguments.text());
     for index in arguments.asks.iter().filter_map(|ask| match ask {
         Ask::Indices(index) => Some(index),
         _ => None,
@@ -189,17 +190,16 @@ fn local_boxed(
 
 /// Parameters of a kernel, each once. The first is the number of rows `n`.
 pub(crate) struct Arguments {
+    dialect: Dialect,
     pub asks: Vec<Ask>,
     text: Vec<(Ask, bool)>,
 }
 
-impl Default for Arguments {
-    fn default() -> Self {
-        Self { asks: vec![Ask::Rows], text: vec![(Ask::Rows, true)] }
-    }
-}
-
 impl Arguments {
+    pub fn new(dialect: Dialect) -> Self {
+        Self { dialect, asks: vec![Ask::Rows], text: vec![(Ask::Rows, true)] }
+    }
+
     pub fn scalar(&mut self, name: &'static str) {
         self.add(Ask::Scalar(name), true);
     }
@@ -210,7 +210,11 @@ impl Arguments {
 
     /// A column that is written is not constant, though it is read, too.
     pub fn numbers(&mut self, name: &'static str, is_constant: bool) {
-        self.add(Ask::Numbers(name), is_constant);
+        let ask = match self.dialect.is_narrow(name) {
+            true => Ask::Singles(name),
+            false => Ask::Numbers(name),
+        };
+        self.add(ask, is_constant);
     }
 
     fn add(&mut self, ask: Ask, is_constant: bool) {
@@ -223,13 +227,17 @@ impl Arguments {
         }
     }
 
-    pub fn text(&self, language: Language) -> String {
-        let restrict = if language == Language::Cuda { "__restrict__ " } else { "" };
-        let parameter = |(ask, is_constant): &(Ask, bool)| match ask {
+    pub fn text(&self) -> String {
+        let is_cuda = self.dialect.language == Language::Cuda;
+        let restrict = if is_cuda { "__restrict__ " } else { "" };
+        let parameter = |(ask, is_constant): &(Ask, bool)| match *ask {
             Ask::Rows => "const int n".to_string(),
             Ask::Scalar(name) => format!("const real {name}"),
-            Ask::Numbers(name) if *is_constant => format!("GLOBAL const real *{restrict}{name}"),
-            Ask::Numbers(name) => format!("GLOBAL real *{restrict}{name}"),
+            Ask::Numbers(name) | Ask::Singles(name) => {
+                let (real, constant) = (self.dialect.token(name), ["", "const "]);
+                let constant = constant[usize::from(*is_constant)];
+                format!("GLOBAL {constant}{real} *{restrict}{name}")
+            }
             Ask::Indices(name) => format!("GLOBAL const unsigned *{restrict}{name}"),
         };
         self.text.iter().map(parameter).collect::<Vec<_>>().join(", ")

@@ -28,6 +28,14 @@ pub enum Precision {
 }
 
 impl Precision {
+    /// The name of its numbers in text, in which `real` may be another one: see [`Language::prologue`].
+    pub(crate) fn token(self) -> &'static str {
+        match self {
+            Self::Double => "real",
+            Self::Single => "work",
+        }
+    }
+
     /// Bytes a number.
     pub fn bytes(self) -> usize {
         match self {
@@ -135,6 +143,39 @@ fn function(name: &str) -> Law {
     })
 }
 
+/// How passes are written: in a language, with some columns, and what is computed of pairs, in single precision.
+#[derive(Clone, Copy, Debug)]
+pub struct Dialect {
+    /// The language.
+    pub language: Language,
+    /// The columns in single precision. Where there are any, pairs are computed in it, and all else in double.
+    pub narrow: &'static [&'static str],
+}
+
+impl Dialect {
+    /// Whether a column is in single precision.
+    pub fn is_narrow(&self, column: &str) -> bool {
+        self.narrow.contains(&column)
+    }
+
+    /// The precision of pairs.
+    pub(crate) fn of_pairs(&self) -> Precision {
+        if self.narrow.is_empty() { Precision::Double } else { Precision::Single }
+    }
+
+    /// The name of the numbers of a column.
+    pub(crate) fn token(&self, column: &str) -> &'static str {
+        if self.is_narrow(column) { Precision::Single.token() } else { Precision::Double.token() }
+    }
+}
+
+impl From<Language> for Dialect {
+    /// All in double precision.
+    fn from(language: Language) -> Self {
+        Self { language, narrow: &[] }
+    }
+}
+
 impl Language {
     /// What stands before all laws: types, names of what differs between languages, and in double
     /// precision the functions of numbers.
@@ -147,7 +188,8 @@ impl Language {
         .to_string();
         let _ = writeln!(
             text,
-            "typedef {} real;\ntypedef struct ALIGNED {{ real x, y; }} Pair;",
+            "typedef {} real;\ntypedef float work;\ntypedef struct ALIGNED {{ real x, y; }} Pair;\n\
+             typedef struct {{ work x, y; }} WorkPair;",
             precision.type_name()
         );
         if precision == Precision::Double {
@@ -170,8 +212,9 @@ impl Law {
     /// A law of one result called `value` returns it.
     fn function(&self, language: Language, precision: Precision) -> String {
         let returns = self.outputs == ["value"];
-        let inputs = self.inputs.iter().map(|name| format!("real {name}"));
-        let pointers = self.outputs.iter().map(|name| format!("real *{name}"));
+        let real = precision.token();
+        let inputs = self.inputs.iter().map(|name| format!("{real} {name}"));
+        let pointers = self.outputs.iter().map(|name| format!("{real} *{name}"));
         let arguments: Vec<String> = match returns {
             true => inputs.collect(),
             false => inputs.chain(pointers).collect(),
@@ -181,7 +224,7 @@ impl Law {
         let mut text = format!(
             "/* {} operations */\nLAW {} {}({})\n{{\n{}",
             self.operations(),
-            if returns { "real" } else { "void" },
+            if returns { real } else { "void" },
             self.name,
             arguments.join(", "),
             writer.text
@@ -223,7 +266,12 @@ impl Writer<'_> {
         let law = self.law;
         let body = &law.tape.loops[number as usize];
         for (i, start) in body.start.iter().enumerate() {
-            let _ = writeln!(self.text, "    real s{number}_{i} = {};", self.name(*start));
+            let _ = writeln!(
+                self.text,
+                "    {} s{number}_{i} = {};",
+                self.precision.token(),
+                self.name(*start)
+            );
         }
         let _ = writeln!(
             self.text,
@@ -243,7 +291,12 @@ impl Writer<'_> {
             }
         }
         for (i, next) in body.next.iter().enumerate() {
-            let _ = writeln!(self.text, "        const real n{number}_{i} = {};", self.name(*next));
+            let _ = writeln!(
+                self.text,
+                "        const {} n{number}_{i} = {};",
+                self.precision.token(),
+                self.name(*next)
+            );
         }
         for i in 0..body.next.len() {
             let _ = writeln!(self.text, "        s{number}_{i} = n{number}_{i};");
@@ -263,14 +316,15 @@ impl Writer<'_> {
 
     fn statement(&mut self, place: u32, indent: &str) {
         let name = |at: u32| self.name(at);
+        let real = self.precision.token();
         let (kind, value) = match self.law.tape.operations[place as usize] {
             Operation::Input(_)
             | Operation::Constant(_)
             | Operation::State(..)
             | Operation::Final(..) => return,
-            Operation::Unary(Unary::Negate, a) => ("real", format!("-{}", name(a))),
+            Operation::Unary(Unary::Negate, a) => (real, format!("-{}", name(a))),
             Operation::Unary(function, a) => {
-                ("real", format!("{}({})", self.function_name(in_c(function)), name(a)))
+                (real, format!("{}({})", self.function_name(in_c(function)), name(a)))
             }
             Operation::Binary(function, a, b) => {
                 let sign = match function {
@@ -288,10 +342,10 @@ impl Writer<'_> {
                     Binary::Atan2 => call("atan2"),
                     _ => format!("{} {sign} {}", name(a), name(b)),
                 };
-                ("real", value)
+                (real, value)
             }
             Operation::Select(mask, yes, no) => {
-                ("real", format!("{} ? {} : {}", name(mask), name(yes), name(no)))
+                (real, format!("{} ? {} : {}", name(mask), name(yes), name(no)))
             }
             Operation::Less(a, b) => ("int", format!("{} < {}", name(a), name(b))),
             Operation::AtMost(a, b) => ("int", format!("{} <= {}", name(a), name(b))),

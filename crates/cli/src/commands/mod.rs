@@ -33,8 +33,9 @@ fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
     // A JSON string is one of TOML, too.
     let quoted = |name: &String| serde_json::Value::from(name.as_str()).to_string();
     let device = arguments.device.iter().map(|name| format!("compute.device={}", quoted(name)));
+    let precision = arguments.precision.map(|it| format!("compute.precision='{}'", it.name()));
     let ranks = arguments.ranks.iter().map(|count| format!("compute.ranks={count}"));
-    read_file(&arguments.file, device.chain(ranks))
+    read_file(&arguments.file, device.chain(precision).chain(ranks))
 }
 
 /// Reads a case file with its changes and more of them.

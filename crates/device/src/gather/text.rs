@@ -6,7 +6,7 @@ use super::{Among, Order, Rows};
 use crate::law::{Function, Law};
 use crate::pass::{Arguments, At, Pass, Use, own};
 use crate::record::Traced;
-use crate::text::{Language, Precision};
+use crate::text::{Dialect, Language, Precision};
 use crate::work::{self, Work};
 
 /// Columns of positions by slot, of numbers by slot, and of who is passive by number.
@@ -38,15 +38,22 @@ impl Among {
 
 /// How a loop goes through neighbours.
 pub enum Pairs {
-    /// Those of particles that move in so many dimensions, of some of them.
-    Moving(usize, Among),
+    /// Those of particles that move.
+    Moving {
+        /// Number of dimensions.
+        dimension: usize,
+        /// The particles that have sums.
+        over: Among,
+        /// What is between two of them, of the places of both.
+        separation: Law,
+    },
     /// Those of rows that do not change.
     Frozen(Rows),
 }
 
 /// A loop over neighbours, of whatever sums: the part of a [`Gather`](super::Gather) that is compiled once.
 pub(super) struct Loop {
-    language: Language,
+    dialect: Dialect,
     pub name: &'static str,
     pairs: Pairs,
     order: Order,
@@ -66,7 +73,7 @@ struct Term {
 
 /// The numbers of which a term is made.
 pub(super) struct Met<'a> {
-    /// What is known of the pair: the places of both, or the numbers of a row.
+    /// What is known of the pair: what is between both, or the numbers of a row.
     pub pair: &'a [Traced],
     pub slots: [Traced; 2],
     pub me: &'a [Traced],
@@ -92,14 +99,14 @@ impl Term {
 
 impl Loop {
     pub fn new(
-        language: Language,
+        dialect: Dialect,
         name: &'static str,
         pairs: Pairs,
         order: Order,
         sums: [Vec<String>; 2],
     ) -> Self {
         let (terms, start, only) = (Vec::new(), None, None);
-        Self { language, name, pairs, order, terms, start, only, sums }
+        Self { dialect, name, pairs, order, terms, start, only, sums }
     }
 
     /// Names of what is known of a pair.
@@ -108,9 +115,7 @@ impl Loop {
             (0..dimension).map(move |axis| format!("{of}_{axis}"))
         };
         match &self.pairs {
-            Pairs::Moving(dimension, _) => {
-                axes("here", *dimension).chain(axes("there", *dimension)).collect()
-            }
+            Pairs::Moving { dimension, .. } => axes("way", *dimension).collect(),
             Pairs::Frozen(rows) => axes("pair", rows.kept.len()).collect(),
         }
     }
@@ -166,11 +171,12 @@ impl Loop {
     }
 
     fn write(self, close: &Law, scalars: &[&'static str], columns: &[Use], writes: &[Use]) -> Pass {
-        let (language, is_gpu) = (self.language, self.has_lanes());
-        let mut arguments = Arguments::default();
+        let (dialect, is_gpu) = (self.dialect, self.has_lanes());
+        let work = dialect.of_pairs().token();
+        let mut arguments = Arguments::new(dialect);
         scalars.iter().for_each(|name| arguments.scalar(name));
         match &self.pairs {
-            Pairs::Moving(..) => {
+            Pairs::Moving { .. } => {
                 [NUMBERS, PASSIVE, ENTRIES].iter().for_each(|name| arguments.indices(name));
                 for term in &self.terms {
                     term.among.rows().iter().flatten().for_each(|name| arguments.indices(name));
@@ -197,12 +203,19 @@ impl Loop {
 
         let mut text = String::new();
         let laws = self.terms.iter().map(|term| &term.law);
-        let laws = laws.chain(self.start.iter().map(|(law, _)| law)).chain([close]);
-        laws.for_each(|law| text += &law.text(language, Precision::Double));
+        let laws = laws.chain(self.start.iter().map(|(law, _)| law));
+        laws.for_each(|law| text += &law.text(dialect.language, dialect.of_pairs()));
+        text += &close.text(dialect.language, Precision::Double);
         let name = self.name;
-        let _ = writeln!(text, "KERNEL void {name}({})\n{{", arguments.text(language));
+        if let Pairs::Moving { separation, .. } = &self.pairs {
+            let own = Law { name: format!("{name}_separation"), ..separation.clone() };
+            text += &own.text(dialect.language, Precision::Double);
+        }
+        let _ = writeln!(text, "KERNEL void {name}({})\n{{", arguments.text());
         let passive = match &self.pairs {
-            Pairs::Moving(_, over) => Some(format!("{PASSIVE}[{NUMBERS}[a]] {}", over.condition())),
+            Pairs::Moving { over, .. } => {
+                Some(format!("{PASSIVE}[{NUMBERS}[a]] {}", over.condition()))
+            }
             Pairs::Frozen(_) => None,
         };
         let only = self.only.map(|only| format!("{only}[a] > 0.5"));
@@ -219,7 +232,7 @@ impl Loop {
             false if wanted.is_empty() => "    EACH(a, n) {\n".into(),
             false => format!("    EACH(a, n) if ({}) {{\n", wanted.join(" && ")),
         };
-        if let Pairs::Moving(dimension, _) = self.pairs {
+        if let Pairs::Moving { dimension, .. } = self.pairs {
             for axis in 0..dimension {
                 let _ = writeln!(
                     text,
@@ -233,15 +246,15 @@ impl Loop {
         for column in of_terms.chain(started).chain(columns) {
             if !mine.contains(column) {
                 mine.push(*column);
-                load(&mut text, "    ", column, "my_", "a");
+                self.load(&mut text, "    ", column, "my_", "a");
             }
         }
         let sums = &self.sums[0];
         let is_laned = self.order == Order::Lanes && !is_gpu;
         for sum in sums {
             let _ = match is_laned {
-                true => writeln!(text, "    real l{sum}[8] = {{0, 0, 0, 0, 0, 0, 0, 0}};"),
-                false => writeln!(text, "    real {sum} = 0;"),
+                true => writeln!(text, "    {work} l{sum}[8] = {{0, 0, 0, 0, 0, 0, 0, 0}};"),
+                false => writeln!(text, "    {work} {sum} = 0;"),
             };
         }
         if let Some((law, columns)) = &self.start {
@@ -251,7 +264,7 @@ impl Loop {
         }
         for term in &self.terms {
             match &self.pairs {
-                Pairs::Moving(..) => {
+                Pairs::Moving { .. } => {
                     for rows in term.among.rows() {
                         self.write_term(term, *rows, sums, &mut text);
                     }
@@ -265,7 +278,7 @@ impl Loop {
             let _ = match (is_laned, self.order) {
                 (true, _) => writeln!(
                     text,
-                    "    const real {sum} = ((l{sum}[0] + l{sum}[4]) + (l{sum}[2] + l{sum}[6])) + \
+                    "    const {work} {sum} = ((l{sum}[0] + l{sum}[4]) + (l{sum}[2] + l{sum}[6])) + \
                      ((l{sum}[1] + l{sum}[5]) + (l{sum}[3] + l{sum}[7]));"
                 ),
                 (false, Order::Lanes) => writeln!(
@@ -303,15 +316,21 @@ impl Loop {
 
     /// What it computes and touches, with what is made of the sums.
     fn work(&self, close: &Law, columns: &[Use], writes: &[Use]) -> Work {
-        let place = own(POSITION, self.dimension);
+        // Of rows the numbers of pairs are read, not the places of particles.
+        let (place, of_pair) = match &self.pairs {
+            Pairs::Moving { dimension, .. } => (Some(own(POSITION, *dimension)), None),
+            Pairs::Frozen(rows) => {
+                (None, Some(own(rows.numbers, rows.kept.iter().flatten().count())))
+            }
+        };
         let (start, started) = self
             .start
             .as_ref()
             .map_or((0, &[][..]), |(law, columns)| (law.operations(), columns.as_slice()));
         let mut work = Work { operations: start + close.operations(), ..Work::default() };
         let only = self.only.map(|only| own(only, 1));
-        work::join(&mut work.reads, only.iter().chain([&place]).chain(started).chain(columns));
-        work::join(&mut work.gathers, [&place]);
+        work::join(&mut work.reads, only.iter().chain(&place).chain(started).chain(columns));
+        work::join(&mut work.gathers, place.iter().chain(&of_pair));
         work::join(&mut work.writes, writes);
         for term in &self.terms {
             work.by_neighbor.push(term.law.operations());
@@ -323,30 +342,42 @@ impl Loop {
 
     /// Whether eight threads work on a particle.
     fn has_lanes(&self) -> bool {
-        self.language == Language::Cuda && self.order != Order::Fold
+        self.dialect.language == Language::Cuda && self.order != Order::Fold
     }
 
     /// What is known of the pair of a particle and its neighbour `b`, number `k` of its row.
     fn write_pair(&self, first: &str, text: &mut String) {
         match &self.pairs {
-            Pairs::Moving(dimension, _) => {
+            Pairs::Moving { dimension, .. } => {
                 for axis in 0..*dimension {
                     let _ = writeln!(
                         text,
                         "        const real there_{axis} = {POSITION}[b * {dimension} + {axis}];"
                     );
                 }
+                let each = |of: &'static str| (0..*dimension).map(move |i| format!("{of}_{i}"));
+                let places = each("here").chain(each("there")).chain(each("&way"));
+                let _ = writeln!(
+                    text,
+                    "        real {};\n        {}_separation({});",
+                    join(each("way")),
+                    self.name,
+                    join(places)
+                );
             }
             Pairs::Frozen(Rows { numbers, kept, .. }) => {
-                let width = kept.iter().flatten().count();
+                let (width, real) = (kept.iter().flatten().count(), self.dialect.token(numbers));
                 let _ = writeln!(text, "        const unsigned block = {first}[a] + k / 8;");
                 for (number, place) in kept.iter().enumerate() {
                     let _ = match place {
                         Some(place) => writeln!(
                             text,
-                            "        const real pair_{number} = {numbers}[(block * {width} + {place}) * 8 + k % 8];"
+                            "        const {real} pair_{number} = \
+                             {numbers}[(long)block * {} + {} + k % 8];",
+                            8 * width,
+                            8 * place
                         ),
-                        None => writeln!(text, "        const real pair_{number} = 0;"),
+                        None => writeln!(text, "        const {real} pair_{number} = 0;"),
                     };
                 }
             }
@@ -360,10 +391,10 @@ impl Loop {
         sums: &[String],
         text: &mut String,
     ) {
-        let is_gpu = self.has_lanes();
+        let (is_gpu, work) = (self.has_lanes(), self.dialect.of_pairs().token());
         // Where the neighbour of a place in the row stands.
         let entry = |k: &str| match &self.pairs {
-            Pairs::Moving(..) => format!("{ENTRIES}[{first}[a] + {k}]"),
+            Pairs::Moving { .. } => format!("{ENTRIES}[{first}[a] + {k}]"),
             Pairs::Frozen(rows) => {
                 format!("{}[({first}[a] + ({k}) / 8) * 8 + ({k}) % 8]", rows.neighbors)
             }
@@ -396,10 +427,10 @@ impl Loop {
         };
         self.write_pair(first, text);
         for column in &term.others {
-            load(text, "        ", column, "its_", "b");
+            self.load(text, "        ", column, "its_", "b");
         }
         let slots = vec!["(real)a".to_string(), "(real)b".to_string()];
-        let [mine, others] = term.names();
+        let [mine, others] = self.shown(term);
         let is_single = is_gpu && self.order == Order::Single;
         let kept: Vec<String> = match (is_gpu, self.order) {
             (false, Order::Lanes) => sums.iter().map(|sum| format!("l{sum}[k % 8]")).collect(),
@@ -411,7 +442,7 @@ impl Loop {
             false => kept.clone(),
         };
         if is_single {
-            let _ = writeln!(text, "        real {};", given.join(", "));
+            let _ = writeln!(text, "        {work} {};", given.join(", "));
         }
         let inputs = [self.pair_names(), slots, mine, others, kept].concat();
         let pointers = given.iter().map(|sum| format!("&{sum}"));
@@ -422,7 +453,7 @@ impl Loop {
             for (sum, term) in sums.iter().zip(&given) {
                 let _ = writeln!(
                     text,
-                    "            {{ const real t = __shfl_sync(group, {term}, j, 8); \
+                    "            {{ const {work} t = __shfl_sync(group, {term}, j, 8); \
                      if (row + j < end) {sum} += t; }}"
                 );
             }
@@ -430,35 +461,60 @@ impl Loop {
         }
         text.push_str("    }\n");
     }
+
+    /// Loads a row of a column, by pairs of numbers where rows are whole pairs.
+    fn load(&self, text: &mut String, indent: &str, column: &Use, prefix: &str, row: &str) {
+        let real = self.dialect.token(column.column);
+        let pair = if self.dialect.is_narrow(column.column) { "WorkPair" } else { "Pair" };
+        let (name, width) = (column.column, column.width);
+        let row = match column.at {
+            At::Through(index) => format!("{index}[{row}]"),
+            At::Own | At::Spread => row.to_string(),
+        };
+        let numbers = column.names(prefix);
+        if width % 2 == 1 {
+            for (i, number) in numbers.iter().enumerate() {
+                let _ = writeln!(
+                    text,
+                    "{indent}const {real} {number} = {name}[{row} * {width} + {i}];"
+                );
+            }
+            return;
+        }
+        for (number, numbers) in numbers.chunks(2).enumerate() {
+            let both = format!("{prefix}{name}_pair_{number}");
+            let _ = writeln!(
+                text,
+                "{indent}const {pair} {both} = ((GLOBAL const {pair} *){name})[{row} * {} + {number}];\n\
+             {indent}const {real} {} = {both}.x, {} = {both}.y;",
+                width / 2,
+                numbers[0],
+                numbers[1]
+            );
+        }
+    }
+
+    /// What both particles of a pair show to a law. In single precision columns in double precision are those of the
+    /// neighbour less those of the particle itself: laws take differences of them.
+    fn shown(&self, term: &Term) -> [Vec<String>; 2] {
+        let all = term.names();
+        if self.dialect.of_pairs() == Precision::Double || term.mine != term.others {
+            return all;
+        }
+        let is_wide = term.mine.iter().flat_map(|column| {
+            std::iter::repeat_n(!self.dialect.is_narrow(column.column), column.width)
+        });
+        let [mine, others] = all;
+        let both = mine.into_iter().zip(others).zip(is_wide);
+        let shown = both.map(|((my, its), is_wide)| match is_wide {
+            true => ("0".to_string(), format!("(work)({its} - {my})")),
+            false => (my, its),
+        });
+        let (mine, others) = shown.unzip();
+        [mine, others]
+    }
 }
 
 fn join(all: impl Iterator<Item = String>) -> String {
     all.collect::<Vec<_>>().join(", ")
-}
-
-/// Loads a row of a column, by pairs of numbers where rows are whole pairs.
-fn load(text: &mut String, indent: &str, column: &Use, prefix: &str, row: &str) {
-    let (name, width) = (column.column, column.width);
-    let row = match column.at {
-        At::Through(index) => format!("{index}[{row}]"),
-        At::Own | At::Spread => row.to_string(),
-    };
-    let numbers = column.names(prefix);
-    if width % 2 == 1 {
-        for (i, number) in numbers.iter().enumerate() {
-            let _ = writeln!(text, "{indent}const real {number} = {name}[{row} * {width} + {i}];");
-        }
-        return;
-    }
-    for (pair, numbers) in numbers.chunks(2).enumerate() {
-        let both = format!("{prefix}{name}_pair_{pair}");
-        let _ = writeln!(
-            text,
-            "{indent}const Pair {both} = ((GLOBAL const Pair *){name})[{row} * {} + {pair}];\n\
-             {indent}const real {} = {both}.x, {} = {both}.y;",
-            width / 2,
-            numbers[0],
-            numbers[1]
-        );
-    }
 }

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::momentum::MOST_COMPONENTS;
 use super::{
-    CoupledScheme, DeviceRefusal, DeviceStage, DeviceSteps, NewmarkScheme, Part, PartitionedScheme,
-    Phase, RankRefusal, RankShare, SchemeDescription, SplitScheme, StaticScheme, ThetaScheme,
+    CoupledScheme, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, NewmarkScheme, Part,
+    PartitionedScheme, Phase, RankRefusal, RankShare, SchemeDescription, SplitScheme, StaticScheme,
+    ThetaScheme,
 };
 use crate::fields::{self, FieldDescription};
 use crate::geometry::Particles;
@@ -200,14 +201,14 @@ pub trait Scheme: Send + Sync {
         None
     }
 
-    /// Its steps on a device by the integrator of this name.
+    /// Its steps on a device by a method.
     ///
     /// # Errors
     /// Something of it has no body for devices, or the device refuses.
     fn on_device(
         &self,
         _device: Device,
-        _integrator: &'static str,
+        _method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         Err(DeviceRefusal::Formulation(self.description().name))
     }
@@ -217,7 +218,11 @@ pub trait Scheme: Send + Sync {
     ///
     /// # Errors
     /// Something of it has no body for devices.
-    fn device_stages(&self, _language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+    fn device_stages(
+        &self,
+        _language: Language,
+        _method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         Err(DeviceRefusal::Formulation(self.description().name))
     }
 

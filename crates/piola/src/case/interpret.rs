@@ -3,6 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use piola_device::Precision;
+
 use self::sweeps::run_traits;
 use super::catalogue;
 use super::decode::{AXES, Context};
@@ -181,6 +183,7 @@ pub(super) fn case(
         checkpoint: checkpoint?,
         device: (record.record("compute").and_then(|compute| compute.text("device")))
             .filter(|device| **device != "processor"),
+        precision: reader.precision(record),
         ranks: (record.record("compute").and_then(|compute| compute.whole("ranks")))
             .filter(|ranks| **ranks > 1),
         loads: loads.into_iter().collect::<Option<_>>()?,
@@ -388,6 +391,21 @@ impl Reader<'_, '_> {
     }
 
     /// Reports that a key has no meaning beside others, if it is there.
+    /// The precision of a device.
+    fn precision(&mut self, record: &Record) -> Precision {
+        let Some(compute) = record.record("compute") else { return Precision::Double };
+        let name = |key: &str| compute.text(key).map(|text| text.value);
+        let is_single = name("precision").is_some_and(|name| name == "single");
+        if is_single && name("device").is_none_or(|name| name == "processor") {
+            self.meaningless(
+                compute,
+                "precision",
+                "without a `device`: the processor computes in double precision",
+            );
+        }
+        if is_single { Precision::Single } else { Precision::Double }
+    }
+
     fn meaningless(&mut self, record: &Record, key: &str, why: &str) {
         if let Some(place) = record.key_place(key) {
             let message = format!("`{key}` has no meaning {why}");

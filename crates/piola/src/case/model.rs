@@ -7,6 +7,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use piola_device::Precision;
+
 use super::diagnostics::{Problem, Problems};
 use super::expression::{Expression, Scope};
 use super::source::{Located, Place, SourceText};
@@ -62,6 +64,8 @@ pub struct Case {
     pub checkpoint: Checkpoint,
     /// The device that computes, if it is not the processor.
     pub device: Option<Located<String>>,
+    /// The precision of what it computes of pairs.
+    pub precision: Precision,
     /// How many ranks share the particles, if there are several.
     pub ranks: Option<Located<u64>>,
     /// Body forces and tractions.

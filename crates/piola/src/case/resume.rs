@@ -34,20 +34,11 @@ pub(super) struct Resumed {
 }
 
 /// Tables and keys that the course of a run does not depend on before it ends.
-const FREE: [&str; 10] = [
-    "id",
-    "title",
-    "checkpoint",
-    "compute",
-    "plot",
-    "coarse",
-    "paper",
-    "variant",
-    "sweep",
-    "check",
-];
-/// Those of `[time]`.
+const FREE: [&str; 9] =
+    ["id", "title", "checkpoint", "plot", "coarse", "paper", "variant", "sweep", "check"];
+/// Those of `[time]`, and of `[compute]`.
 const FREE_TIME: [&str; 2] = ["end", "max_steps"];
+const FREE_COMPUTE: [&str; 2] = ["device", "ranks"];
 
 /// What tells runs apart that cannot continue each other: the case with all overrides, but for what
 /// may change in between, and the initial state, which knows of the files that the case reads.
@@ -83,12 +74,18 @@ impl Case {
 fn without_free(mut tree: Table) -> Table {
     tree.entries.retain(|entry| !FREE.contains(&entry.key.as_str()));
     for entry in &mut tree.entries {
-        if let ("time", Node { value: Value::Table(time), .. }) =
-            (entry.key.as_str(), &mut entry.node)
-        {
-            time.entries.retain(|entry| !FREE_TIME.contains(&entry.key.as_str()));
+        let free = match entry.key.as_str() {
+            "time" => FREE_TIME,
+            "compute" => FREE_COMPUTE,
+            _ => continue,
+        };
+        if let Node { value: Value::Table(table), .. } = &mut entry.node {
+            table.entries.retain(|entry| !free.contains(&entry.key.as_str()));
         }
     }
+    // A table that says who computes, and nothing else, is as good as none.
+    let is_empty = |node: &Node| matches!(&node.value, Value::Table(it) if it.entries.is_empty());
+    tree.entries.retain(|entry| entry.key != "compute" || !is_empty(&entry.node));
     tree
 }
 

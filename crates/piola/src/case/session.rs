@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use piola_device::{Device, Language};
+use piola_device::{Device, Language, Precision};
 use piola_ranks::Ranks;
 use thiserror::Error;
 
@@ -104,7 +104,8 @@ impl Session {
         let start = Instant::now();
         let (mut executor, built) = executor(case)?;
         let refuse = |problem| case.refuse(vec![problem]);
-        let device = case.device.as_ref().map(|name| use_device(&mut executor, name));
+        let device =
+            case.device.as_ref().map(|name| use_device(&mut executor, name, case.precision));
         let device = device.transpose().map_err(refuse)?;
         ranks::use_threads(&mut executor, case).map_err(refuse)?;
         Ok(Self::of(case, (executor, built), device, start))
@@ -162,7 +163,7 @@ impl Session {
     /// # Errors
     /// The case has no steps on devices.
     pub fn device_stages(&self, language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        self.executor.device_stages(language)
+        self.executor.device_stages(language, self.case.precision)
     }
 
     /// Simulated time in s.
@@ -354,10 +355,17 @@ impl Session {
 }
 
 /// Lets a run take its steps on the device of a name, and says what that is.
-fn use_device(executor: &mut Executor, name: &Located<String>) -> Result<String, Problem> {
+fn use_device(
+    executor: &mut Executor,
+    name: &Located<String>,
+    precision: Precision,
+) -> Result<String, Problem> {
     let used = Device::open(name).map_err(DeviceRefusal::from).and_then(|device| {
-        let found = device.found().to_string();
-        executor.use_device(device).map(|()| found)
+        let mut found = device.found().to_string();
+        if precision == Precision::Single {
+            found += ", pairs in single precision";
+        }
+        executor.use_device(device, precision).map(|()| found)
     });
     used.map_err(|refusal| {
         let label = match &refusal {

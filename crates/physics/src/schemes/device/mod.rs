@@ -5,7 +5,7 @@ mod memory;
 mod numbers;
 mod state;
 
-use piola_device::{DeviceError, Pass};
+use piola_device::{DeviceError, Dialect, Language, Pass, Precision};
 use piola_ranks::RankError;
 use thiserror::Error;
 
@@ -84,6 +84,45 @@ pub trait DeviceSteps: Send {
     fn phases(&self) -> Vec<&Phase>;
 }
 
+/// How steps are taken on a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeviceMethod {
+    /// The name of the integrator.
+    pub integrator: &'static str,
+    /// The precision of what is computed of pairs, and of what of them is kept between passes. States, what moves them,
+    /// and sums over particles are in double precision.
+    pub precision: Precision,
+}
+
+impl DeviceMethod {
+    /// Which of the columns that may be in single precision are.
+    pub(crate) fn narrow(self, columns: &'static [&'static str]) -> &'static [&'static str] {
+        match self.precision {
+            Precision::Double => &[],
+            Precision::Single => columns,
+        }
+    }
+
+    /// How passes are written then.
+    pub(crate) fn dialect(self, language: Language, columns: &'static [&'static str]) -> Dialect {
+        Dialect { language, narrow: self.narrow(columns) }
+    }
+
+    /// Refuses all integrators but kick-drift-kick.
+    ///
+    /// # Errors
+    /// [`DeviceRefusal::Integrator`].
+    pub(crate) fn unless_kicked(self) -> Result<Self, DeviceRefusal> {
+        match self.integrator == KickDriftKick::NAME {
+            true => Ok(self),
+            false => Err(DeviceRefusal::Integrator {
+                integrator: self.integrator,
+                able: "`kick_drift_kick`",
+            }),
+        }
+    }
+}
+
 /// A stage of a step, or what runs beside the stages, with its passes on a device.
 #[derive(Clone, Debug)]
 pub struct DeviceStage {
@@ -150,19 +189,6 @@ pub enum DeviceRefusal {
     /// Whoever takes the steps.
     #[error(transparent)]
     Steps(#[from] StepsError),
-}
-
-impl DeviceRefusal {
-    /// Refuses all integrators but kick-drift-kick.
-    ///
-    /// # Errors
-    /// [`DeviceRefusal::Integrator`].
-    pub(crate) fn unless_kicked(integrator: &'static str) -> Result<(), Self> {
-        match integrator == KickDriftKick::NAME {
-            true => Ok(()),
-            false => Err(Self::Integrator { integrator, able: "`kick_drift_kick`" }),
-        }
-    }
 }
 
 impl From<DeviceError> for DeviceRefusal {

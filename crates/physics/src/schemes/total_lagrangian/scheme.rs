@@ -11,9 +11,9 @@ use crate::fields::FieldDescription;
 use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, DeviceRefusal, DeviceSteps, Health, NEWTON_ITERATIONS, NewmarkScheme, Part,
-    Particle, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme, StaticScheme,
-    StepLimit,
+    Capability, DeviceMethod, DeviceRefusal, DeviceSteps, Health, NEWTON_ITERATIONS, NewmarkScheme,
+    Part, Particle, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme,
+    StaticScheme, StepLimit,
 };
 use crate::solve::Costs;
 
@@ -89,10 +89,9 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     fn on_device(
         &self,
         device: Device,
-        integrator: &'static str,
+        method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        DeviceRefusal::unless_kicked(integrator)?;
-        self.solid_to_device(device)
+        self.solid_to_device(device, method.unless_kicked()?)
     }
 
     #[inline(never)]

@@ -18,7 +18,9 @@ use crate::fields::FieldDescription;
 use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
-use crate::schemes::{DeviceRefusal, DeviceStage, DeviceSteps, Passage, SchemeDescription};
+use crate::schemes::{
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Passage, SchemeDescription,
+};
 
 /// Matter bound to the particles that all kinds of it share.
 pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
@@ -224,6 +226,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     fn to_device(
         _system: &TransportVelocity<D, Self>,
         _device: Device,
+        _method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         Err(DeviceRefusal::Solids)
     }
@@ -235,6 +238,7 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     fn device_stages(
         _system: &TransportVelocity<D, Self>,
         _language: Language,
+        _method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         Err(DeviceRefusal::Solids)
     }

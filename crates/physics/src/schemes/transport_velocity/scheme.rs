@@ -8,8 +8,8 @@ use crate::fields::FieldDescription;
 use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Behind, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle, Passage, Phase,
-    Scheme, SchemeDescription, SplitScheme, StepLimit,
+    Behind, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle,
+    Passage, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
@@ -196,15 +196,18 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
     fn on_device(
         &self,
         device: Device,
-        integrator: &'static str,
+        method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        DeviceRefusal::unless_kicked(integrator)?;
-        M::to_device(self, device)
+        M::to_device(self, device, method.unless_kicked()?)
     }
 
     #[inline(never)]
-    fn device_stages(&self, language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        M::device_stages(self, language)
+    fn device_stages(
+        &self,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        M::device_stages(self, language, method.unless_kicked()?)
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

@@ -12,8 +12,9 @@ use crate::fields::FieldDescription;
 use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, DeviceRefusal, DeviceSteps, Health, Part, Particle, PartitionedScheme, Phase,
-    RankRefusal, RankShare, Scheme, SchemeDescription, StepLimit, ThetaScheme,
+    Capability, DeviceMethod, DeviceRefusal, DeviceSteps, Health, Part, Particle,
+    PartitionedScheme, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, StepLimit,
+    ThetaScheme,
 };
 use crate::solve::Costs;
 
@@ -87,9 +88,9 @@ impl<const D: usize> Scheme for Upwind<D> {
     fn on_device(
         &self,
         device: Device,
-        integrator: &'static str,
+        method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        self.body_to_device(device, integrator)
+        self.body_to_device(device, method)
     }
 
     fn cost(&self, particles: Range<usize>) -> f64 {

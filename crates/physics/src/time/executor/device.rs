@@ -5,40 +5,44 @@
 
 use std::sync::Arc;
 
-use piola_device::{Device, Language};
+use piola_device::{Device, Language, Precision};
 
 use super::Executor;
-use crate::schemes::{DeviceRefusal, DeviceStage, DeviceSteps, Health, StepsError};
+use crate::schemes::{DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Health, StepsError};
 use crate::time::failure::Failure;
 use crate::time::run::Run;
 use crate::time::summary::Outcome;
 
 impl Executor {
-    /// Lets a device take the steps from now on.
+    /// How a device takes the steps, with this precision of pairs.
+    fn method(&self, precision: Precision) -> DeviceMethod {
+        DeviceMethod { integrator: self.integrator.name(), precision }
+    }
+
+    /// Lets a device take the steps from now on, with this precision of pairs.
     ///
     /// # Errors
     /// The formulation or the integrator has no steps there, or the device refuses.
-    pub fn use_device(&mut self, device: Device) -> Result<(), DeviceRefusal> {
-        let steps = self.scheme.on_device(device, self.integrator.name())?;
+    pub fn use_device(
+        &mut self,
+        device: Device,
+        precision: Precision,
+    ) -> Result<(), DeviceRefusal> {
+        let steps = self.scheme.on_device(device, self.method(precision))?;
         Ok(self.use_steps(steps)?)
     }
 
-    /// The stages of its steps on a device with their passes in a language, see [`Scheme::device_stages`](crate::schemes::Scheme::device_stages). No device is
-    /// needed.
+    /// The stages of its steps on a device with their passes in a language, see
+    /// [`Scheme::device_stages`](crate::schemes::Scheme::device_stages). No device is needed.
     ///
     /// # Errors
     /// The formulation or the integrator has no steps there.
-    pub fn device_stages(&self, language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        let stages = self.scheme.device_stages(language)?;
-        self.check_integrator()?;
-        Ok(stages)
-    }
-
-    fn check_integrator(&self) -> Result<(), DeviceRefusal> {
-        match self.integrator.name() {
-            KickDriftKick::NAME => Ok(()),
-            other => Err(DeviceRefusal::Integrator(other)),
-        }
+    pub fn device_stages(
+        &self,
+        language: Language,
+        precision: Precision,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        self.scheme.device_stages(language, self.method(precision))
     }
 
     /// Lets somebody else take the steps from now on.

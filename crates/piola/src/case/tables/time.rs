@@ -216,9 +216,18 @@ const REACTIONS: Choices = choices(&[
     ),
 ]);
 
+const PRECISIONS: Choices = choices(&[
+    choice("double", "the results of the processor, to the bit"),
+    choice(
+        "single",
+        "what is computed of pairs is in single precision, on a device; states and sums over particles stay in double \
+         precision",
+    ),
+]);
+
 pub(super) static COMPUTE: TableSpec = TableSpec {
     title: "[compute]",
-    meaning: "Who computes. Results do not depend on it, except for the last digits on a device with kernels that contain an exponential.",
+    meaning: "Who computes. Results do not depend on the device or on the number of ranks.",
     keys: &[
         key(
             "device",
@@ -226,6 +235,13 @@ pub(super) static COMPUTE: TableSpec = TableSpec {
             "",
             Default("\"processor\""),
             "`processor`, or the name of a device as listed by `piola devices`, for example `cuda:0`; `docs/devices.md` lists the supported cases",
+        ),
+        key(
+            "precision",
+            Kind::Name(PRECISIONS),
+            "",
+            Default("\"double\""),
+            "the precision of what a device computes of pairs of particles; `docs/devices.md` says what single precision costs and gains",
         ),
         key(
             "ranks",

@@ -10,10 +10,16 @@ use crate::fields;
 use crate::operators::{AdjointPairs, Columns, FrozenRows, ReferencePairs};
 use crate::parallel::chunk;
 use crate::schemes::Scheme as _;
-use crate::schemes::device::{DeviceRefusal, DeviceSteps, StateColumn, StateColumns, fits};
+use crate::schemes::device::{
+    DeviceMethod, DeviceRefusal, DeviceSteps, StateColumn, StateColumns, fits,
+};
 
 /// Most mixtures whose stresses stand in one pass.
 const MOST_MIXTURES: usize = 16;
+
+/// Columns that may be in single precision: what is known of pairs, and what of a particle they make or see.
+const NARROW: [&str; 5] =
+    ["coefficients", "dual_coefficients", "tension", "gradient", "gradient_rate"];
 
 /// A column with the numbers that it begins with.
 type Filled = (&'static str, Vec<f64>);
@@ -46,11 +52,12 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(in super::super) fn solid_to_device(
         &self,
         device: Device,
+        method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         match (&self.matrices, self.device_refusal()) {
             (Matrices::Adjoint(discrete), None) => match &discrete.operator.pairs {
-                ReferencePairs::Plain(pairs) => self.on(device, discrete, pairs),
-                ReferencePairs::Consistent(pairs) => self.on(device, discrete, pairs),
+                ReferencePairs::Plain(pairs) => self.on((device, method), discrete, pairs),
+                ReferencePairs::Consistent(pairs) => self.on((device, method), discrete, pairs),
             },
             (_, Some(refusal)) => Err(refusal),
             _ => Err(DeviceRefusal::Formulation(self.description.name)),
@@ -75,7 +82,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     fn on<const N: usize>(
         &self,
-        device: Device,
+        (device, method): (Device, DeviceMethod),
         discrete: &Discrete<D>,
         pairs: &AdjointPairs<D, N>,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
@@ -101,8 +108,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
         let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes));
         fits(&device, all.chain(of_rows).chain(of_filled).collect())?;
-        let passes = |language| plan.passes(language, &supports, &duals, &folds);
-        let mut machine = Machine::new(device, None, passes, chunk(count))?;
+        let passes = |dialect| plan.passes(dialect, &supports, &duals, &folds);
+        let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;
         let tail = LEDGER.length(D) + BEHIND;
         let state = StateColumns::new(columns, tail);
         state.make(&mut machine, |name| if name == "kick" { 0 } else { images.len() * D })?;

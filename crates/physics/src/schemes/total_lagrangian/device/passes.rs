@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 use piola_device::{
-    Among, Frozen, Gather, Language, Order, Pass, Traced, Use, local, own, spread, through,
+    Among, Dialect, Frozen, Gather, Order, Pass, Traced, Use, local, own, spread, through,
 };
 use piola_formulas::pairs::total_lagrangian::{Forces, Gradients};
 use piola_formulas::pairs::{Components, Each, One, Square};
@@ -52,43 +52,43 @@ impl<const D: usize> Plan<D> {
     /// All passes of the plan.
     pub fn passes<const N: usize>(
         &self,
-        language: Language,
+        dialect: Dialect,
         supports: &Supports<D, N>,
         duals: &Duals<D, N>,
         folds: &Frozen<Components<D>>,
     ) -> Vec<Pass> {
         let mut all = vec![
-            self.kick_and_drift(language),
-            self.kick(language),
-            self.strains(language, supports),
-            self.forces(language, duals),
-            self.external(language),
-            self.look(language),
-            self.show(language),
-            self.take(language),
-            self.follow(language),
+            self.kick_and_drift(dialect),
+            self.kick(dialect),
+            self.strains(dialect, supports),
+            self.forces(dialect, duals),
+            self.external(dialect),
+            self.look(dialect),
+            self.show(dialect),
+            self.take(dialect),
+            self.follow(dialect),
         ];
         if self.viscosity.is_some() {
-            all.push(self.rates(language, "rates", supports, Order::Lanes));
+            all.push(self.rates(dialect, "rates", supports, Order::Lanes));
         }
         if self.is_quadratic {
-            all.push(self.rates(language, "rates_of_moment", supports, Order::Single));
+            all.push(self.rates(dialect, "rates_of_moment", supports, Order::Single));
         }
         if self.has_images {
-            all.extend(["displacement", "velocity"].map(|field| self.carry(language, field)));
-            all.push(self.fold(language, folds));
+            all.extend(["displacement", "velocity"].map(|field| self.carry(dialect, field)));
+            all.push(self.fold(dialect, folds));
         }
         if self.terms() > 0 {
-            all.push(self.powers(language));
+            all.push(self.powers(dialect));
         }
         all
     }
 
     /// Velocities change by accelerations, and places by the velocities.
-    fn kick_and_drift(&self, language: Language) -> Pass {
+    fn kick_and_drift(&self, dialect: Dialect) -> Pass {
         let reads = [own("displacement", D), own("velocity", D), own("kick", D)];
         let writes = [own("displacement", D), own("velocity", D)];
-        local(language, "kick_and_drift", &["duration", "step"], &reads, &writes, |mut x| {
+        local(dialect, "kick_and_drift", &["duration", "step"], &reads, &writes, |mut x| {
             let (duration, step) = (one(&mut x), one(&mut x));
             let displacement: Recorded<D> = take(&mut x);
             let (velocity, kick): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
@@ -98,9 +98,9 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Velocities change by accelerations.
-    fn kick(&self, language: Language) -> Pass {
+    fn kick(&self, dialect: Dialect) -> Pass {
         let (reads, writes) = ([own("velocity", D), own("kick", D)], [own("velocity", D)]);
-        local(language, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
+        local(dialect, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
             let duration = one(&mut x);
             let (velocity, kick): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
             (velocity + kick * duration).iter().copied().collect()
@@ -108,12 +108,12 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Values of images, of those of the particles that they mirror and of data of planes.
-    fn carry(&self, language: Language, field: &'static str) -> Pass {
+    fn carry(&self, dialect: Dialect, field: &'static str) -> Pass {
         let name = if field == "velocity" { "carry_velocities" } else { "carry_displacements" };
         let reads =
             [through("image_source", field, D), own("image_sign", D), own("image_data", 2 * D)];
         let writes = [through("image_slot", field, D)];
-        local(language, name, &DATA[..2 * D], &reads, &writes, |mut x| {
+        local(dialect, name, &DATA[..2 * D], &reads, &writes, |mut x| {
             let data: Vec<Traced> = (0..2 * D).map(|_| one(&mut x)).collect();
             let (source, sign): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
             let carried = |i: usize| x[2 * i] * data[2 * i] + x[2 * i + 1] * data[2 * i + 1];
@@ -122,9 +122,9 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What acts on images acts on the particles that they mirror.
-    fn fold(&self, language: Language, folds: &Frozen<Components<D>>) -> Pass {
+    fn fold(&self, dialect: Dialect, folds: &Frozen<Components<D>>) -> Pass {
         let force = [own("force", D)];
-        Gather::<Components<D>, _>::new(language, "fold_forces", folds, Among::All, Order::Fold)
+        Gather::<Components<D>, _>::new(dialect, "fold_forces", folds, Among::All, Order::Fold)
             .start(&force, |mut x| take(&mut x))
             .fold(&[], &force, Among::All, |meeting, sums| {
                 for i in 0..D {
@@ -137,13 +137,13 @@ impl<const D: usize> Plan<D> {
     /// Rates of displacement gradients. A look sums them one after the other.
     fn rates<const N: usize>(
         &self,
-        language: Language,
+        dialect: Dialect,
         name: &'static str,
         supports: &Supports<D, N>,
         order: Order,
     ) -> Pass {
         let velocity = [own("velocity", D)];
-        Gather::<Each<Square<D>, N>, _>::new(language, name, supports, Among::All, order)
+        Gather::<Each<Square<D>, N>, _>::new(dialect, name, supports, Among::All, order)
             .term(&Gradients::<D, N>, &velocity, Among::All)
             .close(&[], &[], &[own("gradient_rate", D * D)], |sums, _| entries(&sums[0]))
     }
@@ -184,7 +184,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Displacement gradients, and what forces gather.
-    fn strains<const N: usize>(&self, language: Language, supports: &Supports<D, N>) -> Pass {
+    fn strains<const N: usize>(&self, dialect: Dialect, supports: &Supports<D, N>) -> Pass {
         let mut reads = vec![own("volume", 1)];
         reads.extend(self.of_viscosity());
         reads.extend(self.is_stabilised.then_some(own("hourglass", 1)));
@@ -192,50 +192,44 @@ impl<const D: usize> Plan<D> {
         reads.extend(self.of_mixture());
         let writes = [own("gradient", D * D), own("tension", N * D * D)];
         let displacement = [own("displacement", D)];
-        Gather::<Each<Square<D>, N>, _>::new(
-            language,
-            "strains",
-            supports,
-            Among::All,
-            Order::Lanes,
-        )
-        .term(&Gradients::<D, N>, &displacement, Among::All)
-        .close(&[], &reads, &writes, |sums, mut x| {
-            let (gradient, volume) = (sums[0], one(&mut x));
-            let viscous = self.viscous(&mut x);
-            let hourglass = self.is_stabilised.then(|| (one(&mut x), taken::<D>(&mut x)));
-            // As rows of a fixed length, of which a tensor has at most three times three.
-            let stress = self.by_mixture::<9>(&mut x, |number| {
-                let own = entries(&self.mixtures[number].held_stress(&gradient));
-                std::array::from_fn(|k| own.get(k).copied().unwrap_or(Traced::from(0.0)))
-            });
-            let mut stress = Tensor::<D>::from_row_slice(&stress[..D * D]);
-            if let Some((viscous, _, rate)) = viscous {
-                stress += viscous.stress(&gradient, &rate);
-            }
-            let tension = stress * volume;
-            let mut plain = [Tensor::<D>::zeros(); N];
-            plain[0] = tension;
-            let derivatives = match hourglass {
-                None => plain,
-                Some((coefficient, shape)) => {
-                    let stiffness = coefficient * 2.0;
-                    let all = stabilised(sums, tension, &shape, stiffness);
-                    let has_none = stiffness.abs().at_most(Traced::from(0.0));
-                    let pick =
-                        |n: usize, k: usize| Traced::select(has_none, plain[n][k], all[n][k]);
-                    std::array::from_fn(|n| Tensor::<D>::from_fn(|i, j| pick(n, i + D * j)))
+        Gather::<Each<Square<D>, N>, _>::new(dialect, "strains", supports, Among::All, Order::Lanes)
+            .term(&Gradients::<D, N>, &displacement, Among::All)
+            .close(&[], &reads, &writes, |sums, mut x| {
+                let (gradient, volume) = (sums[0], one(&mut x));
+                let viscous = self.viscous(&mut x);
+                let hourglass = self.is_stabilised.then(|| (one(&mut x), taken::<D>(&mut x)));
+                // As rows of a fixed length, of which a tensor has at most three times three.
+                let stress = self.by_mixture::<9>(&mut x, |number| {
+                    let own = entries(&self.mixtures[number].held_stress(&gradient));
+                    std::array::from_fn(|k| own.get(k).copied().unwrap_or(Traced::from(0.0)))
+                });
+                let mut stress = Tensor::<D>::from_row_slice(&stress[..D * D]);
+                if let Some((viscous, _, rate)) = viscous {
+                    stress += viscous.stress(&gradient, &rate);
                 }
-            };
-            entries(&gradient).into_iter().chain(derivatives.iter().flat_map(entries)).collect()
-        })
+                let tension = stress * volume;
+                let mut plain = [Tensor::<D>::zeros(); N];
+                plain[0] = tension;
+                let derivatives = match hourglass {
+                    None => plain,
+                    Some((coefficient, shape)) => {
+                        let stiffness = coefficient * 2.0;
+                        let all = stabilised(sums, tension, &shape, stiffness);
+                        let has_none = stiffness.abs().at_most(Traced::from(0.0));
+                        let pick =
+                            |n: usize, k: usize| Traced::select(has_none, plain[n][k], all[n][k]);
+                        std::array::from_fn(|n| Tensor::<D>::from_fn(|i, j| pick(n, i + D * j)))
+                    }
+                };
+                entries(&gradient).into_iter().chain(derivatives.iter().flat_map(entries)).collect()
+            })
     }
 
     /// Internal forces on particles, and behind them on images.
-    fn forces<const N: usize>(&self, language: Language, duals: &Duals<D, N>) -> Pass {
+    fn forces<const N: usize>(&self, dialect: Dialect, duals: &Duals<D, N>) -> Pass {
         let sides = [own("tension", N * D * D), own("displacement", D)];
         let reads = [own("tension", N * D * D), own("own_coefficients", N * D)];
-        Gather::<Components<D>, _>::new(language, "forces", duals, Among::All, Order::Lanes)
+        Gather::<Components<D>, _>::new(dialect, "forces", duals, Among::All, Order::Lanes)
             .term(&Forces::<D, N>, &sides, Among::All)
             .close(&[], &reads, &[own("force", D)], |sums, mut x| {
                 let tension: [Tensor<D>; N] = std::array::from_fn(|_| taken(&mut x));
@@ -257,10 +251,10 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Accelerations by forces between particles, by body forces and by damping.
-    fn external(&self, language: Language) -> Pass {
+    fn external(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![own("force", D), own("mass", 1), own("velocity", D)];
         reads.extend(self.of_pull());
-        local(language, "external", &[], &reads, &[own("kick", D)], |mut x| {
+        local(dialect, "external", &[], &reads, &[own("kick", D)], |mut x| {
             let (force, mass): (Recorded<D>, _) = (take(&mut x), one(&mut x));
             let velocity: Recorded<D> = take(&mut x);
             let pull = self.pull(&mut x);
@@ -270,24 +264,24 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Rows of the particles on which something acts.
-    fn show(&self, language: Language) -> Pass {
+    fn show(&self, dialect: Dialect) -> Pass {
         let wide = if self.is_pressed { D * D } else { 0 };
         let mut reads = vec![through("listed", "kick", D)];
         reads.extend(self.is_pressed.then_some(through("listed", "gradient", D * D)));
-        local(language, "show", &[], &reads, &[own("shown", D + wide)], |x| x.to_vec())
+        local(dialect, "show", &[], &reads, &[own("shown", D + wide)], |x| x.to_vec())
     }
 
     /// Accelerations of the same, as something has acted on them.
-    fn take(&self, language: Language) -> Pass {
+    fn take(&self, dialect: Dialect) -> Pass {
         let (reads, writes) = ([own("given", D)], [through("listed", "kick", D)]);
-        local(language, "take", &[], &reads, &writes, |x| x.to_vec())
+        local(dialect, "take", &[], &reads, &writes, |x| x.to_vec())
     }
 
     /// Displacements and velocities of the same, some of which are prescribed.
-    fn follow(&self, language: Language) -> Pass {
+    fn follow(&self, dialect: Dialect) -> Pass {
         let reads = [own("moved", 2 * D)];
         let writes = [through("listed", "displacement", D), through("listed", "velocity", D)];
-        local(language, "follow", &[], &reads, &writes, |x| x.to_vec())
+        local(dialect, "follow", &[], &reads, &writes, |x| x.to_vec())
     }
 
     /// How many sums there are of powers: of body forces and of damping power, growth and force; the power of viscosity;
@@ -301,7 +295,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What all particles have in the ledger.
-    fn powers(&self, language: Language) -> Pass {
+    fn powers(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![
             own("reference", D),
             own("displacement", D),
@@ -316,7 +310,7 @@ impl<const D: usize> Plan<D> {
             reads.extend([own("gradient", D * D), own("volume", 1)]);
         }
         let writes = [spread("terms", self.terms())];
-        local(language, "powers", &[], &reads, &writes, |mut x| {
+        local(dialect, "powers", &[], &reads, &writes, |mut x| {
             let (reference, displacement): (Recorded<D>, Recorded<D>) =
                 (take(&mut x), take(&mut x));
             let (velocity, mass): (Recorded<D>, _) = (take(&mut x), one(&mut x));
@@ -349,7 +343,7 @@ impl<const D: usize> Plan<D> {
 
     /// What a look takes of a particle: whether something is not finite; the square of the speed, the speed of waves and
     /// the negative volume ratio, and that nothing has two ratios; stiffening, thickening and softening.
-    fn look(&self, language: Language) -> Pass {
+    fn look(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![
             own("displacement", D),
             own("velocity", D),
@@ -359,7 +353,7 @@ impl<const D: usize> Plan<D> {
         reads.extend(self.of_viscosity());
         reads.extend(self.of_mixture());
         let writes = [spread("terms", FIGURES)];
-        local(language, "look", &[], &reads, &writes, |mut x| {
+        local(dialect, "look", &[], &reads, &writes, |mut x| {
             let is_finite = are_finite(&x[..3 * D]);
             let _: Recorded<D> = take(&mut x);
             let velocity: Recorded<D> = take(&mut x);

@@ -12,7 +12,31 @@ use crate::fields;
 use crate::operators::MovingSupport;
 use crate::parallel::chunk;
 use crate::schemes::Scheme;
-use crate::schemes::device::{DeviceRefusal, DeviceSteps};
+use crate::schemes::device::{DeviceMethod, DeviceRefusal, DeviceSteps};
+
+/// Columns that may be in single precision: what neighbours see, and what is summed over them.
+pub(super) const NARROW: [&str; 20] = [
+    "side",
+    "rate",
+    "force",
+    "summed",
+    "shear",
+    "hold",
+    "half_force",
+    "gravity",
+    "sliding",
+    "faces",
+    "mark",
+    "near",
+    "alone",
+    "surface",
+    "close_by",
+    "reach",
+    "sharp",
+    "normal",
+    "crowd",
+    "escaped",
+];
 
 fn gibibytes(bytes: usize) -> String {
     format!("{:.2} GiB", bytes as f64 / f64::from(1 << 30))
@@ -133,6 +157,7 @@ impl<const D: usize> TransportVelocity<D> {
     pub(in super::super) fn fluid_to_device(
         &self,
         device: Device,
+        method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         let (common, plan) = (&self.common, self.device_plan()?);
         let (list, periods) = (common.support.list(), plan.periods);
@@ -145,8 +170,10 @@ impl<const D: usize> TransportVelocity<D> {
         let removal = plan.removes.then(|| Removal::new(common));
         let is_wall = removal.as_ref().map_or(&common.is_wall, |removal| &removal.is_wall);
         let lists = Lists::new(&device, is_wall, support, skin, &periods)?;
-        let mut machine =
-            Machine::new(device, Some(lists), |language| plan.passes(language), chunk(count))?;
+        let mut machine = {
+            let narrow = method.narrow(&NARROW);
+            Machine::new(device, Some(lists), narrow, |dialect| plan.passes(dialect), chunk(count))?
+        };
         for (_, (name, before, width)) in &columns {
             machine.add_zeros(name, count * width)?;
             machine.add_zeros(before, count * width)?;

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 use piola_device::{
-    Among, Gather, Language, Order, Pass, Space, Traced, local, own, spread, through,
+    Among, Dialect, Gather, Order, Pass, Space, Traced, local, own, spread, through,
 };
 use piola_formulas::pairs::One;
 use piola_formulas::pairs::fluid::{
@@ -85,7 +85,7 @@ pub(super) fn square<const D: usize>(vector: &Vector<D>) -> Traced {
 
 impl<const D: usize> Plan<D> {
     /// All passes of the plan.
-    pub(super) fn passes(&self, language: Language) -> Vec<Pass> {
+    pub(super) fn passes(&self, dialect: Dialect) -> Vec<Pass> {
         let space = Space {
             kernel: self.kernel,
             smoothing_length: self.smoothing_length,
@@ -93,37 +93,37 @@ impl<const D: usize> Plan<D> {
         };
         let space = &space;
         let mut all = vec![
-            self.load(language, space),
-            self.state(language),
-            self.rates(language, space),
-            self.advance(language),
-            self.forces(language, space),
-            self.shift(language),
-            self.store(language),
-            self.kick(language),
-            self.look(language),
+            self.load(dialect, space),
+            self.state(dialect),
+            self.rates(dialect, space),
+            self.advance(dialect),
+            self.forces(dialect, space),
+            self.shift(dialect),
+            self.store(dialect),
+            self.kick(dialect),
+            self.look(dialect),
         ];
         if self.sums_densities {
-            all.push(self.densities(language, space));
+            all.push(self.densities(dialect, space));
         }
         if self.falls {
-            all.push(self.fall(language));
+            all.push(self.fall(dialect));
         }
-        all.extend(self.wall_passes(language, space));
-        all.extend(self.surface_passes(language, space));
+        all.extend(self.wall_passes(dialect, space));
+        all.extend(self.surface_passes(dialect, space));
         all
     }
 
     /// Half of the body force of each particle.
-    fn fall(&self, language: Language) -> Pass {
+    fn fall(&self, dialect: Dialect) -> Pass {
         let (reads, writes) = ([through("numbers", "gravity", D)], [own("half_force", D)]);
-        local(language, "fall", &[], &reads, &writes, |x| {
+        local(dialect, "fall", &[], &reads, &writes, |x| {
             x.iter().map(|component| *component * 0.5).collect()
         })
     }
 
     /// Sides and places by slot, and how far particles are from where the list was made.
-    fn load(&self, language: Language, space: &Space<D>) -> Pass {
+    fn load(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let of = |column, width| through("numbers", column, width);
         let reads = [
             of("position", D),
@@ -135,7 +135,7 @@ impl<const D: usize> Plan<D> {
             own("made_at", D),
         ];
         let writes = [own("place", D), own("side", side_width(D)), spread("terms", 1)];
-        local(language, "load", &[], &reads, &writes, |mut x| {
+        local(dialect, "load", &[], &reads, &writes, |mut x| {
             let position: Vector<D> = take(&mut x);
             let (velocity, deviation) = (take(&mut x), take(&mut x));
             let (density, pressure, mass) = (one(&mut x), one(&mut x), one(&mut x));
@@ -154,21 +154,21 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Densities as sums over masses.
-    fn densities(&self, language: Language, space: &Space<D>) -> Pass {
+    fn densities(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let columns = [own("side", side_width(D))];
         let centre = self.kernel.value(D, 0.0, self.smoothing_length);
-        Gather::<One, _>::new(language, "densities", space, Among::Active, Order::Single)
+        Gather::<One, _>::new(dialect, "densities", space, Among::Active, Order::Single)
             .start(&columns, |mut x| side::<D>(&mut x).mass() * centre)
             .term(&Density::<D>, &columns, Among::All)
             .close(&[], &[], &[own("summed", 1)], |sum, _| vec![*sum])
     }
 
     /// Densities and pressures that are functions of places or of each other, and squares of speeds.
-    fn state(&self, language: Language) -> Pass {
+    fn state(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![through("numbers", "wall", 1), own("side", side_width(D))];
         reads.extend(self.sums_densities.then_some(own("summed", 1)));
         let writes = [own("side", side_width(D)), spread("terms", 1)];
-        local(language, "state", &[], &reads, &writes, |mut x| {
+        local(dialect, "state", &[], &reads, &writes, |mut x| {
             let wall = one(&mut x);
             let before: Side<Traced, D> = side(&mut x);
             let density = if self.sums_densities { one(&mut x) } else { before.density };
@@ -185,12 +185,12 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Rates of density and pressure.
-    fn rates(&self, language: Language, space: &Space<D>) -> Pass {
+    fn rates(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let constants = self.rate_constants;
         let (corrects, moves, falls) = self.rate_kind;
         let columns = [own("side", side_width(D)), own("half_force", D)];
         let gather =
-            Gather::<RateSum<D>, _>::new(language, "rates", space, Among::Active, Order::Lanes);
+            Gather::<RateSum<D>, _>::new(dialect, "rates", space, Among::Active, Order::Lanes);
         macro_rules! of {
             ($corrects:literal, $moves:literal, $falls:literal) => {{
                 let law = Rates::<D, $corrects, $moves, $falls>(constants);
@@ -219,7 +219,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Particles move on with their rates, and what that does to energies and momenta.
-    fn advance(&self, language: Language) -> Pass {
+    fn advance(&self, dialect: Dialect) -> Pass {
         let reads = [
             own("position", D),
             own("velocity", D),
@@ -237,7 +237,7 @@ impl<const D: usize> Plan<D> {
             own("pressure", 1),
             spread("terms", drift_terms(D)),
         ];
-        local(language, "advance", &["step"], &reads, &writes, |mut x| {
+        local(dialect, "advance", &["step"], &reads, &writes, |mut x| {
             let step = one(&mut x);
             let (position, velocity): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
             let deviation: Vector<D> = take(&mut x);
@@ -288,12 +288,12 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Accelerations between particles, and what shifting needs.
-    fn forces(&self, language: Language, space: &Space<D>) -> Pass {
+    fn forces(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let constants = self.force_constants;
         let columns = [own("side", side_width(D))];
         let of_walls = [own("side", side_width(D)), own("shear", D)];
         let gather =
-            Gather::<ForceSum<D>, _>::new(language, "forces", space, Among::Active, Order::Lanes);
+            Gather::<ForceSum<D>, _>::new(dialect, "forces", space, Among::Active, Order::Lanes);
         macro_rules! of {
             ($kind:expr, $artificial:literal, $crowding:literal) => {{
                 let law = Forces::<D, { $kind }, $artificial, $crowding>(constants);
@@ -343,7 +343,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Deviations by SPST.
-    fn shift(&self, language: Language) -> Pass {
+    fn shift(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![
             through("numbers", "wall", 1),
             own("force", FORCES * D),
@@ -355,7 +355,7 @@ impl<const D: usize> Plan<D> {
             reads.extend(of_surfaces);
         }
         let writes = [own("side", side_width(D))];
-        local(language, "shift", &["scale", "most"], &reads, &writes, |mut x| {
+        local(dialect, "shift", &["scale", "most"], &reads, &writes, |mut x| {
             let (scale, most, wall) = (one(&mut x), one(&mut x), one(&mut x));
             let crowding = forces::<D>(&mut x)[6];
             let mut me: Side<Traced, D> = side(&mut x);
@@ -389,11 +389,13 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What the passes have found goes into the state, with the powers of all accelerations.
-    fn store(&self, language: Language) -> Pass {
+    fn store(&self, dialect: Dialect) -> Pass {
         let reads = [
             own("position", D),
             own("velocity", D),
             own("deviation", D),
+            own("density", 1),
+            own("pressure", 1),
             own("mass", 1),
             own("wall", 1),
             through("slots", "force", FORCES * D),
@@ -406,9 +408,10 @@ impl<const D: usize> Plan<D> {
             own("deviation", D),
             spread("terms", kick_terms(D)),
         ];
-        local(language, "store", &[], &reads, &writes, |mut x| {
+        local(dialect, "store", &[], &reads, &writes, |mut x| {
             let (position, velocity): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
             let deviation: Vector<D> = take(&mut x);
+            let (density, pressure) = (one(&mut x), one(&mut x));
             let (mass, wall) = (one(&mut x), one(&mut x));
             let forces = forces::<D>(&mut x);
             let me: Side<Traced, D> = side(&mut x);
@@ -426,7 +429,12 @@ impl<const D: usize> Plan<D> {
                 true => if_fluid(wall, me.deviation[axis], deviation[axis]),
                 false => deviation[axis],
             };
-            [me.density, me.pressure]
+            // Sides may be in single precision: what has not changed since they were filled is kept.
+            let density = match self.sums_densities {
+                true => me.density,
+                false => if_fluid(wall, density, me.density),
+            };
+            [density, if_fluid(wall, pressure, me.pressure)]
                 .into_iter()
                 .chain(total.iter().copied())
                 .chain((0..D).map(kept))
@@ -436,10 +444,10 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Velocities change by accelerations.
-    fn kick(&self, language: Language) -> Pass {
+    fn kick(&self, dialect: Dialect) -> Pass {
         let reads = [own("velocity", D), own("kick", D), own("wall", 1)];
         let writes = [own("velocity", D)];
-        local(language, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
+        local(dialect, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
             let duration = one(&mut x);
             let (velocity, kick): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
             let wall = one(&mut x);
@@ -449,7 +457,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Squares of speed and acceleration, less the volume ratio, and whether something is not finite.
-    fn look(&self, language: Language) -> Pass {
+    fn look(&self, dialect: Dialect) -> Pass {
         let reads = [
             own("position", D),
             own("velocity", D),
@@ -461,7 +469,7 @@ impl<const D: usize> Plan<D> {
             through("slots", "escaped", 1),
         ];
         let writes = [spread("terms", FIGURES)];
-        local(language, "look", &[], &reads, &writes, |mut x| {
+        local(dialect, "look", &[], &reads, &writes, |mut x| {
             let all = &x[..4 * D + 2];
             let finite = |number: &Traced| number.abs().at_most(Traced::from(f64::MAX));
             let first = finite(&all[0]);

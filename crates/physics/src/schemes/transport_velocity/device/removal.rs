@@ -3,7 +3,7 @@
 //! In each step the device looks whether there are any. Only then the state comes here, and the code of the processor
 //! takes them out of it.
 
-use piola_device::{DeviceError, Language, local, own, spread, through};
+use piola_device::{DeviceError, Dialect, local, own, spread, through};
 
 use super::super::escape::take_out;
 use super::super::stages::Pass;
@@ -34,9 +34,9 @@ impl Removal {
 
 impl<const D: usize> Plan<D> {
     /// Which particles have escaped, by number, that are neither of walls nor gone.
-    pub(super) fn tell_escaped(&self, language: Language) -> piola_device::Pass {
+    pub(super) fn tell_escaped(&self, dialect: Dialect) -> piola_device::Pass {
         let reads = [own("wall", 1), through("slots", "escaped", 1)];
-        local(language, "tell_escaped", &[], &reads, &[spread("terms", 1)], |mut x| {
+        local(dialect, "tell_escaped", &[], &reads, &[spread("terms", 1)], |mut x| {
             let wall = one(&mut x);
             vec![if_fluid(wall, one(&mut x), 0.0.into())]
         })

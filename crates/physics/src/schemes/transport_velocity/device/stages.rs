@@ -4,8 +4,9 @@ use piola_device::{DeviceError, Language};
 
 use super::super::stages::{Pass, stage_of};
 use super::super::{TransportVelocity, WeaklyCompressible};
+use super::build::NARROW;
 use super::{Ends, OnDevice, Plan};
-use crate::schemes::{DeviceRefusal, DeviceStage};
+use crate::schemes::{DeviceMethod, DeviceRefusal, DeviceStage};
 
 impl<const D: usize> Plan<D> {
     /// Names of the passes of a stage, in their order.
@@ -64,9 +65,10 @@ impl<const D: usize> TransportVelocity<D> {
     pub(in super::super) fn fluid_stages(
         &self,
         language: Language,
+        method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         let plan = self.device_plan()?;
-        let passes = plan.passes(language);
+        let passes = plan.passes(method.dialect(language, &NARROW));
         let of = |name, started: &[&str]| {
             let started = started.iter().flat_map(|name| passes.iter().find(|it| it.name == *name));
             DeviceStage { name, passes: started.cloned().collect() }

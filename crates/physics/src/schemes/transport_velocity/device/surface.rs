@@ -1,6 +1,6 @@
 //! The passes of free surfaces, CTVF section 3.4.
 
-use piola_device::{Among, Gather, Language, Order, Pass, Space, Traced, local, own, through};
+use piola_device::{Among, Dialect, Gather, Order, Pass, Space, Traced, local, own, through};
 use piola_formulas::Number;
 use piola_formulas::pairs::sums::{CrowdingWithin, SurfaceNormal};
 use piola_formulas::pairs::{Components, One, PairLaw};
@@ -12,26 +12,26 @@ use super::walls::forces;
 
 impl<const D: usize> Plan<D> {
     /// Passes that look for free surfaces.
-    pub(super) fn surface_passes(&self, language: Language, space: &Space<D>) -> Vec<Pass> {
+    pub(super) fn surface_passes(&self, dialect: Dialect, space: &Space<D>) -> Vec<Pass> {
         match self.seeks_surfaces {
             true => vec![
-                self.sharpen(language),
-                self.see(language, space),
-                self.normals(language, space),
-                self.cover(language, space),
-                self.see_surfaces(language, space),
-                self.reach(language, space),
-                self.crowd(language, space),
+                self.sharpen(dialect),
+                self.see(dialect, space),
+                self.normals(dialect, space),
+                self.cover(dialect, space),
+                self.see_surfaces(dialect, space),
+                self.reach(dialect, space),
+                self.crowd(dialect, space),
             ],
             false => Vec::new(),
         }
     }
 
     /// Sharp normals, and who has one.
-    fn sharpen(&self, language: Language) -> Pass {
+    fn sharpen(&self, dialect: Dialect) -> Pass {
         let reads = [through("numbers", "wall", 1), own("force", FORCES * D)];
         let writes = [own("sharp", D), own("mark", 1)];
-        local(language, "sharpen", &[], &reads, &writes, |mut x| {
+        local(dialect, "sharpen", &[], &reads, &writes, |mut x| {
             let wall = one(&mut x);
             let opening = forces::<D>(&mut x)[7];
             let length = square(&opening).sqrt();
@@ -44,10 +44,10 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Who has or sees a sharp normal, or has few neighbours. There is no surface elsewhere.
-    fn see(&self, language: Language, space: &Space<D>) -> Pass {
+    fn see(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let mark = [own("mark", 1)];
         let writes = [own("near", 1), own("normal", D), own("surface", 1)];
-        Gather::<(One, One), _>::new(language, "see", space, Among::Active, Order::Lanes)
+        Gather::<(One, One), _>::new(dialect, "see", space, Among::Active, Order::Lanes)
             .fold(&[], &mark, Among::All, |meeting, (marks, count)| {
                 *marks += meeting.other[0];
                 *count += Traced::from(1.0);
@@ -62,13 +62,13 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Smoothed normals, and who is alone.
-    fn normals(&self, language: Language, space: &Space<D>) -> Pass {
+    fn normals(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let columns = [own("side", side_width(D)), own("sharp", D)];
         type Sums<const D: usize> = (One, Components<D>);
         let law = SurfaceNormal::<D>;
         let centre = self.kernel.value(D, 0.0, self.smoothing_length);
         let writes = [own("normal", D), own("alone", 1)];
-        Gather::<Sums<D>, _>::new(language, "normals", space, Among::Active, Order::Single)
+        Gather::<Sums<D>, _>::new(dialect, "normals", space, Among::Active, Order::Single)
             .only("near")
             .start(&columns, |mut x| {
                 let me = side::<D>(&mut x);
@@ -95,11 +95,11 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Who is on a surface: nobody is in front of it, or it is alone.
-    fn cover(&self, language: Language, space: &Space<D>) -> Pass {
+    fn cover(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let mine = [own("normal", D)];
         let columns = [own("normal", D), own("alone", 1)];
         let writes = [own("surface", 1)];
-        Gather::<One, _>::new(language, "cover", space, Among::Active, Order::Lanes)
+        Gather::<One, _>::new(dialect, "cover", space, Among::Active, Order::Lanes)
             .only("near")
             .fold(&mine, &[], Among::All, |meeting, covering| {
                 let normal = Vector::<D>::from_column_slice(meeting.me);
@@ -117,10 +117,10 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Who sees a surface and is not on it, and how far surfaces are for all others.
-    fn see_surfaces(&self, language: Language, space: &Space<D>) -> Pass {
+    fn see_surfaces(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let surface = [own("surface", 1)];
         let writes = [own("close_by", 1), own("reach", 1)];
-        Gather::<One, _>::new(language, "see_surfaces", space, Among::Active, Order::Lanes)
+        Gather::<One, _>::new(dialect, "see_surfaces", space, Among::Active, Order::Lanes)
             .fold(&[], &surface, Among::Active, |meeting, seen| *seen += meeting.other[0])
             .close(&[], &surface, &writes, |seen, x| {
                 let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
@@ -132,9 +132,9 @@ impl<const D: usize> Plan<D> {
     }
 
     /// How far the nearest surface is, `h_b` of CTVF algorithm 1.
-    fn reach(&self, language: Language, space: &Space<D>) -> Pass {
+    fn reach(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let surface = [own("surface", 1)];
-        Gather::<One, _>::new(language, "reach_surfaces", space, Among::Active, Order::Fold)
+        Gather::<One, _>::new(dialect, "reach_surfaces", space, Among::Active, Order::Fold)
             .only("close_by")
             .start(&[], |_| Traced::from(f64::INFINITY))
             .fold(&[], &surface, Among::Active, |meeting, nearest| {
@@ -150,14 +150,14 @@ impl<const D: usize> Plan<D> {
     }
 
     /// The sum of CTVF (35) with a support that ends at the surface.
-    fn crowd(&self, language: Language, space: &Space<D>) -> Pass {
+    fn crowd(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let (mine, others) = ([own("reach", 1)], [own("side", side_width(D))]);
         let law = CrowdingWithin::<D> {
             kernel: self.kernel,
             smoothing_length: self.smoothing_length,
             crowding: self.force_constants.crowding,
         };
-        Gather::<Components<D>, _>::new(language, "crowd", space, Among::Active, Order::Single)
+        Gather::<Components<D>, _>::new(dialect, "crowd", space, Among::Active, Order::Single)
             .only("close_by")
             .fold(&mine, &others, Among::All, |meeting, sum| {
                 let mut other = meeting.other;

@@ -1,6 +1,6 @@
 //! The passes of walls.
 
-use piola_device::{Among, Gather, Language, Order, Pass, Space, Traced, local, own, through};
+use piola_device::{Among, Dialect, Gather, Order, Pass, Space, Traced, local, own, through};
 use piola_formulas::pairs::fluid::{Side, Wall};
 use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
 use piola_formulas::pairs::{Components, One};
@@ -89,24 +89,24 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Passes of walls, and of what touches them.
-    pub(super) fn wall_passes(&self, language: Language, space: &Space<D>) -> Vec<Pass> {
+    pub(super) fn wall_passes(&self, dialect: Dialect, space: &Space<D>) -> Vec<Pass> {
         if self.normals == 0 {
             return Vec::new();
         }
         let mut all = vec![
-            self.walls(language, space),
-            self.reactions(language, space),
-            self.hold_off(language, space),
-            self.add_holds(language),
-            self.bear(language, space),
+            self.walls(dialect, space),
+            self.reactions(dialect, space),
+            self.hold_off(dialect, space),
+            self.add_holds(dialect),
+            self.bear(dialect, space),
         ];
-        all.extend(self.room.as_ref().map(|room| self.escape(language, space, room)));
-        all.extend(self.removes.then(|| self.tell_escaped(language)));
+        all.extend(self.room.as_ref().map(|room| self.escape(dialect, space, room)));
+        all.extend(self.removes.then(|| self.tell_escaped(dialect)));
         all
     }
 
     /// Sides of wall particles from the fluid around them.
-    fn walls(&self, language: Language, space: &Space<D>) -> Pass {
+    fn walls(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let sides = [own("side", side_width(D))];
         let of = |column, width| through("numbers", column, width);
         let faces = of("faces", self.faces_width());
@@ -114,7 +114,7 @@ impl<const D: usize> Plan<D> {
         // What has been removed is passive, too, and stays as it is.
         columns.extend(self.removes.then_some(sides[0]));
         let gather = Gather::<Surroundings<D>, _>::new(
-            language,
+            dialect,
             "walls",
             space,
             Among::Passive,
@@ -159,12 +159,12 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What the fluid does to wall particles.
-    fn reactions(&self, language: Language, space: &Space<D>) -> Pass {
+    fn reactions(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let constants = self.force_constants;
         let law = Wall::<D>::of(&constants);
         let columns = [own("side", side_width(D)), own("shear", D)];
         let writes = [own("force", FORCES * D)];
-        Gather::<Components<D>, _>::new(language, "reactions", space, Among::Passive, Order::Lanes)
+        Gather::<Components<D>, _>::new(dialect, "reactions", space, Among::Passive, Order::Lanes)
             .term(&law, &columns, Among::Active)
             .close(&[], &[], &writes, |walls, _| {
                 let mut all = vec![Traced::from(0.0); FORCES * D];
@@ -174,13 +174,13 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What walls do to fluid that touches them, theory (80).
-    fn hold_off(&self, language: Language, space: &Space<D>) -> Pass {
+    fn hold_off(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let mine = [own("side", side_width(D)), own("force", FORCES * D)];
         let others = [through("numbers", "faces", self.faces_width())];
         let spacing = self.spacing;
         let writes = [own("hold", 2 * D + 1), own("side", side_width(D))];
         type Holds<const D: usize> = ((Components<D>, Components<D>), One);
-        Gather::<Holds<D>, _>::new(language, "hold_off", space, Among::Active, Order::Fold)
+        Gather::<Holds<D>, _>::new(dialect, "hold_off", space, Among::Active, Order::Fold)
             .start(&[], |_| {
                 let nothing = Vector::<D>::repeat(Traced::from(0.0));
                 ((nothing, nothing), Traced::from(-1.0))
@@ -221,11 +221,11 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Adds what walls do to the forces on the fluid.
-    fn add_holds(&self, language: Language) -> Pass {
+    fn add_holds(&self, dialect: Dialect) -> Pass {
         let reads =
             [through("numbers", "wall", 1), own("hold", 2 * D + 1), own("force", FORCES * D)];
         let writes = [own("force", FORCES * D)];
-        local(language, "add_holds", &[], &reads, &writes, |mut x| {
+        local(dialect, "add_holds", &[], &reads, &writes, |mut x| {
             let wall = one(&mut x);
             let acceleration: Vector<D> = take(&mut x);
             let _: Vector<D> = take(&mut x);
@@ -240,11 +240,11 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What wall particles get for what they do.
-    fn bear(&self, language: Language, space: &Space<D>) -> Pass {
+    fn bear(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let mine = [own("side", side_width(D))];
         let others = [own("hold", 2 * D + 1), own("side", side_width(D))];
         let force = [own("force", FORCES * D)];
-        Gather::<Components<D>, _>::new(language, "bear", space, Among::Passive, Order::Fold)
+        Gather::<Components<D>, _>::new(dialect, "bear", space, Among::Passive, Order::Fold)
             .start(&force, |mut x| forces::<D>(&mut x)[4])
             .fold(&mine, &others, Among::Active, |meeting, sum| {
                 let (mut mine, mut other) = (meeting.me, meeting.other);
@@ -266,10 +266,10 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Which particles have gone through a wall, or out of the box around everything.
-    fn escape(&self, language: Language, space: &Space<D>, room: &Room<D>) -> Pass {
+    fn escape(&self, dialect: Dialect, space: &Space<D>, room: &Room<D>) -> Pass {
         let others = [through("numbers", "faces", self.faces_width())];
         let spacing = self.spacing;
-        Gather::<(One, One), _>::new(language, "escape", space, Among::Active, Order::Fold)
+        Gather::<(One, One), _>::new(dialect, "escape", space, Among::Active, Order::Fold)
             .start(&[], |_| (Traced::from(f64::INFINITY), Traced::from(0.0)))
             .fold(&[], &others, Among::Passive, |meeting, (nearest, is_through)| {
                 let mut other = meeting.other;

@@ -26,7 +26,8 @@ use crate::fields::{FieldDescription, columns};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
 use crate::schemes::{
-    Accounts, Capability, DeviceRefusal, DeviceStage, DeviceSteps, Passage, SchemeDescription,
+    Accounts, Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Passage,
+    SchemeDescription,
 };
 
 use damping::Damping;
@@ -396,15 +397,17 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     fn to_device(
         system: &TransportVelocity<D, Self>,
         device: Device,
+        method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        system.fluid_to_device(device)
+        system.fluid_to_device(device, method)
     }
 
     fn device_stages(
         system: &TransportVelocity<D, Self>,
         language: Language,
+        method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        system.fluid_stages(language)
+        system.fluid_stages(language, method)
     }
 }
 

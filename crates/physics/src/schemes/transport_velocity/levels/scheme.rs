@@ -7,8 +7,8 @@ use crate::fields::FieldDescription;
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
-    DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle, Passage, Phase, Scheme,
-    SchemeDescription, SplitScheme, StepLimit,
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle, Passage,
+    Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 /// Why it is on no device.
@@ -239,12 +239,16 @@ impl<const D: usize> Scheme for Levels<D> {
     fn on_device(
         &self,
         _device: Device,
-        _integrator: &'static str,
+        _method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         Err(refusal())
     }
 
-    fn device_stages(&self, _language: Language) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+    fn device_stages(
+        &self,
+        _language: Language,
+        _method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         Err(refusal())
     }
 

@@ -12,8 +12,13 @@ use crate::boundaries::prescribed::Entry;
 use crate::fields;
 use crate::parallel::chunk;
 use crate::schemes::Scheme as _;
-use crate::schemes::device::{DeviceRefusal, DeviceSteps, Listed, StateColumn, StateColumns, fits};
+use crate::schemes::device::{
+    DeviceMethod, DeviceRefusal, DeviceSteps, Listed, StateColumn, StateColumns, fits,
+};
 use crate::time::{KickDriftKick, RungeKutta};
+
+/// Columns that may be in single precision: what is known of pairs, and what neighbours see.
+const NARROW: [&str; 4] = ["areas", "side", "slope", "inverse"];
 
 /// A column with the numbers that it begins with.
 type Filled = (&'static str, Vec<f64>);
@@ -23,13 +28,14 @@ impl<const D: usize> Upwind<D> {
     pub(in super::super) fn body_to_device(
         &self,
         device: Device,
-        integrator: &'static str,
+        method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        let DeviceMethod { integrator, .. } = method;
         let (kicks, able) = match self.is_conservative() {
             true => (Some(Method::Kicks), "`kick_drift_kick`, `tvd_rk2` or `ssp_rk3`"),
             false => (None, "`tvd_rk2` or `ssp_rk3`"),
         };
-        let method = RungeKutta::stages(integrator)
+        let of_steps = RungeKutta::stages(integrator)
             .map(Method::RungeKutta)
             .or_else(|| kicks.filter(|_| integrator == KickDriftKick::NAME))
             .ok_or(DeviceRefusal::Integrator { integrator, able })?;
@@ -41,7 +47,7 @@ impl<const D: usize> Upwind<D> {
             periods: self.periods(),
             laws: self.materials.iter().map(|material| material.law).collect(),
             is_pulled: !self.body_forces.is_empty(),
-            method,
+            method: of_steps,
         };
         let (pairs, of_pairs) = self.areas.pairs.columns(PAIRS);
         let (columns, scratch) = (self.device_columns(), self.scratch(&listed));
@@ -50,8 +56,8 @@ impl<const D: usize> Upwind<D> {
         let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
         let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes)).chain(of_filled);
         fits(&device, all.chain([(pairs.rows.numbers, of_pairs.bytes())]).collect())?;
-        let passes = |language| plan.passes(language, &pairs);
-        let mut machine = Machine::new(device, None, passes, chunk(count))?;
+        let passes = |dialect| plan.passes(dialect, &pairs);
+        let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;
         let tail = LEDGER.length(D) + KEPT;
         let state = StateColumns::new(columns, tail);
         state.make(&mut machine, |_| 0)?;

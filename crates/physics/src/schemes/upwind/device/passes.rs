@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 use piola_device::{
-    Among, Frozen, Gather, Language, Order, Pass, Traced, Use, local, own, spread, through,
+    Among, Dialect, Frozen, Gather, Order, Pass, Traced, Use, local, own, spread, through,
 };
 use piola_formulas::pairs::AreaPair;
 use piola_formulas::pairs::upwind::{
@@ -83,24 +83,24 @@ fn record<R: Record>(numbers: &mut &[Traced]) -> R::Of<Traced> {
 
 impl<const D: usize> Plan<D> {
     /// All passes of the plan.
-    pub fn passes(&self, language: Language, pairs: &Frozen<AreaPair<D>>) -> Vec<Pass> {
+    pub fn passes(&self, dialect: Dialect, pairs: &Frozen<AreaPair<D>>) -> Vec<Pass> {
         let mut all = vec![
-            self.sides(language),
-            self.pairs(language, pairs),
-            self.show(language),
-            self.take(language),
-            self.impose(language),
-            self.look(language),
+            self.sides(dialect),
+            self.pairs(dialect, pairs),
+            self.show(dialect),
+            self.take(dialect),
+            self.impose(dialect),
+            self.look(dialect),
         ];
         if self.settings.reconstruction {
-            all.push(self.slopes(language, pairs));
+            all.push(self.slopes(dialect, pairs));
         }
         match self.method {
             Method::RungeKutta(stages) => {
-                let blends = stages.iter().map(|stage| self.advance(language, stage.blend));
+                let blends = stages.iter().map(|stage| self.advance(dialect, stage.blend));
                 all.extend(blends);
             }
-            Method::Kicks => all.extend([self.kick(language), self.drift(language)]),
+            Method::Kicks => all.extend([self.kick(dialect), self.drift(dialect)]),
         }
         all
     }
@@ -120,7 +120,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What each particle shows its neighbours.
-    fn sides(&self, language: Language) -> Pass {
+    fn sides(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![
             own("position", D),
             own("velocity", D),
@@ -133,7 +133,7 @@ impl<const D: usize> Plan<D> {
         ];
         reads.extend(self.of_body());
         let writes = [own("side", UpwindSide::<D>::NUMBERS)];
-        local(language, "sides", &[], &reads, &writes, |mut x| {
+        local(dialect, "sides", &[], &reads, &writes, |mut x| {
             let (position, velocity) = (take(&mut x), take(&mut x));
             let (ratio, deformation) = (one(&mut x), by_columns(&mut x));
             let unknowns = Unknowns { velocity, ratio, position, deformation };
@@ -149,10 +149,10 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Slopes for the reconstruction.
-    fn slopes(&self, language: Language, pairs: &Frozen<AreaPair<D>>) -> Pass {
+    fn slopes(&self, dialect: Dialect, pairs: &Frozen<AreaPair<D>>) -> Pass {
         let sides = [own("side", UpwindSide::<D>::NUMBERS)];
         let writes = [own("slope", UpwindSlope::<D>::NUMBERS)];
-        Gather::<UpwindSlope<D>, _>::new(language, "slopes", pairs, Among::All, Order::Lanes)
+        Gather::<UpwindSlope<D>, _>::new(dialect, "slopes", pairs, Among::All, Order::Lanes)
             .term(&Slopes(self.periods), &sides, Among::All)
             .close(&[], &[own("inverse", D * D)], &writes, |moments, mut x| {
                 let inverse: Tensor<D> = taken(&mut x);
@@ -162,9 +162,9 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Forces, rates of the deformation and dissipation.
-    fn pairs(&self, language: Language, pairs: &Frozen<AreaPair<D>>) -> Pass {
+    fn pairs(&self, dialect: Dialect, pairs: &Frozen<AreaPair<D>>) -> Pass {
         let gather =
-            Gather::<ExchangeSum<D>, _>::new(language, "exchange", pairs, Among::All, Order::Lanes);
+            Gather::<ExchangeSum<D>, _>::new(dialect, "exchange", pairs, Among::All, Order::Lanes);
         let (side, slope) = (UpwindSide::<D>::NUMBERS, UpwindSlope::<D>::NUMBERS);
         let sides = [own("side", side)];
         let both = [own("side", side), own("slope", slope)];
@@ -190,8 +190,14 @@ impl<const D: usize> Plan<D> {
             (false, true, true) => reconstructed!(false, true),
             (true, true, true) => reconstructed!(true, true),
         };
-        let mut reads =
-            vec![own("side", side), own("volume", 1), own("mass", 1), own("diagonal", D)];
+        let mut reads = vec![
+            own("side", side),
+            own("position", D),
+            own("velocity", D),
+            own("volume", 1),
+            own("mass", 1),
+            own("diagonal", D),
+        ];
         reads.extend(self.is_pulled.then_some(own("gravity", D)));
         let [[_, _, position], [_, _, velocity], [_, _, ratio], [_, _, deformation]] =
             state::<D>().map(|(names, _)| names);
@@ -204,6 +210,8 @@ impl<const D: usize> Plan<D> {
         ];
         gather.close(&[], &reads, &writes, |sums, mut x| {
             let me: Side<Traced, D> = record::<UpwindSide<D>>(&mut x);
+            // Sides may be in single precision.
+            let me = Side { position: take(&mut x), velocity: take(&mut x), ..me };
             let (volume, mass) = (one(&mut x), one(&mut x));
             let diagonal = take(&mut x);
             let gravity = if self.is_pulled { take(&mut x) } else { Recorded::zeros() };
@@ -223,36 +231,36 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Rows of the particles on which something acts.
-    fn show(&self, language: Language) -> Pass {
+    fn show(&self, dialect: Dialect) -> Pass {
         let reads = [
             through("listed", "velocity_rate", D),
             through("listed", "position", D),
             through("listed", "velocity", D),
         ];
-        local(language, "show", &[], &reads, &[own("shown", shown(D))], |x| x.to_vec())
+        local(dialect, "show", &[], &reads, &[own("shown", shown(D))], |x| x.to_vec())
     }
 
     /// Accelerations of the same, as something has acted on them.
-    fn take(&self, language: Language) -> Pass {
+    fn take(&self, dialect: Dialect) -> Pass {
         let writes = [through("listed", "velocity_rate", D)];
-        local(language, "take", &[], &[own("given", D)], &writes, |x| x.to_vec())
+        local(dialect, "take", &[], &[own("given", D)], &writes, |x| x.to_vec())
     }
 
     /// Components of velocities that are prescribed.
-    fn impose(&self, language: Language) -> Pass {
+    fn impose(&self, dialect: Dialect) -> Pass {
         let writes = [through("component", "velocity", 1)];
-        local(language, "impose", &[], &[own("value", 1)], &writes, |x| x.to_vec())
+        local(dialect, "impose", &[], &[own("value", 1)], &writes, |x| x.to_vec())
     }
 
     /// A stage of a Runge-Kutta method.
-    fn advance(&self, language: Language, blend: Blend) -> Pass {
+    fn advance(&self, dialect: Dialect, blend: Blend) -> Pass {
         let columns = state::<D>();
         let all =
             |which: usize| columns.iter().map(move |(names, width)| own(names[which], *width));
         let reads: Vec<Use> = all(1).chain(all(2)).chain(all(0)).collect();
         let writes: Vec<Use> = all(0).collect();
         let count: usize = columns.iter().map(|(_, width)| *width).sum();
-        local(language, super::name(blend), &["step"], &reads, &writes, |x| {
+        local(dialect, super::name(blend), &["step"], &reads, &writes, |x| {
             let (step, x) = (x[0], &x[1..]);
             let of = |k: usize| {
                 let (old, rate, new) = (x[k], x[count + k], x[2 * count + k]);
@@ -263,9 +271,9 @@ impl<const D: usize> Plan<D> {
     }
 
     /// Velocities change by accelerations.
-    fn kick(&self, language: Language) -> Pass {
+    fn kick(&self, dialect: Dialect) -> Pass {
         let (reads, writes) = ([own("velocity", D), own("velocity_rate", D)], [own("velocity", D)]);
-        local(language, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
+        local(dialect, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
             let duration = one(&mut x);
             let (velocity, rate): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
             (velocity + rate * duration).iter().copied().collect()
@@ -273,7 +281,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// All the rest moves on, the volume ratio by the change of the determinant.
-    fn drift(&self, language: Language) -> Pass {
+    fn drift(&self, dialect: Dialect) -> Pass {
         let reads = [
             own("position", D),
             own("position_rate", D),
@@ -282,7 +290,7 @@ impl<const D: usize> Plan<D> {
             own("deformation_rate", D * D),
         ];
         let writes = [own("position", D), own("volume_ratio", 1), own("deformation", D * D)];
-        local(language, "drift", &["step"], &reads, &writes, |mut x| {
+        local(dialect, "drift", &["step"], &reads, &writes, |mut x| {
             let step = one(&mut x);
             let (position, rate): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
             let (ratio, before): (_, Tensor<D>) = (one(&mut x), by_columns(&mut x));
@@ -298,7 +306,7 @@ impl<const D: usize> Plan<D> {
     /// What a look takes of a particle: whether something is not finite; the square of the speed, the speed of waves, the
     /// negative volume ratio and the mismatch; the negative time of crossing, the speed of waves and that of the shock over
     /// the reference speed.
-    fn look(&self, language: Language) -> Pass {
+    fn look(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![
             own("position", D),
             own("velocity", D),
@@ -310,7 +318,7 @@ impl<const D: usize> Plan<D> {
         ];
         reads.extend(self.of_body());
         let writes = [spread("terms", FIGURES)];
-        local(language, "look", &[], &reads, &writes, |mut x| {
+        local(dialect, "look", &[], &reads, &writes, |mut x| {
             let is_finite = are_finite(&x[..2 * D + 1 + D * D]);
             let _: Recorded<D> = take(&mut x);
             let velocity: Recorded<D> = take(&mut x);
