@@ -15,12 +15,14 @@ fn ends_with(session: &mut Session) -> Vec<u64> {
     values.into_iter().map(f64::to_bits).collect()
 }
 
-const PULL: &str = "load+={ kind = 'body_force', acceleration = ['sin(900 * t)', '-9.81 * x'] }";
-const PRESS: &str = "load+={ kind = 'pressure', where = { kind = 'plane', point = [0.0, 0.05], \
-                     normal = [0.0, 1.0] }, value = '1e4 * t' }";
+const PULL: &str = "load+={ kind = 'body_force', acceleration = ['sin(90 * t)', '-9.81 * x'] }";
+const PRESS: &str = "load+={ kind = 'pressure', where = { kind = 'plane', point = [0.0, 'H'], \
+                     normal = [0.0, 1.0] }, pressure = '1e3 * t' }";
+const LOAD: &str = "load+={ kind = 'traction', where = { kind = 'plane', point = ['L', 0.0], \
+                    normal = [1.0, 0.0] }, traction = ['1e3 * t', '-40'] }";
 
 /// Solids of every formulation, with what may act on them.
-const CASES: [(&str, &[&str]); 21] = [
+const CASES: [(&str, &[&str]); 22] = [
     ("dual-support/free-vibration", &["parameters.dx=1"]),
     ("dual-support/free-vibration", &["parameters.dx=1", "scheme.viscosity=1e4"]),
     ("dual-support/free-vibration", &["parameters.dx=1", "scheme.artificial_viscosity=[1, 2]"]),
@@ -35,6 +37,7 @@ const CASES: [(&str, &[&str]); 21] = [
     ("total-lagrangian/presets", &[]),
     ("total-lagrangian/presets", &["scheme.kind='elastodynamics'"]),
     ("total-lagrangian/presets", &["scheme.gradients='patch_consistent'", "scheme.hourglass=0.1"]),
+    ("total-lagrangian/presets", &[PULL, PRESS, LOAD]),
     ("elastodynamics/hole", &[]),
     ("elastodynamics/wave-2d", &[]),
     ("elastodynamics/wave-3d", &[]),

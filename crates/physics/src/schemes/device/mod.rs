@@ -132,6 +132,18 @@ pub struct DeviceStage {
     pub passes: Vec<Pass>,
 }
 
+/// Stages with those of their passes that there are; without those that have none.
+pub(crate) fn staged(
+    passes: &[Pass],
+    stages: &[(&'static str, &[&'static str])],
+) -> Vec<DeviceStage> {
+    let of = |&(name, started): &(&'static str, &[&str])| {
+        let started = started.iter().flat_map(|name| passes.iter().find(|it| it.name == *name));
+        DeviceStage { name, passes: started.cloned().collect() }
+    };
+    stages.iter().map(of).filter(|stage| !stage.passes.is_empty()).collect()
+}
+
 /// Why a run cannot be on a device.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]

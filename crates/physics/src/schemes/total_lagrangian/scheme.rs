@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 
 use super::fields::{ColumnsMut, Made};
 use super::inspect::convexity_is_lost;
@@ -11,9 +11,9 @@ use crate::fields::FieldDescription;
 use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, DeviceMethod, DeviceRefusal, DeviceSteps, Health, NEWTON_ITERATIONS, NewmarkScheme,
-    Part, Particle, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme,
-    StaticScheme, StepLimit,
+    Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Health, NEWTON_ITERATIONS,
+    NewmarkScheme, Part, Particle, Phase, RankRefusal, RankShare, Scheme, SchemeDescription,
+    SplitScheme, StaticScheme, StepLimit,
 };
 use crate::solve::Costs;
 
@@ -92,6 +92,15 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         self.solid_to_device(device, method.unless_kicked()?)
+    }
+
+    #[inline(never)]
+    fn device_stages(
+        &self,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        self.solid_stages(language, method.unless_kicked()?)
     }
 
     #[inline(never)]

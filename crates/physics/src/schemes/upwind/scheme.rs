@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use piola_device::Device;
+use piola_device::{Device, Language};
 use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use super::fields::{ColumnsMut, Made};
@@ -12,7 +12,7 @@ use crate::fields::FieldDescription;
 use crate::parallel::{self, Team};
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Capability, DeviceMethod, DeviceRefusal, DeviceSteps, Health, Part, Particle,
+    Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Health, Part, Particle,
     PartitionedScheme, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, StepLimit,
     ThetaScheme,
 };
@@ -91,6 +91,15 @@ impl<const D: usize> Scheme for Upwind<D> {
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         self.body_to_device(device, method)
+    }
+
+    #[inline(never)]
+    fn device_stages(
+        &self,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        self.body_stages(language, method)
     }
 
     fn cost(&self, particles: Range<usize>) -> f64 {

@@ -1,6 +1,6 @@
 //! From a solid to its passes and columns on a device, or what has none there.
 
-use piola_device::{Device, Machine, Rows};
+use piola_device::{Device, Dialect, Language, Machine, Pass, Rows};
 
 use super::super::{Discrete, FIGURES as BEHIND, LEDGER, Matrices, TotalLagrangian};
 use super::OnDevice;
@@ -11,7 +11,7 @@ use crate::operators::{AdjointPairs, Columns, FrozenRows, ReferencePairs};
 use crate::parallel::chunk;
 use crate::schemes::Scheme as _;
 use crate::schemes::device::{
-    DeviceMethod, DeviceRefusal, DeviceSteps, StateColumn, StateColumns, fits,
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, StateColumn, StateColumns, fits, staged,
 };
 
 /// Most mixtures whose stresses stand in one pass.
@@ -20,6 +20,18 @@ const MOST_MIXTURES: usize = 16;
 /// Columns that may be in single precision: what is known of pairs, and what of a particle they make or see.
 const NARROW: [&str; 5] =
     ["coefficients", "dual_coefficients", "tension", "gradient", "gradient_rate"];
+
+/// What the stages of a step start on a device.
+const STAGES: [(&str, &[&str]); 8] = [
+    ("drift", &["kick_and_drift", "follow"]),
+    ("load", &["carry_displacements", "carry_velocities"]),
+    ("rates_of_strain", &["rates"]),
+    ("strains", &["strains"]),
+    ("forces", &["forces", "fold_forces"]),
+    ("external", &["external", "show", "take", "powers"]),
+    ("kick", &["kick_velocities"]),
+    ("look", &["rates_of_moment", "look"]),
+];
 
 /// A column with the numbers that it begins with.
 type Filled = (&'static str, Vec<f64>);
@@ -54,11 +66,17 @@ impl<const D: usize> TotalLagrangian<D> {
         device: Device,
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        let discrete = self.on_devices()?;
+        match &discrete.operator.pairs {
+            ReferencePairs::Plain(pairs) => self.on((device, method), discrete, pairs),
+            ReferencePairs::Consistent(pairs) => self.on((device, method), discrete, pairs),
+        }
+    }
+
+    /// The gradients, if all of it has steps on a device.
+    fn on_devices(&self) -> Result<&Discrete<D>, DeviceRefusal> {
         match (&self.matrices, self.device_refusal()) {
-            (Matrices::Adjoint(discrete), None) => match &discrete.operator.pairs {
-                ReferencePairs::Plain(pairs) => self.on((device, method), discrete, pairs),
-                ReferencePairs::Consistent(pairs) => self.on((device, method), discrete, pairs),
-            },
+            (Matrices::Adjoint(discrete), None) => Ok(discrete),
             (_, Some(refusal)) => Err(refusal),
             _ => Err(DeviceRefusal::Formulation(self.description.name)),
         }
@@ -78,6 +96,32 @@ impl<const D: usize> TotalLagrangian<D> {
             has_images: self.has_images,
             is_pressed: !self.loads.pressed.is_empty(),
         }
+    }
+
+    /// The stages of its steps on a device.
+    pub(in super::super) fn solid_stages(
+        &self,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        let (discrete, dialect) = (self.on_devices()?, method.dialect(language, &NARROW));
+        let passes = match &discrete.operator.pairs {
+            ReferencePairs::Plain(pairs) => self.passes(dialect, discrete, pairs),
+            ReferencePairs::Consistent(pairs) => self.passes(dialect, discrete, pairs),
+        };
+        Ok(staged(&passes, &STAGES))
+    }
+
+    fn passes<const N: usize>(
+        &self,
+        dialect: Dialect,
+        discrete: &Discrete<D>,
+        pairs: &AdjointPairs<D, N>,
+    ) -> Vec<Pass> {
+        let (supports, _) = pairs.gradients.columns(SUPPORTS);
+        let (duals, _) = pairs.forces.columns(DUALS);
+        let folds = FrozenRows::new(std::iter::empty::<[_; 0]>());
+        self.device_plan(discrete).passes(dialect, &supports, &duals, &folds.columns(FOLDS).0)
     }
 
     fn on<const N: usize>(

@@ -1,6 +1,6 @@
 //! From an upwind body to its passes and columns on a device, or what has none there.
 
-use piola_device::{Device, Machine};
+use piola_device::{Device, Language, Machine};
 use piola_formulas::pairs::Record as _;
 use piola_formulas::pairs::upwind::{UpwindSide, UpwindSlope};
 
@@ -13,12 +13,24 @@ use crate::fields;
 use crate::parallel::chunk;
 use crate::schemes::Scheme as _;
 use crate::schemes::device::{
-    DeviceMethod, DeviceRefusal, DeviceSteps, Listed, StateColumn, StateColumns, fits,
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Listed, StateColumn, StateColumns, fits,
+    staged,
 };
 use crate::time::{KickDriftKick, RungeKutta};
 
 /// Columns that may be in single precision: what is known of pairs, and what neighbours see.
 const NARROW: [&str; 4] = ["areas", "side", "slope", "inverse"];
+
+/// What the stages of a step start on a device.
+const STAGES: [(&str, &[&str]); 7] = [
+    ("kick", &["kick_velocities"]),
+    ("local", &["sides"]),
+    ("slopes", &["slopes"]),
+    ("pairs", &["exchange"]),
+    ("boundary", &["show", "take", "impose"]),
+    ("advance", &["drift", "predict", "halve", "blend_quarter", "blend_two_thirds"]),
+    ("look", &["look"]),
+];
 
 /// A column with the numbers that it begins with.
 type Filled = (&'static str, Vec<f64>);
@@ -30,25 +42,10 @@ impl<const D: usize> Upwind<D> {
         device: Device,
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        let DeviceMethod { integrator, .. } = method;
-        let (kicks, able) = match self.is_conservative() {
-            true => (Some(Method::Kicks), "`kick_drift_kick`, `tvd_rk2` or `ssp_rk3`"),
-            false => (None, "`tvd_rk2` or `ssp_rk3`"),
-        };
-        let of_steps = RungeKutta::stages(integrator)
-            .map(Method::RungeKutta)
-            .or_else(|| kicks.filter(|_| integrator == KickDriftKick::NAME))
-            .ok_or(DeviceRefusal::Integrator { integrator, able })?;
         let count = self.particles.len();
         let mass = |a: usize| self.mass(a);
         let listed = Listed::new(&self.loaded, &[], &self.prescribed, [], mass);
-        let plan = Plan {
-            settings: self.settings,
-            periods: self.periods(),
-            laws: self.materials.iter().map(|material| material.law).collect(),
-            is_pulled: !self.body_forces.is_empty(),
-            method: of_steps,
-        };
+        let plan = self.device_plan(method)?;
         let (pairs, of_pairs) = self.areas.pairs.columns(PAIRS);
         let (columns, scratch) = (self.device_columns(), self.scratch(&listed));
         let filled = self.filled(&plan);
@@ -83,6 +80,37 @@ impl<const D: usize> Upwind<D> {
             is_falling: false,
             is_rated: false,
         }))
+    }
+
+    /// What the passes depend on.
+    fn device_plan(&self, method: DeviceMethod) -> Result<Plan<D>, DeviceRefusal> {
+        let DeviceMethod { integrator, .. } = method;
+        let (kicks, able) = match self.is_conservative() {
+            true => (Some(Method::Kicks), "`kick_drift_kick`, `tvd_rk2` or `ssp_rk3`"),
+            false => (None, "`tvd_rk2` or `ssp_rk3`"),
+        };
+        let of_steps = RungeKutta::stages(integrator)
+            .map(Method::RungeKutta)
+            .or_else(|| kicks.filter(|_| integrator == KickDriftKick::NAME))
+            .ok_or(DeviceRefusal::Integrator { integrator, able })?;
+        Ok(Plan {
+            settings: self.settings,
+            periods: self.periods(),
+            laws: self.materials.iter().map(|material| material.law).collect(),
+            is_pulled: !self.body_forces.is_empty(),
+            method: of_steps,
+        })
+    }
+
+    /// The stages of its steps on a device.
+    pub(in super::super) fn body_stages(
+        &self,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        let (pairs, _) = self.areas.pairs.columns(PAIRS);
+        let passes = self.device_plan(method)?.passes(method.dialect(language, &NARROW), &pairs);
+        Ok(staged(&passes, &STAGES))
     }
 
     /// Columns of the state.
