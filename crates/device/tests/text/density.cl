@@ -1,41 +1,47 @@
-/* 29 operations */
-LAW void density_pair_0(real here_0, real here_1, real there_0, real there_1, real slot_a, real slot_b, real my_side_0, real my_side_1, real my_side_2, real my_side_3, real my_side_4, real my_side_5, real my_side_6, real my_side_7, real its_side_0, real its_side_1, real its_side_2, real its_side_3, real its_side_4, real its_side_5, real its_side_6, real its_side_7, real s, real *d)
+/* 21 operations */
+LAW void density_pair_0(real way_0, real way_1, real slot_a, real slot_b, real my_side_0, real my_side_1, real my_side_2, real my_side_3, real my_side_4, real my_side_5, real my_side_6, real my_side_7, real its_side_0, real its_side_1, real its_side_2, real its_side_3, real its_side_4, real its_side_5, real its_side_6, real its_side_7, real s, real *d)
 {
-    const real t24 = here_0 - there_0;
-    const int t26 = 1.0 < t24;
-    const real t28 = t24 - 2.0;
-    const real t29 = t26 ? t28 : t24;
-    const int t31 = t24 < (-1.0);
-    const real t32 = t24 + 2.0;
-    const real t33 = t31 ? t32 : t29;
-    const real t34 = t33 * t33;
-    const real t35 = here_1 - there_1;
-    const real t36 = t35 * t35;
-    const real t37 = t34 + t36;
-    const real t38 = sqrt(t37);
-    const real t40 = t38 * 10.0;
-    const real t42 = t40 * 0.5;
-    const real t43 = 0.0 * t42;
-    const real t45 = t43 + 4.0;
-    const real t46 = t45 * t42;
-    const real t47 = t46 + 1.0;
-    const real t48 = -t42;
-    const real t49 = t48 + 1.0;
-    const real t50 = t49 * t49;
-    const real t51 = t50 * t50;
-    const real t52 = t51 * t47;
-    const int t53 = t40 < 2.0;
-    const real t54 = t53 ? t52 : 0.0;
-    const real t56 = t54 * 55.70423008216338;
-    const real t64 = its_side_7 * its_side_4;
-    const real t65 = t64 * t56;
-    const real t66 = s + t65;
-    *d = t66;
+    const real t22 = way_0 * way_0;
+    const real t23 = way_1 * way_1;
+    const real t24 = t22 + t23;
+    const real t25 = sqrt(t24);
+    const real t27 = t25 * 10.0;
+    const real t29 = t27 * 0.5;
+    const real t30 = 0.0 * t29;
+    const real t32 = t30 + 4.0;
+    const real t33 = t32 * t29;
+    const real t35 = t33 + 1.0;
+    const real t36 = -t29;
+    const real t37 = t36 + 1.0;
+    const real t38 = t37 * t37;
+    const real t39 = t38 * t38;
+    const real t40 = t39 * t35;
+    const int t42 = t27 < 2.0;
+    const real t43 = t42 ? t40 : 0.0;
+    const real t45 = t43 * 55.70423008216338;
+    const real t53 = its_side_7 * its_side_4;
+    const real t54 = t53 * t45;
+    const real t55 = s + t54;
+    *d = t55;
 }
 /* 0 operations */
 LAW void density_close(real s, real *new_summed_0)
 {
     *new_summed_0 = s;
+}
+/* 8 operations */
+LAW void density_separation(real here_0, real here_1, real there_0, real there_1, real *way_0, real *way_1)
+{
+    const real t4 = here_0 - there_0;
+    const int t6 = 1.0 < t4;
+    const real t8 = t4 - 2.0;
+    const real t9 = t6 ? t8 : t4;
+    const int t11 = t4 < (-1.0);
+    const real t12 = t4 + 2.0;
+    const real t13 = t11 ? t12 : t9;
+    const real t14 = here_1 - there_1;
+    *way_0 = t13;
+    *way_1 = t14;
 }
 KERNEL void density(const int n, GLOBAL const unsigned *numbers, GLOBAL const unsigned *passive, GLOBAL const unsigned *entries, GLOBAL const unsigned *first, GLOBAL const unsigned *active, GLOBAL const unsigned *passive_first, GLOBAL const unsigned *passive_count, GLOBAL const real *place, GLOBAL const real *side, GLOBAL real *summed)
 {
@@ -55,6 +61,8 @@ KERNEL void density(const int n, GLOBAL const unsigned *numbers, GLOBAL const un
         const unsigned b = entries[first[a] + k];
         const real there_0 = place[b * 2 + 0];
         const real there_1 = place[b * 2 + 1];
+        real way_0, way_1;
+        density_separation(here_0, here_1, there_0, there_1, &way_0, &way_1);
         const Pair its_side_pair_0 = ((GLOBAL const Pair *)side)[b * 4 + 0];
         const real its_side_0 = its_side_pair_0.x, its_side_1 = its_side_pair_0.y;
         const Pair its_side_pair_1 = ((GLOBAL const Pair *)side)[b * 4 + 1];
@@ -63,12 +71,14 @@ KERNEL void density(const int n, GLOBAL const unsigned *numbers, GLOBAL const un
         const real its_side_4 = its_side_pair_2.x, its_side_5 = its_side_pair_2.y;
         const Pair its_side_pair_3 = ((GLOBAL const Pair *)side)[b * 4 + 3];
         const real its_side_6 = its_side_pair_3.x, its_side_7 = its_side_pair_3.y;
-        density_pair_0(here_0, here_1, there_0, there_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
+        density_pair_0(way_0, way_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
     }
     for (unsigned k = 0, end = passive_count[a]; k < end; ++k) {
         const unsigned b = entries[passive_first[a] + k];
         const real there_0 = place[b * 2 + 0];
         const real there_1 = place[b * 2 + 1];
+        real way_0, way_1;
+        density_separation(here_0, here_1, there_0, there_1, &way_0, &way_1);
         const Pair its_side_pair_0 = ((GLOBAL const Pair *)side)[b * 4 + 0];
         const real its_side_0 = its_side_pair_0.x, its_side_1 = its_side_pair_0.y;
         const Pair its_side_pair_1 = ((GLOBAL const Pair *)side)[b * 4 + 1];
@@ -77,7 +87,7 @@ KERNEL void density(const int n, GLOBAL const unsigned *numbers, GLOBAL const un
         const real its_side_4 = its_side_pair_2.x, its_side_5 = its_side_pair_2.y;
         const Pair its_side_pair_3 = ((GLOBAL const Pair *)side)[b * 4 + 3];
         const real its_side_6 = its_side_pair_3.x, its_side_7 = its_side_pair_3.y;
-        density_pair_0(here_0, here_1, there_0, there_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
+        density_pair_0(way_0, way_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
     }
     real new_summed_0;
     density_close(s, &new_summed_0);

@@ -6,7 +6,9 @@
 #define P_INFINITY __longlong_as_double(0x7ff0000000000000)
 #define P_NAN __longlong_as_double(0x7ff8000000000000)
 typedef double real;
+typedef float work;
 typedef struct ALIGNED { real x, y; } Pair;
+typedef struct { work x, y; } WorkPair;
 LAW double p_two_to(double k) { return __longlong_as_double(((long long)k + 1023) << 52); }
 LAW long long p_steps(double x) { return (long long)((unsigned long long)__double_as_longlong(x) - 0x3fe6a09e667f3bcc) >> 52; }
 LAW double p_exponent(double x) { return (double)p_steps(x); }

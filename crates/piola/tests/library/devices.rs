@@ -163,7 +163,7 @@ fn what_a_device_cannot_do_is_refused_by_name() {
             "upwind/stiff-column",
             &[][..],
             "the integrator `backward_euler` does not run on devices with this formulation: use \
-             `tvd_rk2` or `ssp_rk3`",
+             `kick_drift_kick`, `tvd_rk2` or `ssp_rk3`",
         ),
         (
             "dual-support/tension",
