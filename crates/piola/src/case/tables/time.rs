@@ -218,7 +218,7 @@ const REACTIONS: Choices = choices(&[
 
 pub(super) static COMPUTE: TableSpec = TableSpec {
     title: "[compute]",
-    meaning: "Who computes. Results do not depend on it, except for the last digits on a device with kernels that contain an exponential.",
+    meaning: "Who computes. Results do not depend on it.",
     keys: &[
         key(
             "device",
