@@ -182,17 +182,18 @@ pub fn power<T: Bits>(x: T, y: T) -> T {
 fn times_logarithm<T: Number>([k, f]: [T; 2], y: T) -> [T; 2] {
     let [s, series] = rest_of_logarithm(f);
     let [upper, lower] = halves(f);
-    let square = upper * upper * 0.5;
-    let square_rest = lower * (f + upper) * 0.5;
+    let square = upper * 0.5 * upper;
+    let square_rest = lower * 0.5 * (f + upper);
     // What sums of large numbers lose goes to small ones.
     let whole = k * LN_2_HIGH;
     let part = f - square;
     let first = whole + part;
     let lost = ((f - part) - square) + (part - (first - whole));
     let rest = lost + (s * (square + square_rest + series) - square_rest + k * LN_2_LOW);
-    let high = first + rest;
-    let low = rest - (high - first);
-    let ([a, b], [c, d]) = (halves(y), halves(high));
-    let product = y * high;
-    [product, (((a * c - product) + a * d + b * c) + b * d) + y * low]
+    // The first half of its digits times those of y is exact.
+    let ([high, low], [first_half, second_half]) = (halves(y), halves(first));
+    let product = high * first_half;
+    let rest = low * first_half + y * (second_half + rest);
+    let sum = product + rest;
+    [sum, rest - (sum - product)]
 }
