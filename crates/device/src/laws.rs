@@ -148,6 +148,5 @@ pub fn all() -> Vec<Law> {
         .chain(materials[..2].iter().map(volumetric))
         .chain(strengths)
         .chain(equations_of_state().map(|(name, law)| pressure(name, &law)))
-        .chain(crate::passes::laws())
         .collect()
 }

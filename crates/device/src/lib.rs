@@ -8,7 +8,7 @@
 //! logarithms and circular functions in the text are those of [`functions`](piola_formulas::functions).
 //!
 //! - [`laws`] is the list of all laws by name: kernels, elastic solids, volumetric materials, fluids.
-//! - [`passes`] writes whole passes over particles, with their loops over neighbours, around laws.
+//! - [`Gather`] writes loops over neighbours around pair laws, [`local`] passes over particles around laws of one.
 //! - [`lists`] are neighbours that a device finds.
 //! - [`Device`] is a GPU, or a processor with OpenCL, that compiles and runs them. Nothing of CUDA or
 //!   OpenCL is needed to build.
@@ -24,7 +24,6 @@ mod machine;
 mod opencl;
 mod operators;
 mod pass;
-pub mod passes;
 mod record;
 pub mod reduce;
 mod text;

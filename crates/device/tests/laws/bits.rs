@@ -1,4 +1,4 @@
-use piola_device::{Law, laws, passes};
+use piola_device::{Law, laws};
 use piola_formulas::Number;
 use piola_formulas::hyperelastic::HyperelasticResponse;
 use piola_formulas::kernels::Kernel;
@@ -82,21 +82,6 @@ fn equations_of_state_have_the_bits_of_the_processor() {
             let inputs = [8930.0 * (0.9 + 2.0 * random()), 1e6 * random()];
             compare(&law, &inputs, &[equation.pressure(inputs[0], inputs[1])]);
         }
-    }
-}
-
-#[test]
-fn the_exchange_of_fluids_has_the_bits_of_the_processor() {
-    let fluid = passes::fluid::Fluid::water(0.1);
-    let (law, mut random) = (fluid.exchange_law(), random(4));
-    for _ in 0..2000 {
-        let mut side = || -> Vec<f64> {
-            let mut side: Vec<f64> = (0..6).map(|_| 0.2 * random()).collect();
-            side.extend([1000.0 + random(), 1e3 * random()]);
-            side
-        };
-        let (a, b) = (side(), side());
-        compare(&law, &[a.clone(), b.clone()].concat(), &fluid.exchange(&a, &b));
     }
 }
 

@@ -6,7 +6,7 @@ mod compiled;
 mod devices;
 mod functions;
 mod lists;
-mod passes;
+mod rows;
 mod text;
 
 /// Numbers in [0, 1) that are the same on every machine.

@@ -1,12 +1,13 @@
 use std::path::Path;
 
 use piola_device::{
-    Among, Gather, Language, Order, Pass, Precision, Space, cuda, laws, own, passes,
+    Among, Dialect, Frozen, Gather, Language, Order, Pass, Precision, Rows, Space, cuda, laws, own,
 };
 use piola_formulas::kernels::Kernel;
-use piola_formulas::pairs::One;
 use piola_formulas::pairs::fluid::{FULL, ForceConstants, ForceSum, Forces, Viscous};
 use piola_formulas::pairs::sums::Density;
+use piola_formulas::pairs::total_lagrangian::Gradients;
+use piola_formulas::pairs::{Components, Each, One, Square};
 
 /// Compares with a stored text; `PIOLA_RENEW=1` stores it.
 fn compare(name: &str, text: &str) {
@@ -28,18 +29,14 @@ fn the_text_of_laws_is_the_stored_one() {
     let [_, (name, johnson_cook)] = laws::strengths();
     let law = laws::return_to_surface(name, &johnson_cook, laws::SHEAR_MODULUS);
     compare("johnson_cook.cl", &law.text(Language::OpenCl, Precision::Single));
-    let solid = passes::solid::Solid::rubber();
-    compare("solid.cu", &solid.text(Language::Cuda, Precision::Double));
-    let fluid = passes::fluid::Fluid::water(0.1);
-    compare("fluid.cl", &fluid.text(Language::OpenCl, Precision::Single));
 }
 
 /// Sums of density, one after the other, and of forces in lanes, in 2D with one periodic axis.
-fn gathers(language: Language) -> [Pass; 2] {
+fn gathers(dialect: Dialect) -> [Pass; 3] {
     let periods = [Some(2.0), None];
     let space = Space { kernel: Kernel::WendlandC2, smoothing_length: 0.1, periods };
     let side = [own("side", 8)];
-    let density = Gather::<One, _>::new(language, "density", &space, Among::Active, Order::Single)
+    let density = Gather::<One, _>::new(dialect, "density", &space, Among::Active, Order::Single)
         .term(&Density::<2>, &side, Among::All)
         .close(&[], &[], &[own("summed", 1)], |sum, _| vec![*sum]);
     let law = Forces::<2, FULL, false, true>(ForceConstants {
@@ -52,22 +49,39 @@ fn gathers(language: Language) -> [Pass; 2] {
         transport: 0.0,
         crowding: 0.02,
     });
-    let forces =
-        Gather::<ForceSum<2>, _>::new(language, "forces", &space, Among::All, Order::Lanes)
-            .only("near")
-            .term(&law, &side, Among::Active)
-            .close(&["scale"], &[], &[own("force", 2)], |sums, x| {
-                (0..2).map(|axis| (sums.pressure[axis] + sums.viscosity[axis]) * x[0]).collect()
-            });
-    [density, forces]
+    let forces = Gather::<ForceSum<2>, _>::new(dialect, "forces", &space, Among::All, Order::Lanes)
+        .only("near")
+        .term(&law, &side, Among::Active)
+        .close(&["scale"], &[], &[own("force", 2)], |sums, x| {
+            (0..2).map(|axis| (sums.pressure[axis] + sums.viscosity[axis]) * x[0]).collect()
+        });
+    let rows = Rows {
+        first: "row",
+        count: "row_count",
+        neighbors: "neighbors",
+        numbers: "numbers",
+        kept: vec![Some(0), Some(1)],
+    };
+    let rows = Frozen::<Each<Components<2>, 1>>::new(rows);
+    let gradients =
+        Gather::<Each<Square<2>, 1>, _>::new(dialect, "gradients", &rows, Among::All, Order::Lanes);
+    let gradients = gradients.term(&Gradients::<2, 1>, &[own("displacement", 2)], Among::All);
+    let gradients = gradients
+        .close(&[], &[], &[own("gradient", 4)], |sums, _| sums[0].transpose().as_slice().to_vec());
+    [density, forces, gradients]
 }
 
 #[test]
 fn the_text_of_gathers_is_the_stored_one() {
-    let [density, _] = gathers(Language::OpenCl);
+    let [density, ..] = gathers(Language::OpenCl.into());
     compare("density.cl", &density.text);
-    let [_, forces] = gathers(Language::Cuda);
+    let [_, forces, gradients] = gathers(Language::Cuda.into());
     compare("forces.cu", &forces.text);
+    compare("gradients.cu", &gradients.text);
+    let single = Dialect { language: Language::Cuda, narrow: &["side", "numbers"] };
+    let [_, forces, gradients] = gathers(single);
+    compare("forces_single.cu", &forces.text);
+    compare("gradients_single.cu", &gradients.text);
 }
 
 #[test]
@@ -98,18 +112,14 @@ fn all_cuda_text_compiles() {
             text += &law.text(Language::Cuda, precision);
         }
         if precision == Precision::Double {
-            gathers(Language::Cuda).iter().for_each(|pass| text += &pass.text);
+            let single = Dialect { language: Language::Cuda, narrow: &["side", "numbers"] };
+            let mixed = text.clone() + &gathers(single).map(|pass| pass.text).concat();
+            cuda::compile(&mixed, "compute_80").unwrap_or_else(|e| panic!("{e}\n{mixed}"));
+            gathers(Language::Cuda.into()).iter().for_each(|pass| text += &pass.text);
         }
-        for text in [
-            text,
-            passes::solid::Solid::rubber().text(Language::Cuda, precision),
-            passes::fluid::Fluid::water(0.1).text(Language::Cuda, precision),
-        ] {
-            let module =
-                cuda::compile(&text, "compute_80").unwrap_or_else(|e| panic!("{e}\n{text}"));
-            // The exponentials of the machine, which single precision uses, are made of fused operations.
-            let is_fused = precision == Precision::Double && module.text().contains("fma.");
-            assert!(!is_fused, "an operation is fused");
-        }
+        let module = cuda::compile(&text, "compute_80").unwrap_or_else(|e| panic!("{e}\n{text}"));
+        // The exponentials of the machine, which single precision uses, are made of fused operations.
+        let is_fused = precision == Precision::Double && module.text().contains("fma.");
+        assert!(!is_fused, "an operation is fused");
     }
 }
