@@ -20,12 +20,18 @@ fn too_much(mut columns: Vec<(&str, usize)>, memory: u64) -> Option<[String; 2]>
     Some([gibibytes(needed), largest.join(", ")])
 }
 
-/// Refuses a device whose memory does not suffice for columns with these bytes, with what takes it.
+/// Refuses a device whose memory does not suffice for columns with these bytes in double precision, of which those of some
+/// names take half, with what takes it.
 ///
 /// # Errors
 /// [`DeviceRefusal::Memory`].
-pub(crate) fn fits(device: &Device, columns: Vec<(&str, usize)>) -> Result<(), DeviceRefusal> {
-    match too_much(columns, device.memory()) {
+pub(crate) fn fits<'a>(
+    device: &Device,
+    narrow: &[&str],
+    columns: impl Iterator<Item = (&'a str, usize)>,
+) -> Result<(), DeviceRefusal> {
+    let taken = |(name, bytes)| (name, if narrow.contains(&name) { bytes / 2 } else { bytes });
+    match too_much(columns.map(taken).collect(), device.memory()) {
         None => Ok(()),
         Some([needed, largest]) => {
             let device = device.found().to_string();

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use piola_device::{DeviceError, Machine};
 
+use crate::fields::{FieldDescription, column};
 use crate::{Vector, parallel};
 
 /// The body force of each particle as numbers.
@@ -31,6 +32,25 @@ pub(crate) struct StateColumn {
     pub place: Range<usize>,
 }
 
+impl StateColumn {
+    /// Columns of `count` particles with these names, and names of their copies, among the fields of a formulation.
+    ///
+    /// # Panics
+    /// When one of them is no column of the state: that is a fault of whoever names it.
+    pub fn all(
+        fields: &'static [FieldDescription],
+        [dimension, count]: [usize; 2],
+        names: &[[&'static str; 2]],
+    ) -> Vec<Self> {
+        let of = |&[name, before]: &[&'static str; 2]| {
+            let field = fields.iter().find(|field| field.name == name);
+            let field = field.expect("these are columns of the formulation");
+            Self { name, before, place: column(fields, dimension, count, field) }
+        };
+        names.iter().map(of).collect()
+    }
+}
+
 /// The columns of a state on a device, and its tail here, with what both were before the last step.
 #[derive(Debug)]
 pub(crate) struct StateColumns {
@@ -49,6 +69,12 @@ impl StateColumns {
     /// Bytes that they take on a device.
     pub fn bytes(columns: &[StateColumn]) -> impl Iterator<Item = (&'static str, usize)> {
         columns.iter().map(|column| (column.name, 2 * size_of::<f64>() * column.place.len()))
+    }
+
+    /// Numbers of a state.
+    pub fn length(&self) -> usize {
+        let ends = self.columns.iter().map(|column| column.place.end);
+        ends.max().unwrap_or_default() + self.tail.len()
     }
 
     /// Makes room for them, behind which there is room for `more(name)` numbers.

@@ -2,14 +2,13 @@
 
 use piola_device::{Device, Dialect, Language, Machine, Pass, Rows};
 
+use super::super::fields::Made;
 use super::super::{Discrete, FIGURES as BEHIND, LEDGER, Matrices, TotalLagrangian};
 use super::OnDevice;
 use super::listed::Followed;
 use super::passes::{DUALS, FIGURES, FOLDS, Plan, SUPPORTS};
-use crate::fields;
 use crate::operators::{AdjointPairs, Columns, FrozenRows, ReferencePairs};
 use crate::parallel::chunk;
-use crate::schemes::Scheme as _;
 use crate::schemes::device::{
     DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, StateColumn, StateColumns, fits, staged,
 };
@@ -20,6 +19,13 @@ const MOST_MIXTURES: usize = 16;
 /// Columns that may be in single precision: what is known of pairs, and what of a particle they make or see.
 const NARROW: [&str; 5] =
     ["coefficients", "dual_coefficients", "tension", "gradient", "gradient_rate"];
+
+/// Columns of the state with the names of their copies.
+const STATE: [[&str; 2]; 3] = [
+    ["displacement", "displacement_before"],
+    ["velocity", "velocity_before"],
+    ["kick", "kick_before"],
+];
 
 /// What the stages of a step start on a device.
 const STAGES: [(&str, &[&str]); 8] = [
@@ -144,14 +150,16 @@ impl<const D: usize> TotalLagrangian<D> {
         let (folds, of_folds) = folds.columns(FOLDS);
         let rows: [(&Rows, &Columns<'_>); 3] =
             [(&supports.rows, &of_supports), (&duals.rows, &of_duals), (&folds.rows, &of_folds)];
-        let (columns, scratch) =
-            (self.device_columns(), self.scratch::<N>(&plan, followed.listed.len()));
+        let (columns, scratch) = (
+            StateColumn::all(Made::FIELDS, [D, count], &STATE),
+            self.scratch::<N>(&plan, followed.listed.len()),
+        );
         let filled = self.filled::<N>(&plan, discrete);
         let of_rows = rows.iter().map(|(rows, columns)| (rows.numbers, columns.bytes()));
         let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
         let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
         let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes));
-        fits(&device, all.chain(of_rows).chain(of_filled).collect())?;
+        fits(&device, method.narrow(&NARROW), all.chain(of_rows).chain(of_filled))?;
         let passes = |dialect| plan.passes(dialect, &supports, &duals, &folds);
         let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;
         let tail = LEDGER.length(D) + BEHIND;
@@ -179,23 +187,6 @@ impl<const D: usize> TotalLagrangian<D> {
             is_evaluated: false,
             is_soft: false,
         }))
-    }
-
-    /// Columns of the state.
-    fn device_columns(&self) -> Vec<StateColumn> {
-        let copies = [
-            ("displacement", "displacement_before"),
-            ("velocity", "velocity_before"),
-            ("kick", "kick_before"),
-        ];
-        let fields = self.description.fields;
-        let all = copies.map(|(name, before)| {
-            let field = fields.iter().find(|field| field.name == name);
-            let field = field.expect("these are columns of the formulation");
-            let place = fields::column(fields, D, self.particle_count(), field);
-            StateColumn { name, before, place }
-        });
-        all.into()
     }
 
     /// Columns of work with their lengths.

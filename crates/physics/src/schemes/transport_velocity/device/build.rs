@@ -6,13 +6,14 @@ use piola_device::{Device, Machine};
 use super::super::{AtSurface, Continuum, DensityRule, Shifting, Slip, TransportVelocity};
 use super::passes::{FIGURES, FORCES, drift_terms, kick_terms, side_width};
 use super::removal::Removal;
-use super::{Named, OnDevice, Plan, walls};
+use super::{OnDevice, Plan, walls};
 use crate::boundaries::BodyForce;
-use crate::fields;
 use crate::operators::MovingSupport;
 use crate::parallel::chunk;
 use crate::schemes::Scheme;
-use crate::schemes::device::{DeviceMethod, DeviceRefusal, DeviceSteps};
+use crate::schemes::device::{
+    DeviceMethod, DeviceRefusal, DeviceSteps, StateColumn, StateColumns, fits,
+};
 
 /// Columns that may be in single precision: what neighbours see, and what is summed over them.
 pub(super) const NARROW: [&str; 20] = [
@@ -38,21 +39,15 @@ pub(super) const NARROW: [&str; 20] = [
     "escaped",
 ];
 
-fn gibibytes(bytes: usize) -> String {
-    format!("{:.2} GiB", bytes as f64 / f64::from(1 << 30))
-}
-
-/// What columns with these bytes take, and the five largest of them, if that is more than a memory has.
-fn too_much(mut columns: Vec<(&str, usize)>, memory: u64) -> Option<[String; 2]> {
-    let needed: usize = columns.iter().map(|(_, bytes)| bytes).sum();
-    if needed as u64 <= memory {
-        return None;
-    }
-    columns.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
-    let named = |(name, bytes): &(&str, usize)| format!("{name} {}", gibibytes(*bytes));
-    let largest: Vec<String> = columns.iter().take(5).map(named).collect();
-    Some([gibibytes(needed), largest.join(", ")])
-}
+/// Columns of the state with the names of their copies.
+const STATE: [[&str; 2]; 6] = [
+    ["position", "position_before"],
+    ["velocity", "velocity_before"],
+    ["deviation", "deviation_before"],
+    ["kick", "kick_before"],
+    ["pressure", "pressure_before"],
+    ["density", "density_before"],
+];
 
 impl<const D: usize> Plan<D> {
     /// Columns beside those of the state, with their numbers a particle.
@@ -163,21 +158,22 @@ impl<const D: usize> TransportVelocity<D> {
         let (list, periods) = (common.support.list(), plan.periods);
         let count = common.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
-        let (columns, scratch) = (self.device_columns(), plan.scratch());
-        self.fits(&device, &columns, &scratch)?;
+        let (narrow, scratch) = (method.narrow(&NARROW), plan.scratch());
+        let columns = StateColumn::all(self.description().fields, [D, count], &STATE);
+        let bytes =
+            |(name, width): &(&'static str, usize)| (*name, width * count * size_of::<f64>());
+        let neighbors = ("neighbours", 2 * list.entries() * size_of::<u32>());
+        let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes));
+        fits(&device, narrow, all.chain([neighbors]))?;
         let support = list.support();
         let skin = MovingSupport::<D>::SKIN * support;
         let removal = plan.removes.then(|| Removal::new(common));
         let is_wall = removal.as_ref().map_or(&common.is_wall, |removal| &removal.is_wall);
         let lists = Lists::new(&device, is_wall, support, skin, &periods)?;
-        let mut machine = {
-            let narrow = method.narrow(&NARROW);
-            Machine::new(device, Some(lists), narrow, |dialect| plan.passes(dialect), chunk(count))?
-        };
-        for (_, (name, before, width)) in &columns {
-            machine.add_zeros(name, count * width)?;
-            machine.add_zeros(before, count * width)?;
-        }
+        let passes = |dialect| plan.passes(dialect);
+        let mut machine = Machine::new(device, Some(lists), narrow, passes, chunk(count))?;
+        let state = StateColumns::new(columns, self.start.len() - count * self.width());
+        state.make(&mut machine, |_| 0)?;
         for (name, width) in scratch {
             machine.add_zeros(name, count * width)?;
         }
@@ -188,17 +184,13 @@ impl<const D: usize> TransportVelocity<D> {
             machine.add("faces", &self.face_numbers(faces, normals))?;
             machine.add("sliding", &self.sliding_numbers())?;
         }
-        let tail = self.start[count * self.width()..].to_vec();
         Ok(Box::new(OnDevice {
             plan,
             machine,
             drift: self.drift.clone(),
             accelerate: self.accelerate.clone(),
             count,
-            length: self.start.len(),
-            columns,
-            tail_before: tail.clone(),
-            tail,
+            state,
             is_picked: false,
             is_listed: false,
             fastest: 0.0,
@@ -209,27 +201,6 @@ impl<const D: usize> TransportVelocity<D> {
             removal,
             skin,
         }))
-    }
-
-    /// Refuses a device whose memory does not suffice, with what takes it.
-    fn fits(
-        &self,
-        device: &Device,
-        columns: &[(usize, Named)],
-        scratch: &[(&'static str, usize)],
-    ) -> Result<(), DeviceRefusal> {
-        let number = self.common.particles.len() * size_of::<f64>();
-        let state = columns.iter().map(|(_, (name, _, width))| (*name, 2 * width * number));
-        let others = scratch.iter().map(|(name, width)| (*name, width * number));
-        let lists = ("neighbours", 2 * self.common.support.list().entries() * size_of::<u32>());
-        let all = state.chain(others).chain([lists]).collect();
-        match too_much(all, device.memory()) {
-            None => Ok(()),
-            Some([needed, largest]) => {
-                let device = device.found().to_string();
-                Err(DeviceRefusal::Memory { needed, device, largest })
-            }
-        }
     }
 
     /// Most normals of a wall particle.
@@ -264,39 +235,5 @@ impl<const D: usize> TransportVelocity<D> {
             all[number * D + entry.component] = entry.value.value(entry.place, 0.0);
         }
         all
-    }
-
-    /// Columns of the state by where they begin.
-    fn device_columns(&self) -> Vec<(usize, Named)> {
-        let copies = [
-            ("position", "position_before"),
-            ("velocity", "velocity_before"),
-            ("deviation", "deviation_before"),
-            ("kick", "kick_before"),
-            ("pressure", "pressure_before"),
-            ("density", "density_before"),
-        ];
-        let description = self.description();
-        let all = copies.iter().map(|&(name, before)| {
-            let field = description.fields.iter().find(|field| field.name == name);
-            let field = field.expect("these are columns of the formulation");
-            let range = fields::column(description.fields, D, self.particle_count(), field);
-            (range.start, (name, before, field.kind.components(D)))
-        });
-        all.collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_does_not_fit_is_told_by_its_largest_columns() {
-        let gibibyte = 1 << 30;
-        let columns = || vec![("side", gibibyte), ("terms", 3 * gibibyte), ("rate", gibibyte / 2)];
-        assert_eq!(too_much(columns(), 9 << 29), None, "it fits exactly");
-        let told = ["4.50 GiB", "terms 3.00 GiB, side 1.00 GiB, rate 0.50 GiB"].map(str::to_owned);
-        assert_eq!(too_much(columns(), (9 << 29) - 1), Some(told));
     }
 }

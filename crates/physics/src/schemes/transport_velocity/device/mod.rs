@@ -28,7 +28,7 @@ use super::{Continuum as _, Fluid, WeaklyCompressible};
 use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::parallel::Reduce as _;
-use crate::schemes::device::DeviceSteps;
+use crate::schemes::device::{DeviceSteps, StateColumns, gravity};
 use crate::schemes::ledger::Totals;
 use crate::schemes::look::Most;
 use crate::schemes::momentum::momentum_components;
@@ -76,13 +76,7 @@ struct OnDevice<const D: usize> {
     accelerate: Stages<Pass<Ends>>,
     /// Number of particles.
     count: usize,
-    /// Numbers of a state.
-    length: usize,
-    /// Where each column begins in a state, with its name and that of its copy.
-    columns: Vec<(usize, Named)>,
-    /// The end of the state, and what it was before the last step.
-    tail: Vec<f64>,
-    tail_before: Vec<f64>,
+    state: StateColumns,
     /// Whether neighbours are those of the positions.
     is_picked: bool,
     is_listed: bool,
@@ -99,9 +93,6 @@ struct OnDevice<const D: usize> {
     /// What lists reach beyond the support in m.
     skin: f64,
 }
-
-/// A column of the state, its name on the device, that of its copy, and numbers a particle.
-type Named = (&'static str, &'static str, usize);
 
 impl<const D: usize> OnDevice<D> {
     fn start(&self, pass: &str, scalars: &[(&str, f64)]) -> Result<(), DeviceError> {
@@ -133,13 +124,13 @@ impl<const D: usize> OnDevice<D> {
         if self.is_falling {
             return Ok(());
         }
-        let forces = &self.body_forces;
-        let bodies = self.bodies.iter().max().map_or(0, |most| most + 1);
-        let at = |body: u32| BodyForce::sum(forces, body, &Vector::<D>::zeros(), time);
-        let each: Vec<Vector<D>> = (0..bodies).map(at).collect();
-        let all = self.bodies.iter().flat_map(|&body| each[body as usize].iter().copied());
-        let all: Vec<f64> = all.collect();
+        let (forces, bodies) = (&self.body_forces, &self.bodies);
         self.is_falling = forces.iter().all(BodyForce::is_steady);
+        // Forces are uniform.
+        let most = bodies.iter().max().map_or(0, |most| most + 1);
+        let at = |body: u32| BodyForce::sum(forces, body, &Vector::<D>::zeros(), time);
+        let each: Vec<Vector<D>> = (0..most).map(at).collect();
+        let all = gravity(bodies.len(), |a| each[bodies[a] as usize]);
         self.machine.write("gravity", &all)
     }
 
@@ -213,19 +204,7 @@ impl<const D: usize> OnDevice<D> {
 
     fn kick(&mut self, duration: f64) -> Result<(), DeviceError> {
         self.start("kick_velocities", &[("duration", duration)])?;
-        LEDGER.kick(D, duration, &mut self.tail);
-        Ok(())
-    }
-
-    /// Gives the columns of a state, or their copies, and an end.
-    fn give(&self, is_before: bool, tail: &[f64], state: &mut [f64]) -> Result<(), DeviceError> {
-        for &(start, (name, before, width)) in &self.columns {
-            let column = self.machine.column(if is_before { before } else { name });
-            let rows = &mut state[start..][..self.count * width];
-            self.machine.device().read(column, rows)?;
-        }
-        let rest = state.len() - tail.len();
-        state[rest..].copy_from_slice(tail);
+        LEDGER.kick(D, duration, &mut self.state.tail);
         Ok(())
     }
 }
@@ -233,28 +212,23 @@ impl<const D: usize> OnDevice<D> {
 impl<const D: usize> DeviceSteps for OnDevice<D> {
     #[inline(never)]
     fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
-        let rest = state.len() - self.tail.len();
-        self.tail.copy_from_slice(&state[rest..]);
         Ok(self.take_over(state)?)
     }
 
     #[inline(never)]
     fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError> {
-        for &(_, (name, before, _)) in &self.columns {
-            self.machine.copy(name, before)?;
-        }
-        self.tail_before.copy_from_slice(&self.tail);
+        self.state.mark(&mut self.machine)?;
         self.kick(0.5 * step)?;
         let middle = Instant { time: time + 0.5 * step, step };
         let end = Instant { time: time + step, step: 0.0 };
         let mut stages = std::mem::take(&mut self.drift);
         let done = stages.attempt(|pass, totals| self.run(pass, middle, totals));
         self.drift = stages;
-        LEDGER.add(D, &done?, &mut self.tail);
+        LEDGER.add(D, &done?, &mut self.state.tail);
         let mut stages = std::mem::take(&mut self.accelerate);
         let done = stages.attempt(|pass, totals| self.run(pass, end, totals));
         self.accelerate = stages;
-        LEDGER.keep(D, &done?, &mut self.tail);
+        LEDGER.keep(D, &done?, &mut self.state.tail);
         Ok(self.kick(0.5 * step)?)
     }
 
@@ -291,11 +265,11 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
     }
 
     fn fetch(&self, state: &mut [f64]) -> Result<(), StepsError> {
-        Ok(self.give(false, &self.tail, state)?)
+        Ok(self.state.give(&self.machine, state)?)
     }
 
     fn fetch_before(&self, state: &mut [f64]) -> Result<(), StepsError> {
-        Ok(self.give(true, &self.tail_before, state)?)
+        Ok(self.state.give_before(&self.machine, state)?)
     }
 
     fn phases(&self) -> Vec<&Phase> {

@@ -1,6 +1,5 @@
 //! The passes of a step as text.
 
-use nalgebra::SVector;
 use piola_device::{
     Among, Dialect, Gather, Order, Pass, Space, Traced, local, own, spread, through,
 };
@@ -14,10 +13,8 @@ use piola_formulas::{Number, fluid};
 use super::super::fluid::{ACCELERATING, DRIFTING};
 use super::Plan;
 use super::walls::{forces, total};
+use crate::schemes::device::{Recorded as Vector, are_finite, one, square, take};
 use crate::schemes::momentum::{moments, momentum_components};
-
-/// A vector of numbers that are recorded.
-pub(super) type Vector<const D: usize> = SVector<Traced, D>;
 
 /// Numbers of a side.
 pub(super) const fn side_width(dimension: usize) -> usize {
@@ -42,20 +39,6 @@ pub(super) fn kick_terms(dimension: usize) -> usize {
     ACCELERATING.iter().map(|entry| 2 + entry.way.map_or(0, |_| components)).sum()
 }
 
-/// Takes a vector from the front of some numbers.
-pub(super) fn take<const D: usize>(numbers: &mut &[Traced]) -> Vector<D> {
-    let (own, rest) = numbers.split_at(D);
-    *numbers = rest;
-    Vector::from_column_slice(own)
-}
-
-/// Takes a number from the front.
-pub(super) fn one(numbers: &mut &[Traced]) -> Traced {
-    let (own, rest) = numbers.split_at(1);
-    *numbers = rest;
-    own[0]
-}
-
 /// Takes a side from the front.
 pub(super) fn side<const D: usize>(numbers: &mut &[Traced]) -> Side<Traced, D> {
     Side {
@@ -77,10 +60,6 @@ pub(super) fn flat<const D: usize>(side: &Side<Traced, D>) -> Vec<Traced> {
 /// `yes` for particles of the fluid, `no` for those that are passive.
 pub(super) fn if_fluid(wall: Traced, yes: Traced, no: Traced) -> Traced {
     Traced::select(wall.below(0.5), yes, no)
-}
-
-pub(super) fn square<const D: usize>(vector: &Vector<D>) -> Traced {
-    vector.dot(vector)
 }
 
 impl<const D: usize> Plan<D> {
@@ -470,10 +449,7 @@ impl<const D: usize> Plan<D> {
         ];
         let writes = [spread("terms", FIGURES)];
         local(dialect, "look", &[], &reads, &writes, |mut x| {
-            let all = &x[..4 * D + 2];
-            let finite = |number: &Traced| number.abs().at_most(Traced::from(f64::MAX));
-            let first = finite(&all[0]);
-            let is_finite = all[1..].iter().fold(first, |all, number| all & finite(number));
+            let is_finite = are_finite(&x[..4 * D + 2]);
             let _: Vector<D> = take(&mut x);
             let velocity: Vector<D> = take(&mut x);
             let _: Vector<D> = take(&mut x);

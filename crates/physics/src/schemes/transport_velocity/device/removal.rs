@@ -8,8 +8,9 @@ use piola_device::{DeviceError, Dialect, local, own, spread, through};
 use super::super::escape::take_out;
 use super::super::stages::Pass;
 use super::super::{Columns, ColumnsMut, Common};
-use super::passes::{if_fluid, one};
+use super::passes::if_fluid;
 use super::{OnDevice, Plan};
+use crate::schemes::device::one;
 use crate::schemes::ledger::Total;
 
 /// What is known here of particles that may be taken out, by number.
@@ -46,9 +47,7 @@ impl<const D: usize> Plan<D> {
 impl<const D: usize> OnDevice<D> {
     /// Takes the columns of a state over, and who has been removed in it.
     pub(super) fn take_over(&mut self, state: &[f64]) -> Result<(), DeviceError> {
-        for &(start, (name, _, width)) in &self.columns {
-            self.machine.write(name, &state[start..][..self.count * width])?;
-        }
+        self.state.put(&mut self.machine, state)?;
         self.is_picked = false;
         self.follow_removals(state)
     }
@@ -86,8 +85,8 @@ impl<const D: usize> OnDevice<D> {
     fn take_out_escaped(&mut self) -> Result<Total, DeviceError> {
         let mut told = vec![0.0; self.count];
         self.machine.device().read(self.machine.column("terms"), &mut told)?;
-        let mut state = vec![0.0; self.length];
-        self.give(false, &self.tail, &mut state)?;
+        let mut state = vec![0.0; self.state.length()];
+        self.state.give(&self.machine, &mut state)?;
         let Some(removal) = &self.removal else { return Ok(Total::default()) };
         let (mut own, _) = ColumnsMut::<D>::of(&mut state, self.count);
         if !own.position.iter().flatten().all(|x| x.is_finite()) {

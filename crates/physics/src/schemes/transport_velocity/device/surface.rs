@@ -7,8 +7,9 @@ use piola_formulas::pairs::{Components, One, PairLaw};
 
 use super::super::surface::CONE;
 use super::Plan;
-use super::passes::{FORCES, Vector, one, side, side_width, square, take};
+use super::passes::{FORCES, side, side_width};
 use super::walls::forces;
+use crate::schemes::device::{Recorded as Vector, one, square, take};
 
 impl<const D: usize> Plan<D> {
     /// Passes that look for free surfaces.

@@ -11,7 +11,8 @@ use super::super::escape::{Room, TOLERANCE};
 use super::super::fluid::ACCELERATING;
 use super::super::walls::{BESIDE, is_in_cell};
 use super::Plan;
-use super::passes::{FORCES, Vector, flat, one, side, side_width, square, take};
+use super::passes::{FORCES, flat, side, side_width};
+use crate::schemes::device::{Recorded as Vector, one, square, take};
 
 /// The faces of a wall particle as numbers: how many they are, whether the wall lets slip, the normal between
 /// them, and how deep it is behind each, with its normal.

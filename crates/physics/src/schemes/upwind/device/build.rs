@@ -9,9 +9,7 @@ use super::super::{KEPT, LEDGER, Upwind};
 use super::OnDevice;
 use super::passes::{FIGURES, Method, PAIRS, Plan, shown, state, terms};
 use crate::boundaries::prescribed::Entry;
-use crate::fields;
 use crate::parallel::chunk;
-use crate::schemes::Scheme as _;
 use crate::schemes::device::{
     DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Listed, StateColumn, StateColumns, fits,
     staged,
@@ -47,12 +45,15 @@ impl<const D: usize> Upwind<D> {
         let listed = Listed::new(&self.loaded, &[], &self.prescribed, [], mass);
         let plan = self.device_plan(method)?;
         let (pairs, of_pairs) = self.areas.pairs.columns(PAIRS);
-        let (columns, scratch) = (self.device_columns(), self.scratch(&listed));
+        let names = state::<D>().map(|([name, before, _], _)| [name, before]);
+        let columns = StateColumn::all(Made::FIELDS, [D, count], &names);
+        let scratch = self.scratch(&listed);
         let filled = self.filled(&plan);
         let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
         let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
         let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes)).chain(of_filled);
-        fits(&device, all.chain([(pairs.rows.numbers, of_pairs.bytes())]).collect())?;
+        let of_rows = [(pairs.rows.numbers, of_pairs.bytes())];
+        fits(&device, method.narrow(&NARROW), all.chain(of_rows))?;
         let passes = |dialect| plan.passes(dialect, &pairs);
         let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;
         let tail = LEDGER.length(D) + KEPT;
@@ -111,17 +112,6 @@ impl<const D: usize> Upwind<D> {
         let (pairs, _) = self.areas.pairs.columns(PAIRS);
         let passes = self.device_plan(method)?.passes(method.dialect(language, &NARROW), &pairs);
         Ok(staged(&passes, &STAGES))
-    }
-
-    /// Columns of the state.
-    fn device_columns(&self) -> Vec<StateColumn> {
-        let of = |([name, before, _], _): ([&'static str; 3], usize)| {
-            let known = |field: &&fields::FieldDescription| field.name.starts_with(name);
-            let field = Made::FIELDS.iter().find(known).expect("these are columns of the state");
-            let place = fields::column(Made::FIELDS, D, self.particle_count(), field);
-            StateColumn { name, before, place }
-        };
-        state::<D>().map(of).into()
     }
 
     /// Columns of work with their lengths.

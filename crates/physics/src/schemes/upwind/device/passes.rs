@@ -31,7 +31,10 @@ pub(super) const fn state<const D: usize>() -> [([&'static str; 3], usize); 4] {
         (["position", "position_before", "position_rate"], D),
         (["velocity", "velocity_before", "velocity_rate"], D),
         (["volume_ratio", "volume_ratio_before", "volume_ratio_rate"], 1),
-        (["deformation", "deformation_before", "deformation_rate"], D * D),
+        (
+            ["deformation_gradient", "deformation_gradient_before", "deformation_gradient_rate"],
+            D * D,
+        ),
     ]
 }
 
@@ -125,7 +128,7 @@ impl<const D: usize> Plan<D> {
             own("position", D),
             own("velocity", D),
             own("volume_ratio", 1),
-            own("deformation", D * D),
+            own("deformation_gradient", D * D),
             own("reference", D),
             own("density", 1),
             own("wave_speed", 1),
@@ -286,10 +289,11 @@ impl<const D: usize> Plan<D> {
             own("position", D),
             own("position_rate", D),
             own("volume_ratio", 1),
-            own("deformation", D * D),
-            own("deformation_rate", D * D),
+            own("deformation_gradient", D * D),
+            own("deformation_gradient_rate", D * D),
         ];
-        let writes = [own("position", D), own("volume_ratio", 1), own("deformation", D * D)];
+        let writes =
+            [own("position", D), own("volume_ratio", 1), own("deformation_gradient", D * D)];
         local(dialect, "drift", &["step"], &reads, &writes, |mut x| {
             let step = one(&mut x);
             let (position, rate): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
@@ -311,7 +315,7 @@ impl<const D: usize> Plan<D> {
             own("position", D),
             own("velocity", D),
             own("volume_ratio", 1),
-            own("deformation", D * D),
+            own("deformation_gradient", D * D),
             own("density", 1),
             own("prestress", 1),
             own("nearest", 1),
