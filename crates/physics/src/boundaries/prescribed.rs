@@ -32,8 +32,32 @@ pub(crate) struct PrescribedComponents {
 pub(crate) struct Entry {
     pub particle: usize,
     pub component: usize,
-    pub place: [f64; 3],
-    pub value: Arc<dyn SpaceTime>,
+    place: [f64; 3],
+    value: Arc<dyn SpaceTime>,
+    /// Value and rate, if they are the same at all times.
+    steady: Option<[f64; 2]>,
+}
+
+impl Entry {
+    fn new(particle: usize, component: usize, place: [f64; 3], value: Arc<dyn SpaceTime>) -> Self {
+        let steady = value.is_steady().then(|| [value.value(place, 0.0), value.rate(place, 0.0)]);
+        Self { particle, component, place, value, steady }
+    }
+
+    /// The velocity in m/s at a time in s.
+    pub fn at(&self, time: f64) -> f64 {
+        self.steady.map_or_else(|| self.value.value(self.place, time), |[value, _]| value)
+    }
+
+    /// Its rate in m/s^2.
+    pub fn rate(&self, time: f64) -> f64 {
+        self.steady.map_or_else(|| self.value.rate(self.place, time), |[_, rate]| rate)
+    }
+
+    /// Whether it is the same at all times.
+    pub fn is_steady(&self) -> bool {
+        self.steady.is_some()
+    }
 }
 
 impl PrescribedComponents {
@@ -42,11 +66,9 @@ impl PrescribedComponents {
     pub fn new<const D: usize>(conditions: &[PrescribedVelocity], positions: &[Vector<D>]) -> Self {
         let mut entries: Vec<Entry> = Vec::new();
         for condition in conditions {
-            entries.extend(condition.particles.iter().map(|&particle| Entry {
-                particle: particle as usize,
-                component: condition.component,
-                place: padded(&positions[particle as usize]),
-                value: condition.value.clone(),
+            entries.extend(condition.particles.iter().map(|&particle| {
+                let place = padded(&positions[particle as usize]);
+                Entry::new(particle as usize, condition.component, place, condition.value.clone())
             }));
         }
         // A stable sort keeps the order of the conditions within one component.
@@ -67,7 +89,7 @@ impl PrescribedComponents {
     /// Gives velocities the prescribed values of a time.
     pub fn impose<const D: usize>(&self, time: f64, velocity: &mut [Vector<D>]) {
         for entry in &self.entries {
-            velocity[entry.particle][entry.component] = entry.value.value(entry.place, time);
+            velocity[entry.particle][entry.component] = entry.at(time);
         }
     }
 

@@ -44,17 +44,14 @@ impl<const D: usize> Traction<D> {
 
     /// The load on each of its particles, of which all are at `positions` in m.
     pub(crate) fn loaded(&self, positions: &[Vector<D>]) -> impl Iterator<Item = Loaded<D>> {
-        self.parts(positions).map(|(particle, area, place)| Loaded {
-            particle,
-            area: Vector::from_element(area),
-            place,
-            value: self.value.clone(),
+        self.parts(positions).map(|(particle, area, place)| {
+            Loaded::new(particle, Vector::from_element(area), place, self.value.clone())
         })
     }
 
     /// The load on a particle with this area in m^(D-1) for each component, of the value at a place.
     pub(crate) fn at(&self, particle: usize, area: Vector<D>, place: &Vector<D>) -> Loaded<D> {
-        Loaded { particle, area, place: padded(place), value: self.value.clone() }
+        Loaded::new(particle, area, padded(place), self.value.clone())
     }
 }
 
@@ -67,9 +64,22 @@ pub(crate) struct Loaded<const D: usize> {
     area: Vector<D>,
     place: [f64; 3],
     value: [Arc<dyn SpaceTime>; D],
+    /// The traction, if it is the same at all times.
+    steady: Option<Vector<D>>,
 }
 
 impl<const D: usize> Loaded<D> {
+    fn new(
+        particle: usize,
+        area: Vector<D>,
+        place: [f64; 3],
+        value: [Arc<dyn SpaceTime>; D],
+    ) -> Self {
+        let is_steady = value.iter().all(|value| value.is_steady());
+        let steady = is_steady.then(|| Vector::from_fn(|i, _| value[i].value(place, 0.0)));
+        Self { particle, area, place, value, steady }
+    }
+
     /// The same on another particle.
     pub fn on(self, particle: usize) -> Self {
         Self { particle, ..self }
@@ -87,7 +97,8 @@ impl<const D: usize> Loaded<D> {
 
     /// The traction in Pa at a time in s.
     pub fn traction(&self, time: f64) -> Vector<D> {
-        Vector::from_fn(|i, _| self.value[i].value(self.place, time))
+        let now = || Vector::from_fn(|i, _| self.value[i].value(self.place, time));
+        self.steady.unwrap_or_else(now)
     }
 
     /// Its rate in Pa/s.

@@ -54,7 +54,7 @@ pub(crate) fn prescribe<const D: usize>(
     for entry in prescribed.iter() {
         let Acted { mass, position, velocity } = particle(entry.particle);
         let own = &mut acceleration[entry.particle][entry.component];
-        let wanted = entry.value.rate(entry.place, time);
+        let wanted = entry.rate(time);
         let mut force = Vector::<D>::zeros();
         force[entry.component] = mass * (wanted - *own);
         *own = wanted;

@@ -36,7 +36,7 @@ impl<const D: usize> NewmarkScheme for TotalLagrangian<D> {
         }
         for entry in self.prescribed.iter() {
             let (a, i) = (entry.particle, entry.component);
-            let middle = entry.value.value(entry.place, time + 0.5 * step);
+            let middle = entry.at(time + 0.5 * step);
             start[a][i] = last[a][i] + rule.reach() * step * middle;
         }
         if !self.prescribed.is_empty() {

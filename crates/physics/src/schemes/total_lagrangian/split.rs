@@ -33,7 +33,7 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
         // Kicks leave a prescribed velocity alone; it moves its particle by its value half way.
         for entry in self.prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);
-            let middle = entry.value.value(entry.place, time + 0.5 * step);
+            let middle = entry.at(time + 0.5 * step);
             own.displacement[a][component] += step * (middle - own.velocity[a][component]);
         }
     }

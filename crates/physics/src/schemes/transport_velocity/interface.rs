@@ -103,7 +103,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut velocity = common.columns(state).velocity[number as usize];
         if let Some(index) = common.wall_of(number) {
             for entry in common.sliding.of(index) {
-                velocity[entry.component] += entry.value.value(entry.place, time);
+                velocity[entry.component] += entry.at(time);
             }
         }
         velocity

@@ -45,7 +45,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         let (own, _) = common.parts(state);
         for entry in common.motion.iter() {
             let number = common.walls[entry.particle].number as usize;
-            own.velocity[number][entry.component] = entry.value.value(entry.place, time);
+            own.velocity[number][entry.component] = entry.at(time);
         }
     }
 

@@ -124,7 +124,7 @@ impl<const D: usize> Common<D> {
         let (own, _) = self.parts(state);
         for entry in self.motion.iter() {
             let number = self.walls[entry.particle].number as usize;
-            own.position[number][entry.component] += step * entry.value.value(entry.place, middle);
+            own.position[number][entry.component] += step * entry.at(middle);
         }
     }
 

@@ -97,15 +97,15 @@ impl<const D: usize> Common<D> {
         values.fill(WallValues::default());
         for entry in self.motion.iter() {
             let wall = &mut values[entry.particle];
-            wall.motion[entry.component] = entry.value.value(entry.place, time);
-            wall.acceleration[entry.component] = entry.value.rate(entry.place, time);
+            wall.motion[entry.component] = entry.at(time);
+            wall.acceleration[entry.component] = entry.rate(time);
         }
         for (index, wall) in values.iter_mut().enumerate() {
             wall.motion = self.guided.velocity(index).unwrap_or(wall.motion);
         }
         for entry in self.sliding.iter() {
             let wall = &mut values[entry.particle];
-            wall.sliding[entry.component] = entry.value.value(entry.place, time);
+            wall.sliding[entry.component] = entry.at(time);
         }
     }
 

@@ -59,7 +59,7 @@ impl<const D: usize> Followed<D> {
         }
         for entry in prescribed.iter() {
             let (a, component) = (entry.particle, entry.component);
-            let middle = entry.value.value(entry.place, time + 0.5 * step);
+            let middle = entry.at(time + 0.5 * step);
             self.displacement[a][component] += step * (middle - velocity[a][component]);
         }
         prescribed.impose(time + step, velocity);

@@ -110,7 +110,7 @@ impl<const D: usize> TransportVelocity<D> {
         if common.motion.iter().next().is_some() {
             return refuse("a wall that moves", "let it slide or rest");
         }
-        if !common.sliding.iter().all(|entry| entry.value.is_steady()) {
+        if !common.sliding.iter().all(|entry| entry.is_steady()) {
             return refuse("a wall that slides by a function of time", "let it slide steadily");
         }
         if !common.body_forces.iter().all(BodyForce::is_uniform) {
@@ -232,7 +232,7 @@ impl<const D: usize> TransportVelocity<D> {
         let mut all = vec![0.0; self.common.particles.len() * D];
         for entry in self.common.sliding.iter() {
             let number = self.common.walls[entry.particle].number as usize;
-            all[number * D + entry.component] = entry.value.value(entry.place, 0.0);
+            all[number * D + entry.component] = entry.at(0.0);
         }
         all
     }

@@ -19,7 +19,7 @@ impl<const D: usize> Hypoelastic<D> {
         for entry in self.held.iter() {
             let velocity = &mut own.velocity[entry.particle][entry.component];
             let (mass, old) = (common.mass[entry.particle], *velocity);
-            let new = entry.value.value(entry.place, time);
+            let new = entry.at(time);
             if new != old {
                 *velocity = new;
                 total.power += 0.5 * mass * (new - old) * (new + old);

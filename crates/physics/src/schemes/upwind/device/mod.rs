@@ -169,7 +169,7 @@ impl<const D: usize> OnDevice<D> {
 
     /// Gives velocities that are prescribed their values of a time.
     fn constrain(&mut self, time: f64) -> Result<(), DeviceError> {
-        let values = self.prescribed.iter().map(|entry| entry.value.value(entry.place, time));
+        let values = self.prescribed.iter().map(|entry| entry.at(time));
         let values: Vec<f64> = values.collect();
         if values.is_empty() {
             return Ok(());

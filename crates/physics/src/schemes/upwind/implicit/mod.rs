@@ -169,7 +169,7 @@ impl<const D: usize> Implicit<D> {
             self.outside[load.particle] += load.force(instant);
         }
         for entry in scheme.prescribed.iter() {
-            self.held[entry.particle][entry.component] = entry.value.value(entry.place, instant);
+            self.held[entry.particle][entry.component] = entry.at(instant);
         }
         self.evaluated = None;
         (self.steps_with_factors, self.linear_steps) = (None, 0);
