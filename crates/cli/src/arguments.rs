@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
+use piola_device::Precision;
 
 use crate::exit::Exit;
 
@@ -101,6 +102,9 @@ pub struct ShowArguments {
     /// The language of the text
     #[arg(long, value_name = "LANGUAGE", default_value = "cuda")]
     pub language: TextLanguage,
+    /// The precision of what the device computes of pairs of particles [default: that of the case]
+    #[arg(long, value_name = "PRECISION")]
+    pub precision: Option<PairPrecision>,
 }
 
 /// A language of passes.
@@ -124,6 +128,14 @@ pub enum PairPrecision {
 }
 
 impl PairPrecision {
+    /// What it is for devices.
+    pub fn of_pairs(self) -> Precision {
+        match self {
+            Self::Double => Precision::Double,
+            Self::Single => Precision::Single,
+        }
+    }
+
     /// Its name in a case file.
     pub fn name(self) -> &'static str {
         match self {
@@ -161,7 +173,7 @@ pub struct CaseArguments {
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// The precision of what the device computes of pairs of particles [default: double]
-    #[arg(long, value_name = "PRECISION", requires = "device")]
+    #[arg(long, value_name = "PRECISION")]
     pub precision: Option<PairPrecision>,
     /// Share the particles among this many ranks, each with a part of the threads [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]

@@ -34,7 +34,7 @@ pub use error::DeviceError;
 pub use gather::{Among, Frozen, Gather, Meeting, Meets, Order, Rows, Space};
 pub use law::{Law, Outputs};
 pub use machine::Machine;
-pub use pass::{Ask, At, Pass, Use, filled, flat, local, own, spread, through};
+pub use pass::{Ask, At, Pass, Use, difference, filled, flat, local, own, spread, through};
 pub use record::{Traced, Truth};
 pub use text::{Dialect, Language, Precision};
 pub use work::Work;

@@ -60,21 +60,29 @@ pub struct Use {
     pub width: usize,
     /// Its row.
     pub at: At,
+    /// Whether laws of pairs take differences of it only.
+    pub is_difference: bool,
 }
 
 /// The row of the same number of a column.
 pub const fn own(column: &'static str, width: usize) -> Use {
-    Use { column, width, at: At::Own }
+    Use { column, width, at: At::Own, is_difference: false }
 }
 
 /// The row of a column that an index column names.
 pub const fn through(index: &'static str, column: &'static str, width: usize) -> Use {
-    Use { column, width, at: At::Through(index) }
+    Use { column, width, at: At::Through(index), is_difference: false }
 }
 
 /// The row of the same number of a column whose components stand apart.
 pub const fn spread(column: &'static str, width: usize) -> Use {
-    Use { column, width, at: At::Spread }
+    Use { column, width, at: At::Spread, is_difference: false }
+}
+
+/// The row of the same number of a column of which a law of pairs takes the difference between a neighbour and the particle
+/// itself, and nothing else: where laws are in single precision, the difference is not.
+pub const fn difference(column: &'static str, width: usize) -> Use {
+    Use { is_difference: true, ..own(column, width) }
 }
 
 impl Use {
@@ -182,7 +190,7 @@ fn local_boxed(
         }
     }
     text += "    }\n}\n";
-    let mut work = Work { operations: law.operations(), ..Work::default() };
+    let mut work = Work { operations: law.operations(), narrow: dialect.narrow, ..Work::default() };
     work::join(&mut work.reads, reads);
     work::join(&mut work.writes, writes);
     Pass { name, text, asks: arguments.asks, threads: 1, work }

@@ -16,6 +16,8 @@ pub struct Work {
     pub gathers: Vec<Use>,
     /// Columns that are written.
     pub writes: Vec<Use>,
+    /// Names of the columns in single precision.
+    pub narrow: &'static [&'static str],
 }
 
 /// Adds the uses that are not known yet.
@@ -28,29 +30,34 @@ pub(crate) fn join<'a>(known: &mut Vec<Use>, more: impl IntoIterator<Item = &'a 
 }
 
 /// Bytes of the rows of some columns, with the indices by which they are found.
-fn bytes<'a>(columns: impl Iterator<Item = &'a Use>) -> usize {
+fn bytes<'a>(columns: impl Iterator<Item = &'a Use>, narrow: &[&str]) -> usize {
     let mut indices = Vec::new();
     let mut numbers = 0;
     for column in columns {
-        numbers += column.width;
+        let precision = match narrow.contains(&column.column) {
+            true => Precision::Single,
+            false => Precision::Double,
+        };
+        numbers += column.width * precision.bytes();
         if let At::Through(index) = column.at
             && !indices.contains(&index)
         {
             indices.push(index);
         }
     }
-    numbers * Precision::Double.bytes() + indices.len() * size_of::<u32>()
+    numbers + indices.len() * size_of::<u32>()
 }
 
 impl Work {
-    /// Bytes in double precision that are read and written per particle, and those that are read per neighbour, with the
+    /// Bytes that are read and written per particle, and those that are read per neighbour, with the
     /// index of the neighbour. A column that is read and written counts twice.
     pub fn bytes(&self) -> [usize; 2] {
         let of_neighbor = match self.by_neighbor.is_empty() {
             true => 0,
-            false => bytes(self.gathers.iter()) + size_of::<u32>(),
+            false => bytes(self.gathers.iter(), self.narrow) + size_of::<u32>(),
         };
-        [bytes(self.reads.iter()) + bytes(self.writes.iter()), of_neighbor]
+        let of_row = |columns: &[Use]| bytes(columns.iter(), self.narrow);
+        [of_row(&self.reads) + of_row(&self.writes), of_neighbor]
     }
 }
 
@@ -68,5 +75,7 @@ mod tests {
         let gathers = vec![own("place", 2), through("numbers", "mass", 1)];
         let work = Work { gathers, by_neighbor: vec![3], ..Work::default() };
         assert_eq!(work.bytes(), [0, 32]);
+        // The place is in single precision.
+        assert_eq!(Work { narrow: &["place"], ..work }.bytes(), [0, 24]);
     }
 }

@@ -76,7 +76,7 @@ pub enum CheckpointError {
     },
     /// The file is of another case.
     #[error(
-        "the checkpoint {} belongs to another case, or to this one with other settings: start \
+        "the checkpoint {} belongs to another case, or to this one with other settings or in another precision: start \
          anew without `--resume`, choose another folder with `--out`, or take back what was \
          changed in the case",
         path.display()

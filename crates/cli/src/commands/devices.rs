@@ -5,7 +5,7 @@ use std::fmt::Write;
 use piola::schemes::DeviceStage;
 use piola_device::{Found, Language, Pass, Use, devices as all, missing};
 
-use super::{assemble, read_file};
+use super::{assemble, read_with};
 use crate::arguments::{ShowArguments, TextLanguage};
 use crate::exit::{Exit, Fault};
 use crate::table::align;
@@ -35,9 +35,12 @@ pub fn devices() -> Result<Exit, Fault> {
 
 /// Prints the passes of a case on a device, or the text of those of a stage.
 pub fn show(arguments: &ShowArguments) -> Result<Exit, Fault> {
-    let mut case = read_file(&arguments.file, std::iter::empty())?;
+    let mut case = read_with(&arguments.file, arguments.file.set.clone())?;
     // Nothing is computed.
     (case.device, case.ranks) = (None, None);
+    if let Some(precision) = arguments.precision {
+        case.precision = precision.of_pairs();
+    }
     let mut session = assemble(&arguments.file.case, &case)?;
     let language = match arguments.language {
         TextLanguage::Cuda => Language::Cuda,

@@ -28,23 +28,25 @@ fn use_threads(threads: Option<u16>) {
     }
 }
 
-/// Reads the case as it stands.
-fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
+/// Changes of the case by its flags: those of `--set`, and who computes.
+fn overrides(arguments: &CaseArguments) -> Vec<String> {
     // A JSON string is one of TOML, too.
     let quoted = |name: &String| serde_json::Value::from(name.as_str()).to_string();
     let device = arguments.device.iter().map(|name| format!("compute.device={}", quoted(name)));
     let precision = arguments.precision.map(|it| format!("compute.precision='{}'", it.name()));
     let ranks = arguments.ranks.iter().map(|count| format!("compute.ranks={count}"));
-    read_file(&arguments.file, device.chain(precision).chain(ranks))
+    arguments.file.set.iter().cloned().chain(device).chain(precision).chain(ranks).collect()
 }
 
-/// Reads a case file with its changes and more of them.
-fn read_file(file: &CaseFile, more: impl Iterator<Item = String>) -> Result<Case, Fault> {
-    let options = LoadOptions {
-        overrides: file.set.iter().cloned().chain(more).collect(),
-        variant: file.variant.clone(),
-        ..LoadOptions::default()
-    };
+/// Reads the case as it stands.
+fn read(arguments: &CaseArguments) -> Result<Case, Fault> {
+    read_with(&arguments.file, overrides(arguments))
+}
+
+/// Reads a case file with these changes.
+fn read_with(file: &CaseFile, overrides: Vec<String>) -> Result<Case, Fault> {
+    let variant = file.variant.clone();
+    let options = LoadOptions { overrides, variant, ..LoadOptions::default() };
     load(&file.case, &options).map_err(|problems| refusal(&file.case, &problems))
 }
 

@@ -92,6 +92,10 @@ fn the_text_of_a_stage_is_shown_in_each_language() {
     // These have no word for pointers that nothing else points to.
     assert_eq!(of("kick --language opencl"), KICK.replace("__restrict__ ", ""));
     assert_eq!(of("kick --language c"), KICK.replace("__restrict__ ", ""));
+    // Of pairs in single precision a neighbour shows half the bytes, and its place as before.
+    let table = of("--precision single");
+    let forces = table.lines().find(|line| line.starts_with("forces")).expect("it has forces");
+    assert!(forces.split_whitespace().any(|cell| cell == "36"), "{forces}");
     // By eight threads and by one.
     assert_contains(&of("forces"), &["KERNEL void forces(", "__shfl_down_sync"]);
     assert_contains(&of("forces --language c"), &["EACH(a, n) if (passive[numbers[a]] == 0)"]);
@@ -110,6 +114,7 @@ fn what_has_no_text_is_told_with_what_has() {
     let text = refused("tube/case.toml --set scheme.shifting='ipst'");
     assert_contains(&text, &["the stage `iterate` does not run on devices yet"]);
     place.write("bar/case.toml", crate::support::BAR);
-    assert_contains(&refused("bar/case.toml"), &["`upwind` does not run on devices yet"]);
+    let text = refused("bar/case.toml --set time.integrator='backward_euler' --set time.step=0.01");
+    assert_contains(&text, &["the integrator `backward_euler` does not run on devices"]);
     refused("tube/case.toml kick --language fortran");
 }

@@ -327,7 +327,11 @@ impl Loop {
             .start
             .as_ref()
             .map_or((0, &[][..]), |(law, columns)| (law.operations(), columns.as_slice()));
-        let mut work = Work { operations: start + close.operations(), ..Work::default() };
+        let mut work = Work {
+            operations: start + close.operations(),
+            narrow: self.dialect.narrow,
+            ..Work::default()
+        };
         let only = self.only.map(|only| own(only, 1));
         work::join(&mut work.reads, only.iter().chain(&place).chain(started).chain(columns));
         work::join(&mut work.gathers, place.iter().chain(&of_pair));
@@ -494,15 +498,16 @@ impl Loop {
         }
     }
 
-    /// What both particles of a pair show to a law. In single precision columns in double precision are those of the
-    /// neighbour less those of the particle itself: laws take differences of them.
+    /// What both particles of a pair show to a law. In single precision [differences](crate::pass::difference) of columns in
+    /// double precision are taken before, so that those of the particle itself are zero.
     fn shown(&self, term: &Term) -> [Vec<String>; 2] {
         let all = term.names();
         if self.dialect.of_pairs() == Precision::Double || term.mine != term.others {
             return all;
         }
         let is_wide = term.mine.iter().flat_map(|column| {
-            std::iter::repeat_n(!self.dialect.is_narrow(column.column), column.width)
+            let is_wide = column.is_difference && !self.dialect.is_narrow(column.column);
+            std::iter::repeat_n(is_wide, column.width)
         });
         let [mine, others] = all;
         let both = mine.into_iter().zip(others).zip(is_wide);

@@ -66,8 +66,12 @@ impl Columns<'_> {
     /// Copies them to a device.
     ///
     /// # Errors
-    /// When its memory does not suffice.
+    /// When its memory does not suffice, or there are more pairs than it counts.
     pub fn add(&self, machine: &mut Machine, rows: &piola_device::Rows) -> Result<(), DeviceError> {
+        let count = self.neighbors.len();
+        if i32::try_from(count).is_err() {
+            return Err(DeviceError::TooMany { what: "pairs of particles", count });
+        }
         machine.add_indices(rows.first, &self.first)?;
         machine.add_indices(rows.count, &self.count)?;
         machine.add_indices(rows.neighbors, self.neighbors)?;

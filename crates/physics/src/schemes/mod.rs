@@ -1,5 +1,6 @@
 //! The formulations, one folder each, and what each of them offers to the rest of the program.
 
+pub mod blend;
 mod compiled;
 pub(crate) mod coupled;
 mod description;
@@ -18,7 +19,7 @@ mod parts;
 mod ranks;
 mod rule;
 mod scheme;
-mod split;
+pub(crate) mod split;
 pub(crate) mod stages;
 mod theta;
 pub mod total_lagrangian;

@@ -3,6 +3,9 @@
 use super::Scheme;
 use crate::{Vector, parallel};
 
+/// The name of the method that takes kicks and drifts in turn.
+pub(crate) const KICK_DRIFT_KICK: &str = "kick_drift_kick";
+
 /// A formulation whose state holds the accelerations that belong to it, so that a step can be
 /// split into kicks, which change velocities only, and drifts, which change all the rest.
 ///

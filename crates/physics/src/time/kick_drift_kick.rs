@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::integrator::{Integrator, Unserved};
+use crate::schemes::split::KICK_DRIFT_KICK;
 use crate::schemes::{Capability, PartitionedScheme, Scheme};
 
 /// Half a kick, a drift, and half a kick with the accelerations at its end, CTVF (54) to (60).
@@ -21,7 +22,7 @@ pub struct KickDriftKick {
 
 impl KickDriftKick {
     /// Its name.
-    pub const NAME: &str = "kick_drift_kick";
+    pub const NAME: &str = KICK_DRIFT_KICK;
 
     fn partitioned(
         &mut self,

@@ -13,7 +13,7 @@ mod kick_drift_kick;
 mod load_steps;
 mod observer;
 mod run;
-pub mod runge_kutta;
+mod runge_kutta;
 mod schedule;
 mod step;
 mod summary;

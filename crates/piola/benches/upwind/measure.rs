@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use piola::schemes::Scheme;
+use piola::schemes::blend::{Blend, advance};
 use piola::schemes::upwind::Upwind;
-use piola::time::runge_kutta::{Blend, advance};
 
 use crate::problem::{self, Switches};
 use crate::{bandwidth, clock};

@@ -390,7 +390,6 @@ impl Reader<'_, '_> {
         Some(Located::new(scheme, record.place))
     }
 
-    /// Reports that a key has no meaning beside others, if it is there.
     /// The precision of a device.
     fn precision(&mut self, record: &Record) -> Precision {
         let Some(compute) = record.record("compute") else { return Precision::Double };
@@ -406,6 +405,7 @@ impl Reader<'_, '_> {
         if is_single { Precision::Single } else { Precision::Double }
     }
 
+    /// Reports that a key has no meaning beside others, if it is there.
     fn meaningless(&mut self, record: &Record, key: &str, why: &str) {
         if let Some(place) = record.key_place(key) {
             let message = format!("`{key}` has no meaning {why}");

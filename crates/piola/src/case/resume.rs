@@ -5,7 +5,7 @@ use std::error::Error;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::document::{self, Node, Table, Value};
+use super::document::{self, Entry, Node, Table, Value};
 use super::functions::numbers_of;
 use super::model::{Case, Shape};
 use super::session::RunError;
@@ -80,13 +80,18 @@ fn without_free(mut tree: Table) -> Table {
             _ => continue,
         };
         if let Node { value: Value::Table(table), .. } = &mut entry.node {
-            table.entries.retain(|entry| !free.contains(&entry.key.as_str()));
+            table.entries.retain(|entry| !free.contains(&entry.key.as_str()) && !is_double(entry));
         }
     }
     // A table that says who computes, and nothing else, is as good as none.
     let is_empty = |node: &Node| matches!(&node.value, Value::Table(it) if it.entries.is_empty());
     tree.entries.retain(|entry| entry.key != "compute" || !is_empty(&entry.node));
     tree
+}
+
+/// Whether it says that pairs are in double precision, as without it.
+fn is_double(entry: &Entry) -> bool {
+    entry.key == "precision" && matches!(&entry.node.value, Value::Text(name) if name == "double")
 }
 
 /// Most bytes that a checkpoint of a run may have: its states, the tables with as many rows as the

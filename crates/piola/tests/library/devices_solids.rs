@@ -71,3 +71,55 @@ fn a_device_has_the_bits_of_the_processor() {
         assert!(tables(&here) == tables(&there), "{name} {set:?}");
     }
 }
+
+/// What a step keeps for the next one: rates of places, viscous forces, planes that move, forces that change.
+const KEPT: [(&str, &[&str]); 6] = [
+    ("dual-support/free-vibration", &["parameters.dx=1", "scheme.artificial_viscosity=[1, 2]"]),
+    ("total-lagrangian/presets", &[PULL, PRESS, LOAD]),
+    ("elastodynamics/biaxial", &[]),
+    (
+        "upwind/bar-sine",
+        &["scheme.tau_velocity=0", "scheme.tau_pressure=0", "time.integrator='kick_drift_kick'"],
+    ),
+    ("upwind/piston", &["time.integrator='ssp_rk3'"]),
+    ("upwind/dam-break", &["load+={ kind = 'body_force', acceleration = ['sin(50 * t)', '0'] }"]),
+];
+
+/// A session of a case with 40 steps, and the bits of its tables at the end.
+fn short(name: &str, set: &[&str], device: &str) -> Session {
+    let set: Vec<&str> = set.iter().copied().chain(["time.max_steps=40"]).collect();
+    session(&load(name, &set, device))
+}
+
+#[test]
+fn a_run_goes_on_anywhere() {
+    let Some(device) = device() else { return };
+    for (name, set) in KEPT {
+        let expected = tables(&finish(short(name, set, "processor")));
+        for (first, then) in [(device.as_str(), "processor"), ("processor", &device)] {
+            let mut begun = short(name, set, first);
+            (0..17).for_each(|_| drop(begun.step()));
+            let mut resumed = short(name, set, then);
+            resumed.resume(begun.checkpoint()).expect("it is of the same case");
+            let what = format!("{name} {set:?} from {first} to {then}");
+            assert!(tables(&finish(resumed)) == expected, "{what}");
+        }
+    }
+}
+
+#[test]
+fn what_is_set_from_outside_reaches_the_device() {
+    let Some(device) = device() else { return };
+    for (name, set) in KEPT {
+        let ends = ["processor", &device].map(|device| {
+            let mut session = short(name, set, device);
+            (0..11).for_each(|_| drop(session.step()));
+            let mut velocity = session.column("velocity").expect("solids have it").values;
+            velocity.iter_mut().for_each(|component| *component *= 0.5);
+            session.set("velocity", &velocity).expect("it may be set");
+            (0..11).for_each(|_| drop(session.step()));
+            ends_with(&mut session)
+        });
+        assert!(ends[0] == ends[1], "{name} {set:?}");
+    }
+}

@@ -9,6 +9,7 @@ mod derivatives;
 #[path = "../support/device.rs"]
 mod device;
 mod devices;
+mod devices_single;
 mod devices_solids;
 mod elastodynamics;
 mod executor;

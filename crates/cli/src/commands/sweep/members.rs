@@ -4,7 +4,7 @@ use piola::case::sweep::{MemberResult, MemberValue, folder_names, split_values};
 use piola::case::{Case, Level, LoadOptions, load};
 
 use crate::arguments::SweepArguments;
-use crate::commands::refusal;
+use crate::commands::{overrides, refusal};
 use crate::exit::{Exit, Fault};
 
 /// Members that a sweep of the command line may have.
@@ -49,9 +49,9 @@ fn read(arguments: &SweepArguments, options: &LoadOptions) -> Result<Case, Fault
 
 /// The members of the sweep called `name` of the case file.
 fn of_case(arguments: &SweepArguments, name: &str) -> Result<(Vec<String>, Vec<Member>), Fault> {
-    let overrides = arguments.case.file.set.clone();
+    let changes = overrides(&arguments.case);
     let options =
-        |variant| LoadOptions { overrides: overrides.clone(), variant, ..LoadOptions::default() };
+        |variant| LoadOptions { overrides: changes.clone(), variant, ..LoadOptions::default() };
     // The first member is there if the sweep is; a wrong name is explained by reading it.
     let first = read(arguments, &options(Some(format!("{name}.1"))))?;
     let Some(sweep) = first.sweeps.iter().find(|sweep| *sweep.name == name) else {
@@ -117,7 +117,7 @@ fn of_flags(arguments: &SweepArguments) -> Result<(Vec<String>, Vec<Member>), Fa
     }
     let mut members = Vec::new();
     for (name, values) in folder_names(&all).into_iter().zip(&all) {
-        let mut overrides = arguments.case.file.set.clone();
+        let mut overrides = overrides(&arguments.case);
         overrides.extend(values.iter().map(|(key, value)| format!("{key}={value}")));
         let variant = arguments.case.file.variant.clone();
         let case = read(arguments, &LoadOptions { overrides, variant, ..LoadOptions::default() })?;

@@ -9,8 +9,8 @@ use piola_device::{DeviceError, Dialect, Language, Pass, Precision};
 use piola_ranks::RankError;
 use thiserror::Error;
 
+use super::split::KICK_DRIFT_KICK;
 use super::{Health, Phase, RankCosts, StepLimit};
-use crate::time::KickDriftKick;
 
 pub(crate) use listed::{Acting, Listed};
 pub(crate) use memory::fits;
@@ -113,7 +113,7 @@ impl DeviceMethod {
     /// # Errors
     /// [`DeviceRefusal::Integrator`].
     pub(crate) fn unless_kicked(self) -> Result<Self, DeviceRefusal> {
-        match self.integrator == KickDriftKick::NAME {
+        match self.integrator == KICK_DRIFT_KICK {
             true => Ok(self),
             false => Err(DeviceRefusal::Integrator {
                 integrator: self.integrator,

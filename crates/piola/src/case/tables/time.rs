@@ -227,7 +227,7 @@ const PRECISIONS: Choices = choices(&[
 
 pub(super) static COMPUTE: TableSpec = TableSpec {
     title: "[compute]",
-    meaning: "Who computes. Results do not depend on the device or on the number of ranks.",
+    meaning: "Who computes. Results in double precision do not depend on the device, and none on the number of ranks.",
     keys: &[
         key(
             "device",
@@ -241,7 +241,7 @@ pub(super) static COMPUTE: TableSpec = TableSpec {
             Kind::Name(PRECISIONS),
             "",
             Default("\"double\""),
-            "the precision of what a device computes of pairs of particles; `docs/devices.md` says what single precision costs and gains",
+            "the precision of what a device computes of pairs of particles; single precision needs a `device`, and `docs/devices.md` says what it costs and gains",
         ),
         key(
             "ranks",

@@ -47,14 +47,14 @@ impl<const D: usize> TotalLagrangian<D> {
     fn device_refusal(&self) -> Option<DeviceRefusal> {
         let mixtures = &self.solid.mixtures;
         let features = [
-            (self.statics.is_some(), "statics and implicit steps", "take explicit steps"),
+            (self.statics.is_some(), "a solid in statics or implicit steps", "take explicit steps"),
             (self.matrices.edges().is_some(), "the strong form", "choose `form = \"adjoint\"`"),
             (!self.rigid.is_empty(), "a rigid body", "leave it out"),
             (!self.loads.springs.is_empty(), "a spring", "leave it out"),
             (
                 !mixtures.iter().all(|mixture| mixture.is_held()),
-                "a material that is free across",
-                "hold it across, as in plane strain",
+                "a material that is free across, as in plane stress,",
+                "choose `plane = \"strain\"`",
             ),
             (
                 mixtures.len() > MOST_MIXTURES,
@@ -158,7 +158,9 @@ impl<const D: usize> TotalLagrangian<D> {
         let of_rows = rows.iter().map(|(rows, columns)| (rows.numbers, columns.bytes()));
         let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
         let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
-        let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes));
+        // Displacements and velocities of images, with their copies.
+        let beyond = ("images", 4 * images.len() * D * size_of::<f64>());
+        let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes)).chain([beyond]);
         fits(&device, method.narrow(&NARROW), all.chain(of_rows).chain(of_filled))?;
         let passes = |dialect| plan.passes(dialect, &supports, &duals, &folds);
         let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;

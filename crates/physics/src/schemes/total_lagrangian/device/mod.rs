@@ -44,7 +44,7 @@ struct OnDevice<const D: usize> {
     is_falling: bool,
     /// Whether gradients are those of the displacements.
     is_evaluated: bool,
-    /// Whether a material has been seen to have lost its convexity.
+    /// Whether a material was seen to have lost its convexity when the state was looked at last.
     is_soft: bool,
 }
 
@@ -250,7 +250,7 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         let all = self.machine.largest::<FIGURES>(self.count())?;
         let least = [0.0, 0.0, f64::NEG_INFINITY];
         let (health, [stiffening, thickening, softening]) = sighted(&all, least);
-        self.is_soft |= softening.value > 0.0;
+        self.is_soft = softening.value > 0.0;
         limits.clear();
         limits.push(self.stable.limit(stiffening, thickening, self.solid.is_linear()));
         Ok(health)

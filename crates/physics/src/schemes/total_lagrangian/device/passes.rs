@@ -2,7 +2,8 @@
 
 use nalgebra::SMatrix;
 use piola_device::{
-    Among, Dialect, Frozen, Gather, Order, Pass, Traced, Use, local, own, spread, through,
+    Among, Dialect, Frozen, Gather, Order, Pass, Traced, Use, difference, local, own, spread,
+    through,
 };
 use piola_formulas::pairs::total_lagrangian::{Forces, Gradients};
 use piola_formulas::pairs::{Components, Each, One, Square};
@@ -142,7 +143,7 @@ impl<const D: usize> Plan<D> {
         supports: &Supports<D, N>,
         order: Order,
     ) -> Pass {
-        let velocity = [own("velocity", D)];
+        let velocity = [difference("velocity", D)];
         Gather::<Each<Square<D>, N>, _>::new(dialect, name, supports, Among::All, order)
             .term(&Gradients::<D, N>, &velocity, Among::All)
             .close(&[], &[], &[own("gradient_rate", D * D)], |sums, _| entries(&sums[0]))
@@ -191,7 +192,7 @@ impl<const D: usize> Plan<D> {
         reads.extend(self.is_stabilised.then_some(own("shape", D * D)));
         reads.extend(self.of_mixture());
         let writes = [own("gradient", D * D), own("tension", N * D * D)];
-        let displacement = [own("displacement", D)];
+        let displacement = [difference("displacement", D)];
         Gather::<Each<Square<D>, N>, _>::new(dialect, "strains", supports, Among::All, Order::Lanes)
             .term(&Gradients::<D, N>, &displacement, Among::All)
             .close(&[], &reads, &writes, |sums, mut x| {
@@ -227,7 +228,7 @@ impl<const D: usize> Plan<D> {
 
     /// Internal forces on particles, and behind them on images.
     fn forces<const N: usize>(&self, dialect: Dialect, duals: &Duals<D, N>) -> Pass {
-        let sides = [own("tension", N * D * D), own("displacement", D)];
+        let sides = [own("tension", N * D * D), difference("displacement", D)];
         let reads = [own("tension", N * D * D), own("own_coefficients", N * D)];
         Gather::<Components<D>, _>::new(dialect, "forces", duals, Among::All, Order::Lanes)
             .term(&Forces::<D, N>, &sides, Among::All)

@@ -1,7 +1,7 @@
 //! From a settled fluid to its passes and columns on a device, or what has none there.
 
 use piola_device::lists::Lists;
-use piola_device::{Device, Machine};
+use piola_device::{Device, Machine, Precision};
 
 use super::super::{AtSurface, Continuum, DensityRule, Shifting, Slip, TransportVelocity};
 use super::passes::{FIGURES, FORCES, drift_terms, kick_terms, side_width};
@@ -16,28 +16,13 @@ use crate::schemes::device::{
 };
 
 /// Columns that may be in single precision: what neighbours see, and what is summed over them.
-pub(super) const NARROW: [&str; 20] = [
-    "side",
-    "rate",
-    "force",
-    "summed",
-    "shear",
-    "hold",
-    "half_force",
-    "gravity",
-    "sliding",
-    "faces",
-    "mark",
-    "near",
-    "alone",
-    "surface",
-    "close_by",
-    "reach",
-    "sharp",
-    "normal",
-    "crowd",
-    "escaped",
+pub(super) const NARROW: [&str; 18] = [
+    "side", "rate", "force", "summed", "shear", "hold", "sliding", "faces", "mark", "near",
+    "alone", "surface", "close_by", "reach", "sharp", "normal", "crowd", "escaped",
 ];
+
+/// Whole numbers up to this one are numbers in single precision: what holds a particle has its own.
+const COUNTED: usize = 1 << f32::MANTISSA_DIGITS;
 
 /// Columns of the state with the names of their copies.
 const STATE: [[&str; 2]; 6] = [
@@ -155,6 +140,15 @@ impl<const D: usize> TransportVelocity<D> {
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
         let (common, plan) = (&self.common, self.device_plan()?);
+        if method.precision == Precision::Single
+            && plan.normals > 0
+            && common.particles.len() > COUNTED
+        {
+            return Err(DeviceRefusal::Stage {
+                what: "single precision with walls and more than 16777216 particles".into(),
+                instead: "leave out `--precision`",
+            });
+        }
         let (list, periods) = (common.support.list(), plan.periods);
         let count = common.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);

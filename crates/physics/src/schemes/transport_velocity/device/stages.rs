@@ -6,6 +6,7 @@ use super::super::stages::{Pass, stage_of};
 use super::super::{TransportVelocity, WeaklyCompressible};
 use super::build::NARROW;
 use super::{Ends, OnDevice, Plan};
+use crate::schemes::device::staged;
 use crate::schemes::{DeviceMethod, DeviceRefusal, DeviceStage};
 
 impl<const D: usize> Plan<D> {
@@ -69,19 +70,15 @@ impl<const D: usize> TransportVelocity<D> {
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         let plan = self.device_plan()?;
         let passes = plan.passes(method.dialect(language, &NARROW));
-        let of = |name, started: &[&str]| {
-            let started = started.iter().flat_map(|name| passes.iter().find(|it| it.name == *name));
-            DeviceStage { name, passes: started.cloned().collect() }
-        };
-        let mut all = vec![of("kick", &["kick_velocities"])];
+        let mut all = vec![("kick", &["kick_velocities"][..])];
         for &stage in self.drift.passes().iter().chain(self.accelerate.passes()) {
             let name = stage_of::<D, WeaklyCompressible<D>>(stage).name;
             let started = plan.passes_of(stage);
-            if !started.is_empty() && all.iter().all(|known| known.name != name) {
-                all.push(of(name, started));
+            if all.iter().all(|(known, _)| *known != name) {
+                all.push((name, started));
             }
         }
-        all.push(of("look", plan.passes_of_look()));
-        Ok(all)
+        all.push(("look", plan.passes_of_look()));
+        Ok(staged(&passes, &all))
     }
 }

@@ -1,6 +1,6 @@
 //! From an upwind body to its passes and columns on a device, or what has none there.
 
-use piola_device::{Device, Language, Machine};
+use piola_device::{Device, Language, Machine, Precision};
 use piola_formulas::pairs::Record as _;
 use piola_formulas::pairs::upwind::{UpwindSide, UpwindSlope};
 
@@ -8,13 +8,15 @@ use super::super::fields::Made;
 use super::super::{KEPT, LEDGER, Upwind};
 use super::OnDevice;
 use super::passes::{FIGURES, Method, PAIRS, Plan, shown, state, terms};
+use crate::Vector;
 use crate::boundaries::prescribed::Entry;
 use crate::parallel::chunk;
+use crate::schemes::blend;
 use crate::schemes::device::{
     DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Listed, StateColumn, StateColumns, fits,
     staged,
 };
-use crate::time::{KickDriftKick, RungeKutta};
+use crate::schemes::split::KICK_DRIFT_KICK;
 
 /// Columns that may be in single precision: what is known of pairs, and what neighbours see.
 const NARROW: [&str; 4] = ["areas", "side", "slope", "inverse"];
@@ -32,6 +34,14 @@ const STAGES: [(&str, &[&str]); 7] = [
 
 /// A column with the numbers that it begins with.
 type Filled = (&'static str, Vec<f64>);
+
+/// The middle of the box around some places.
+fn middle<const D: usize>(places: &[Vector<D>]) -> Vector<D> {
+    let first = places.first().copied().unwrap_or_else(Vector::zeros);
+    let corners =
+        places.iter().fold([first; 2], |[low, high], place| [low.inf(place), high.sup(place)]);
+    corners[0].lerp(&corners[1], 0.5)
+}
 
 impl<const D: usize> Upwind<D> {
     /// The steps of the body on a device.
@@ -85,14 +95,14 @@ impl<const D: usize> Upwind<D> {
 
     /// What the passes depend on.
     fn device_plan(&self, method: DeviceMethod) -> Result<Plan<D>, DeviceRefusal> {
-        let DeviceMethod { integrator, .. } = method;
+        let DeviceMethod { integrator, precision } = method;
         let (kicks, able) = match self.is_conservative() {
             true => (Some(Method::Kicks), "`kick_drift_kick`, `tvd_rk2` or `ssp_rk3`"),
             false => (None, "`tvd_rk2` or `ssp_rk3`"),
         };
-        let of_steps = RungeKutta::stages(integrator)
+        let of_steps = blend::stages(integrator)
             .map(Method::RungeKutta)
-            .or_else(|| kicks.filter(|_| integrator == KickDriftKick::NAME))
+            .or_else(|| kicks.filter(|_| integrator == KICK_DRIFT_KICK))
             .ok_or(DeviceRefusal::Integrator { integrator, able })?;
         Ok(Plan {
             settings: self.settings,
@@ -100,6 +110,7 @@ impl<const D: usize> Upwind<D> {
             laws: self.materials.iter().map(|material| material.law).collect(),
             is_pulled: !self.body_forces.is_empty(),
             method: of_steps,
+            origin: (precision == Precision::Single).then(|| middle(&self.particles.position)),
         })
     }
 

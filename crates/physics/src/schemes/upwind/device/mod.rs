@@ -16,22 +16,12 @@ use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::geometry::Particles;
+use crate::schemes::blend::{BlendStage, advance};
 use crate::schemes::device::{DeviceSteps, Listed, StateColumns, gravity, sighted};
 use crate::schemes::ledger::{Total, Totals};
 use crate::schemes::momentum::momentum_components;
 use crate::schemes::stages::{Phase, Stages};
 use crate::schemes::{Health, StepLimit, StepsError};
-use crate::time::runge_kutta::{Blend, Stage, advance};
-
-/// The pass that makes a stage of a method.
-fn name(blend: Blend) -> &'static str {
-    match blend {
-        Blend::Predict => "predict",
-        Blend::Halve => "halve",
-        Blend::Share(share) if share < 0.5 => "blend_quarter",
-        Blend::Share(_) => "blend_two_thirds",
-    }
-}
 
 /// An upwind body on a device.
 struct OnDevice<const D: usize> {
@@ -77,7 +67,10 @@ impl<const D: usize> OnDevice<D> {
             Pass::Local => self.start("sides", &[]),
             Pass::Slopes => self.start("slopes", &[]),
             Pass::Pairs => {
-                self.fall(time)?;
+                // Those that change have a pass of their own.
+                if self.body_forces.iter().all(BodyForce::is_steady) {
+                    self.fall(time)?;
+                }
                 self.start("exchange", &[])?;
                 let sums = self.machine.sums(passes::terms(D), self.particles.len())?;
                 let mut body = Total::of(sums[0]);
@@ -129,11 +122,15 @@ impl<const D: usize> OnDevice<D> {
         Ok(())
     }
 
-    fn by_stages(&mut self, [time, step]: [f64; 2], method: &[Stage]) -> Result<(), DeviceError> {
+    fn by_stages(
+        &mut self,
+        [time, step]: [f64; 2],
+        method: &[BlendStage],
+    ) -> Result<(), DeviceError> {
         let mut at = time;
         for stage in method {
             self.evaluate(at)?;
-            self.start(name(stage.blend), &[("step", step)])?;
+            self.start(stage.name, &[("step", step)])?;
             self.state.advance_tail(|old, new| advance(stage.blend, step, old, &self.rate, new));
             at = time + stage.at * step;
             self.constrain(at)?;
@@ -141,7 +138,7 @@ impl<const D: usize> OnDevice<D> {
         Ok(())
     }
 
-    /// As [`KickDriftKick`](crate::time::KickDriftKick) does with what is partitioned.
+    /// As the kick-drift-kick method does with what is partitioned.
     fn by_kicks(&mut self, [time, step]: [f64; 2]) -> Result<(), DeviceError> {
         let half = 0.5 * step;
         if !self.is_rated {

@@ -16,9 +16,10 @@ use super::super::local::{Constants, Unknowns, side};
 use super::super::pairs::{Body, rates};
 use super::super::reconstruction::solved;
 use super::super::{Settings, WaveSpeed};
+use crate::Vector;
+use crate::schemes::blend::BlendStage;
 use crate::schemes::device::{Recorded, are_finite, entries, one, square, take, tensor as taken};
 use crate::schemes::momentum::{moments, momentum_components};
-use crate::time::runge_kutta::{Blend, Stage};
 
 type Tensor<const D: usize> = SMatrix<Traced, D, D>;
 
@@ -55,7 +56,7 @@ pub(super) fn terms(dimension: usize) -> usize {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Method {
     /// By a Runge-Kutta method of these stages.
-    RungeKutta(&'static [Stage]),
+    RungeKutta(&'static [BlendStage]),
     /// By kicks and drifts, where nothing dissipates.
     Kicks,
 }
@@ -70,6 +71,8 @@ pub(super) struct Plan<const D: usize> {
     pub is_pulled: bool,
     /// How a step is made.
     pub method: Method,
+    /// Where places are counted from in what neighbours see, in single precision: of places only differences are taken.
+    pub origin: Option<Vector<D>>,
 }
 
 /// A tensor of numbers that stand as those of a state do, column by column.
@@ -100,7 +103,7 @@ impl<const D: usize> Plan<D> {
         }
         match self.method {
             Method::RungeKutta(stages) => {
-                let blends = stages.iter().map(|stage| self.advance(dialect, stage.blend));
+                let blends = stages.iter().map(|stage| self.advance(dialect, *stage));
                 all.extend(blends);
             }
             Method::Kicks => all.extend([self.kick(dialect), self.drift(dialect)]),
@@ -146,7 +149,12 @@ impl<const D: usize> Plan<D> {
             let pressure = self.by_law(x.first().copied(), |law| {
                 Prestressed { law, reference_ratio: prestress }.pressure_at(ratio)
             });
-            let side = side(self.settings.wave_speed, constants, pressure, &unknowns);
+            let mut side = side(self.settings.wave_speed, constants, pressure, &unknowns);
+            if let Some(origin) = self.origin {
+                let origin = origin.map(Traced::from);
+                side.position -= origin;
+                side.reference -= origin;
+            }
             piola_device::flat::<UpwindSide<D>>(&side)
         })
     }
@@ -256,18 +264,18 @@ impl<const D: usize> Plan<D> {
     }
 
     /// A stage of a Runge-Kutta method.
-    fn advance(&self, dialect: Dialect, blend: Blend) -> Pass {
+    fn advance(&self, dialect: Dialect, stage: BlendStage) -> Pass {
         let columns = state::<D>();
         let all =
             |which: usize| columns.iter().map(move |(names, width)| own(names[which], *width));
         let reads: Vec<Use> = all(1).chain(all(2)).chain(all(0)).collect();
         let writes: Vec<Use> = all(0).collect();
         let count: usize = columns.iter().map(|(_, width)| *width).sum();
-        local(dialect, super::name(blend), &["step"], &reads, &writes, |x| {
+        local(dialect, stage.name, &["step"], &reads, &writes, |x| {
             let (step, x) = (x[0], &x[1..]);
             let of = |k: usize| {
                 let (old, rate, new) = (x[k], x[count + k], x[2 * count + k]);
-                blend.value(step, old, rate, new)
+                stage.blend.value(step, old, rate, new)
             };
             (0..count).map(of).collect()
         })

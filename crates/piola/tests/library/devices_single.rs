@@ -1,0 +1,107 @@
+//! Pairs in single precision, on a device.
+//!
+//! They need a device, see `device`.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use piola::case::{self, LoadOptions, RunError, Session};
+use piola::time::{Outcome, Progress};
+
+use super::device::device;
+use super::devices::{load, session};
+
+const SINGLE: &str = "compute.precision='single'";
+
+/// A column moved by this in m, with the planes that hold it.
+fn far_away(distance: f64) -> [String; 3] {
+    let plane = |name: &str| {
+        format!(
+            "boundary.{name}.where={{ kind = 'plane', point = [{distance}, 0.0], normal = [-1.0, 0.0] }}"
+        )
+    };
+    let body = format!(
+        "body.water.shape={{ kind = 'box', min = [{distance}, 0.0], max = ['{distance} + L', 'L'] }}"
+    );
+    [body, plane("wall"), plane("gate")]
+}
+
+/// The largest difference of a column, and the largest of its numbers.
+fn difference(sessions: &mut [Session; 2], column: &str) -> [f64; 2] {
+    let [single, double] =
+        sessions.each_mut().map(|session| session.column(column).expect("all have it").values);
+    let apart = single.iter().zip(&double).map(|(one, other)| (one - other).abs());
+    [apart.fold(0.0, f64::max), double.iter().fold(0.0, |most, one| one.abs().max(most))]
+}
+
+/// A sum over 128 neighbours, more than any of these has, of which each is rounded by half of `2^-23`, may be off by 128 of
+/// these halves, and so may speeds that follow from it. Where a body stands does not matter: of places only differences
+/// count.
+#[test]
+fn single_precision_costs_no_more_than_its_rounding() {
+    let Some(device) = device() else { return };
+    let bound = 128.0 * 0.5 * f64::from(f32::EPSILON);
+    let far = far_away(1000.0);
+    let far: Vec<&str> =
+        far.iter().map(String::as_str).chain(["probe.top.at=[1000.0, 'L']"]).collect();
+    for (name, set) in [
+        ("ctvf/taylor-green", &[][..]),
+        ("ctvf/dam-break-3d", &[]),
+        ("dual-support/free-vibration", &["parameters.dx=1"]),
+        ("total-lagrangian/presets", &["scheme.artificial_viscosity=[1, 2]"]),
+        ("upwind/bar-sine", &[]),
+        ("upwind/dam-break", &[]),
+        ("upwind/dam-break", &far),
+    ] {
+        let set: Vec<&str> = set.iter().copied().chain(["time.max_steps=60"]).collect();
+        let single: Vec<&str> = set.iter().copied().chain([SINGLE]).collect();
+        let mut both = [(&single, device.as_str()), (&set, "processor")]
+            .map(|(set, device)| session(&load(name, set, device)));
+        for session in &mut both {
+            (0..40).for_each(|_| drop(session.step()));
+        }
+        let [apart, most] = difference(&mut both, "velocity");
+        assert!(apart > 0.0, "{name}: it is in double precision");
+        assert!(apart <= bound * most, "{name} {set:?}: {apart:e} m/s of {most:e} m/s");
+    }
+}
+
+#[test]
+fn single_precision_needs_a_device() {
+    let options = LoadOptions { overrides: vec![SINGLE.into()], ..LoadOptions::default() };
+    let text = "version = 1\n[compute]\ndevice = \"processor\"\n";
+    let problems = case::parse(text, "test", &options).unwrap_err().to_string();
+    assert!(problems.contains("the processor computes in double precision"), "{problems}");
+}
+
+/// What is broken off in one precision goes on in the same, whether it is named or not.
+#[test]
+fn a_run_goes_on_in_its_precision_only() {
+    let Some(device) = device() else { return };
+    let folder = tempfile::tempdir().expect("there is a place for temporary files");
+    let run = |out: &str, resumes: bool, device: &str, set: &[&str]| {
+        let set: Vec<&str> =
+            ["time.max_steps=40", "checkpoint.every_steps=5"].iter().chain(set).copied().collect();
+        let (mut session, stop) =
+            (session(&load("upwind/bar-sine", &set, device)), AtomicBool::new(false));
+        let out = folder.path().join(out);
+        match resumes {
+            true => session.resume_from(&out)?,
+            false => session.write_to(&out)?,
+        }
+        let last = if resumes { u64::MAX } else { 20 };
+        let mut progress =
+            |progress: &Progress| stop.store(progress.step >= last, Ordering::Relaxed);
+        Ok::<_, RunError>(session.run(&stop, &mut progress)?.summary)
+    };
+    let begun = run("double", false, "processor", &[]).expect("it runs");
+    assert_eq!(begun.outcome, Outcome::Interrupted);
+    let error = run("double", true, &device, &[SINGLE]).unwrap_err().to_string();
+    assert!(error.contains("in another precision"), "{error}");
+    let ended =
+        run("double", true, &device, &["compute.precision='double'"]).expect("it is the same");
+    assert!(ended.resumed.is_some() && ended.steps == 40, "{ended:?}");
+    run("single", false, &device, &[SINGLE]).expect("it runs");
+    let error = run("single", true, &device, &[]).unwrap_err().to_string();
+    assert!(error.contains("in another precision"), "{error}");
+    assert!(run("single", true, &device, &[SINGLE]).expect("it is the same").resumed.is_some());
+}
