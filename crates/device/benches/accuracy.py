@@ -43,4 +43,4 @@ for case, columns, *changes in RUNS:
         pairs = list(zip(double[column], single[column]))
         most = max(abs(value) for value, _ in pairs)
         off = max(abs(value - other) for value, other in pairs)
-        print(f"| `{case}` {' '.join(changes)} | {column.split(':')[1]} | {off / most:.1e} |", flush=True)
+        print(f"| `cases/{case}` {' '.join(changes)} | {column.split(':')[1]} | {off / most:.1e} |", flush=True)

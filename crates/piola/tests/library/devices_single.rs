@@ -2,6 +2,7 @@
 //!
 //! They need a device, see `device`.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use piola::case::{self, LoadOptions, RunError, Session};
@@ -67,9 +68,9 @@ fn single_precision_costs_no_more_than_its_rounding() {
 
 #[test]
 fn single_precision_needs_a_device() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/ctvf/cavity/case.toml");
     let options = LoadOptions { overrides: vec![SINGLE.into()], ..LoadOptions::default() };
-    let text = "version = 1\n[compute]\ndevice = \"processor\"\n";
-    let problems = case::parse(text, "test", &options).unwrap_err().to_string();
+    let problems = case::load(&path, &options).expect_err("it has no device").to_string();
     assert!(problems.contains("the processor computes in double precision"), "{problems}");
 }
 

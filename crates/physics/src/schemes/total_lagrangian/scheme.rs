@@ -91,7 +91,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         device: Device,
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        self.solid_to_device(device, method.unless_kicked()?)
+        self.solid_to_device(device, method)
     }
 
     #[inline(never)]
@@ -100,7 +100,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         language: Language,
         method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        self.solid_stages(language, method.unless_kicked()?)
+        self.solid_stages(language, method)
     }
 
     #[inline(never)]

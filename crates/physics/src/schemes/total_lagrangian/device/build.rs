@@ -72,7 +72,7 @@ impl<const D: usize> TotalLagrangian<D> {
         device: Device,
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        let discrete = self.on_devices()?;
+        let (discrete, method) = (self.on_devices()?, method.unless_kicked()?);
         match &discrete.operator.pairs {
             ReferencePairs::Plain(pairs) => self.on((device, method), discrete, pairs),
             ReferencePairs::Consistent(pairs) => self.on((device, method), discrete, pairs),
@@ -110,7 +110,8 @@ impl<const D: usize> TotalLagrangian<D> {
         language: Language,
         method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        let (discrete, dialect) = (self.on_devices()?, method.dialect(language, &NARROW));
+        let (discrete, method) = (self.on_devices()?, method.unless_kicked()?);
+        let dialect = method.dialect(language, &NARROW);
         let passes = match &discrete.operator.pairs {
             ReferencePairs::Plain(pairs) => self.passes(dialect, discrete, pairs),
             ReferencePairs::Consistent(pairs) => self.passes(dialect, discrete, pairs),
