@@ -83,6 +83,16 @@ fn two_keys_give_all_pairs_and_jobs_change_nothing() {
     }
 }
 
+/// The flags that say who computes hold for members, too.
+#[test]
+fn members_are_computed_where_the_flags_say() {
+    let place = Place::with_bar();
+    let sweep =
+        "sweep bar/case.toml --over time.max_steps=3,4 --device nowhere:7 --precision single";
+    let (_, stderr) = place.run(sweep, 2);
+    assert_contains(&stderr, &["time.max_steps=3: there is no device `nowhere:7`"]);
+}
+
 #[test]
 fn a_sweep_of_the_case_file_runs_its_members() {
     let place = Place::new();

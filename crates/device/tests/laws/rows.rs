@@ -1,6 +1,6 @@
 //! Sums over rows that do not change, on a device.
 
-use piola_device::{Among, Frozen, Gather, Machine, Order, Rows, own};
+use piola_device::{Among, Frozen, Gather, Machine, Order, Rows, difference, own};
 use piola_formulas::pairs::total_lagrangian::Gradients;
 use piola_formulas::pairs::{Components, Each, Square};
 
@@ -63,7 +63,7 @@ fn on_device(narrow: &'static [&'static str], field: &[f64]) -> Option<Vec<f64>>
     };
     let pairs = Frozen::<Each<Components<2>, 2>>::new(columns);
     let passes = |dialect| {
-        let (field, writes) = ([own("field", 2)], [own("gradient", 8)]);
+        let (field, writes) = ([difference("field", 2)], [own("gradient", 8)]);
         let gather = Gather::<Each<Square<2>, 2>, _>::new(
             dialect,
             "gradients",

@@ -1,7 +1,8 @@
 use std::path::Path;
 
 use piola_device::{
-    Among, Dialect, Frozen, Gather, Language, Order, Pass, Precision, Rows, Space, cuda, laws, own,
+    Among, Dialect, Frozen, Gather, Language, Order, Pass, Precision, Rows, Space, cuda,
+    difference, laws, own,
 };
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::fluid::{FULL, ForceConstants, ForceSum, Forces, Viscous};
@@ -65,7 +66,8 @@ fn gathers(dialect: Dialect) -> [Pass; 3] {
     let rows = Frozen::<Each<Components<2>, 1>>::new(rows);
     let gradients =
         Gather::<Each<Square<2>, 1>, _>::new(dialect, "gradients", &rows, Among::All, Order::Lanes);
-    let gradients = gradients.term(&Gradients::<2, 1>, &[own("displacement", 2)], Among::All);
+    let gradients =
+        gradients.term(&Gradients::<2, 1>, &[difference("displacement", 2)], Among::All);
     let gradients = gradients
         .close(&[], &[], &[own("gradient", 4)], |sums, _| sums[0].transpose().as_slice().to_vec());
     [density, forces, gradients]

@@ -164,7 +164,7 @@ fn what_a_device_cannot_do_is_refused_by_name() {
         (
             "total-lagrangian/presets",
             &[
-                "load+={ kind = 'spring', where = { kind = 'plane', point = ['L', 0.0], normal = [1.0, 0.0] }, \
+                "load+={ kind = 'spring', where = { kind = 'plane', point = ['L', 0.0], normal = [1.0, 0.0] }, to = ['2 * L', 0.0], \
                stiffness = 10 }",
             ],
             "a spring does not run on devices yet: leave it out",
