@@ -43,8 +43,7 @@ impl<const D: usize> Space<D> {
     /// The pair of two particles of this separation.
     fn apart(&self, separation: &[Traced]) -> Moving<Traced, D> {
         let mut pair = MovingPair::<D>::zero();
-        for axis in 0..D {
-            let distance = separation[axis];
+        for (axis, &distance) in separation.iter().enumerate() {
             pair.separation[axis] = distance;
             let square = distance * distance;
             pair.square = if axis == 0 { square } else { pair.square + square };

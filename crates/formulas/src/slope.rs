@@ -81,6 +81,20 @@ impl<T: Number> Neg for Slope<T> {
     }
 }
 
+impl<T: Number> Slope<T> {
+    /// The slope of `a b`.
+    #[inline(always)]
+    fn product(a: Self, b: Self, _: T) -> T {
+        a.slope * b.value + b.slope * a.value
+    }
+
+    /// That of `a / b`, which has this value.
+    #[inline(always)]
+    fn quotient(a: Self, b: Self, value: T) -> T {
+        (a.slope - value * b.slope) / b.value
+    }
+}
+
 /// An operation with its assignment, and that with a constant, by what it does to values and to slopes.
 macro_rules! operation {
     ($trait:ident $method:ident $assign:ident $assign_method:ident $operator:tt, $slope:expr, $of_constant:expr) => {
@@ -116,16 +130,8 @@ macro_rules! operation {
 
 operation!(Add add AddAssign add_assign +, |a, b, _| a.slope + b.slope, |slope, _| slope);
 operation!(Sub sub SubAssign sub_assign -, |a, b, _| a.slope - b.slope, |slope, _| slope);
-operation!(
-    Mul mul MulAssign mul_assign *,
-    |a, b, _| a.slope * b.value + b.slope * a.value,
-    |slope, by| slope * by
-);
-operation!(
-    Div div DivAssign div_assign /,
-    |a, b, value| (a.slope - value * b.slope) / b.value,
-    |slope, by| slope / by
-);
+operation!(Mul mul MulAssign mul_assign *, Self::product, |slope, by| slope * by);
+operation!(Div div DivAssign div_assign /, Self::quotient, |slope, by| slope / by);
 
 impl<T: Number> Number for Slope<T> {
     type Mask = T::Mask;

@@ -30,12 +30,12 @@ impl<const D: usize> Upwind<D> {
 }
 
 /// The slope of these moments.
-pub(super) fn solved<T: Number, I: Copy, const D: usize>(
+pub(super) fn solved<T, I: Copy, const D: usize>(
     moments: &Slope<T, D>,
     inverse: &SMatrix<I, D, D>,
 ) -> Slope<T, D>
 where
-    T: Mul<I, Output = T>,
+    T: Number + Mul<I, Output = T>,
 {
     let along = |row: &dyn Fn(usize) -> T, j: usize| {
         let mut sum = row(0) * inverse[(0, j)];

@@ -186,10 +186,11 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
     #[inline(never)]
     fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError> {
         self.state.mark(&mut self.machine)?;
-        Ok(match self.plan.method {
+        match self.plan.method {
             Method::RungeKutta(stages) => self.by_stages([time, step], stages)?,
             Method::Kicks => self.by_kicks([time, step])?,
-        })
+        }
+        Ok(())
     }
 
     #[inline(never)]
