@@ -180,6 +180,7 @@ fn what_a_device_cannot_do_is_refused_by_name() {
             "a material that is free across, as in plane stress, does not run on devices yet: choose `plane = \
              \"strain\"`",
         ),
+        ("coupled/plate", &[], "several systems in one case do not run on devices yet"),
         ("ctvf/rings", &[], "solids of `transport_velocity` do not run on devices yet"),
         (
             "ctvf/couette",

@@ -153,6 +153,11 @@ pub enum DeviceRefusal {
         "the formulation `{0}` does not run on devices: leave out `--device` and `compute.device`"
     )]
     Formulation(&'static str),
+    /// There are several systems.
+    #[error(
+        "several systems in one case do not run on devices yet: leave out `--device` and `compute.device`"
+    )]
+    Systems,
     /// The bodies are solids that deform as hypoelastic ones do.
     #[error(
         "solids of `transport_velocity` do not run on devices yet: leave out `--device` and `compute.device`"

@@ -1,5 +1,7 @@
 //! A world as clock, observers and output see it: one formulation with the particles of all.
 
+use piola_device::{Device, Language};
+
 use super::description::CONTACT;
 use super::flow::Way;
 use super::{MOST_STEPS, World};
@@ -8,8 +10,8 @@ use crate::fields::{ABSENT, FieldDescription};
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
-    Behind, CoupledScheme, Escape, Health, Particle, Passage, Phase, Scheme, SchemeDescription,
-    StepLimit,
+    Behind, CoupledScheme, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health,
+    Particle, Passage, Phase, Scheme, SchemeDescription, StepLimit,
 };
 
 /// The fields of walls of the fluid that solids have in it too: what the fluid does to them.
@@ -49,6 +51,22 @@ impl<const D: usize> Scheme for World<D> {
 
     fn dimension(&self) -> usize {
         D
+    }
+
+    fn on_device(
+        &self,
+        _device: Device,
+        _method: DeviceMethod,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        Err(DeviceRefusal::Systems)
+    }
+
+    fn device_stages(
+        &self,
+        _language: Language,
+        _method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        Err(DeviceRefusal::Systems)
     }
 
     fn particle_count(&self) -> usize {
