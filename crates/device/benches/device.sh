@@ -35,8 +35,11 @@ for precision in double single; do
     CUDA_LAUNCH_BLOCKING=1 speed "taylor-green-3d by pass, $precision" "${box[@]}" 200 "${large[@]}" "${on[@]}"
     speed "dam-break-3d, $precision" "${dam[@]}" 400 "${wet[@]}" "${on[@]}"
     speed "block, $precision" "$block" 2000 "${on[@]}"
-    CUDA_LAUNCH_BLOCKING=1 speed "block by pass, $precision" "$block" 400 --set parameters.n=64 "${on[@]}"
+    CUDA_LAUNCH_BLOCKING=1 speed "block by pass, $precision" "$block" 400 --set parameters.n=80 "${on[@]}"
+    CUDA_LAUNCH_BLOCKING=1 speed "small block by pass, $precision" "$block" 400 --set parameters.n=50 "${on[@]}"
     speed "column-impact-3d (upwind), $precision" cases/upwind/column-impact-3d/case.toml 1000 "${quiet[@]}" --set body.column.spacing=0.05 --set scheme.smoothing_length=0.13 "${on[@]}"
 done
 speed "taylor-green-3d, 16 threads" "${box[@]}" 12 "${large[@]}"
+speed "small block, 16 threads" "$block" 40 --set parameters.n=50
+speed "small block, one core" "$block" 12 --set parameters.n=50 --threads 1
 speed "taylor-green-3d, one core" "${box[@]}" 4 "${large[@]}" --threads 1

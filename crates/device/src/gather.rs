@@ -15,10 +15,11 @@ use crate::pass::{Pass, Use, filled, flat, width};
 use crate::record::Traced;
 use crate::text::Dialect;
 
+mod loops;
 mod text;
 
-pub use text::Pairs;
-use text::{Loop, Met};
+pub use loops::Pairs;
+use loops::{Loop, Met};
 
 /// The space in which particles move.
 #[derive(Clone, Debug)]

@@ -86,6 +86,11 @@ pub const fn difference(column: &'static str, width: usize) -> Use {
 }
 
 impl Use {
+    /// Whether both are the same numbers.
+    pub(crate) fn is_of(&self, other: &Self) -> bool {
+        (self.column, self.at) == (other.column, other.at)
+    }
+
     /// Names of the numbers in the text.
     pub(crate) fn names(&self, prefix: &str) -> Vec<String> {
         (0..self.width).map(|i| format!("{prefix}{}_{i}", self.column)).collect()

@@ -23,7 +23,7 @@ pub struct Work {
 /// Adds the uses that are not known yet.
 pub(crate) fn join<'a>(known: &mut Vec<Use>, more: impl IntoIterator<Item = &'a Use>) {
     for column in more {
-        if !known.contains(column) {
+        if !known.iter().any(|known| known.is_of(column)) {
             known.push(*column);
         }
     }

@@ -2,15 +2,13 @@
 
 use std::fmt::Write;
 
+use super::loops::{Loop, POSITION, Pairs, Term};
 use super::{Among, Order, Rows};
-use crate::law::{Function, Law};
-use crate::pass::{Arguments, At, Pass, Use, own};
-use crate::record::Traced;
-use crate::text::{Dialect, Language, Precision};
-use crate::work::{self, Work};
+use crate::law::Law;
+use crate::pass::{Arguments, At, Pass, Use};
+use crate::text::{Language, Precision};
 
-/// Columns of positions by slot, of numbers by slot, and of who is passive by number.
-const POSITION: &str = "place";
+/// Columns of numbers by slot, of who is passive by number, and of neighbours.
 const NUMBERS: &str = "numbers";
 const PASSIVE: &str = "passive";
 const ENTRIES: &str = "entries";
@@ -36,144 +34,34 @@ impl Among {
     }
 }
 
-/// How a loop goes through neighbours.
-pub enum Pairs {
-    /// Those of particles that move.
-    Moving {
-        /// Number of dimensions.
-        dimension: usize,
-        /// The particles that have sums.
-        over: Among,
-        /// What is between two of them, of the places of both.
-        separation: Law,
-    },
-    /// Those of rows that do not change.
-    Frozen(Rows),
-}
-
-/// A loop over neighbours, of whatever sums: the part of a [`Gather`](super::Gather) that is compiled once.
-pub(super) struct Loop {
-    dialect: Dialect,
-    pub name: &'static str,
-    pairs: Pairs,
-    order: Order,
-    terms: Vec<Term>,
-    start: Option<(Law, Vec<Use>)>,
-    pub only: Option<&'static str>,
-    /// Names of the sums, and of what a term makes of them.
-    sums: [Vec<String>; 2],
-}
-
-struct Term {
-    law: Law,
-    mine: Vec<Use>,
-    others: Vec<Use>,
-    among: Among,
-}
-
-/// The numbers of which a term is made.
-pub(super) struct Met<'a> {
-    /// What is known of the pair: what is between both, or the numbers of a row.
-    pub pair: &'a [Traced],
-    pub slots: [Traced; 2],
-    pub me: &'a [Traced],
-    pub other: &'a [Traced],
-    pub sums: &'a [Traced],
-}
-
-/// What is added to the sums.
-type OfTerm<'a> = Box<dyn FnOnce(&Met<'_>) -> Vec<Traced> + 'a>;
-/// What is made of the sums and of some columns.
-type OfSums<'a> = Box<dyn FnOnce(&[Traced], &[Traced]) -> Vec<Traced> + 'a>;
-
-fn names(prefix: &str, columns: &[Use]) -> Vec<String> {
-    columns.iter().flat_map(|column| column.names(prefix)).collect()
-}
-
-impl Term {
-    /// Names of what both show.
-    fn names(&self) -> [Vec<String>; 2] {
-        [names("my_", &self.mine), names("its_", &self.others)]
-    }
-}
-
 impl Loop {
-    pub fn new(
-        dialect: Dialect,
-        name: &'static str,
-        pairs: Pairs,
-        order: Order,
-        sums: [Vec<String>; 2],
-    ) -> Self {
-        let (terms, start, only) = (Vec::new(), None, None);
-        Self { dialect, name, pairs, order, terms, start, only, sums }
-    }
-
-    /// Names of what is known of a pair.
-    fn pair_names(&self) -> Vec<String> {
-        let axes = |of: &'static str, dimension: usize| {
-            (0..dimension).map(move |axis| format!("{of}_{axis}"))
-        };
-        match &self.pairs {
-            Pairs::Moving { dimension, .. } => axes("way", *dimension).collect(),
-            Pairs::Frozen(rows) => axes("pair", rows.kept.len()).collect(),
-        }
-    }
-
-    /// Adds a term of columns of a particle and of its neighbours.
-    pub fn term(&mut self, [mine, others]: [&[Use]; 2], among: Among, f: OfTerm<'_>) {
-        let [sums, results] = &self.sums;
-        let (my, its) = (names("my_", mine), names("its_", others));
-        let (pair, wide, count) = (self.pair_names(), my.len(), sums.len());
-        let known = pair.len();
-        let slots = vec!["slot_a".to_string(), "slot_b".to_string()];
-        let inputs = [pair, slots, my, its, sums.clone()];
-        let name = format!("{}_pair_{}", self.name, self.terms.len());
-        let law = Law::record(name, inputs.concat(), |x| {
-            let (pair, x) = x.split_at(known);
-            let (slots, x) = x.split_at(2);
-            let (me, x) = x.split_at(wide);
-            let (other, sums) = x.split_at(x.len() - count);
-            let met = Met { pair, slots: [slots[0], slots[1]], me, other, sums };
-            results.iter().cloned().zip(f(&met)).collect()
-        });
-        let (mine, others) = (mine.to_vec(), others.to_vec());
-        self.terms.push(Term { law, mine, others, among });
-    }
-
-    /// What sums begin with.
-    pub fn start(&mut self, columns: &[Use], f: Function<'_>) {
-        assert!(self.order != Order::Lanes, "lanes of `{}` begin with nothing", self.name);
-        let law = Law::record(format!("{}_start", self.name), names("my_", columns), |x| {
-            self.sums[1].iter().cloned().zip(f(x)).collect()
-        });
-        self.start = Some((law, columns.to_vec()));
-    }
-
-    /// The pass, with what is made of the sums and some columns.
-    pub fn close(
+    /// The pass.
+    pub(super) fn write(
         self,
+        close: &Law,
         scalars: &[&'static str],
         [columns, writes]: [&[Use]; 2],
-        f: OfSums<'_>,
     ) -> Pass {
-        let (name, sums) = (self.name, &self.sums[0]);
-        let outputs = names("new_", writes);
-        let inputs = sums.iter().cloned().chain(scalars.iter().map(|name| name.to_string()));
-        let inputs: Vec<String> = inputs.chain(names("my_", columns)).collect();
-        let law = Law::record(format!("{name}_close"), inputs, |x| {
-            let (sums, x) = x.split_at(sums.len());
-            let results = f(sums, x);
-            assert_eq!(results.len(), outputs.len(), "the pass `{name}` writes what it says");
-            outputs.iter().cloned().zip(results).collect()
-        });
-        self.write(&law, scalars, columns, writes)
+        let arguments = self.arguments(scalars, columns, writes);
+        let mut text = self.laws(close);
+        let name = self.name;
+        let _ = writeln!(text, "KERNEL void {name}({})\n{{", arguments.text());
+        self.write_head(columns, &mut text);
+        self.write_sums(&mut text);
+        self.write_close(close, scalars, [columns, writes], &mut text);
+        let (threads, work) =
+            (if self.has_lanes() { 8 } else { 1 }, self.work(close, columns, writes));
+        Pass { name, text, asks: arguments.asks, threads, work }
     }
 
-    fn write(self, close: &Law, scalars: &[&'static str], columns: &[Use], writes: &[Use]) -> Pass {
-        let (dialect, is_gpu) = (self.dialect, self.has_lanes());
-        let work = dialect.of_pairs().token();
-        let mut arguments = Arguments::new(dialect);
+    /// Columns that are read of the particle itself.
+    fn mine<'a>(&'a self, columns: &'a [Use]) -> impl Iterator<Item = &'a Use> {
+        let started = self.start.iter().flat_map(|(_, columns)| columns);
+        self.terms.iter().flat_map(|term| &term.mine).chain(started).chain(columns)
+    }
+
+    fn arguments(&self, scalars: &[&'static str], columns: &[Use], writes: &[Use]) -> Arguments {
+        let mut arguments = Arguments::new(self.dialect);
         scalars.iter().for_each(|name| arguments.scalar(name));
         match &self.pairs {
             Pairs::Moving { .. } => {
@@ -189,10 +77,8 @@ impl Loop {
                 arguments.numbers(numbers, true);
             }
         }
-        let started = self.start.iter().flat_map(|(_, columns)| columns);
-        let mine = self.terms.iter().flat_map(|term| &term.mine).chain(started).chain(columns);
         let others = self.terms.iter().flat_map(|term| &term.others);
-        for column in mine.chain(others) {
+        for column in self.mine(columns).chain(others) {
             if let At::Through(index) = column.at {
                 arguments.indices(index);
             }
@@ -200,18 +86,25 @@ impl Loop {
         }
         self.only.iter().for_each(|only| arguments.numbers(only, true));
         writes.iter().for_each(|write| arguments.numbers(write.column, false));
+        arguments
+    }
 
-        let mut text = String::new();
+    /// The laws, as functions.
+    fn laws(&self, close: &Law) -> String {
+        let (mut text, dialect, name) = (String::new(), self.dialect, self.name);
         let laws = self.terms.iter().map(|term| &term.law);
         let laws = laws.chain(self.start.iter().map(|(law, _)| law));
         laws.for_each(|law| text += &law.text(dialect.language, dialect.of_pairs()));
         text += &close.text(dialect.language, Precision::Double);
-        let name = self.name;
         if let Pairs::Moving { separation, .. } = &self.pairs {
             let own = Law { name: format!("{name}_separation"), ..separation.clone() };
             text += &own.text(dialect.language, Precision::Double);
         }
-        let _ = writeln!(text, "KERNEL void {name}({})\n{{", arguments.text());
+        text
+    }
+
+    /// Who works on which particle, and what is read of it.
+    fn write_head(&self, columns: &[Use], text: &mut String) {
         let passive = match &self.pairs {
             Pairs::Moving { over, .. } => {
                 Some(format!("{PASSIVE}[{NUMBERS}[a]] {}", over.condition()))
@@ -220,7 +113,7 @@ impl Loop {
         };
         let only = self.only.map(|only| format!("{only}[a] > 0.5"));
         let wanted: Vec<String> = passive.into_iter().chain(only).collect();
-        text += &match is_gpu {
+        *text += &match self.has_lanes() {
             true => format!(
                 "    const int thread = blockIdx.x * blockDim.x + threadIdx.x;\n    \
                  const int lane = thread % 8;\n    \
@@ -241,16 +134,18 @@ impl Loop {
             }
         }
         let mut mine: Vec<Use> = Vec::new();
-        let started = self.start.iter().flat_map(|(_, columns)| columns);
-        let of_terms = self.terms.iter().flat_map(|term| &term.mine);
-        for column in of_terms.chain(started).chain(columns) {
-            if !mine.contains(column) {
+        for column in self.mine(columns) {
+            if !mine.iter().any(|known| known.is_of(column)) {
                 mine.push(*column);
-                self.load(&mut text, "    ", column, "my_", "a");
+                self.load(text, "    ", column, "my_", "a");
             }
         }
-        let sums = &self.sums[0];
-        let is_laned = self.order == Order::Lanes && !is_gpu;
+    }
+
+    /// The loops over neighbours.
+    fn write_sums(&self, text: &mut String) {
+        let (sums, work) = (&self.sums[0], self.dialect.of_pairs().token());
+        let is_laned = self.order == Order::Lanes && !self.has_lanes();
         for sum in sums {
             let _ = match is_laned {
                 true => writeln!(text, "    {work} l{sum}[8] = {{0, 0, 0, 0, 0, 0, 0, 0}};"),
@@ -266,11 +161,11 @@ impl Loop {
             match &self.pairs {
                 Pairs::Moving { .. } => {
                     for rows in term.among.rows() {
-                        self.write_term(term, *rows, sums, &mut text);
+                        self.write_term(term, *rows, sums, text);
                     }
                 }
                 Pairs::Frozen(Rows { first, count, .. }) => {
-                    self.write_term(term, [first, count], sums, &mut text);
+                    self.write_term(term, [first, count], sums, text);
                 }
             }
         }
@@ -290,8 +185,19 @@ impl Loop {
                 (false, Order::Single | Order::Fold) => Ok(()),
             };
         }
-        if is_gpu {
-            text += "    if (!is_on || lane > 0) return;\n";
+    }
+
+    /// What is made of the sums.
+    fn write_close(
+        &self,
+        close: &Law,
+        scalars: &[&'static str],
+        [columns, writes]: [&[Use]; 2],
+        text: &mut String,
+    ) {
+        let sums = &self.sums[0];
+        if self.has_lanes() {
+            *text += "    if (!is_on || lane > 0) return;\n";
         }
         let outputs: Vec<String> = writes.iter().flat_map(|write| write.names("new_")).collect();
         let inputs = sums.iter().cloned().chain(scalars.iter().map(|name| name.to_string()));
@@ -309,39 +215,7 @@ impl Loop {
                 let _ = writeln!(text, "    {} = {number};", write.place(i));
             }
         }
-        text += "    }\n}\n";
-        let (threads, work) = (if is_gpu { 8 } else { 1 }, self.work(close, columns, writes));
-        Pass { name, text, asks: arguments.asks, threads, work }
-    }
-
-    /// What it computes and touches, with what is made of the sums.
-    fn work(&self, close: &Law, columns: &[Use], writes: &[Use]) -> Work {
-        // Of rows the numbers of pairs are read, not the places of particles.
-        let (place, of_pair) = match &self.pairs {
-            Pairs::Moving { dimension, .. } => (Some(own(POSITION, *dimension)), None),
-            Pairs::Frozen(rows) => {
-                (None, Some(own(rows.numbers, rows.kept.iter().flatten().count())))
-            }
-        };
-        let (start, started) = self
-            .start
-            .as_ref()
-            .map_or((0, &[][..]), |(law, columns)| (law.operations(), columns.as_slice()));
-        let mut work = Work {
-            operations: start + close.operations(),
-            narrow: self.dialect.narrow,
-            ..Work::default()
-        };
-        let only = self.only.map(|only| own(only, 1));
-        work::join(&mut work.reads, only.iter().chain(&place).chain(started).chain(columns));
-        work::join(&mut work.gathers, place.iter().chain(&of_pair));
-        work::join(&mut work.writes, writes);
-        for term in &self.terms {
-            work.by_neighbor.push(term.law.operations());
-            work::join(&mut work.reads, &term.mine);
-            work::join(&mut work.gathers, &term.others);
-        }
-        work
+        *text += "    }\n}\n";
     }
 
     /// Whether eight threads work on a particle.

@@ -2,6 +2,8 @@
 //!
 //! They are few, and what acts on them is a function of place and time that may be anything.
 
+use piola_device::{DeviceError, Machine};
+
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::pressure::Pressed;
 use crate::boundaries::traction::Loaded;
@@ -72,6 +74,27 @@ impl<const D: usize> Listed<D> {
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.particles.len()
+    }
+
+    /// Reads what a device shows of each row, as many numbers.
+    pub fn shown(&self, machine: &Machine, width: usize) -> Result<Vec<f64>, DeviceError> {
+        let mut shown = vec![0.0; self.len() * width];
+        if !shown.is_empty() {
+            machine.start("show", self.len(), &[])?;
+            machine.device().read(machine.column("shown"), &mut shown)?;
+        }
+        Ok(shown)
+    }
+
+    /// Gives a device the accelerations.
+    pub fn give(&self, machine: &mut Machine) -> Result<(), DeviceError> {
+        if self.len() == 0 {
+            return Ok(());
+        }
+        let given: Vec<f64> =
+            self.acceleration.iter().flat_map(|row| row.iter().copied()).collect();
+        machine.write("given", &given)?;
+        machine.start("take", self.len(), &[])
     }
 
     /// Lets everything act on the accelerations at a time.

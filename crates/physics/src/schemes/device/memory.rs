@@ -1,6 +1,6 @@
 //! Whether a run fits into the memory of a device.
 
-use piola_device::Device;
+use piola_device::{Device, DeviceError, Machine};
 
 use super::DeviceRefusal;
 
@@ -37,6 +37,29 @@ pub(crate) fn fits<'a>(
             let device = device.found().to_string();
             Err(DeviceRefusal::Memory { needed, device, largest })
         }
+    }
+}
+
+/// Columns of a run beside its state.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    /// Columns of work with their lengths.
+    pub scratch: Vec<(&'static str, usize)>,
+    /// Columns that do not change, with their numbers.
+    pub filled: Vec<(&'static str, Vec<f64>)>,
+}
+
+impl Room {
+    /// Bytes that they take in double precision.
+    pub fn bytes(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let scratch = self.scratch.iter().map(|(name, length)| (*name, length * size_of::<f64>()));
+        scratch.chain(self.filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers))))
+    }
+
+    /// Makes them.
+    pub fn make(&self, machine: &mut Machine) -> Result<(), DeviceError> {
+        self.scratch.iter().try_for_each(|(name, length)| machine.add_zeros(name, *length))?;
+        self.filled.iter().try_for_each(|(name, numbers)| machine.add(name, numbers))
     }
 }
 

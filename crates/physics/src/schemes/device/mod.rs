@@ -3,6 +3,7 @@
 mod listed;
 mod memory;
 mod numbers;
+pub(crate) mod solid;
 mod state;
 
 use piola_device::{DeviceError, Dialect, Language, Pass, Precision};
@@ -13,9 +14,9 @@ use super::split::KICK_DRIFT_KICK;
 use super::{Health, Phase, RankCosts, StepLimit};
 
 pub(crate) use listed::{Acting, Listed};
-pub(crate) use memory::fits;
+pub(crate) use memory::{Room, fits};
 pub(crate) use numbers::{Recorded, are_finite, entries, one, sighted, square, take, tensor};
-pub(crate) use state::{StateColumn, StateColumns, gravity};
+pub(crate) use state::{Gravity, StateColumn, StateColumns};
 
 /// Why steps that are taken elsewhere cannot go on.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -4,21 +4,40 @@ use std::ops::Range;
 
 use piola_device::{DeviceError, Machine};
 
+use crate::boundaries::BodyForce;
 use crate::fields::{FieldDescription, column};
 use crate::{Vector, parallel};
 
-/// The body force of each particle as numbers.
-pub(crate) fn gravity<const D: usize>(
-    count: usize,
-    acceleration: impl Fn(usize) -> Vector<D> + Sync,
-) -> Vec<f64> {
-    let mut all = vec![Vector::<D>::zeros(); count];
-    parallel::for_each_chunk(&mut all, |first, rows| {
-        for (a, row) in (first..).zip(rows) {
-            *row = acceleration(a);
+/// The column `gravity` of body forces.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Gravity {
+    /// The time in s of which it is.
+    of: Option<f64>,
+}
+
+impl Gravity {
+    /// Writes that of a time in s, where it is not there yet.
+    pub fn write<const D: usize>(
+        &mut self,
+        machine: &mut Machine,
+        (time, forces): (f64, &[BodyForce<D>]),
+        count: usize,
+        acceleration: impl Fn(usize) -> Vector<D> + Sync,
+    ) -> Result<(), DeviceError> {
+        let is_steady = forces.iter().all(BodyForce::is_steady);
+        if self.of.is_some_and(|of| is_steady || of == time) {
+            return Ok(());
         }
-    });
-    all.iter().flat_map(|row| row.iter().copied()).collect()
+        self.of = Some(time);
+        let mut all = vec![Vector::<D>::zeros(); count];
+        parallel::for_each_chunk(&mut all, |first, rows| {
+            for (a, row) in (first..).zip(rows) {
+                *row = acceleration(a);
+            }
+        });
+        let all: Vec<f64> = all.iter().flat_map(|row| row.iter().copied()).collect();
+        machine.write("gravity", &all)
+    }
 }
 
 /// A column of a state on a device.

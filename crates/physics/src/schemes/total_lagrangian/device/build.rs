@@ -10,7 +10,8 @@ use super::passes::{DUALS, FIGURES, FOLDS, Plan, SUPPORTS};
 use crate::operators::{AdjointPairs, Columns, FrozenRows, ReferencePairs};
 use crate::parallel::chunk;
 use crate::schemes::device::{
-    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, StateColumn, StateColumns, fits, staged,
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Gravity, Room, StateColumn,
+    StateColumns, fits, solid, staged,
 };
 
 /// Most mixtures whose stresses stand in one pass.
@@ -38,9 +39,6 @@ const STAGES: [(&str, &[&str]); 8] = [
     ("kick", &["kick_velocities"]),
     ("look", &["rates_of_moment", "look"]),
 ];
-
-/// A column with the numbers that it begins with.
-type Filled = (&'static str, Vec<f64>);
 
 impl<const D: usize> TotalLagrangian<D> {
     /// What has no steps on a device, with what a case has to be like instead.
@@ -151,25 +149,22 @@ impl<const D: usize> TotalLagrangian<D> {
         let (folds, of_folds) = folds.columns(FOLDS);
         let rows: [(&Rows, &Columns<'_>); 3] =
             [(&supports.rows, &of_supports), (&duals.rows, &of_duals), (&folds.rows, &of_folds)];
-        let (columns, scratch) = (
-            StateColumn::all(Made::FIELDS, [D, count], &STATE),
-            self.scratch::<N>(&plan, followed.listed.len()),
-        );
-        let filled = self.filled::<N>(&plan, discrete);
+        let columns = StateColumn::all(Made::FIELDS, [D, count], &STATE);
+        let room = Room {
+            scratch: self.scratch::<N>(&plan, followed.listed.len()),
+            filled: self.filled::<N>(&plan, discrete),
+        };
         let of_rows = rows.iter().map(|(rows, columns)| (rows.numbers, columns.bytes()));
-        let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
-        let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
         // Displacements and velocities of images, with their copies.
         let beyond = ("images", 4 * images.len() * D * size_of::<f64>());
-        let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes)).chain([beyond]);
-        fits(&device, method.narrow(&NARROW), all.chain(of_rows).chain(of_filled))?;
+        let all = StateColumns::bytes(&columns).chain(room.bytes()).chain([beyond]);
+        fits(&device, method.narrow(&NARROW), all.chain(of_rows))?;
         let passes = |dialect| plan.passes(dialect, &supports, &duals, &folds);
         let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;
         let tail = LEDGER.length(D) + BEHIND;
         let state = StateColumns::new(columns, tail);
         state.make(&mut machine, |name| if name == "kick" { 0 } else { images.len() * D })?;
-        scratch.iter().try_for_each(|(name, length)| machine.add_zeros(name, *length))?;
-        filled.iter().try_for_each(|(name, numbers)| machine.add(name, numbers))?;
+        room.make(&mut machine)?;
         rows.iter().try_for_each(|(rows, columns)| columns.add(&mut machine, rows))?;
         machine.add_indices("listed", &followed.listed.particles)?;
         let sources: Vec<u32> = images.iter().map(|image| image.source).collect();
@@ -186,7 +181,7 @@ impl<const D: usize> TotalLagrangian<D> {
             followed,
             images: images.to_vec(),
             stable: self.stable,
-            is_falling: false,
+            gravity: Gravity::default(),
             is_evaluated: false,
             is_soft: false,
         }))
@@ -200,7 +195,7 @@ impl<const D: usize> TotalLagrangian<D> {
             ("tension", slots * N * D * D),
             ("force", slots * D),
             ("terms", count * plan.terms().max(FIGURES)),
-            ("shown", rows * (D + D * D)),
+            ("shown", rows * solid::width(&plan.shown())),
             ("given", rows * D),
             ("moved", rows * 2 * D),
         ];
@@ -214,7 +209,11 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// Columns that do not change.
-    fn filled<const N: usize>(&self, plan: &Plan<D>, discrete: &Discrete<D>) -> Vec<Filled> {
+    fn filled<const N: usize>(
+        &self,
+        plan: &Plan<D>,
+        discrete: &Discrete<D>,
+    ) -> Vec<(&'static str, Vec<f64>)> {
         let (solid, operator) = (&*self.solid, &*discrete.operator);
         let (count, particles) = (solid.len(), &solid.particles);
         let own = (0..self.force.len()).flat_map(|slot| {
@@ -222,7 +221,7 @@ impl<const D: usize> TotalLagrangian<D> {
             (0..N * D).map(move |k| all[k / D][k % D])
         });
         let place = particles.position.iter().flat_map(|place| place.iter().copied());
-        let mut all: Vec<Filled> = vec![
+        let mut all: Vec<(&'static str, Vec<f64>)> = vec![
             ("mass", solid.mass.clone()),
             ("volume", particles.volume.clone()),
             ("own_coefficients", own.collect()),

@@ -23,7 +23,8 @@ use super::{
 use crate::Vector;
 use crate::operators::{Image, PlaneData};
 use crate::parallel::{Reduce as _, Team};
-use crate::schemes::device::{Acting, DeviceSteps, StateColumns, gravity, sighted};
+use crate::schemes::device::solid;
+use crate::schemes::device::{Acting, DeviceSteps, Gravity, StateColumns, sighted};
 use crate::schemes::ledger::{Total, Totals};
 use crate::schemes::momentum::momentum_components;
 use crate::schemes::stages::{Phase, Stages};
@@ -40,8 +41,7 @@ struct OnDevice<const D: usize> {
     followed: Followed<D>,
     images: Vec<Image<D>>,
     stable: Bound,
-    /// Whether the column of body forces is that of all times.
-    is_falling: bool,
+    gravity: Gravity,
     /// Whether gradients are those of the displacements.
     is_evaluated: bool,
     /// Whether a material was seen to have lost its convexity when the state was looked at last.
@@ -79,13 +79,13 @@ impl<const D: usize> OnDevice<D> {
 
     /// Sets the body force of each particle, where it changes.
     fn fall(&mut self, time: f64) -> Result<(), DeviceError> {
-        if self.is_falling || !self.plan.is_pulled {
+        if !self.plan.is_pulled {
             return Ok(());
         }
         let (loads, solid) = (&self.loads, &*self.solid);
-        self.is_falling = loads.body_forces.iter().all(|force| force.is_steady());
-        let all = gravity(solid.len(), |a| loads.acceleration(solid, a, time));
-        self.machine.write("gravity", &all)
+        let forces = (time, &*loads.body_forces);
+        let each = |a| loads.acceleration(solid, a, time);
+        self.gravity.write(&mut self.machine, forces, solid.len(), each)
     }
 
     fn run(&mut self, pass: Pass, time: f64, totals: &mut Totals) -> Result<(), DeviceError> {
@@ -144,28 +144,18 @@ impl<const D: usize> OnDevice<D> {
 
     /// Lets the processor change the accelerations of those particles on which something acts.
     fn act(&mut self, time: f64) -> Result<Acting, DeviceError> {
-        let rows = self.followed.listed.len();
-        if rows > 0 {
-            let listed = &mut self.followed.listed;
-            self.machine.start("show", rows, &[])?;
-            let wide = if self.plan.is_pressed { D + D * D } else { D };
-            let mut shown = vec![0.0; rows * wide];
-            self.machine.device().read(self.machine.column("shown"), &mut shown)?;
-            for (row, shown) in shown.chunks_exact(wide).enumerate() {
-                let (kick, gradient) = shown.split_at(D);
-                listed.acceleration[row].copy_from_slice(kick);
-                for (entry, value) in gradient.iter().enumerate() {
-                    listed.gradient[row][(entry / D, entry % D)] = *value;
-                }
+        let listed = &mut self.followed.listed;
+        let width = solid::width(&self.plan.shown());
+        let shown = listed.shown(&self.machine, width)?;
+        for (row, shown) in shown.chunks_exact(width).enumerate() {
+            let (kick, gradient) = shown.split_at(D);
+            listed.acceleration[row].copy_from_slice(kick);
+            for (entry, value) in gradient.iter().enumerate() {
+                listed.gradient[row][(entry / D, entry % D)] = *value;
             }
         }
         let acting = self.followed.act(time);
-        if rows > 0 {
-            let kicks = self.followed.listed.acceleration.iter();
-            let given: Vec<f64> = kicks.flat_map(|kick| kick.iter().copied()).collect();
-            self.machine.write("given", &given)?;
-            self.machine.start("take", rows, &[])?;
-        }
+        self.followed.listed.give(&mut self.machine)?;
         Ok(acting)
     }
 

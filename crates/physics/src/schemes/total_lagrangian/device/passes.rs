@@ -12,6 +12,7 @@ use piola_formulas::{Number, tensor};
 
 use super::super::Mixture;
 use crate::operators::stabilised;
+use crate::schemes::device::solid;
 use crate::schemes::device::{Recorded, are_finite, entries, one, square, take, tensor as taken};
 use crate::schemes::momentum::{moments, momentum_components};
 
@@ -60,13 +61,13 @@ impl<const D: usize> Plan<D> {
     ) -> Vec<Pass> {
         let mut all = vec![
             self.kick_and_drift(dialect),
-            self.kick(dialect),
+            solid::kick::<D>(dialect, "kick"),
             self.strains(dialect, supports),
             self.forces(dialect, duals),
             self.external(dialect),
             self.look(dialect),
-            self.show(dialect),
-            self.take(dialect),
+            solid::show(dialect, &self.shown()),
+            solid::give::<D>(dialect, "kick"),
             self.follow(dialect),
         ];
         if self.viscosity.is_some() {
@@ -95,16 +96,6 @@ impl<const D: usize> Plan<D> {
             let (velocity, kick): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
             let velocity = velocity + kick * duration;
             (displacement + velocity * step).iter().chain(&velocity).copied().collect()
-        })
-    }
-
-    /// Velocities change by accelerations.
-    fn kick(&self, dialect: Dialect) -> Pass {
-        let (reads, writes) = ([own("velocity", D), own("kick", D)], [own("velocity", D)]);
-        local(dialect, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
-            let duration = one(&mut x);
-            let (velocity, kick): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
-            (velocity + kick * duration).iter().copied().collect()
         })
     }
 
@@ -264,21 +255,13 @@ impl<const D: usize> Plan<D> {
         })
     }
 
-    /// Rows of the particles on which something acts.
-    fn show(&self, dialect: Dialect) -> Pass {
-        let wide = if self.is_pressed { D * D } else { 0 };
-        let mut reads = vec![through("listed", "kick", D)];
-        reads.extend(self.is_pressed.then_some(through("listed", "gradient", D * D)));
-        local(dialect, "show", &[], &reads, &[own("shown", D + wide)], |x| x.to_vec())
+    /// What the processor is shown of a particle on which something acts.
+    pub fn shown(&self) -> Vec<(&'static str, usize)> {
+        let gradient = self.is_pressed.then_some(("gradient", D * D));
+        [("kick", D)].into_iter().chain(gradient).collect()
     }
 
-    /// Accelerations of the same, as something has acted on them.
-    fn take(&self, dialect: Dialect) -> Pass {
-        let (reads, writes) = ([own("given", D)], [through("listed", "kick", D)]);
-        local(dialect, "take", &[], &reads, &writes, |x| x.to_vec())
-    }
-
-    /// Displacements and velocities of the same, some of which are prescribed.
+    /// Displacements and velocities of the particles on which something acts, some of which are prescribed.
     fn follow(&self, dialect: Dialect) -> Pass {
         let reads = [own("moved", 2 * D)];
         let writes = [through("listed", "displacement", D), through("listed", "velocity", D)];

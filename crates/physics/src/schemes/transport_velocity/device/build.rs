@@ -12,7 +12,7 @@ use crate::operators::MovingSupport;
 use crate::parallel::chunk;
 use crate::schemes::Scheme;
 use crate::schemes::device::{
-    DeviceMethod, DeviceRefusal, DeviceSteps, StateColumn, StateColumns, fits,
+    DeviceMethod, DeviceRefusal, DeviceSteps, Gravity, StateColumn, StateColumns, fits,
 };
 
 /// Columns that may be in single precision: what neighbours see, and what is summed over them.
@@ -191,7 +191,7 @@ impl<const D: usize> TransportVelocity<D> {
             speed: common.shifting_speed(),
             body_forces: common.body_forces.clone(),
             bodies: common.particles.body.clone(),
-            is_falling: false,
+            gravity: Gravity::default(),
             removal,
             skin,
         }))

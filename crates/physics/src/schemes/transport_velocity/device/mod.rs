@@ -28,7 +28,7 @@ use super::{Continuum as _, Fluid, WeaklyCompressible};
 use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::parallel::Reduce as _;
-use crate::schemes::device::{DeviceSteps, StateColumns, gravity};
+use crate::schemes::device::{DeviceSteps, Gravity, StateColumns};
 use crate::schemes::ledger::Totals;
 use crate::schemes::look::Most;
 use crate::schemes::momentum::momentum_components;
@@ -86,8 +86,7 @@ struct OnDevice<const D: usize> {
     body_forces: Vec<BodyForce<D>>,
     /// Body of each particle.
     bodies: Vec<u32>,
-    /// Whether the column of body forces is that of all times.
-    is_falling: bool,
+    gravity: Gravity,
     /// What is known of particles that may be taken out, if that is done.
     removal: Option<Removal>,
     /// What lists reach beyond the support in m.
@@ -121,17 +120,13 @@ impl<const D: usize> OnDevice<D> {
 
     /// Sets the body force of each particle, where it changes.
     fn fall(&mut self, time: f64) -> Result<(), DeviceError> {
-        if self.is_falling {
-            return Ok(());
-        }
         let (forces, bodies) = (&self.body_forces, &self.bodies);
-        self.is_falling = forces.iter().all(BodyForce::is_steady);
         // Forces are uniform.
         let most = bodies.iter().max().map_or(0, |most| most + 1);
         let at = |body: u32| BodyForce::sum(forces, body, &Vector::<D>::zeros(), time);
         let each: Vec<Vector<D>> = (0..most).map(at).collect();
-        let all = gravity(bodies.len(), |a| each[bodies[a] as usize]);
-        self.machine.write("gravity", &all)
+        let each = |a: usize| each[bodies[a] as usize];
+        self.gravity.write(&mut self.machine, (time, forces), bodies.len(), each)
     }
 
     fn run(

@@ -13,8 +13,8 @@ use crate::boundaries::prescribed::Entry;
 use crate::parallel::chunk;
 use crate::schemes::blend;
 use crate::schemes::device::{
-    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Listed, StateColumn, StateColumns, fits,
-    staged,
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Gravity, Listed, Room, StateColumn,
+    StateColumns, fits, solid, staged,
 };
 use crate::schemes::split::KICK_DRIFT_KICK;
 
@@ -31,9 +31,6 @@ const STAGES: [(&str, &[&str]); 7] = [
     ("advance", &["drift", "predict", "halve", "blend_quarter", "blend_two_thirds"]),
     ("look", &["look"]),
 ];
-
-/// A column with the numbers that it begins with.
-type Filled = (&'static str, Vec<f64>);
 
 /// The middle of the box around some places.
 fn middle<const D: usize>(places: &[Vector<D>]) -> Vector<D> {
@@ -57,11 +54,8 @@ impl<const D: usize> Upwind<D> {
         let (pairs, of_pairs) = self.areas.pairs.columns(PAIRS);
         let names = state::<D>().map(|([name, before, _], _)| [name, before]);
         let columns = StateColumn::all(Made::FIELDS, [D, count], &names);
-        let scratch = self.scratch(&listed);
-        let filled = self.filled(&plan);
-        let bytes = |(name, length): &(&'static str, usize)| (*name, length * size_of::<f64>());
-        let of_filled = filled.iter().map(|(name, numbers)| (*name, size_of_val(&**numbers)));
-        let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes)).chain(of_filled);
+        let room = Room { scratch: self.scratch(&listed), filled: self.filled(&plan) };
+        let all = StateColumns::bytes(&columns).chain(room.bytes());
         let of_rows = [(pairs.rows.numbers, of_pairs.bytes())];
         fits(&device, method.narrow(&NARROW), all.chain(of_rows))?;
         let passes = |dialect| plan.passes(dialect, &pairs);
@@ -69,8 +63,7 @@ impl<const D: usize> Upwind<D> {
         let tail = LEDGER.length(D) + KEPT;
         let state = StateColumns::new(columns, tail);
         state.make(&mut machine, |_| 0)?;
-        scratch.iter().try_for_each(|(name, length)| machine.add_zeros(name, *length))?;
-        filled.iter().try_for_each(|(name, numbers)| machine.add(name, numbers))?;
+        room.make(&mut machine)?;
         of_pairs.add(&mut machine, &pairs.rows)?;
         machine.add_indices("listed", &listed.particles)?;
         let component = |entry: &Entry| (entry.particle * D + entry.component) as u32;
@@ -88,7 +81,7 @@ impl<const D: usize> Upwind<D> {
             limits: self.bounds(),
             rate: vec![0.0; tail],
             plan,
-            is_falling: false,
+            gravity: Gravity::default(),
             is_rated: false,
         }))
     }
@@ -132,7 +125,7 @@ impl<const D: usize> Upwind<D> {
             ("side", count * UpwindSide::<D>::NUMBERS),
             ("terms", count * terms(D).max(FIGURES)),
             ("gravity", count * D),
-            ("shown", rows * shown(D)),
+            ("shown", rows * solid::width(&shown::<D>())),
             ("given", rows * D),
         ];
         all.extend(state::<D>().map(|([_, _, rate], width)| (rate, count * width)));
@@ -143,12 +136,12 @@ impl<const D: usize> Upwind<D> {
     }
 
     /// Columns that do not change.
-    fn filled(&self, plan: &Plan<D>) -> Vec<Filled> {
+    fn filled(&self, plan: &Plan<D>) -> Vec<(&'static str, Vec<f64>)> {
         let (count, particles) = (self.particles.len(), &self.particles);
         let each = |of: &dyn Fn(usize) -> f64| (0..count).map(of).collect::<Vec<f64>>();
         let place = particles.position.iter().flat_map(|place| place.iter().copied());
         let diagonal = |a: usize| (0..D).map(move |i| self.areas.diagonal(a)[i]);
-        let mut all: Vec<Filled> = vec![
+        let mut all: Vec<(&'static str, Vec<f64>)> = vec![
             ("volume", particles.volume.clone()),
             ("mass", each(&|a| self.mass(a))),
             ("density", each(&|a| self.reference[a].density)),

@@ -17,7 +17,8 @@ use crate::boundaries::BodyForce;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::geometry::Particles;
 use crate::schemes::blend::{BlendStage, advance};
-use crate::schemes::device::{DeviceSteps, Listed, StateColumns, gravity, sighted};
+use crate::schemes::device::solid;
+use crate::schemes::device::{DeviceSteps, Gravity, Listed, StateColumns, sighted};
 use crate::schemes::ledger::{Total, Totals};
 use crate::schemes::momentum::momentum_components;
 use crate::schemes::stages::{Phase, Stages};
@@ -37,8 +38,7 @@ struct OnDevice<const D: usize> {
     limits: Bounds,
     /// Rates of the ledger.
     rate: Vec<f64>,
-    /// Whether the column of body forces is that of all times.
-    is_falling: bool,
+    gravity: Gravity,
     /// Whether accelerations are those of the places.
     is_rated: bool,
 }
@@ -50,15 +50,12 @@ impl<const D: usize> OnDevice<D> {
 
     /// Sets the body force of each particle, where it changes.
     fn fall(&mut self, time: f64) -> Result<(), DeviceError> {
-        if self.is_falling || !self.plan.is_pulled {
+        if !self.plan.is_pulled {
             return Ok(());
         }
         let (forces, particles) = (&self.body_forces, &self.particles);
-        self.is_falling = forces.iter().all(BodyForce::is_steady);
-        let all = gravity(particles.len(), |a| {
-            BodyForce::sum(forces, particles.body[a], &particles.position[a], time)
-        });
-        self.machine.write("gravity", &all)
+        let each = |a| BodyForce::sum(forces, particles.body[a], &particles.position[a], time);
+        self.gravity.write(&mut self.machine, (time, forces), particles.len(), each)
     }
 
     fn run(&mut self, pass: Pass, time: f64, totals: &mut Totals) -> Result<(), DeviceError> {
@@ -67,10 +64,7 @@ impl<const D: usize> OnDevice<D> {
             Pass::Local => self.start("sides", &[]),
             Pass::Slopes => self.start("slopes", &[]),
             Pass::Pairs => {
-                // Those that change have a pass of their own.
-                if self.body_forces.iter().all(BodyForce::is_steady) {
-                    self.fall(time)?;
-                }
+                self.fall(time)?;
                 self.start("exchange", &[])?;
                 let sums = self.machine.sums(passes::terms(D), self.particles.len())?;
                 let mut body = Total::of(sums[0]);
@@ -88,26 +82,17 @@ impl<const D: usize> OnDevice<D> {
     /// Lets the processor change the accelerations of those particles on which something acts.
     fn act(&mut self, time: f64, totals: &mut Totals) -> Result<(), DeviceError> {
         let listed = &mut self.listed;
-        let rows = listed.len();
-        if rows > 0 {
-            self.machine.start("show", rows, &[])?;
-            let mut all = vec![0.0; rows * shown(D)];
-            self.machine.device().read(self.machine.column("shown"), &mut all)?;
-            for (row, shown) in all.chunks_exact(shown(D)).enumerate() {
-                let [acceleration, position, velocity] =
-                    [0, 1, 2].map(|k| Vector::from_column_slice(&shown[k * D..][..D]));
-                listed.acceleration[row] = acceleration;
-                listed.position[row] = position;
-                listed.velocity[row] = velocity;
-            }
+        let width = solid::width(&shown::<D>());
+        let all = listed.shown(&self.machine, width)?;
+        for (row, shown) in all.chunks_exact(width).enumerate() {
+            let [acceleration, position, velocity] =
+                [0, 1, 2].map(|k| Vector::from_column_slice(&shown[k * D..][..D]));
+            listed.acceleration[row] = acceleration;
+            listed.position[row] = position;
+            listed.velocity[row] = velocity;
         }
         let acting = listed.act(time);
-        if rows > 0 {
-            let given = listed.acceleration.iter().flat_map(|row| row.iter().copied());
-            let given: Vec<f64> = given.collect();
-            self.machine.write("given", &given)?;
-            self.machine.start("take", rows, &[])?;
-        }
+        listed.give(&mut self.machine)?;
         totals.drive(TRACTION, &acting.traction);
         totals.drive(BOUNDARY_MOTION, &acting.motion);
         Ok(())

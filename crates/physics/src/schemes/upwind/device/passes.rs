@@ -18,6 +18,7 @@ use super::super::reconstruction::solved;
 use super::super::{Settings, WaveSpeed};
 use crate::Vector;
 use crate::schemes::blend::BlendStage;
+use crate::schemes::device::solid;
 use crate::schemes::device::{Recorded, are_finite, entries, one, square, take, tensor as taken};
 use crate::schemes::momentum::{moments, momentum_components};
 
@@ -42,9 +43,9 @@ pub(super) const fn state<const D: usize>() -> [([&'static str; 3], usize); 4] {
 /// Numbers that a look over the state takes of a particle.
 pub(super) const FIGURES: usize = 8;
 
-/// Numbers that the processor is shown of a particle on which something acts.
-pub(super) const fn shown(dimension: usize) -> usize {
-    3 * dimension
+/// What the processor is shown of a particle on which something acts.
+pub(super) const fn shown<const D: usize>() -> [(&'static str, usize); 3] {
+    [("velocity_rate", D), ("position", D), ("velocity", D)]
 }
 
 /// The sums of an evaluation: power and force of body forces, and the powers of both dissipations.
@@ -93,8 +94,8 @@ impl<const D: usize> Plan<D> {
         let mut all = vec![
             self.sides(dialect),
             self.pairs(dialect, pairs),
-            self.show(dialect),
-            self.take(dialect),
+            solid::show(dialect, &shown::<D>()),
+            solid::give::<D>(dialect, "velocity_rate"),
             self.impose(dialect),
             self.look(dialect),
         ];
@@ -106,7 +107,9 @@ impl<const D: usize> Plan<D> {
                 let blends = stages.iter().map(|stage| self.advance(dialect, *stage));
                 all.extend(blends);
             }
-            Method::Kicks => all.extend([self.kick(dialect), self.drift(dialect)]),
+            Method::Kicks => {
+                all.extend([solid::kick::<D>(dialect, "velocity_rate"), self.drift(dialect)])
+            }
         }
         all
     }
@@ -241,22 +244,6 @@ impl<const D: usize> Plan<D> {
         })
     }
 
-    /// Rows of the particles on which something acts.
-    fn show(&self, dialect: Dialect) -> Pass {
-        let reads = [
-            through("listed", "velocity_rate", D),
-            through("listed", "position", D),
-            through("listed", "velocity", D),
-        ];
-        local(dialect, "show", &[], &reads, &[own("shown", shown(D))], |x| x.to_vec())
-    }
-
-    /// Accelerations of the same, as something has acted on them.
-    fn take(&self, dialect: Dialect) -> Pass {
-        let writes = [through("listed", "velocity_rate", D)];
-        local(dialect, "take", &[], &[own("given", D)], &writes, |x| x.to_vec())
-    }
-
     /// Components of velocities that are prescribed.
     fn impose(&self, dialect: Dialect) -> Pass {
         let writes = [through("component", "velocity", 1)];
@@ -278,16 +265,6 @@ impl<const D: usize> Plan<D> {
                 stage.blend.value(step, old, rate, new)
             };
             (0..count).map(of).collect()
-        })
-    }
-
-    /// Velocities change by accelerations.
-    fn kick(&self, dialect: Dialect) -> Pass {
-        let (reads, writes) = ([own("velocity", D), own("velocity_rate", D)], [own("velocity", D)]);
-        local(dialect, "kick_velocities", &["duration"], &reads, &writes, |mut x| {
-            let duration = one(&mut x);
-            let (velocity, rate): (Recorded<D>, Recorded<D>) = (take(&mut x), take(&mut x));
-            (velocity + rate * duration).iter().copied().collect()
         })
     }
 
