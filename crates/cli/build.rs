@@ -1,4 +1,5 @@
-//! Tells the program its commit, where it is built from a clone.
+//! Tells the program its commit: that of the variable `PIOLA_COMMIT`, of a packed crate, or of the clone that it is
+//! built from.
 
 use std::path::Path;
 use std::process::Command;
@@ -15,9 +16,12 @@ fn main() {
     // A packed crate in a folder of another repository is not of its commit.
     let is_own = git(&["ls-files", "--error-unmatch", "build.rs"]).is_some();
     let own = if is_own { git(&["rev-parse", "--short=10", "HEAD"]) } else { None };
-    let commit = packed.or(own);
+    // For builds from a copy without its history, as in a container.
+    let given = std::env::var("PIOLA_COMMIT").ok().map(|text| text.trim().to_owned());
+    let commit = given.filter(|text| !text.is_empty()).or(packed).or(own);
     println!("cargo::rustc-env=PIOLA_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-env-changed=PIOLA_COMMIT");
     // What `HEAD` says changes with each commit and each branch.
     let log =
         git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|path| Path::new(path).exists());

@@ -5,18 +5,18 @@
 # bending, P L^3 / (3 E I), and by shear, P L / (k G A) with k = 5/6 for a rectangle. The particles know nothing of
 # beams; they are a sheet of linear elastic material in equilibrium.
 #
-# Run this file as it is, or its parts in a notebook. What it asserts is what the text says.
+# Run the script as it is, or its parts in a notebook. The assertions check what the text claims.
 
 import numpy as np
 
 import piola
 
 LENGTH, HEIGHT = 10.0, 1.0  # m
-LOAD = 1000.0  # N a metre of thickness
+LOAD = 1000.0  # N per metre of thickness
 YOUNG, POISSON = 1e9, 0.3  # Pa, 1
 
-# A case is a dict with the keys of a case file, all of which `docs/case-file.md` explains. Parameters can be used in
-# expressions. The load comes in as a shear stress with the profile of beam theory, a parabola.
+# A case is a dict with the [keys of a case file](../case-file.md). Parameters can be used in expressions. The load
+# is a shear traction with the parabolic profile of beam theory.
 
 case = piola.Case(
     {
@@ -61,17 +61,17 @@ case = piola.Case(
 )
 assert case.faults() == []
 
-# What a run will do. In a notebook the plan is a table.
+# The plan says what a run will do. A notebook shows it as a table; `print(plan)` is what `piola check` prints.
 
 plan = case.check()
-print(plan)
+print(plan.bodies[0]["particles"], "particles,", plan.steps, "step; warnings:", plan.warnings or "none")
 
-# Statics takes one step here, to the load factor 1.
+# Here statics takes a single step, to the load factor 1.
 
 simulation = case.start()
 run = simulation.run()
 
-# The tip, and what beam theory says.
+# The tip, and what beam theory says:
 
 inertia = HEIGHT**3 / 12
 shear_modulus = YOUNG / (2 * (1 + POISSON))
@@ -81,13 +81,19 @@ times, tip = run.tables.curve("tip.displacement.y")
 print(f"tip: {tip[-1]:.4e} m; beam theory: {-(bending + shear):.4e} m")
 assert abs(tip[-1] / -(bending + shear) - 1) < 0.01
 
-# Fields are NumPy arrays, copies of the state as it is now. The stress along the beam is linear over its height: at
-# half its length it is M y / I with the moment of the load about that place.
+# Fields are NumPy arrays of the state as it is now. The stress along the beam is linear over its height: at half its
+# length it is M y / I, with the moment M of the load about that place.
 
 beam = simulation.bodies["beam"]
 x, y = (beam["position"] - beam["displacement"]).T
 middle = np.abs(x - LENGTH / 2) < 1e-6
 stress = beam["stress"][middle, 0, 0]
 theory = LOAD * LENGTH / 2 * y[middle] / inertia
-print("stress at half length, Pa:", np.round(stress[np.argsort(y[middle])]))
+rows = np.round(np.stack([y[middle], stress / 1e3, theory / 1e3], axis=1), 3) + 0.0  # no zeros with a sign
+for height, computed, expected in sorted(rows.tolist())[::4]:
+    print(f"{height:6.3f} m: {computed:6.1f} kPa; beam theory: {expected:6.1f} kPa")
 assert np.abs(stress - theory).max() < 0.03 * np.abs(theory).max()
+
+# ![The beam, coloured by the stress along it](cantilever.svg)
+#
+# The beam with displacements 300 times as large.

@@ -40,6 +40,8 @@ case = piola.Case(
     }
 )
 
+# The error of one run:
+
 
 def error(cells):
     """The largest error of the tip over a period, as a share of its amplitude."""
@@ -49,6 +51,7 @@ def error(cells):
     exact = amplitude * np.sin(2 * np.pi * time / PERIOD)
     return np.abs(tip - exact).max() / amplitude
 
+# Each number of cells is twice the one before; second order means a quarter of the error:
 
 counts = np.array([20, 40, 80, 160])
 errors = np.array([error(cells) for cells in counts])
@@ -62,3 +65,5 @@ print("orders:", np.round(orders, 2))
 order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
 print(f"the error falls as the spacing to the power of {order:.2f}")
 assert np.all(np.diff(errors) < 0) and order > 0.9
+
+# ![The error over the number of cells](convergence.svg)

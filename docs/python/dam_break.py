@@ -1,8 +1,8 @@
 # A dam break with a gauge
 # ========================
 #
-# A column of water, 1 m wide and 2 m high, stands in a tank 4 m long, and the wall that held it is gone. A gauge
-# records how high the water stands 1.5 m from the left, and a probe where its front is.
+# A column of water, 1 m wide and 2 m high, stands at one end of a tank 4 m long; the gate that held it is gone. A gauge
+# records the height of the water 1.5 m from the left wall, and a probe the position of its front.
 
 import numpy as np
 
@@ -14,7 +14,7 @@ GRAVITY = 9.81  # m/s^2
 case = piola.Case(
     {
         "version": 1,
-        "title": "A column of water breaks down",
+        "title": "A column of water collapses",
         "dimension": 2,
         "parameters": {"dx": 0.1, "depth": DEPTH, "g": GRAVITY, "speed": "sqrt(2 * g * depth)"},
         "body": [
@@ -50,15 +50,15 @@ case = piola.Case(
     }
 )
 
-# Moments of the run, as it goes: how much of the energy that was there has become motion.
+# The run, moment by moment: the kinetic energy and the largest speed.
 
 simulation = case.start()
 for moment in simulation.every(0.1):
     energy = moment.energy
     speed = np.linalg.norm(moment.bodies["water"]["velocity"], axis=1).max()
-    print(f"t = {moment.time:.3f} s: {energy['kinetic']:8.1f} J in motion, at most {speed:.2f} m/s")
+    print(f"t = {moment.time:.3f} s: {energy['kinetic']:8.1f} J of kinetic energy, at most {speed:.2f} m/s")
 
-# The gauge is dry until the front has come.
+# The gauge is dry until the front arrives.
 
 time, elevation = simulation.tables.curve("gauge.elevation")
 arrival = time[np.flatnonzero(elevation > 0.05)[0]]
@@ -66,13 +66,17 @@ print(f"the water is at the gauge after {arrival:.2f} s, and {elevation[-1]:.2f}
 assert np.all(elevation[time < 0.1] <= 0.05) and elevation[-1] > 0.3
 
 # No front is faster than that of potential flow without friction, which is at 2.387 m after 0.4 s
-# (`cases/reference/potential_flow.py`); the last particle lies half a spacing behind. In experiments, with
-# friction and a gate to be lifted, it is beyond 2.1 m.
+# (`cases/reference/potential_flow.py`); the foremost particle lies half a spacing behind.
+# In experiments, with friction and a gate that has to be lifted, it is beyond 2.1 m.
 
 time, front = simulation.tables.curve("front.position.x")
 reached = np.interp(0.4, time, front)
 print(f"the front is at {reached:.3f} m after 0.4 s")
 assert 2.1 < reached < 2.387 - 0.05
 
-# All that was recorded is there as a frame of pandas, if that is installed:
-# `simulation.tables["probes"].to_pandas()`.
+# ![The water after 0.6 s](dam_break.svg)
+#
+# The water after 0.6 s.
+
+# With pandas installed, `simulation.tables["probes"].to_pandas()` gives everything that the probes recorded as a data
+# frame.

@@ -1,12 +1,12 @@
 # Fitting material constants to a curve
 # =====================================
 #
-# A sheet is stretched by 30 %. Measured are the force and how much narrower the sheet becomes; wanted are Young's
-# modulus and Poisson's ratio of a St. Venant-Kirchhoff material.
+# A sheet is stretched by 30 %. The force and the narrowing of the sheet are measured; Young's modulus and Poisson's
+# ratio of a St. Venant-Kirchhoff material are to be found.
 #
-# The method is that of Gauss and Newton: with the derivatives of what is computed by the constants, the best step of a
-# linear problem, again and again. The derivatives are exact: each state in equilibrium says how it follows a constant
-# of the material, without a further run.
+# The method is Gauss-Newton: the computed values are linearised about the present constants, the linear least-squares
+# problem gives the next ones, and so on. The derivatives with respect to the constants are exact, and follow from each
+# state in equilibrium without another run.
 
 import numpy as np
 
@@ -87,9 +87,9 @@ def computed(constants):
     return in_units(*values), in_units(*slopes)
 
 
-# The measurement. For this material the exact answer is known: with the strain e = (stretch^2 - 1) / 2 the force is
-# width * young * stretch * e, and the stretch across is sqrt(1 - 2 * poisson * e). The scatter of an instrument, 1 % of
-# the largest value, comes on top.
+# The measurement is made up. For this material the exact answer is known: with the strain e = (stretch^2 - 1) / 2 the
+# force is width * young * stretch * e, and the stretch across is sqrt(1 - 2 * poisson * e). Noise of 1 % of the largest
+# value is added, as an instrument would have it.
 
 TRUE = np.array([1.7e6, 0.21])
 stretch = 1 + 0.03 * np.arange(1, 11)
@@ -100,7 +100,7 @@ exact = np.concatenate(
 scatter = np.random.default_rng(1).normal(scale=0.01, size=20)
 measured = exact + scatter * np.repeat([exact[9], exact[19]], 10)
 
-# What the particles compute with these constants is the exact answer, and its derivatives are those of the formulas.
+# With these constants the particles give the exact answer, with the derivatives of the formulas.
 
 exact_slope = np.zeros((20, 2))
 exact_slope[:10, 0] = exact[:10] / TRUE[0]
@@ -109,7 +109,7 @@ values, slope = computed(TRUE)
 assert np.abs(values / exact - 1).max() < 1e-6
 assert np.all(np.abs(slope - exact_slope) < 1e-6 * exact_slope.max(axis=0))
 
-# Each kind of measurement has the weight of its scatter.
+# Each kind of measurement is weighted by its scatter.
 
 weights = 1 / np.repeat([exact[9], exact[19]], 10)
 constants = np.array([1e6, 0.3])
@@ -119,7 +119,8 @@ for turn in range(8):
     misfit = (measured - values) * weights
     step, *_ = np.linalg.lstsq(slope, misfit, rcond=None)
     constants = constants + step
-    print(f"{turn}: young = {constants[0]:.6e} Pa, poisson = {constants[1]:.6f}, misfit {np.linalg.norm(misfit):.4f}")
+    distance = np.linalg.norm(misfit)
+    print(f"{turn}: young = {constants[0]:.6e} Pa, poisson = {constants[1]:.6f}, misfit {distance:.4f}")
     if np.all(np.abs(step) < 1e-7 * constants):
         break
 else:
@@ -130,3 +131,7 @@ else:
 deviation = 0.01 * np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
 print(f"young = {constants[0]:.4g} +- {deviation[0]:.1g} Pa, poisson = {constants[1]:.4f} +- {deviation[1]:.1g}")
 assert np.all(np.abs(constants - TRUE) < 3 * deviation)
+
+# ![Force and narrowing, measured and computed](fit.svg)
+#
+# The curves are those of the constants that were found.

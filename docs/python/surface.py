@@ -1,9 +1,10 @@
 # A case from an STL file
 # =======================
 #
-# A pillar with a hexagonal section stands on the ground and is compressed by its own weight. Its shape comes from an STL
-# file, as a drawing program would write it; here it is written below. With a Poisson's ratio of zero its state is exact,
-# whatever the section is: at the height z the stress is -rho g (L - z), and the pillar is shorter by rho g L^2 / (2 E).
+# A pillar with a hexagonal section stands on the ground and is compressed by its own weight. Its shape comes from an
+# STL file, as a CAD program would write it; here the script writes it. With a Poisson's ratio of zero its state is
+# exact, whatever the section is: at the height z the stress is -rho g (L - z), and the pillar is shorter by rho g L^2 /
+# (2 E).
 
 import numpy as np
 
@@ -72,16 +73,16 @@ case = piola.Case(
     }
 )
 
-# What is wrong with the surface would be among the warnings of the plan: holes, facets that cross, thin parts.
+# Problems with the surface (holes, facets that cross, thin parts) would be among the warnings of the plan.
 
 plan = case.check()
-print(plan)
+print(plan.bodies[0]["particles"], "particles; warnings:", plan.warnings or "none")
 assert not any("pillar.stl" in warning for warning in plan.warnings)
 
 simulation = case.start()
 run = simulation.run()
 
-# The mass is that of the surface in the file, whose numbers have seven digits. So the ground carries the weight.
+# The mass is that of the surface in the file, whose numbers have seven digits, and the ground carries its weight.
 
 weight = DENSITY * GRAVITY * HEIGHT * 1.5 * np.sqrt(3) * RADIUS**2
 _, ground = run.tables.curve("ground.reaction.z")
@@ -95,10 +96,12 @@ _, top = run.tables.curve("top.displacement.z")
 print(f"shorter by {-1e3 * top[-1]:.4f} mm, by theory {1e3 * shortening:.4f} mm")
 assert abs(-top[-1] / shortening - 1) < 1 / 20**2
 
-# Fields are NumPy arrays. The stress is that of its height to less than what a spacing weighs.
+# Fields are NumPy arrays. The stress is off by less than the weight of one layer of particles.
 
 height = simulation.bodies["pillar"]["position"][:, 2]
 stress = simulation.bodies["pillar"]["stress"][:, 2, 2]
 exact = -DENSITY * GRAVITY * (HEIGHT - height)
 print(f"stress off by {np.abs(stress - exact).max():.0f} Pa at most, of {DENSITY * GRAVITY * HEIGHT:.0f} Pa")
 assert np.abs(stress - exact).max() < DENSITY * GRAVITY * 0.05
+
+# ![The pillar, and its stress over the height](surface.svg)

@@ -25,6 +25,13 @@ def test_worked_examples_run(script, tmp_path):
     assert "assert" in script.read_text() and ended.stdout
 
 
+def test_the_pages_of_the_worked_examples_are_fresh():
+    ended = subprocess.run(
+        [sys.executable, DOCS / "python" / "render", "--check"], capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 0, ended.stderr
+
+
 def test_the_page_is_true(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     failed, attempted = doctest.testfile(str(DOCS / "python.md"), module_relative=False)

@@ -19,7 +19,7 @@ use crate::time::Executor;
 #[derive(Debug, Error)]
 pub enum Unserved {
     /// The run does not begin. Rank 0 has the reason, of whichever rank it is.
-    #[error("the run does not begin, for a reason that rank 0 has")]
+    #[error("the run does not begin; the message of rank 0 says why")]
     Refused,
     /// A rank is lost.
     #[error(transparent)]
