@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use piola::case::page::{Reproduction, Results, Row};
+use piola::case::page::{Met, Reproduction, Results, Row};
 use piola::case::verify::{CheckRow, Ending, RunResults, VariantRun, verify};
 use piola::case::{Case, Level, LoadOptions, Session, load};
 use piola::observe::Series;
@@ -124,6 +124,21 @@ fn the_results_are_of_every_check_of_every_case_as_it_is() {
 fn the_page_is_made_of_the_results() {
     let list = Reproduction::read(&page(LIST).text).unwrap_or_else(|error| panic!("{error}"));
     assert!(results().page(&list, "validation") == page(PAGE).text, "{RENEW}");
+}
+
+/// A row of the list says that it is met only where every check of its cases from outside is.
+#[test]
+fn no_row_is_said_to_be_met_of_which_a_check_is_not() {
+    let list = Reproduction::read(&page(LIST).text).unwrap_or_else(|error| panic!("{error}"));
+    let results = results();
+    for row in list.iter().filter(|row| row.met == Met::Yes) {
+        let id = row.checks_of.as_ref().unwrap_or(&row.id);
+        let cases = results.cases.iter().filter(|case| case.id == *id);
+        for check in cases.flat_map(|case| &case.rows) {
+            let is_met = check.pass || !check.was_run() || !check.against.is_outside();
+            assert!(is_met, "{}: {} is not met", row.id, check.name());
+        }
+    }
 }
 
 /// A number with what stands behind it, apart.
