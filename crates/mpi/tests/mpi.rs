@@ -28,8 +28,8 @@ fn run(command: &mut Command) -> Output {
     command.output().expect("mpirun starts (Debian: openmpi-bin)")
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn processes_agree_on_every_call() {
     for size in [1, 2, 4] {
         let output = run(&mut of(size));
@@ -40,8 +40,8 @@ fn processes_agree_on_every_call() {
 }
 
 /// Ranks that wait for one that fails do not wait for ever.
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn a_rank_that_fails_ends_all() {
     let cases = [
         ("abort", 3, ""),
@@ -57,16 +57,16 @@ fn a_rank_that_fails_ends_all() {
     }
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn what_mpirun_has_not_started_is_no_process_of_it() {
     let output = Command::new(ring()).arg("3").output().unwrap();
     assert_eq!(String::from_utf8_lossy(&output.stdout), "3 threads agree on every call\n");
 }
 
 /// Ranks started by another MPI, which speaks PMI, would all be the only one.
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn another_mpi_is_refused() {
     let output = run(of(1).env("PMI_SIZE", "4"));
     let said = String::from_utf8_lossy(&output.stderr);

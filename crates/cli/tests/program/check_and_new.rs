@@ -34,7 +34,7 @@ fn check_says_what_will_happen_and_runs_nothing() {
 #[test]
 fn check_tells_what_ranks_have() {
     let place = Place::with_bar();
-    // 201 particles in chunks of 16. Each sees two on either side, of 4 numbers in 1D.
+    // 201 particles in chunks of 16, of which each sees one on either side.
     let set = "--set body.bar.spacing=0.005 --set time.integrator='ssp_rk3' --ranks 3";
     let (stdout, _) = place.run(&format!("check bar/case.toml {set}"), 0);
     let ranks: Vec<&str> = stdout.lines().filter(|line| line.contains("copies of")).collect();
@@ -42,7 +42,7 @@ fn check_tells_what_ranks_have() {
     for (number, line) in ranks.iter().enumerate() {
         assert_contains(
             line,
-            &[&format!(" {number}: "), if number == 1 { "4 of 2 ranks," } else { "2 of 1 rank," }],
+            &[&format!(" {number}: "), if number == 1 { "2 of 2 ranks," } else { "1 of 1 rank," }],
         );
         let fields: Vec<&str> = line.split(", ").collect();
         let number = |field: usize| {

@@ -125,8 +125,8 @@ fn assert_same(place: &Place, folder: &str, expected: &str) {
     assert!(differing.is_empty(), "{folder}: {differing:?} differ");
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn any_number_of_processes_writes_the_same() {
     let place = place_with(PLATE);
     place.run("run plate.toml --out alone", 0);
@@ -139,8 +139,8 @@ fn any_number_of_processes_writes_the_same() {
     }
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn cases_of_the_repository_write_the_same_on_any_number_of_processes() {
     let place = Place::new();
     for (case, shorter) in CASES {
@@ -169,8 +169,8 @@ fn cases_of_the_repository_write_the_same_on_any_number_of_processes() {
 }
 
 /// A step that fails is told once, in the words of a run on one rank, and leaves the same state.
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn a_failing_step_is_told_once() {
     let place = place_with(&PLATE.replace("\"0.3 * sin(3 * x)\", \"0.1 * x\"", COLLAPSING));
     let (_, expected) = place.run("run plate.toml --out alone", 3);
@@ -192,8 +192,8 @@ fn a_failing_step_is_told_once() {
 }
 
 /// Asked to end, a rank that is not the first one ends the run of all, which goes on on another number.
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn any_process_can_be_asked_to_end() {
     let place = place_with(PLATE);
     let run = |folder: &str, end: f64| {
@@ -219,8 +219,8 @@ fn any_process_can_be_asked_to_end() {
 }
 
 /// Interrupted on two processes, and continued on four.
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn an_interrupted_run_goes_on_on_another_number_of_processes() {
     let place = place_with(PLATE);
     let run = |folder: &str, end: f64| {
@@ -247,8 +247,8 @@ fn an_interrupted_run_goes_on_on_another_number_of_processes() {
 }
 
 /// Stopped after a number of steps on four processes, and continued on two, and then by one without MPI.
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn a_run_goes_on_without_mpi() {
     let place = place_with(PLATE);
     place.run("run plate.toml --out whole", 0);
@@ -281,8 +281,8 @@ fn is_running(id: u32) -> bool {
 }
 
 /// Killed without a word, a process takes the others with it. The run goes on from its last checkpoint.
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn a_killed_process_ends_all() {
     let place = place_with(PLATE);
     place.run(&format!("run plate.toml --out whole {LONG}"), 0);
@@ -305,8 +305,8 @@ fn a_killed_process_ends_all() {
     assert_same(&place, "split", "whole");
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn a_bad_case_is_refused_once() {
     let place = place_with(&PLATE.replace("spacing = 0.05", "spacin = 0.05"));
     let mut command = processes(&place, 3, "run plate.toml");
@@ -319,8 +319,8 @@ fn a_bad_case_is_refused_once() {
     refused(&place, &mut processes(&place, 2, "run plate.toml"), 4, &["No such file"]);
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn what_several_processes_cannot_run_is_refused_once() {
     let place = Place::with_bar();
     let mut command = processes(&place, 2, "run bar/case.toml");
@@ -335,8 +335,8 @@ fn what_several_processes_cannot_run_is_refused_once() {
     refused(&place, &mut command, 2, &["the ranks are processes of MPI: leave out `--ranks`"]);
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn processes_with_different_cases_are_refused_once() {
     let place = place_with(PLATE);
     place.write("other.toml", PLATE.replace("300.0", "301.0"));
@@ -354,8 +354,8 @@ fn processes_with_different_cases_are_refused_once() {
     assert_eq!(stderr.matches("rank 1 cannot begin").count(), 1, "{stderr}");
 }
 
-#[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
 fn a_folder_that_cannot_be_made_is_told_once() {
     let place = place_with(PLATE);
     let mut command = processes(&place, 2, "run plate.toml --out plate.toml/results");
