@@ -3,7 +3,7 @@
 //! A block of a neo-Hookean solid in 2D and 3D, of as many particles as the arguments say. For 2 to 64 ranks: the particles and
 //! the copies of the rank that has most of them, the ranks that it gets them from, the bytes that come with each evaluation,
 //! and the largest load over the mean. Then the time of a step on one rank and on two, with one thread each: best of some steps
-//! in turns; left out if an argument is `counts`. Then what one of eight ranks tells the others in a step of a loaded block.
+//! in turns; left out if an argument is `counts`. Then what one of four ranks tells the others in a step of a loaded block.
 //! Last a model, of what follows from these figures on a cluster: nothing of it is measured.
 
 use std::sync::Arc;
@@ -21,7 +21,7 @@ const TURNS: usize = 7;
 const RANKS: [usize; 6] = [2, 4, 8, 16, 32, 64];
 
 /// Steps of which calls are counted, of so many ranks, after as many that are not.
-const COUNTED: [u64; 2] = [10, 8];
+const COUNTED: [u64; 2] = [10, 4];
 
 /// Seconds a particle and step of the model where none have been measured.
 const SECONDS: f64 = 1e-6;
@@ -161,7 +161,7 @@ fn count_calls() {
                  traction = ['2e3 * sin(9 * t)', '100.0', '0']\n\
                  [[boundary]]\nname = 'wall'\nwhere = { kind = 'plane', point = [0.0, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }\n\
                  velocity = { x = '0.2 * sin(20 * t)', y = '0' }";
-    let case = block(3, 2e4, loads);
+    let case = block(3, 4e3, loads);
     let calls: Vec<Arc<[Calls; KINDS.len()]>> = (0..size).map(|_| Arc::default()).collect();
     let mut ranks = Threads::group(size as usize)
         .into_iter()
@@ -263,8 +263,8 @@ fn main() {
             known = Some((second, parts));
         }
     }
-    let Some((second, parts)) = known else { return };
     count_calls();
+    let Some((second, parts)) = known else { return };
     // Of the most ranks, some have others on all sides.
     let (particles, copies, bytes) = parts[parts.len() - 1];
     model(second, [copies / (particles as f64).powf(2.0 / 3.0), bytes]);

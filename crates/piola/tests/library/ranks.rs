@@ -330,11 +330,10 @@ fn what_does_not_run_on_several_ranks_is_named() {
     refused(BLOCK, &[few, "compute.ranks=9"], "a chunk of 16: take 3 ranks or fewer");
     let two = "body.block.spacing=0.35";
     refused(BLOCK, &[two, "compute.ranks=9"], "a chunk of 16: take 2 ranks");
-    let one = "body.block.shape.max=[0.1, 0.6, 0.5]";
     refused(
         BLOCK,
-        &[few, one],
-        "2 ranks are too many for 6 particles, of which each rank needs at least a chunk of 16: \
+        &["body.block.spacing=0.5"],
+        "2 ranks are too many for 12 particles, of which each rank needs at least a chunk of 16: \
          leave out `--ranks`",
     );
     let gate = include_str!("../../../../cases/coupled/plate/case.toml");

@@ -45,11 +45,6 @@ impl Soundness {
     pub fn is_sound(&self) -> bool {
         self.is_closed() && self.flipped == 0 && self.left_out == 0
     }
-
-    fn leave_out(&mut self, spot: Spot) {
-        self.left_out += 1;
-        self.first_left_out = first(self.first_left_out, spot);
-    }
 }
 
 /// An edge of a facet by the numbers of its ends, the smaller one first, and whether the facet has them in that order.
@@ -70,6 +65,9 @@ pub(super) fn check(triangles: &[(Triangle, u32)]) -> Result<(), SurfaceError> {
     }
     Ok(())
 }
+
+/// Triangles with the numbers of their facets, what was found, and the volume that they enclose in m^3.
+type Mended = (Vec<(Triangle, u32)>, Soundness, f64);
 
 /// A triangle of a file.
 struct Kept {
@@ -96,6 +94,12 @@ fn spot([a, b, c]: &Triangle, facet: u32) -> Spot {
     Spot { facet: facet as usize, place: (a + b + c) / 3.0 }
 }
 
+/// How many facets triangles are of, and the first of them.
+fn counted(mut spots: Vec<Spot>) -> (usize, Option<Spot>) {
+    spots.sort_by_key(|spot| spot.facet);
+    (spots.chunk_by(|one, other| one.facet == other.facet).count(), spots.first().copied())
+}
+
 /// Whichever comes first in the file.
 fn first(known: Option<Spot>, other: Spot) -> Option<Spot> {
     known.filter(|known| known.facet <= other.facet).or(Some(other))
@@ -103,12 +107,10 @@ fn first(known: Option<Spot>, other: Spot) -> Option<Spot> {
 
 /// The facets without those that are there twice or have no area, all of each piece the same way round, as most of its area
 /// was, and such that they enclose a volume, which is returned in m^3.
-pub(super) fn mended(
-    triangles: Vec<(Triangle, u32)>,
-) -> Result<(Vec<(Triangle, u32)>, Soundness, f64), SurfaceError> {
+pub(super) fn mended(triangles: Vec<(Triangle, u32)>) -> Result<Mended, SurfaceError> {
     let mut soundness = Soundness::default();
     let mut numbers = HashMap::<[u64; 3], u32>::new();
-    let mut known = HashSet::new();
+    let (mut known, mut left_out) = (HashSet::new(), Vec::new());
     let (mut kept, mut corners) = (Vec::new(), Vec::new());
     for (triangle, facet) in triangles {
         let own = triangle.map(|corner| {
@@ -122,7 +124,7 @@ pub(super) fn mended(
         let ordered = [0, 1, 2].map(|k| own[(least + k) % 3]);
         let is_point = own[0] == own[1] || own[1] == own[2] || own[2] == own[0];
         if is_point || !known.insert(ordered) {
-            soundness.leave_out(spot(&triangle, facet));
+            left_out.push(spot(&triangle, facet));
             continue;
         }
         kept.push(Kept { triangle, facet, is_flipped: false });
@@ -133,7 +135,7 @@ pub(super) fn mended(
     kept.retain(|it| {
         let has_area = area(&it.triangle).norm() > 0.0;
         if !has_area {
-            soundness.leave_out(it.spot());
+            left_out.push(it.spot());
         }
         has_area
     });
@@ -148,9 +150,9 @@ pub(super) fn mended(
     if volume < 0.0 {
         kept.iter_mut().for_each(Kept::flip);
     }
-    let flipped = || kept.iter().filter(|it| it.is_flipped);
-    soundness.flipped = flipped().count();
-    soundness.first_flipped = flipped().map(Kept::spot).fold(None, first);
+    let flipped = kept.iter().filter(|it| it.is_flipped).map(Kept::spot);
+    (soundness.flipped, soundness.first_flipped) = counted(flipped.collect());
+    (soundness.left_out, soundness.first_left_out) = counted(left_out);
     let facets = kept.into_iter().map(|it| (it.triangle, it.facet)).collect();
     Ok((facets, soundness, volume.abs()))
 }
