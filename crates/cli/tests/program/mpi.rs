@@ -1,4 +1,4 @@
-//! Runs on processes of MPI, which only a program that is built with `--features mpi` is one of.
+//! Runs on processes of MPI, for which the program has to be built with `--features mpi`.
 
 #[path = "../../../mpi/tests/mpirun/mod.rs"]
 mod mpirun;
