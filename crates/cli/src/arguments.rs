@@ -8,16 +8,33 @@ use piola_device::Precision;
 
 use crate::exit::Exit;
 
-/// Version, commit, and what the program can load: a static one loads no drivers of devices.
-const VERSION: &str = if cfg!(target_feature = "crt-static") {
-    concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("PIOLA_COMMIT"), "; devices: processor)")
-} else {
-    concat!(
-        env!("CARGO_PKG_VERSION"),
-        " (commit ",
-        env!("PIOLA_COMMIT"),
-        "; devices: processor, and CUDA and OpenCL where there are drivers)",
-    )
+/// Version and commit, and what the program can use.
+macro_rules! version {
+    ($devices:literal, $ranks:literal) => {
+        concat!(
+            env!("CARGO_PKG_VERSION"),
+            " (commit ",
+            env!("PIOLA_COMMIT"),
+            "; devices: ",
+            $devices,
+            "; ranks: ",
+            $ranks,
+            ")"
+        )
+    };
+}
+
+/// A static program loads no drivers of devices, and only one that is built with it knows MPI.
+const VERSION: &str = match (cfg!(target_feature = "crt-static"), cfg!(feature = "mpi")) {
+    (true, false) => version!("processor", "threads, without MPI"),
+    (true, true) => version!("processor", "threads, and processes of MPI"),
+    (false, false) => {
+        version!("processor, and CUDA and OpenCL where there are drivers", "threads, without MPI")
+    }
+    (false, true) => version!(
+        "processor, and CUDA and OpenCL where there are drivers",
+        "threads, and processes of MPI"
+    ),
 };
 
 /// Solid and fluid mechanics with smoothed particle hydrodynamics.

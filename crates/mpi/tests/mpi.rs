@@ -28,6 +28,7 @@ fn run(command: &mut Command) -> Output {
     command.output().expect("mpirun starts (Debian: openmpi-bin)")
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn processes_agree_on_every_call() {
     for size in [1, 2, 4] {
@@ -39,6 +40,7 @@ fn processes_agree_on_every_call() {
 }
 
 /// Ranks that wait for one that fails do not wait for ever.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn a_rank_that_fails_ends_all() {
     let cases = [
@@ -55,6 +57,7 @@ fn a_rank_that_fails_ends_all() {
     }
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn what_mpirun_has_not_started_is_no_process_of_it() {
     let output = Command::new(ring()).arg("3").output().unwrap();
@@ -62,6 +65,7 @@ fn what_mpirun_has_not_started_is_no_process_of_it() {
 }
 
 /// Ranks started by another MPI, which speaks PMI, would all be the only one.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn another_mpi_is_refused() {
     let output = run(of(1).env("PMI_SIZE", "4"));

@@ -182,6 +182,23 @@ def test_the_plan_is_that_of_the_program(case, tmp_path):
     assert html.startswith("<table>") and "45 particles" in html and html.count("<tr>") == len(kept[0]) - 1
 
 
+def test_the_plan_of_several_ranks(table):
+    assert piola.Case(table).check().ranks == [] and piola.Case(table).check().efficiency == 1.0
+    table["compute"] = {"ranks": 2}
+    table["time"]["integrator"] = "ssp_rk3"
+    plan = piola.Case(table).check()
+    # Whole chunks of 16.
+    assert [rank["particles"] for rank in plan.ranks] in ([16, 29], [32, 13])
+    for rank in plan.ranks:
+        assert rank["partners"] == 1 and rank["copies"] > 0
+        # Three evaluations of the rates in a step.
+        assert rank["step_bytes"] == 3 * rank["bytes"] > 0
+        assert 0 < rank["efficiency"] < 1
+    assert sum(rank["load"] for rank in plan.ranks) == pytest.approx(2)
+    assert 0 < plan.efficiency < 1
+    assert sum("copies of" in line for line in str(plan).splitlines()) == 2
+
+
 def test_a_case_in_a_notebook_is_escaped(table):
     table["title"] = "<b>&"
     html = piola.Case(table)._repr_html_()

@@ -43,8 +43,8 @@ pub use map::Map;
 pub use picture::{Bounds, Picture, When};
 pub use plot::{Plot, Series, Style};
 pub use record::{
-    BodyRecord, FigureRecord, LinearRecord, RecordError, ReferenceRecord, RetryRecord, RunRecord,
-    StageRecord, SystemRecord, timestamp,
+    BodyRecord, FigureRecord, LinearRecord, RankRecord, RecordError, ReferenceRecord, RetryRecord,
+    RunRecord, StageRecord, SystemRecord, timestamp,
 };
 pub use table::{Column, Table};
 pub use vtp::Compression;

@@ -67,6 +67,9 @@ pub struct RunRecord {
     /// Where the time of steps went, pass by pass, if the scheme knows it.
     #[serde(default)]
     pub passes: Vec<StageRecord>,
+    /// What has taken the time of each rank, by number, where there are several.
+    #[serde(default)]
+    pub ranks: Vec<RankRecord>,
     /// What linear equations took; none where there were none.
     pub linear: Option<LinearRecord>,
     /// Steps of its own that each system has taken, where there are several.
@@ -154,6 +157,24 @@ pub struct StageRecord {
     pub calls: u64,
 }
 
+/// What one of several ranks has done since the run started, or went on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RankRecord {
+    /// Number of its particles.
+    pub particles: usize,
+    /// Wall time in s in which it computed steps.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub computed: f64,
+    /// Wall time in s in which it told others and waited for them.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub waited: f64,
+    /// Messages that it sent.
+    pub messages: u64,
+    /// Bytes that it sent.
+    pub bytes: u64,
+}
+
 /// How the linear equations of a run were solved since it started, or went on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -232,6 +253,7 @@ impl Default for RunRecord {
             time_reached: 0.0,
             stages: Vec::new(),
             passes: Vec::new(),
+            ranks: Vec::new(),
             linear: None,
             own_steps: Vec::new(),
             figures: Vec::new(),

@@ -1,8 +1,8 @@
 //! `piola check`: what a run will do.
 
-use piola::case::{BANDWIDTH, Case, LATENCY, Plan, Undamped};
+use piola::case::{BANDWIDTH, Case, LATENCY, Plan, PlannedRank, Undamped};
 use piola::operators::Packing;
-use piola::schemes::{Particle, Phase, RankShare};
+use piola::schemes::{Particle, Phase};
 
 use super::{assemble, read, use_threads};
 use crate::arguments::{CheckArguments, StageForm};
@@ -125,20 +125,24 @@ fn ranks(plan: &Plan) -> Vec<String> {
     if plan.ranks.is_empty() {
         return Vec::new();
     }
-    let cells = |(number, rank): (usize, &RankShare)| {
-        let partners = count(rank.partners as u64, "rank");
+    let cells = |(number, rank): (usize, &PlannedRank)| {
+        let share = &rank.share;
+        let partners = count(share.partners as u64, "rank");
         vec![
             format!("{number}:"),
-            count(rank.particles as u64, "particle"),
-            format!("and copies of {} of {partners},", rank.copies),
-            format!("{} an evaluation,", bytes(rank.bytes)),
-            format!("load {}", significant(rank.load, 3)),
+            count(share.particles as u64, "particle"),
+            format!("and copies of {} of {partners},", share.copies),
+            format!("{} an evaluation,", bytes(share.bytes)),
+            format!("{} a step,", bytes(rank.step_bytes)),
+            format!("load {},", significant(share.load, 3)),
+            format!("efficiency {}", significant(rank.efficiency, 3)),
         ]
     };
     let rows: Vec<Vec<String>> = plan.ranks.iter().enumerate().map(cells).collect();
     let mut lines = table::align(&rows, None, &[]);
     lines.push(format!(
-        "efficiency {} predicted for ranks with as many threads each as this one, {} us a message and {} GB/s",
+        "efficiency {} of all, predicted for ranks with as many threads each as this one, {} us a message and {} GB/s; \
+         that of a rank is the share of its own time in which it computes",
         significant(plan.efficiency, 3),
         LATENCY * 1e6,
         BANDWIDTH * 1e-9

@@ -32,6 +32,44 @@ fn check_says_what_will_happen_and_runs_nothing() {
 }
 
 #[test]
+fn check_tells_what_ranks_have() {
+    let place = Place::with_bar();
+    // 201 particles in chunks of 16, of which each sees one on either side.
+    let set = "--set body.bar.spacing=0.005 --set time.integrator='ssp_rk3' --ranks 3";
+    let (stdout, _) = place.run(&format!("check bar/case.toml {set}"), 0);
+    let ranks: Vec<&str> = stdout.lines().filter(|line| line.contains("copies of")).collect();
+    assert_eq!(ranks.len(), 3, "{stdout}");
+    for (number, line) in ranks.iter().enumerate() {
+        assert_contains(
+            line,
+            &[&format!(" {number}: "), if number == 1 { "2 of 2 ranks," } else { "1 of 1 rank," }],
+        );
+        let fields: Vec<&str> = line.split(", ").collect();
+        let number = |field: usize| {
+            let mut words = fields[field].split_whitespace().filter_map(|word| word.parse().ok());
+            words.next().unwrap_or_else(|| panic!("{line}"))
+        };
+        assert!(
+            fields[1].ends_with(" B an evaluation") && fields[2].ends_with(" B a step"),
+            "{line}"
+        );
+        // Three evaluations of the rates.
+        let [evaluation, step, load, efficiency]: [f64; 4] = [1, 2, 3, 4].map(number);
+        assert_eq!(step, 3.0 * evaluation, "{line}");
+        assert!((load - 1.0).abs() < 0.1 && efficiency > 0.0 && efficiency < 1.0, "{line}");
+    }
+    assert_contains(
+        &stdout,
+        &["of all, predicted for ranks with as many threads each as this one"],
+    );
+    let (_, stderr) = place.run("check bar/case.toml --ranks 2", 2);
+    let sentence = "2 ranks are too many for 6 particles, of which each rank needs at least a chunk of 16: leave out \
+                    `--ranks`";
+    assert_contains(&stderr, &[sentence]);
+    assert!(!place.run("check bar/case.toml", 0).0.contains("ranks"));
+}
+
+#[test]
 fn check_shows_the_stages_of_a_step() {
     let place = Place::with_bar();
     let (table, _) = place.run("check bar/case.toml --stages", 0);

@@ -37,7 +37,12 @@ fn help_lists_the_exit_codes() {
     }
     let (stdout, _) = Place::new().run("--version", 0);
     let version = stdout.strip_prefix(&format!("piola {} (commit ", env!("CARGO_PKG_VERSION")));
-    let (commit, _) = version.unwrap().split_once("; devices: processor").unwrap();
+    let (commit, features) = version.unwrap().split_once("; devices: processor").unwrap();
+    let ranks = match cfg!(feature = "mpi") {
+        true => "; ranks: threads, and processes of MPI)\n",
+        false => "; ranks: threads, without MPI)\n",
+    };
+    assert!(features.ends_with(ranks), "{stdout}");
     let is_hash = commit.len() >= 10 && commit.chars().all(|c| c.is_ascii_hexdigit());
     assert!(is_hash || commit == "unknown", "{stdout}");
 }

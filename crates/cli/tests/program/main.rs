@@ -8,7 +8,7 @@ mod devices;
 mod generated;
 mod interrupt;
 mod mcp;
-#[cfg(all(unix, feature = "mpi"))]
+#[cfg(unix)]
 mod mpi;
 mod page;
 mod report;

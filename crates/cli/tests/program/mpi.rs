@@ -1,4 +1,4 @@
-//! Runs on processes of MPI.
+//! Runs on processes of MPI, for which the program has to be built with `--features mpi`.
 
 #[path = "../../../mpi/tests/mpirun/mod.rs"]
 mod mpirun;
@@ -122,18 +122,21 @@ fn assert_same(place: &Place, folder: &str, expected: &str) {
     assert!(differing.is_empty(), "{folder}: {differing:?} differ");
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn any_number_of_processes_writes_the_same() {
     let place = place_with(PLATE);
     place.run("run plate.toml --out alone", 0);
-    for size in [1, 2, 4] {
-        let arguments = format!("run plate.toml --threads 1 --out on-{size}");
+    for (size, threads) in [(1, 1), (2, 1), (4, 1), (1, 2), (2, 2), (4, 2)] {
+        let folder = format!("on-{size}-with-{threads}");
+        let arguments = format!("run plate.toml --threads {threads} --out {folder}");
         let (stdout, _) = ended(&mut processes(&place, size, &arguments), 0);
         assert_eq!(stdout.matches("completed").count(), 1, "{stdout}");
-        assert_same(&place, &format!("on-{size}"), "alone");
+        assert_same(&place, &folder, "alone");
     }
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn cases_of_the_repository_write_the_same_on_any_number_of_processes() {
     let place = Place::new();
@@ -141,15 +144,81 @@ fn cases_of_the_repository_write_the_same_on_any_number_of_processes() {
         let path = format!("{}/../../cases/{case}/case.toml", env!("CARGO_MANIFEST_DIR"));
         let run = format!("run {path} {shorter} --quiet --out {case}");
         place.run(&format!("{run}/alone"), 0);
-        for size in [1, 2, 4] {
-            let arguments = format!("{run}/on-{size} --threads 1");
+        for (size, threads) in [(1, 1), (2, 1), (4, 1), (2, 2)] {
+            let folder = format!("on-{size}-with-{threads}");
+            let arguments = format!("{run}/{folder} --threads {threads}");
             ended(&mut processes(&place, size, &arguments), 0);
-            assert_same(&place, &format!("{case}/on-{size}"), &format!("{case}/alone"));
+            assert_same(&place, &format!("{case}/{folder}"), &format!("{case}/alone"));
         }
+        // Broken off on four of them and on two, with one thread each and with two, and continued on another number.
+        let split = format!("{run}/split --resume --set checkpoint.every_steps=4");
+        for (size, threads, steps) in [(4, 1, 6), (2, 2, 13)] {
+            let arguments = format!("{split} --threads {threads} --set time.max_steps={steps}");
+            let (_, stderr) = ended(&mut processes(&place, size, &arguments), 3);
+            assert_contains(&stderr, &[&format!("maximum number of steps, {steps},")]);
+        }
+        ended(&mut processes(&place, 3, &format!("{split} --threads 1")), 0);
+        let record: Value =
+            serde_json::from_str(&place.read(&format!("{case}/split/run.json"))).unwrap();
+        assert_eq!(record["resumed_at"].as_array().unwrap().len(), 2, "{record}");
+        assert_same(&place, &format!("{case}/split"), &format!("{case}/alone"));
     }
 }
 
+/// A step that fails is told once, in the words of a run on one rank, and leaves the same state.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
+fn a_failing_step_is_told_once() {
+    let place = place_with(PLATE);
+    // The plate becomes faster than that after some steps.
+    let limit = "--set time.max_speed=0.36";
+    let (_, expected) = place.run(&format!("run plate.toml {limit} --out alone"), 3);
+    for (size, threads) in [(2, 2), (3, 1)] {
+        let folder = format!("on-{size}");
+        let arguments = format!("run plate.toml {limit} --threads {threads} --out {folder}");
+        let (stdout, stderr) = ended(&mut processes(&place, size, &arguments), 3);
+        assert_contains(&stdout, &["failed: "]);
+        let expected = expected.replace("alone", &folder);
+        for line in expected.lines() {
+            assert_eq!(stderr.matches(line).count(), 1, "`{line}` comes once:\n{stderr}");
+        }
+        assert_contains(&stderr, &["the last good state is in on-", "particle"]);
+        assert!(place.newest_checkpoint(&folder).is_some());
+        assert_same(&place, &folder, "alone");
+        let tables = ["failure.csv", "probes.csv"].map(|name| place.path(&folder).join(name));
+        assert!(tables.iter().all(|table| table.exists()), "{tables:?}");
+    }
+}
+
+/// Asked to end, a rank that is not the first one ends the run of all, which goes on on another number.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
+fn any_process_can_be_asked_to_end() {
+    let place = place_with(PLATE);
+    let run = |folder: &str, end: f64| {
+        format!("run plate.toml {LONG} --threads 1 --out {folder} --set time.end={end}")
+    };
+    let mut program = Program::start(&mut processes(&place, 3, &run("split", 1e3)));
+    let series = place.path("split/particles.pvd");
+    program.wait_for(&series, |text| text.matches("<DataSet").count() > 2);
+    let ids = ranks_of(&program);
+    assert_eq!(ids.len(), 3, "{ids:?}");
+    send("TERM", ids[2]);
+    let (code, stdout, stderr) = program.end();
+    assert_eq!(code, Some(130), "{stdout}{stderr}");
+    assert_eq!(stdout.matches("interrupted: t = ").count(), 1, "{stdout}");
+    assert!(!stderr.contains("panicked") && !ids.into_iter().any(is_running), "{stderr}");
+    let told = stdout.split("t = ").nth(1).unwrap().split(' ').next().unwrap();
+    let end = told.parse::<f64>().unwrap() + 0.1;
+    let (stdout, _) =
+        ended(&mut processes(&place, 2, &format!("{} --resume", run("split", end))), 0);
+    assert_contains(&stdout, &["completed", "resumed     from t = "]);
+    place.run(&run("whole", end), 0);
+    assert_same(&place, "split", "whole");
+}
+
 /// Interrupted on two processes, and continued on four.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn an_interrupted_run_goes_on_on_another_number_of_processes() {
     let place = place_with(PLATE);
@@ -177,6 +246,7 @@ fn an_interrupted_run_goes_on_on_another_number_of_processes() {
 }
 
 /// Stopped after a number of steps on four processes, and continued on two, and then by one without MPI.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn a_run_goes_on_without_mpi() {
     let place = place_with(PLATE);
@@ -210,6 +280,7 @@ fn is_running(id: u32) -> bool {
 }
 
 /// Killed without a word, a process takes the others with it. The run goes on from its last checkpoint.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn a_killed_process_ends_all() {
     let place = place_with(PLATE);
@@ -233,6 +304,7 @@ fn a_killed_process_ends_all() {
     assert_same(&place, "split", "whole");
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn a_bad_case_is_refused_once() {
     let place = place_with(&PLATE.replace("spacing = 0.05", "spacin = 0.05"));
@@ -246,6 +318,7 @@ fn a_bad_case_is_refused_once() {
     refused(&place, &mut processes(&place, 2, "run plate.toml"), 4, &["No such file"]);
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn what_several_processes_cannot_run_is_refused_once() {
     let place = Place::with_bar();
@@ -261,6 +334,7 @@ fn what_several_processes_cannot_run_is_refused_once() {
     refused(&place, &mut command, 2, &["the ranks are processes of MPI: leave out `--ranks`"]);
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn processes_with_different_cases_are_refused_once() {
     let place = place_with(PLATE);
@@ -279,6 +353,7 @@ fn processes_with_different_cases_are_refused_once() {
     assert_eq!(stderr.matches("rank 1 cannot begin").count(), 1, "{stderr}");
 }
 
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn a_folder_that_cannot_be_made_is_told_once() {
     let place = place_with(PLATE);

@@ -48,6 +48,42 @@ fn a_report_is_made_again_from_the_folder_alone() {
 }
 
 #[test]
+fn what_ranks_have_done_is_in_the_record_and_the_report() {
+    let place = Place::with_bar();
+    let set = "--set body.bar.spacing=0.005 --set time.end=2e-3 --set output.every=1e-3";
+    let (stdout, _) = place.run(&format!("run bar/case.toml {set} --ranks 3"), 0);
+    assert_contains(&stdout, &["ranks       3, the slowest computed"]);
+    let record: serde_json::Value =
+        serde_json::from_str(&place.read("results/bar/run.json")).unwrap();
+    let ranks = record["ranks"].as_array().unwrap();
+    let sum = |key: &str| ranks.iter().map(|rank| rank[key].as_f64().unwrap()).sum::<f64>();
+    assert_eq!((ranks.len(), sum("particles")), (3, 201.0), "{ranks:?}");
+    for rank in ranks {
+        assert!(
+            ["computed", "waited", "messages", "bytes"]
+                .iter()
+                .all(|key| rank[key].as_f64() > Some(0.0))
+        );
+    }
+    let page = place.read("results/bar/report.html");
+    assert_contains(
+        &page,
+        &["<dt>Ranks</dt><dd>3</dd>", "Waiting and sending", "3 ranks, in the steps since"],
+    );
+    let rows = page.split("id=\"ranks\"").nth(1).unwrap().split("</table>").next().unwrap();
+    assert_eq!(rows.matches("<tr>").count(), 1 + 3, "{rows}");
+    for rank in ranks {
+        assert_contains(rows, &[&format!("<td>{}</td>", rank["messages"])]);
+    }
+    // As it is made again, and not in a report of one rank.
+    place.run("report results/bar", 0);
+    assert_eq!(place.read("results/bar/report.html"), page);
+    place.run(&format!("run bar/case.toml {set} -q"), 0);
+    assert!(!place.read("results/bar/report.html").contains("id=\"ranks\""));
+    assert!(place.read("results/bar/run.json").contains("\"ranks\": []"));
+}
+
+#[test]
 fn a_variant_evaluates_its_own_checks() {
     let place = Place::new();
     place.write("bar/case.toml", with_reference());

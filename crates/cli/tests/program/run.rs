@@ -102,6 +102,26 @@ fn faults_of_the_results_folder() {
     assert_eq!(place.read("file"), "");
 }
 
+/// A limit on the length of files, which a write beyond it fails at as on a full disk.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_all_ranks_with_one_sentence() {
+    let place = Place::with_bar();
+    for ranks in [1, 3] {
+        let program = env!("CARGO_BIN_EXE_piola");
+        let script = format!(
+            "trap '' XFSZ; ulimit -f 16; exec '{program}' run bar/case.toml --set body.bar.spacing=0.0002 \
+             --set time.end=1e-4 --set output.every=5e-5 --ranks {ranks} --out on-{ranks}"
+        );
+        let mut command = std::process::Command::new("sh");
+        let output = command.args(["-c", &script]).current_dir(place.path("")).output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(4), "{stderr}");
+        assert_eq!(stderr.lines().count(), 1, "{stderr}");
+        assert_contains(&stderr, &["error: ", &format!("on-{ranks}"), "too large"]);
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_output_is_a_fault() {

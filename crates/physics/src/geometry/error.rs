@@ -61,14 +61,17 @@ pub enum GeometryError {
     },
     /// A polygon is none.
     #[error(
-        "sides {first} and {second} of a polygon cross or touch; side 1 goes from the first corner to the second, \
-         expected sides that meet only at their corners"
+        "sides {first} and {second} of a polygon cross or touch at {} m; side 1 goes from the first corner to the second, \
+         expected sides that meet only at their corners",
+        coordinates(place)
     )]
     CrossingSides {
         /// Number of a side, from 1.
         first: usize,
         /// Number of another one.
         second: usize,
+        /// Where they meet, in m.
+        place: [f64; 2],
     },
     /// A lattice that is turned meets itself across no periodic bound.
     #[error(
@@ -163,6 +166,18 @@ pub enum GeometryError {
     /// A mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+}
+
+/// A place in words: coordinates to five digits, of which those that are round-off beside others are 0.
+pub(super) fn coordinates(place: &[f64]) -> String {
+    let most = place.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let digits = |x: &f64| match x.abs() < 1e-9 * most {
+        true => 0.0,
+        // What has been written as a number can be read.
+        false => format!("{x:.4e}").parse().unwrap_or(*x),
+    };
+    let all: Vec<String> = place.iter().map(|x| digits(x).to_string()).collect();
+    format!("({})", all.join(", "))
 }
 
 /// Name of a coordinate axis.

@@ -29,7 +29,7 @@ pub use cloud::{
 pub use error::GeometryError;
 pub use faces::Faces;
 pub(crate) use faces::turned_normal;
-pub use facets::{Arrangement, Facets, Soundness, SurfaceError};
+pub use facets::{Arrangement, Facets, Soundness, Spot, SurfaceError};
 pub(crate) use fill::MOST_SITES;
 pub use fill::{FillReport, fill, turns};
 pub use given::{PointCloud, PointCloudError};

@@ -59,32 +59,41 @@ pub(super) fn check(corners: &[Vector<2>]) -> Result<(), GeometryError> {
         for (j, other) in sides.iter().enumerate().skip(i + 1) {
             // Neighbours have a corner in common, and meet elsewhere only where they lie on each other.
             let meet = if j == i + 1 {
-                distance(&other[1], one) == 0.0 || distance(&one[0], other) == 0.0
+                touch(&other[1], one).or_else(|| touch(&one[0], other))
             } else if i == 0 && j + 1 == sides.len() {
-                distance(&other[0], one) == 0.0 || distance(&one[1], other) == 0.0
+                touch(&other[0], one).or_else(|| touch(&one[1], other))
             } else {
                 cross(one, other)
             };
-            if meet {
-                return Err(GeometryError::CrossingSides { first: i + 1, second: j + 1 });
+            if let Some(place) = meet {
+                let place = place.into();
+                return Err(GeometryError::CrossingSides { first: i + 1, second: j + 1, place });
             }
         }
     }
     Ok(())
 }
 
-/// Whether sides of two polygons have a point in common.
-pub(super) fn meet(one: &[Vector<2>], other: &[Vector<2>]) -> bool {
-    sides(one).any(|own| sides(other).any(|side| cross(&own, &side)))
+/// A point that sides of two polygons have in common.
+pub(super) fn meet(one: &[Vector<2>], other: &[Vector<2>]) -> Option<Vector<2>> {
+    sides(one).find_map(|own| sides(other).find_map(|side| cross(&own, &side)))
 }
 
-/// Whether two sides have a point in common.
-fn cross(one: &[Vector<2>; 2], other: &[Vector<2>; 2]) -> bool {
-    let apart = |[a, b]: &[Vector<2>; 2], [c, d]: &[Vector<2>; 2]| {
-        twice_area([*a, *b, *c]) * twice_area([*a, *b, *d]) < 0.0
-    };
-    let touch = |point: &Vector<2>, side: &[Vector<2>; 2]| distance(point, side) == 0.0;
-    (apart(one, other) && apart(other, one))
-        || one.iter().any(|point| touch(point, other))
-        || other.iter().any(|point| touch(point, one))
+/// A point that two sides have in common.
+fn cross(one: &[Vector<2>; 2], other: &[Vector<2>; 2]) -> Option<Vector<2>> {
+    // Twice the areas of the ends of a side with another.
+    let areas =
+        |[a, b]: &[Vector<2>; 2], side: &[Vector<2>; 2]| side.map(|end| twice_area([*a, *b, end]));
+    let apart = |[c, d]: [f64; 2]| c * d < 0.0;
+    let ends = areas(one, other);
+    if apart(ends) && apart(areas(other, one)) {
+        return Some(other[0] + (other[1] - other[0]) * (ends[0] / (ends[0] - ends[1])));
+    }
+    let end = one.iter().find_map(|point| touch(point, other));
+    end.or_else(|| other.iter().find_map(|point| touch(point, one)))
+}
+
+/// The point, if it is on a side.
+fn touch(point: &Vector<2>, side: &[Vector<2>; 2]) -> Option<Vector<2>> {
+    (distance(point, side) == 0.0).then_some(*point)
 }

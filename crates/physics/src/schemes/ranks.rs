@@ -200,6 +200,9 @@ pub enum RankRefusal {
     /// The formulation has no parts.
     #[error("the formulation `{0}` does not run on several ranks yet: leave out `--ranks`")]
     Formulation(&'static str),
+    /// There are several systems.
+    #[error("several systems in one run do not run on several ranks yet: leave out `--ranks`")]
+    Systems,
     /// Something of the case has none.
     #[error("{what} on several ranks yet: {instead}, or leave out `--ranks`")]
     Feature {
@@ -215,8 +218,8 @@ pub enum RankRefusal {
     Integrator(&'static str),
     /// There is nothing for a rank to do.
     #[error(
-        "{ranks} ranks are too many for {particles} particles, of which each rank needs at least a chunk of {length}: \
-         take {chunks} ranks or fewer"
+        "{ranks} ranks are too many for {particles} particles, of which each rank needs at least a chunk of {length}: {}",
+        fewer(*chunks)
     )]
     TooMany {
         /// Ranks asked for.
@@ -231,6 +234,15 @@ pub enum RankRefusal {
     /// The ranks.
     #[error(transparent)]
     Ranks(#[from] RankError),
+}
+
+/// What to do where there are more ranks than chunks.
+fn fewer(chunks: usize) -> String {
+    match chunks {
+        0 | 1 => "leave out `--ranks`".to_owned(),
+        2 => "take 2 ranks".to_owned(),
+        chunks => format!("take {chunks} ranks or fewer"),
+    }
 }
 
 #[cfg(test)]

@@ -54,7 +54,7 @@ pub use functions::{Clouds, Functions, Named};
 use interpret::Setting;
 pub use model::{Case, Level};
 use overrides::Override;
-pub use plan::{BANDWIDTH, LATENCY, Plan, PlannedLimit, Undamped};
+pub use plan::{BANDWIDTH, LATENCY, Plan, PlannedLimit, PlannedRank, Undamped, seconds_told};
 pub use ranks::{Unserved, decline, serve};
 pub use sensitivity::SensitivityError;
 pub use session::{RunError, Session};

@@ -14,9 +14,9 @@ use crate::observe::{
 };
 use crate::output::checkpoint::Identity;
 use crate::output::{
-    self, BodyRecord, Column, Compression, Curve, FigureRecord, LinearRecord, Map, ReferenceRecord,
-    ResultsFolder, RetryRecord, RunRecord, StageRecord, SystemRecord, Table, atomic, report,
-    timestamp,
+    self, BodyRecord, Column, Compression, Curve, FigureRecord, LinearRecord, Map, RankRecord,
+    ReferenceRecord, ResultsFolder, RetryRecord, RunRecord, StageRecord, SystemRecord, Table,
+    atomic, report, timestamp,
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
 
@@ -199,6 +199,14 @@ impl Outputs {
             })
         });
         record.passes = passes.collect();
+        let ranks = summary.ranks.iter().map(|rank| RankRecord {
+            particles: rank.particles,
+            computed: rank.computed,
+            waited: rank.waited,
+            messages: rank.messages,
+            bytes: rank.bytes,
+        });
+        record.ranks = ranks.collect();
         record.linear = finished.linear.map(|costs| LinearRecord {
             method: if costs.direct { "direct" } else { "krylov" }.into(),
             factor_entries: costs.factor_entries,

@@ -37,14 +37,26 @@ pub struct Plan {
     /// Memory of states and neighbour lists in bytes.
     pub memory: usize,
     /// What each rank has, where there are several.
-    pub ranks: Vec<RankShare>,
+    pub ranks: Vec<PlannedRank>,
     /// The speed of the ranks over that of as many that have the same share each and tell each other nothing, as
-    /// predicted for a network with [`LATENCY`] and [`BANDWIDTH`].
+    /// predicted for a network with [`LATENCY`] and [`BANDWIDTH`]; 1 without ranks.
     pub efficiency: f64,
     /// What will be written, one line each.
     pub outputs: Vec<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
+}
+
+/// What a rank will have and do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedRank {
+    /// What it has.
+    pub share: RankShare,
+    /// Bytes of copies that come in a step.
+    pub step_bytes: usize,
+    /// The share of its time in which it computes, as predicted for a network with [`LATENCY`] and [`BANDWIDTH`]. In the
+    /// rest it tells others and is told; waiting for those that have more to compute is not counted.
+    pub efficiency: f64,
 }
 
 /// Time in s that a message of a network takes.
@@ -53,19 +65,49 @@ pub const LATENCY: f64 = 1.5e-6;
 /// Bytes a second that a network carries.
 pub const BANDWIDTH: f64 = 12e9;
 
-/// Messages of all to all in a step: what to do, how it has gone, the look at the state, and sums of the ledger.
+/// Sums over all ranks in an evaluation, and the bytes of them that a rank has: those of eight mechanisms of a loaded solid
+/// with their forces, and of how fast powers grow.
+const SUMS: [f64; 2] = [2.0, 38_080.0];
+
+/// What all ranks tell all in a step beside sums, and what goes from one to all.
 const ROUNDS: f64 = 8.0;
 
-/// The efficiency of ranks with as many threads each as take this many seconds for an evaluation of all particles.
-fn efficiency(ranks: &[RankShare], evaluation: f64) -> f64 {
-    let size = ranks.len() as f64;
-    // They go through a tree.
-    let rounds = ROUNDS * size.log2().ceil();
-    let slowest = ranks.iter().map(|rank| {
-        let told = rank.bytes as f64 / BANDWIDTH + LATENCY * (2.0 * rank.partners as f64 + rounds);
-        rank.load * evaluation / size + told
-    });
-    evaluation / size / slowest.fold(f64::MIN_POSITIVE, f64::max)
+/// Bytes of a rank that all ranks get in a step: what is largest, and who has it.
+const LOOK: f64 = 120.0;
+
+/// Seconds in a step of so many evaluations in which a rank of `size` tells others and is told, in a network with [`LATENCY`]
+/// and [`BANDWIDTH`], by kind: copies, of which so many bytes come from so many ranks in an evaluation; sums over all ranks;
+/// rounds of all ranks; what each rank tells rank 0 alone.
+pub fn seconds_told(size: usize, evaluations: f64, [bytes, partners]: [f64; 2]) -> [f64; 4] {
+    let (size, [sums, summed]) = (size as f64, SUMS);
+    let levels = size.log2().ceil();
+    // It sends to those that it gets from. Sums are scattered, added and gathered again.
+    let copies = bytes / BANDWIDTH + 2.0 * partners * LATENCY;
+    let reduced = 2.0 * (1.0 - 1.0 / size) * summed / BANDWIDTH + 2.0 * sums * levels * LATENCY;
+    let rounds = ROUNDS * levels * LATENCY + size * LOOK / BANDWIDTH;
+    [evaluations * copies, evaluations * reduced, rounds, (size - 1.0) * LATENCY]
+}
+
+/// What ranks will have and do that have as many threads each as take this many seconds for an evaluation of all particles,
+/// and the speed of all of them over that of ranks with even shares that tell each other nothing.
+fn planned_ranks(
+    shares: Vec<RankShare>,
+    evaluations: u64,
+    evaluation: f64,
+) -> (Vec<PlannedRank>, f64) {
+    let (size, count) = (shares.len(), evaluations as f64);
+    let even = count * evaluation / size.max(1) as f64;
+    let mut slowest = even;
+    let of_rank = |share: RankShare| {
+        let computed = share.load * even;
+        let told = seconds_told(size, count, [share.bytes as f64, share.partners as f64]);
+        let time = computed + told.iter().sum::<f64>();
+        slowest = slowest.max(time);
+        let step_bytes = evaluations as usize * share.bytes;
+        PlannedRank { share, step_bytes, efficiency: computed / time.max(f64::MIN_POSITIVE) }
+    };
+    let ranks = shares.into_iter().map(of_rank).collect();
+    (ranks, even / slowest.max(f64::MIN_POSITIVE))
 }
 
 /// The fastest oscillation that the particles resolve and that nothing damps, in a run whose steps
@@ -207,9 +249,9 @@ impl Session {
             let bounds = Part::bounds(scheme.as_ref(), usize::try_from(**ranks).ok()?).ok()?;
             scheme.shares(&bounds).ok()
         });
-        let ranks = ranks.unwrap_or_default();
+        let (ranks, efficiency) = planned_ranks(ranks.unwrap_or_default(), evaluations, evaluation);
         Plan {
-            efficiency: efficiency(&ranks, evaluation),
+            efficiency,
             ranks,
             bodies: self.built.bodies.clone(),
             neighbors: self.built.neighbors,

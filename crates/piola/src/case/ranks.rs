@@ -50,49 +50,78 @@ pub fn decline(ranks: &dyn Ranks, why: &str) {
 pub(super) fn begin(case: &Case, ranks: &dyn Ranks) -> Result<(Executor, Built), Problems> {
     let refuse = |problem| case.refuse(vec![problem]);
     let built = alone(case).map_err(refuse).and_then(|()| executor(case));
-    let identity = |(executor, _): &(Executor, Built)| {
-        let own = resume::identity(case, executor.scheme.as_ref());
-        own.into_iter().chain(env!("CARGO_PKG_VERSION").bytes()).collect::<Vec<u8>>()
+    let own = match &built {
+        Ok((executor, _)) => Ok(resume::identity(case, executor.scheme.as_ref())),
+        Err(problems) => Err(problems.to_string()),
     };
-    let text = |problems: &Problems| problems.to_string();
-    let own = built.as_ref().map(identity).map_err(text);
-    let agreed = agree(ranks, own.as_deref().map_err(String::as_str));
+    let ready = own.as_ref().map(|case| Ready { version: VERSION, case: &case[..] });
+    let agreed = agree(ranks, ready.map_err(String::as_str));
     let built = built?;
     agreed.map_err(|message| refuse(Problem::new(case.scheme.place, message, "this run")))?;
     Ok(built)
 }
 
+/// The version of the program.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// What a rank is ready to run.
+#[derive(Clone, Copy)]
+struct Ready<'a> {
+    /// The version of its program.
+    version: &'a str,
+    /// What tells its case from others.
+    case: &'a [u8],
+}
+
 /// Lets all ranks know whether each of them is ready, and for the same run.
 ///
 /// # Errors
-/// What the first says that is not, or who has another run.
-fn agree(ranks: &dyn Ranks, own: Result<&[u8], &str>) -> Result<(), String> {
+/// What the first says that is not, or who has another version or another case.
+fn agree(ranks: &dyn Ranks, own: Result<Ready, &str>) -> Result<(), String> {
     // Of a report its sentence, and the place.
     let sentence = |why: &str| {
         let first = why.lines().next().unwrap_or_default().trim_start_matches("error: ");
         let place = why.lines().find_map(|line| line.trim_start().strip_prefix("--> "));
         place.map_or_else(|| first.to_owned(), |place| format!("{first} ({place})"))
     };
-    let (is_ready, bytes) = match own {
-        Ok(identity) => (1.0, identity.to_vec()),
-        Err(why) => (0.0, sentence(why).into_bytes()),
+    // Behind whether it is ready the length of the first of two texts.
+    let (is_ready, [first, second]) = match own {
+        Ok(Ready { version, case }) => (1.0, [version.as_bytes().to_vec(), case.to_vec()]),
+        Err(why) => (0.0, [sentence(why).into_bytes(), Vec::new()]),
     };
-    let told: Vec<f64> =
-        std::iter::once(is_ready).chain(bytes.into_iter().map(f64::from)).collect();
+    let head = [is_ready, first.len() as f64].into_iter();
+    let told: Vec<f64> = head.chain(first.into_iter().chain(second).map(f64::from)).collect();
     let all = ranks.gather_to_all(&told).map_err(|lost| lost.to_string())?;
-    let is_other = |other: &Vec<f64>| other.first() == Some(&1.0) && *other != all[0];
-    for (rank, told) in all.iter().enumerate() {
-        if told.first() != Some(&1.0) {
-            let text: Vec<u8> = told.iter().skip(1).map(|byte| *byte as u8).collect();
-            return Err(format!("rank {rank} cannot begin: {}", String::from_utf8_lossy(&text)));
+    let bytes = |numbers: &[f64]| numbers.iter().map(|byte| *byte as u8).collect::<Vec<u8>>();
+    let said = |told: &Vec<f64>| match told.as_slice() {
+        [is_ready, length, rest @ ..] => {
+            let (first, second) = rest.split_at((*length as usize).min(rest.len()));
+            let first = String::from_utf8_lossy(&bytes(first)).into_owned();
+            (*is_ready == 1.0, first, bytes(second))
+        }
+        _ => (false, "it says nothing".to_owned(), Vec::new()),
+    };
+    let all: Vec<(bool, String, Vec<u8>)> = all.iter().map(said).collect();
+    for (rank, (is_ready, why, _)) in all.iter().enumerate() {
+        if !is_ready {
+            return Err(format!("rank {rank} cannot begin: {why}"));
         }
     }
-    match all.iter().position(is_other) {
-        None => Ok(()),
-        Some(rank) => Err(format!(
-            "rank {rank} has another case than rank 0, or another version of the program: give all of them the same"
-        )),
+    let Some((_, expected, case)) = all.first() else { return Ok(()) };
+    for (rank, (_, version, own)) in all.iter().enumerate() {
+        if version != expected {
+            return Err(format!(
+                "rank {rank} is version {version} of the program, and rank 0 is version {expected}: start the same \
+                 program on all of them"
+            ));
+        }
+        if own != case {
+            return Err(format!(
+                "rank {rank} has another case than rank 0: give all of them the same"
+            ));
+        }
     }
+    Ok(())
 }
 
 /// Lets a run take its steps on several ranks, of which this process is number 0 and all have begun.
@@ -138,4 +167,56 @@ fn refused(place: Place, refusal: &RankRefusal) -> Problem {
         _ => "this case does not run on several ranks",
     };
     Problem::new(place, refusal.to_string(), label)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use piola_ranks::Threads;
+
+    /// What each rank is told, of ranks that have this.
+    fn told(all: &[Result<Ready, &str>]) -> Vec<Result<(), String>> {
+        std::thread::scope(|scope| {
+            let ranks = Threads::group(all.len()).into_iter().zip(all);
+            let ranks: Vec<_> =
+                ranks.map(|(rank, own)| scope.spawn(move || agree(&rank, *own))).collect();
+            ranks.into_iter().map(|rank| rank.join().unwrap()).collect()
+        })
+    }
+
+    #[test]
+    fn ranks_begin_with_the_same_program_and_the_same_case() {
+        let ready = |version, case| Ok(Ready { version, case });
+        let same = ready("1.2.0", b"plate");
+        let unreadable = Err("error: no such file\n   --> plate.toml:3:4\n");
+        for (others, expected) in [
+            ([same, same], Ok(())),
+            (
+                [same, ready("1.10.0", b"plate")],
+                Err(
+                    "rank 2 is version 1.10.0 of the program, and rank 0 is version 1.2.0: start the same program on all \
+                     of them",
+                ),
+            ),
+            // What is another case for one version may not be one for another.
+            (
+                [same, ready("1.2", b".0plate")],
+                Err(
+                    "rank 2 is version 1.2 of the program, and rank 0 is version 1.2.0: start the same program on all of \
+                     them",
+                ),
+            ),
+            (
+                [ready("1.2.0", b"plat"), same],
+                Err("rank 1 has another case than rank 0: give all of them the same"),
+            ),
+            (
+                [ready("2.0.0", b"other"), unreadable],
+                Err("rank 2 cannot begin: no such file (plate.toml:3:4)"),
+            ),
+        ] {
+            let expected = expected.map_err(str::to_owned);
+            assert_eq!(told(&[same, others[0], others[1]]), vec![expected; 3]);
+        }
+    }
 }

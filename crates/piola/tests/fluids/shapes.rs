@@ -66,6 +66,27 @@ fn torus(missing: usize) -> String {
     text
 }
 
+/// The same faces, by so much higher up and with numbers that follow.
+fn above(surface: &str, height: f64) -> String {
+    let of = |word: &'static str| {
+        surface.lines().filter_map(move |line| line.strip_prefix(word)).map(str::to_owned)
+    };
+    let numbers =
+        |line: &str| line.split(' ').map(|it| it.parse::<f64>().unwrap()).collect::<Vec<_>>();
+    let count = of("v ").count();
+    let vertex = |line: String| {
+        let place = numbers(&line);
+        format!("v {} {} {}\n", place[0], place[1], place[2] + height)
+    };
+    let face = |line: String| {
+        let corners = numbers(&line);
+        let corners: Vec<String> =
+            corners.iter().map(|corner| (*corner as usize + count).to_string()).collect();
+        format!("f {}\n", corners.join(" "))
+    };
+    of("v ").map(vertex).chain(of("f ").map(face)).collect()
+}
+
 fn session(text: &str, surface: &str) -> Result<Session, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
@@ -123,11 +144,25 @@ fn what_is_wrong_with_a_surface_is_told() {
     let sound = warnings(&torus(0));
     assert!(!sound.contains("ring.obj"), "{sound}");
     let holed = warnings(&torus(1));
-    assert!(holed.contains("it has holes: 4 edges have no facet on their other side"), "{holed}");
+    // Of the faces that are left, the first is beside the missing one: the middle of the edge that they had in common.
+    let radius = 0.5 * (1.0 + 0.4 * (2.0 * PI / 24.0).cos());
+    let x = 0.5 * radius * (1.0 + (2.0 * PI / 64.0).cos());
+    let x = format!("{x:.4e}").parse::<f64>().unwrap();
+    let said =
+        "it has holes: 4 edges have no facet on their other side, first an edge of facet 1 at";
+    assert!(holed.contains(&format!("{said} ({x}, ")), "{holed}");
     let thin =
         session(&RING.replace("scale = 0.5", "scale = 0.25"), &torus(0)).unwrap().plan().warnings;
     let thin = thin.join("\n");
-    assert!(thin.contains("the body `ring` is 2.5 spacings thick where it is thinnest"), "{thin}");
+    let said = "the body `ring` is 2.5 spacings thick where it is thinnest, behind facet ";
+    assert!(thin.contains(said) && thin.contains(") m, less than 3: make"), "{thin}");
+    // Another ring, half as high again, goes through the first one.
+    let crossing = warnings(&(torus(0) + &above(&torus(0), 0.4)));
+    let said = "pairs of facets cross each other, first facet ";
+    assert!(
+        crossing.contains(said) && crossing.contains(" and facet ") && crossing.contains(") m"),
+        "{crossing}"
+    );
     for (from, to, said) in [
         ("ring.obj", "none.obj", "none.obj"),
         ("ring.obj", "ring.step", "ring.step"),
@@ -140,6 +175,26 @@ fn what_is_wrong_with_a_surface_is_told() {
     }
     let broken = session(RING, "v 0 0 0\nf 1 2 3\n").err().unwrap();
     assert!(broken.contains("ring.obj` is broken") && broken.contains("case.toml:"), "{broken}");
+}
+
+/// A hole that is the cause of another fault is told with it.
+#[test]
+fn what_is_wrong_with_a_surface_is_told_with_other_faults() {
+    let case = "version = 1\ntitle = \"A ring\"\ndimension = 3\n[[body]]\nname = \"ring\"\nspacing = 0.1\n\
+                shape = { kind = \"surface\", file = \"ring.obj\" }\nlattice = { on = \"cells\" }\n\
+                material = { kind = \"linear_elastic\", density = 1.0, young_modulus = 1.0, poisson_ratio = 0.3 }\n\
+                [scheme]\nkind = \"dual_support\"\n[time]\nend = 1.0\n[output]\nevery = 1.0\n";
+    // Every other face is missing.
+    let whole = torus(0);
+    let (vertices, faces): (Vec<&str>, Vec<&str>) =
+        whole.lines().partition(|line| line.starts_with('v'));
+    let half: Vec<&str> = vertices.into_iter().chain(faces.into_iter().step_by(2)).collect();
+    let error = session(case, &half.join("\n")).err().unwrap();
+    let help = error.split("help: ").nth(1).unwrap();
+    assert!(help.contains("neighbours in all directions; this may be the cause: `"), "{error}");
+    let said =
+        "it has holes: 1536 edges have no facet on their other side, first an edge of facet 1 at (";
+    assert!(help.contains(said) && error.contains("case.toml:"), "{error}");
 }
 
 /// A plate with a round window, drawn, is filled with its own mass; what is wrong with a drawing is said with the case's line.
@@ -167,7 +222,13 @@ fn a_body_is_cut_to_a_drawing() {
     let exact = 2.0 - PI * 0.09;
     // Squares of a sixteenth of a spacing that a circle cuts count as inside or outside, about half of them each.
     assert!((body.volume / exact - 1.0).abs() < 1e-3, "{} of {exact}", body.volume);
+    let crossing = "<svg><path d=\"M0 0L1000 1000L1000 0L0 1000z\"/></svg>";
     for (shape, drawing, said) in [
+        (
+            "scale = 0.001",
+            crossing,
+            "plate.svg`: loop 1: sides 1 and 3 of a polygon cross or touch at (0.5, -0.5) m",
+        ),
         ("scale = 0.001", "<svg><rect width=\"3\"/></svg>", "<rect> is not supported"),
         ("scale = 0.0", drawing, "above 0"),
         ("z = [0, 1]", drawing, "no meaning in 2D"),

@@ -128,6 +128,23 @@ fn a_periodic_plate_is_the_same_on_any_number_of_ranks() {
     same_on_any_number(PLATE, &sets);
 }
 
+/// A sheet of two rows, and a body of six particles: each of seven ranks has copies of most that its neighbours have, and
+/// one has a whole body.
+#[test]
+fn bodies_thinner_than_a_halo_are_the_same_on_any_number_of_ranks() {
+    let sets = [
+        "body.plate.shape={ kind = 'box', min = [0.0, 0.0], max = [2.6, 0.05] }",
+        "body.other.shape={ kind = 'box', min = [3.0, 2.0], max = [3.2, 2.1] }",
+        "body.other.spacing=0.1",
+        "body.other.lattice={}",
+        "load.pull.where.point=[2.6, 0.0]",
+        "probe.near.at=[1.0, 0.05]",
+        "scheme.gradients='plain'",
+        "scheme.viscosity=40.0",
+    ];
+    same_on_any_number(PLATE, &sets);
+}
+
 #[test]
 fn mirrors_are_the_same_on_any_number_of_ranks() {
     // Below the plane that moves there is another that does not.
@@ -308,6 +325,21 @@ fn what_does_not_run_on_several_ranks_is_named() {
     );
     let spring = "load.pull={ kind = 'spring', body = 'plate', to = [0.0, 0.0], stiffness = 10.0 }";
     refused(PLATE, &[spring], "springs do not act on several ranks yet: leave them out");
-    let few = ["body.block.spacing=0.3"];
-    refused(BLOCK, &[few[0], "compute.ranks=9"], "ranks are too many for");
+    let few = "body.block.spacing=0.3";
+    refused(BLOCK, &[few, "compute.ranks=9"], "ranks are too many for");
+    refused(BLOCK, &[few, "compute.ranks=9"], "a chunk of 16: take 3 ranks or fewer");
+    let two = "body.block.spacing=0.35";
+    refused(BLOCK, &[two, "compute.ranks=9"], "a chunk of 16: take 2 ranks");
+    refused(
+        BLOCK,
+        &["body.block.spacing=0.5"],
+        "2 ranks are too many for 12 particles, of which each rank needs at least a chunk of 16: \
+         leave out `--ranks`",
+    );
+    let gate = include_str!("../../../../cases/coupled/plate/case.toml");
+    refused(
+        gate,
+        &[],
+        "several systems in one run do not run on several ranks yet: leave out `--ranks`",
+    );
 }

@@ -27,6 +27,15 @@ class _BodyPlan(TypedDict):
     finest: float
     spacing: list[float]
 
+class _RankPlan(TypedDict):
+    particles: int
+    copies: int
+    partners: int
+    bytes: int
+    step_bytes: int
+    load: float
+    efficiency: float
+
 class _Neighbors(TypedDict):
     least: int
     mean: float
@@ -116,6 +125,10 @@ class Plan:
     def evaluations_per_second(self) -> float: ...
     @property
     def memory(self) -> int: ...
+    @property
+    def ranks(self) -> list[_RankPlan]: ...
+    @property
+    def efficiency(self) -> float: ...
     @property
     def outputs(self) -> list[str]: ...
     @property

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::{Report, files};
 use crate::drawing::ticks::number;
-use crate::{FigureRecord, RunRecord, StageRecord};
+use crate::{FigureRecord, RankRecord, RunRecord, StageRecord};
 
 /// Longest case that is shown, in bytes.
 const MAX_CASE: usize = 200_000;
@@ -25,6 +25,9 @@ pub fn summary(report: &Report) -> Markup {
             (fact("Steps", &record.steps.to_string()))
             (fact("Wall time", &duration(seconds)))
             (fact("Threads", &record.threads.to_string()))
+            @if !record.ranks.is_empty() {
+                (fact("Ranks", &record.ranks.len().to_string()))
+            }
             @if let Some(device) = &record.device {
                 (fact("Device", device))
             }
@@ -144,6 +147,9 @@ pub fn timings(record: &RunRecord) -> Markup {
                 @if !record.passes.is_empty() {
                     (stages("Pass of a step", &record.passes))
                 }
+                @if !record.ranks.is_empty() {
+                    (ranks(&record.ranks))
+                }
             }
             @if let Some(linear) = &record.linear {
                 p {
@@ -183,6 +189,44 @@ fn stages(title: &str, stages: &[StageRecord]) -> Markup {
                 }
             } }
         } }
+    }
+}
+
+/// How evenly ranks have computed, and what they have told each other.
+fn ranks(ranks: &[RankRecord]) -> Markup {
+    let sum = |of: fn(&RankRecord) -> f64| ranks.iter().map(of).sum::<f64>();
+    let mean = sum(|rank| rank.computed) / ranks.len() as f64;
+    let most = ranks.iter().map(|rank| rank.computed).fold(0.0, f64::max);
+    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let waited = share(sum(|rank| rank.waited), sum(|rank| rank.computed + rank.waited));
+    html! {
+        div .wide { table .numbers #ranks {
+            thead { tr {
+                th { "Rank" } th { "Particles" } th { "Computing" } th { "Over the mean" }
+                th { "Waiting and sending" } th { "Share" } th { "Messages sent" } th { "Sent" }
+            } }
+            tbody { @for (number, rank) in ranks.iter().enumerate().take(MAX_LINES) { tr {
+                th { (number) }
+                td { (rank.particles) }
+                td { (duration(rank.computed)) }
+                td { (format!("{:.3}", share(rank.computed, mean))) }
+                td { (duration(rank.waited)) }
+                td { (percent(share(rank.waited, rank.computed + rank.waited))) }
+                td { (rank.messages) }
+                td { (bytes(rank.bytes)) }
+            } } }
+        } }
+        @if ranks.len() > MAX_LINES { p .notice { "The other ranks are in run.json." } }
+        p {
+            (format!(
+                "{} ranks, in the steps since the run started or was resumed: the slowest computed {:.3} times as long \
+                 as the mean, and {} of the time of all was waiting and sending.",
+                ranks.len(),
+                share(most, mean),
+                percent(waited)
+            ))
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use std::path::Path;
 use nalgebra::Rotation3;
 
 pub use read::SurfaceError;
-pub use sound::Soundness;
+pub use sound::{Soundness, Spot};
 
 pub(super) use local::Local;
 
@@ -52,6 +52,11 @@ impl Facets {
     /// # Errors
     /// Corners that are not finite, and no facets.
     pub fn new(triangles: Vec<[Vector<3>; 3]>) -> Result<Self, SurfaceError> {
+        Self::numbered(triangles.into_iter().zip(1..).collect())
+    }
+
+    /// Those of triangles with the number of a facet each.
+    fn numbered(triangles: Vec<(Triangle, u32)>) -> Result<Self, SurfaceError> {
         sound::check(&triangles)?;
         let (triangles, soundness, volume) = sound::mended(triangles)?;
         Ok(Self { tree: Tree::new(triangles), volume, soundness })
@@ -70,10 +75,10 @@ impl Facets {
         // Before what is not finite spreads to all coordinates.
         sound::check(&triangles).map_err(of_file)?;
         let Arrangement { scale, rotation, shift } = arrangement;
-        for corner in triangles.iter_mut().flatten() {
+        for corner in triangles.iter_mut().flat_map(|(triangle, _)| triangle) {
             *corner = rotation * (*corner * *scale) + shift;
         }
-        Self::new(triangles).map_err(of_file)
+        Self::numbered(triangles).map_err(of_file)
     }
 
     /// What was found when the facets were read.
@@ -139,9 +144,14 @@ impl Facets {
         self.tree.crossings(most)
     }
 
+    /// The first facet that crosses another, where it does, and the number of the first that it crosses.
+    pub fn first_crossing(&self) -> Option<(Spot, usize)> {
+        self.tree.first_crossing()
+    }
+
     /// The thinnest part in m, if it is thinner than `most` m: the shortest way from the middle of a facet straight through to the
-    /// other side.
-    pub fn thinner_than(&self, most: f64) -> Option<f64> {
-        Some(self.tree.thickness(most)).filter(|thickness| *thickness < most)
+    /// other side, with the first facet that it is behind.
+    pub fn thinner_than(&self, most: f64) -> Option<(f64, Spot)> {
+        self.tree.thinnest(most)
     }
 }

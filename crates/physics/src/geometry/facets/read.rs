@@ -15,6 +15,9 @@ use crate::Vector;
 const STL_HEAD: usize = 84;
 const STL_FACET: usize = 50;
 
+/// Most characters of a line that are shown.
+const MOST_SHOWN: usize = 60;
+
 /// A file that is no surface.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -54,8 +57,8 @@ pub enum SurfaceError {
     NoFacets,
 }
 
-/// The triangles of a file.
-pub(super) fn triangles(path: &Path) -> Result<Vec<Triangle>, SurfaceError> {
+/// The triangles of a file, with the number of the facet, from 1, that each is of.
+pub(super) fn triangles(path: &Path) -> Result<Vec<(Triangle, u32)>, SurfaceError> {
     let path_of = || path.to_owned();
     let end = path.extension().map(|end| end.to_ascii_lowercase());
     let parse = match end.as_ref().and_then(|end| end.to_str()) {
@@ -71,14 +74,14 @@ pub(super) fn triangles(path: &Path) -> Result<Vec<Triangle>, SurfaceError> {
 
 /// A file of the length that its number of facets says is binary, whatever it begins with; one whose first word is `solid`, and
 /// whose second line has a facet, is text.
-fn stl(mut bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
+fn stl(mut bytes: Vec<u8>) -> Result<Vec<(Triangle, u32)>, String> {
     let count = bytes.get(STL_HEAD - 4..STL_HEAD).and_then(|it| it.try_into().ok());
     let count = count.map(u32::from_le_bytes).unwrap_or_default() as usize;
     if bytes.len() == STL_HEAD + STL_FACET * count {
         // The reader takes what begins with `solid` for text.
         bytes[..5].copy_from_slice(b"     ");
     } else if let Some(text) = plain(&bytes) {
-        bytes = text.into_bytes();
+        bytes = text?.into_bytes();
     } else {
         let facets = bytes.len().saturating_sub(STL_HEAD) as f64 / STL_FACET as f64;
         return Err(format!(
@@ -89,15 +92,15 @@ fn stl(mut bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
     let mut source = Cursor::new(bytes);
     let facets = stl_io::create_stl_reader(&mut source).map_err(|error| error.to_string())?;
     let corner = |vertex: stl_io::Vertex| Vector::<3>::from(vertex.0.map(f64::from));
-    let facet = |(number, facet): (usize, std::io::Result<stl_io::Triangle>)| {
-        let facet = facet.map_err(|error| format!("facet {}: {error}", number + 1))?;
-        Ok(facet.vertices.map(corner))
+    let facet = |(facet, number): (std::io::Result<stl_io::Triangle>, u32)| {
+        let facet = facet.map_err(|error| format!("facet {number}: {error}"))?;
+        Ok((facet.vertices.map(corner), number))
     };
-    facets.enumerate().map(facet).collect()
+    facets.zip(1..).map(facet).collect()
 }
 
 /// An STL in text as one solid, whose normals are no use, if it is one.
-fn plain(bytes: &[u8]) -> Option<String> {
+fn plain(bytes: &[u8]) -> Option<Result<String, String>> {
     let text = std::str::from_utf8(bytes).ok()?.trim_start_matches('\u{feff}');
     let begins = |line: &str, word: &str| {
         line.split_whitespace().next().is_some_and(|first| first.eq_ignore_ascii_case(word))
@@ -107,6 +110,9 @@ fn plain(bytes: &[u8]) -> Option<String> {
         && lines.next().is_some_and(|line| begins(line, "facet") || begins(line, "endsolid"));
     if !is_text {
         return None;
+    }
+    if let Err(fault) = check_vertices(text, "vertex") {
+        return Some(Err(fault));
     }
     let mut plain = String::with_capacity(bytes.len());
     plain.push_str("solid it\n");
@@ -119,30 +125,81 @@ fn plain(bytes: &[u8]) -> Option<String> {
         }
     }
     plain.push_str("endsolid it\n");
-    Some(plain)
+    Some(Ok(plain))
 }
 
-fn obj(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
-    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
+/// Refuses lines that begin with a word and do not go on with three finite numbers.
+fn check_vertices(text: &str, word: &str) -> Result<(), String> {
+    let is_finite = |word: Option<&str>| {
+        word.and_then(|word| word.parse::<f32>().ok()).is_some_and(f32::is_finite)
+    };
+    for (line, text) in (1..).zip(text.lines()) {
+        let mut words = text.split_whitespace();
+        let is_vertex = words.next().is_some_and(|first| first.eq_ignore_ascii_case(word));
+        if is_vertex && !(0..3).all(|_| is_finite(words.next())) {
+            let got: String = text.trim().chars().take(MOST_SHOWN).collect();
+            return Err(format!(
+                "line {line}: expected three finite coordinates after `{word}`, got `{got}`"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses faces of vertices that are not there. The reader does so, too, and does not say in which line.
+fn check_faces(text: &str) -> Result<(), String> {
+    let begins = |line: &str, word: &str| line.split_whitespace().next() == Some(word);
+    let count = text.lines().filter(|line| begins(line, "v")).count();
+    for (line, text) in (1..).zip(text.lines()).filter(|(_, line)| begins(line, "f")) {
+        for corner in text.split_whitespace().skip(1) {
+            let number = corner.split('/').next().and_then(|number| number.parse::<i64>().ok());
+            if !number.is_some_and(|number| (1..=count as u64).contains(&number.unsigned_abs())) {
+                let got: String = corner.chars().take(MOST_SHOWN).collect();
+                return Err(format!(
+                    "line {line}: a face refers to the vertex `{got}` (from 1) of {count}"
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn obj(bytes: Vec<u8>) -> Result<Vec<(Triangle, u32)>, String> {
+    let text = String::from_utf8_lossy(&bytes);
+    check_vertices(&text, "v")?;
+    check_faces(&text)?;
+    drop(text);
+    // Points and lines have no area. Faces with more than three corners are taken apart here, so that they can be numbered.
+    let options =
+        tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
     // Colours and textures are no shapes.
     let materials = |_: &Path| Ok(Default::default());
     let read = tobj::load_obj_buf(&mut Cursor::new(bytes), &options, materials);
     let (models, _) = read.map_err(|error| error.to_string())?;
-    let mut all = Vec::new();
+    let (mut all, mut number) = (Vec::new(), 0);
     for model in models {
         let places = model.mesh.positions;
         let corners: Vec<Vector<3>> =
             places.chunks_exact(3).map(Vector::from_column_slice).collect();
-        add(&corners, &model.mesh.indices, &mut all)?;
+        // If all faces are triangles, it does not say so of each.
+        let (mut rest, arities) = (model.mesh.indices.as_slice(), &model.mesh.face_arities);
+        let mut arities = arities.iter();
+        while !rest.is_empty() {
+            let length = arities.next().map_or(3, |arity| *arity as usize).clamp(1, rest.len());
+            let (face, others) = rest.split_at(length);
+            number += 1;
+            add(&corners, face, number, &mut all)?;
+            rest = others;
+        }
     }
     Ok(all)
 }
 
-fn ply(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
+fn ply(bytes: Vec<u8>) -> Result<Vec<(Triangle, u32)>, String> {
     let parser = Parser::<DefaultElement>::new();
     let most = bytes.len();
     let mut source = Reader::new(Cursor::new(bytes));
-    let header = parser.read_header(&mut source).map_err(|error| error.to_string())?;
+    let header = parser.read_header(&mut source).map_err(|error| ply_fault(&error.to_string()))?;
     for element in header.elements.values() {
         // Each takes a byte and more.
         if element.count > most || element.properties.is_empty() {
@@ -154,28 +211,49 @@ fn ply(bytes: Vec<u8>) -> Result<Vec<Triangle>, String> {
             ));
         }
     }
-    let payload = parser.read_payload(&mut source, &header).map_err(|error| error.to_string())?;
+    let payload = parser.read_payload(&mut source, &header);
+    let payload = payload.map_err(|error| ply_fault(&error.to_string()))?;
     let of = |name: &str| payload.get(name).map_or(&[][..], Vec::as_slice);
     let coordinate = |vertex: &DefaultElement, name: &str| {
         let value = vertex.get(name).and_then(number);
         value.ok_or_else(|| format!("a vertex has no number `{name}`"))
     };
-    let place = |vertex: &DefaultElement| -> Result<Vector<3>, String> {
+    let place = |(index, vertex): (usize, &DefaultElement)| -> Result<Vector<3>, String> {
         let [x, y, z] = ["x", "y", "z"].map(|name| coordinate(vertex, name));
-        Ok(Vector::<3>::new(x?, y?, z?))
+        let (x, y, z) = (x?, y?, z?);
+        match [x, y, z].iter().all(|x| x.is_finite()) {
+            true => Ok(Vector::<3>::new(x, y, z)),
+            false => Err(format!(
+                "the vertex {index} (from 0) is at ({x}, {y}, {z}), expected finite coordinates"
+            )),
+        }
     };
-    let corners: Vec<Vector<3>> = of("vertex").iter().map(place).collect::<Result<_, _>>()?;
+    let corners = of("vertex").iter().enumerate().map(place);
+    let corners: Vec<Vector<3>> = corners.collect::<Result<_, _>>()?;
     let mut all = Vec::new();
-    for face in of("face") {
+    for (face, number) in of("face").iter().zip(1..) {
         let list = face.get("vertex_indices").or_else(|| face.get("vertex_index"));
         let list = list.and_then(indices);
         let list = list.ok_or("a face has no list `vertex_indices` of whole numbers from 0")?;
-        // A face with more than three corners is a fan.
-        for pair in list.get(1..).unwrap_or_default().windows(2) {
-            add(&corners, &[list[0], pair[0], pair[1]], &mut all)?;
-        }
+        add(&corners, &list, number, &mut all)?;
     }
     Ok(all)
+}
+
+/// What the reader says of a line, in one sentence.
+fn ply_fault(said: &str) -> String {
+    let found = said.strip_prefix("Line ").and_then(|rest| rest.split_once(':'));
+    let text = said.split_once("String: '").and_then(|(_, rest)| rest.lines().next());
+    match found.zip(text) {
+        Some(((line, _), text)) => {
+            let text: String =
+                text.trim_end_matches('\'').trim().chars().take(MOST_SHOWN).collect();
+            format!(
+                "line {line}: expected finite numbers or what the header announces, got `{text}`"
+            )
+        }
+        None => said.split_whitespace().collect::<Vec<_>>().join(" "),
+    }
 }
 
 fn number(property: &Property) -> Option<f64> {
@@ -207,15 +285,22 @@ fn indices(property: &Property) -> Option<Vec<u32>> {
     }
 }
 
-/// Adds the triangles of corners by their numbers, from 0.
-fn add(corners: &[Vector<3>], numbers: &[u32], all: &mut Vec<Triangle>) -> Result<(), String> {
+/// Adds the face of a number with these corners, from 0: the triangles of a fan.
+fn add(
+    corners: &[Vector<3>],
+    face: &[u32],
+    facet: u32,
+    all: &mut Vec<(Triangle, u32)>,
+) -> Result<(), String> {
     let corner = |&number: &u32| {
         let found = corners.get(number as usize).copied();
         let count = corners.len();
-        found.ok_or_else(|| format!("a facet refers to the vertex {number} (from 0) of {count}"))
+        found.ok_or_else(|| {
+            format!("facet {facet} refers to the vertex {number} (from 0) of {count}")
+        })
     };
-    for facet in numbers.chunks_exact(3) {
-        all.push([corner(&facet[0])?, corner(&facet[1])?, corner(&facet[2])?]);
+    for pair in face.get(1..).unwrap_or_default().windows(2) {
+        all.push(([corner(&face[0])?, corner(&pair[0])?, corner(&pair[1])?], facet));
     }
     Ok(())
 }

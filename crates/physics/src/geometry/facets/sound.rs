@@ -2,20 +2,37 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::super::error::coordinates;
 use super::triangle::area;
 use super::{SurfaceError, Triangle};
+use crate::Vector;
 
-/// What was found when facets were read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// A place of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// Number of the facet, from 1, in the order of the file.
+    pub facet: usize,
+    /// The place in m.
+    pub place: Vector<3>,
+}
+
+/// What was found when facets were read, and where first in the order of the file.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Soundness {
     /// Pieces that have no edge in common.
     pub pieces: usize,
     /// Edges that facets do not go along as often one way as the other: those of holes.
     pub open_edges: usize,
+    /// The first of them.
+    pub first_open: Option<Spot>,
     /// Facets that were the other way round than those beside them, or than all should be, and have been flipped.
     pub flipped: usize,
+    /// The first of them.
+    pub first_flipped: Option<Spot>,
     /// Facets that were there twice or without an area, and have been left out.
     pub left_out: usize,
+    /// The first of them.
+    pub first_left_out: Option<Spot>,
 }
 
 impl Soundness {
@@ -39,25 +56,63 @@ fn edges(corners: [u32; 3]) -> [((u32, u32), bool); 3] {
 }
 
 /// Refuses corners that are no place.
-pub(super) fn check(triangles: &[Triangle]) -> Result<(), SurfaceError> {
-    for (number, triangle) in (1..).zip(triangles) {
+pub(super) fn check(triangles: &[(Triangle, u32)]) -> Result<(), SurfaceError> {
+    for (triangle, facet) in triangles {
         if let Some(corner) = triangle.iter().find(|x| !x.iter().all(|x| x.is_finite())) {
-            return Err(SurfaceError::NotFinite { facet: number, corner: (*corner).into() });
+            let facet = *facet as usize;
+            return Err(SurfaceError::NotFinite { facet, corner: (*corner).into() });
         }
     }
     Ok(())
 }
 
+/// Triangles with the numbers of their facets, what was found, and the volume that they enclose in m^3.
+type Mended = (Vec<(Triangle, u32)>, Soundness, f64);
+
+/// A triangle of a file.
+struct Kept {
+    triangle: Triangle,
+    /// The number of its facet.
+    facet: u32,
+    /// Whether it is the other way round than in the file.
+    is_flipped: bool,
+}
+
+impl Kept {
+    fn flip(&mut self) {
+        self.triangle.swap(1, 2);
+        self.is_flipped = !self.is_flipped;
+    }
+
+    fn spot(&self) -> Spot {
+        spot(&self.triangle, self.facet)
+    }
+}
+
+/// The middle of a triangle.
+fn spot([a, b, c]: &Triangle, facet: u32) -> Spot {
+    Spot { facet: facet as usize, place: (a + b + c) / 3.0 }
+}
+
+/// How many facets triangles are of, and the first of them.
+fn counted(mut spots: Vec<Spot>) -> (usize, Option<Spot>) {
+    spots.sort_by_key(|spot| spot.facet);
+    (spots.chunk_by(|one, other| one.facet == other.facet).count(), spots.first().copied())
+}
+
+/// Whichever comes first in the file.
+fn first(known: Option<Spot>, other: Spot) -> Option<Spot> {
+    known.filter(|known| known.facet <= other.facet).or(Some(other))
+}
+
 /// The facets without those that are there twice or have no area, all of each piece the same way round, as most of its area
 /// was, and such that they enclose a volume, which is returned in m^3.
-pub(super) fn mended(
-    triangles: Vec<Triangle>,
-) -> Result<(Vec<Triangle>, Soundness, f64), SurfaceError> {
+pub(super) fn mended(triangles: Vec<(Triangle, u32)>) -> Result<Mended, SurfaceError> {
     let mut soundness = Soundness::default();
     let mut numbers = HashMap::<[u64; 3], u32>::new();
-    let mut known = HashSet::new();
+    let (mut known, mut left_out) = (HashSet::new(), Vec::new());
     let (mut kept, mut corners) = (Vec::new(), Vec::new());
-    for triangle in triangles {
+    for (triangle, facet) in triangles {
         let own = triangle.map(|corner| {
             // Both zeros are one.
             let bits = corner.map(|x| (x + 0.0).to_bits()).into();
@@ -69,34 +124,41 @@ pub(super) fn mended(
         let ordered = [0, 1, 2].map(|k| own[(least + k) % 3]);
         let is_point = own[0] == own[1] || own[1] == own[2] || own[2] == own[0];
         if is_point || !known.insert(ordered) {
-            soundness.left_out += 1;
+            left_out.push(spot(&triangle, facet));
             continue;
         }
-        kept.push(triangle);
+        kept.push(Kept { triangle, facet, is_flipped: false });
         corners.push(own);
     }
     orient(&mut kept, &corners, &mut soundness);
     // Facets whose corners are in line have edges that others need.
-    let count = kept.len();
-    kept.retain(|triangle| area(triangle).norm() > 0.0);
-    soundness.left_out += count - kept.len();
-    let Some(origin) = kept.first().map(|triangle| triangle[0]) else {
+    kept.retain(|it| {
+        let has_area = area(&it.triangle).norm() > 0.0;
+        if !has_area {
+            left_out.push(it.spot());
+        }
+        has_area
+    });
+    let Some(origin) = kept.first().map(|it| it.triangle[0]) else {
         return Err(SurfaceError::NoFacets);
     };
-    let six = |triangle: &Triangle| {
-        let [a, b, c] = triangle.map(|corner| corner - origin);
+    let six = |it: &Kept| {
+        let [a, b, c] = it.triangle.map(|corner| corner - origin);
         a.dot(&b.cross(&c))
     };
     let volume = kept.iter().map(six).sum::<f64>() / 6.0;
     if volume < 0.0 {
-        kept.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-        soundness.flipped = kept.len() - soundness.flipped.min(kept.len());
+        kept.iter_mut().for_each(Kept::flip);
     }
-    Ok((kept, soundness, volume.abs()))
+    let flipped = kept.iter().filter(|it| it.is_flipped).map(Kept::spot);
+    (soundness.flipped, soundness.first_flipped) = counted(flipped.collect());
+    (soundness.left_out, soundness.first_left_out) = counted(left_out);
+    let facets = kept.into_iter().map(|it| (it.triangle, it.facet)).collect();
+    Ok((facets, soundness, volume.abs()))
 }
 
 /// Flips the facets that are the other way round than those beside them, and counts pieces and open edges.
-fn orient(kept: &mut [Triangle], corners: &[[u32; 3]], soundness: &mut Soundness) {
+fn orient(kept: &mut [Kept], corners: &[[u32; 3]], soundness: &mut Soundness) {
     // What goes along each edge: the numbers of a facet and of the edge in it, together for each edge.
     let mut along: Vec<((u32, u32), u32, usize, bool)> = (0u32..)
         .zip(corners)
@@ -116,7 +178,6 @@ fn orient(kept: &mut [Triangle], corners: &[[u32; 3]], soundness: &mut Soundness
     }
     // Of each facet, whether it goes the other way round than the first one of its piece.
     let mut is_other = vec![None; corners.len()];
-    let mut is_flipped = vec![false; corners.len()];
     for first in 0..corners.len() {
         if is_other[first].is_some() {
             continue;
@@ -137,45 +198,70 @@ fn orient(kept: &mut [Triangle], corners: &[[u32; 3]], soundness: &mut Soundness
         }
         let area_of = |wanted: bool| -> f64 {
             let all = piece.iter().filter(|&&facet| is_other[facet] == Some(wanted));
-            all.map(|&facet| area(&kept[facet]).norm()).sum()
+            all.map(|&facet| area(&kept[facet].triangle).norm()).sum()
         };
         let wrong = area_of(true) <= area_of(false);
         for &facet in piece.iter().filter(|&&facet| is_other[facet] == Some(wrong)) {
-            kept[facet].swap(1, 2);
-            is_flipped[facet] = true;
-            soundness.flipped += 1;
+            kept[facet].flip();
         }
     }
     let is_open = |group: &&[((u32, u32), u32, usize, bool)]| {
-        let ways = group.iter().map(|(_, facet, _, way)| *way != is_flipped[*facet as usize]);
+        let ways = group.iter().map(|(_, facet, _, way)| *way != kept[*facet as usize].is_flipped);
         2 * ways.filter(|way| *way).count() != group.len()
     };
-    let all = along.chunk_by(|one, other| one.0 == other.0);
-    soundness.open_edges = all.filter(is_open).count();
+    let middle = |&(_, facet, k, _): &((u32, u32), u32, usize, bool)| {
+        let Kept { mut triangle, facet, is_flipped } = kept[facet as usize];
+        if is_flipped {
+            triangle.swap(1, 2);
+        }
+        Spot { facet: facet as usize, place: (triangle[k] + triangle[(k + 1) % 3]) * 0.5 }
+    };
+    for group in along.chunk_by(|one, other| one.0 == other.0).filter(is_open) {
+        soundness.open_edges += 1;
+        soundness.first_open = group.iter().map(middle).fold(soundness.first_open, first);
+    }
 }
 
-/// A number of facets in words.
-fn facets(count: usize) -> String {
-    if count == 1 { "1 facet".to_owned() } else { format!("{count} facets") }
+impl std::fmt::Display for Spot {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(out, "facet {} at {} m", self.facet, coordinates(self.place.as_slice()))
+    }
 }
 
 impl std::fmt::Display for Soundness {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut all = Vec::new();
         if self.open_edges > 0 {
-            all.push(format!(
-                "it has holes: {} edges have no facet on their other side",
-                self.open_edges
-            ));
+            let edges = match self.open_edges {
+                1 => "1 edge has no facet on its other side".to_owned(),
+                count => format!("{count} edges have no facet on their other side"),
+            };
+            let first = self.first_open.map(|spot| format!(", first an edge of {spot}"));
+            all.push(format!("it has holes: {edges}{}", first.unwrap_or_default()));
         }
-        if self.flipped > 0 {
-            all.push(format!("{} with reversed orientation were flipped", facets(self.flipped)));
+        let first = |spot: Option<Spot>| spot.map(|it| format!(", first {it}")).unwrap_or_default();
+        let only = |spot: Option<Spot>| spot.map(|it| format!(", {it}")).unwrap_or_default();
+        match self.flipped {
+            0 => (),
+            1 => all.push(format!(
+                "1 facet with reversed orientation was flipped{}",
+                only(self.first_flipped)
+            )),
+            count => all.push(format!(
+                "{count} facets with reversed orientation were flipped{}",
+                first(self.first_flipped)
+            )),
         }
-        if self.left_out > 0 {
-            all.push(format!(
-                "{} that are duplicates or have no area were left out",
-                facets(self.left_out)
-            ));
+        match self.left_out {
+            0 => (),
+            1 => all.push(format!(
+                "1 facet that is a duplicate or has no area was left out{}",
+                only(self.first_left_out)
+            )),
+            count => all.push(format!(
+                "{count} facets that are duplicates or have no area were left out{}",
+                first(self.first_left_out)
+            )),
         }
         out.write_str(&all.join("; "))
     }

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::Triangle;
 use super::local::Local;
 use super::triangle::{area, cross, ends, meets, nearest_of, passage, solid_angle};
+use super::{Spot, Triangle};
 use crate::{Tensor, Vector};
 
 /// Most triangles of a leaf.
@@ -24,6 +24,8 @@ const DEEPEST: usize = 64;
 #[derive(Clone, PartialEq)]
 pub(super) struct Tree {
     triangles: Vec<Triangle>,
+    /// The number of the facet of a file that each triangle is of.
+    numbers: Vec<u32>,
     nodes: Vec<Node>,
 }
 
@@ -58,10 +60,12 @@ impl std::fmt::Debug for Tree {
 }
 
 impl Tree {
-    pub fn new(mut triangles: Vec<Triangle>) -> Self {
-        let mut nodes = Vec::with_capacity(triangles.len());
-        add(&mut triangles, 0, &mut nodes);
-        Self { triangles, nodes }
+    /// That of triangles with the number of a facet each.
+    pub fn new(mut facets: Vec<(Triangle, u32)>) -> Self {
+        let mut nodes = Vec::with_capacity(facets.len());
+        add(&mut facets, 0, &mut nodes);
+        let (triangles, numbers) = facets.into_iter().unzip();
+        Self { triangles, numbers, nodes }
     }
 
     pub fn triangles(&self) -> &[Triangle] {
@@ -202,20 +206,31 @@ impl Tree {
         best.get()
     }
 
-    /// See [`super::Facets::thinner_than`]; `most` if there is no such part.
-    pub fn thickness(&self, most: f64) -> f64 {
+    /// See [`super::Facets::thinner_than`].
+    pub fn thinnest(&self, most: f64) -> Option<(f64, Spot)> {
         let (low, high) = self.bounds();
         let least = 1e-9 * (high - low).norm();
+        let through = |triangle: &Triangle, most: f64| {
+            let inwards = -area(triangle).normalize();
+            self.along(&(thrice_centre(triangle) / 3.0), &inwards, [least, most])
+        };
         // Nothing is asked beyond the thinnest part so far, so that the least is the same whatever the order. Numbers that
         // are not negative have the order of their bits.
         let best = AtomicU64::new(most.max(0.0).to_bits());
         self.triangles.par_iter().for_each(|triangle| {
-            let inwards = -area(triangle).normalize();
-            let most = f64::from_bits(best.load(Ordering::Relaxed));
-            let found = self.along(&(thrice_centre(triangle) / 3.0), &inwards, [least, most]);
+            let found = through(triangle, f64::from_bits(best.load(Ordering::Relaxed)));
             best.fetch_min(found.to_bits(), Ordering::Relaxed);
         });
-        f64::from_bits(best.into_inner())
+        let thickness = f64::from_bits(best.into_inner());
+        if !(thickness < most) {
+            return None;
+        }
+        // Of several that are as thin, the first of the file.
+        let all = self.triangles.par_iter().zip(&self.numbers);
+        let thin = all.filter(|(triangle, _)| through(triangle, thickness.next_up()) <= thickness);
+        let (triangle, facet) = thin.min_by_key(|(_, number)| **number)?;
+        let place = thrice_centre(triangle) / 3.0;
+        Some((thickness, Spot { facet: *facet as usize, place }))
     }
 
     /// See [`super::Facets::crossings`].
@@ -231,11 +246,39 @@ impl Tree {
                 |node| {
                     (0..3).all(|axis| node.low[axis] <= high[axis] && node.high[axis] >= low[axis])
                 },
-                |other, its| count += usize::from(other > number && cross(triangle, its)),
+                |other, its| {
+                    count += usize::from(other > number && cross(triangle, its).is_some());
+                },
             );
             found.fetch_add(count, Ordering::Relaxed);
         });
         found.into_inner().min(most)
+    }
+
+    /// See [`super::Facets::first_crossing`].
+    pub fn first_crossing(&self) -> Option<(Spot, usize)> {
+        let number = |triangle: usize| self.numbers[triangle] as usize;
+        let mut order: Vec<usize> = (0..self.triangles.len()).collect();
+        order.sort_unstable_by_key(|&triangle| (number(triangle), triangle));
+        order.par_iter().find_map_first(|&triangle| {
+            let own = &self.triangles[triangle];
+            let [low, high] = ends(own);
+            let mut first: Option<([usize; 2], Vector<3>)> = None;
+            self.visit(
+                |node| {
+                    (0..3).all(|axis| node.low[axis] <= high[axis] && node.high[axis] >= low[axis])
+                },
+                |other, its| {
+                    let key = [number(other), other];
+                    if first.is_none_or(|(known, _)| key < known)
+                        && let Some(place) = cross(own, its)
+                    {
+                        first = Some((key, place));
+                    }
+                },
+            );
+            first.map(|([other, _], place)| (Spot { facet: number(triangle), place }, other))
+        })
     }
 }
 
@@ -272,10 +315,10 @@ impl Node {
 }
 
 /// Adds the node around triangles of which this many others come before, and all below it.
-fn add(triangles: &mut [Triangle], before: u32, nodes: &mut Vec<Node>) {
+fn add(triangles: &mut [(Triangle, u32)], before: u32, nodes: &mut Vec<Node>) {
     let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::<3>::repeat);
     let (mut sum, mut middle, mut whole) = (Vector::zeros(), Vector::zeros(), 0.0);
-    for triangle in &*triangles {
+    for (triangle, _) in &*triangles {
         for corner in triangle {
             (low, high) = (low.inf(corner), high.sup(corner));
         }
@@ -285,8 +328,9 @@ fn add(triangles: &mut [Triangle], before: u32, nodes: &mut Vec<Node>) {
         whole += area.norm();
     }
     middle /= whole;
-    let outer =
-        |triangle: &Triangle| (thrice_centre(triangle) / 3.0 - middle) * area(triangle).transpose();
+    let outer = |(triangle, _): &(Triangle, u32)| {
+        (thrice_centre(triangle) / 3.0 - middle) * area(triangle).transpose()
+    };
     let spread: Tensor<3> = triangles.iter().map(outer).sum();
     let radius = (high - middle).abs().sup(&(low - middle).abs()).norm();
     let number = nodes.len();
@@ -297,7 +341,7 @@ fn add(triangles: &mut [Triangle], before: u32, nodes: &mut Vec<Node>) {
     }
     let axis = (high - low).imax();
     let half = triangles.len() / 2;
-    let along = |triangle: &Triangle| thrice_centre(triangle)[axis];
+    let along = |(triangle, _): &(Triangle, u32)| thrice_centre(triangle)[axis];
     triangles.select_nth_unstable_by(half, |a, b| along(a).total_cmp(&along(b)));
     let (first, second) = triangles.split_at_mut(half);
     add(first, before, nodes);
@@ -324,7 +368,7 @@ mod tests {
             let corners = [corner(x, y), corner(x + 0.25, y), corner(x + 0.25, y + 0.25)];
             [corners, [corners[0], corners[2], corner(x, y + 0.25)]]
         });
-        let tree = Tree::new(all.collect());
+        let tree = Tree::new(all.map(|triangle| (triangle, 1)).collect());
         let left = |distance: f64| {
             let point = Vector::<3>::new(0.6, 0.5, -0.7).normalize() * distance;
             let exact: f64 = tree.triangles.iter().map(|it| solid_angle(it, &point)).sum();

@@ -106,17 +106,18 @@ pub(super) fn passage(triangle: &Triangle, from: &Vector<3>, to: &Vector<3>) -> 
     is_sure.then_some(ends[0])
 }
 
-/// Whether two triangles without a common corner cross: a side of one goes through the other. Those that lie in one plane do
-/// not count.
-pub(super) fn cross(one: &Triangle, other: &Triangle) -> bool {
+/// Where two triangles without a common corner cross: a side of one goes through the other there. Those that lie in one plane
+/// do not count.
+pub(super) fn cross(one: &Triangle, other: &Triangle) -> Option<Vector<3>> {
     if one.iter().any(|corner| other.contains(corner)) {
-        return false;
+        return None;
     }
     let goes_through = |sides: &Triangle, triangle: &Triangle| {
-        (0..3).any(|k| {
+        (0..3).find_map(|k| {
             let way = sides[(k + 1) % 3] - sides[k];
-            meets(triangle, &sides[k], &way).is_some_and(|part| part > 0.0 && part < 1.0)
+            let part = meets(triangle, &sides[k], &way)?;
+            (part > 0.0 && part < 1.0).then(|| sides[k] + way * part)
         })
     };
-    goes_through(one, other) || goes_through(other, one)
+    goes_through(one, other).or_else(|| goes_through(other, one))
 }

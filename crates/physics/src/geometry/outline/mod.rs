@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::error::finite;
+use super::error::{coordinates, finite};
 use super::{GeometryError, Shape, file, polygon};
 use crate::Vector;
 
@@ -42,7 +42,10 @@ pub enum OutlineError {
         reason: String,
     },
     /// Two loops have a point in common.
-    #[error("`{}`: loops {first} and {second} cross or touch, expected separate loops", path.display())]
+    #[error(
+        "`{}`: loops {first} and {second} cross or touch at {} m, expected separate loops", path.display(),
+        coordinates(place)
+    )]
     Crossing {
         /// The file.
         path: PathBuf,
@@ -50,6 +53,18 @@ pub enum OutlineError {
         first: usize,
         /// Number of another one.
         second: usize,
+        /// Where they meet, in m.
+        place: [f64; 2],
+    },
+    /// A loop is no polygon.
+    #[error("`{}`: loop {number}: {reason}", path.display())]
+    Loop {
+        /// The file.
+        path: PathBuf,
+        /// Number of the loop, from 1.
+        number: usize,
+        /// What is wrong with it.
+        reason: Box<GeometryError>,
     },
 }
 
@@ -68,7 +83,7 @@ impl Outline {
     /// Curves become sides that are at most 1e-4 of the size of the outline away from them.
     ///
     /// # Errors
-    /// [`OutlineError`] for a file that cannot be read or contains what is not supported, and for loops that meet; what
+    /// [`OutlineError`] for a file that cannot be read or contains what is not supported, for loops that meet, and for what
     /// [`Shape::polygon`] refuses of a loop.
     pub fn read(path: &Path, scale: f64, shift: Vector<2>) -> Result<Self, GeometryError> {
         let of = || path.to_owned();
@@ -98,15 +113,22 @@ impl Outline {
             let reason = format!("it has {count} corners, at most {MOST_CORNERS} can be checked");
             return Err(broken((None, reason)).into());
         }
-        for corners in &loops {
-            corners.iter().try_for_each(|x| finite("a corner of an outline", x.as_slice()))?;
-            polygon::check(corners)?;
+        for (number, corners) in (1..).zip(&loops) {
+            let finite = |x: &Vector<2>| finite("a corner of an outline", x.as_slice());
+            let checked =
+                corners.iter().try_for_each(finite).and_then(|()| polygon::check(corners));
+            checked.map_err(|reason| OutlineError::Loop {
+                path: of(),
+                number,
+                reason: Box::new(reason),
+            })?;
         }
         for (second, other) in loops.iter().enumerate() {
-            let meets = |one: &Vec<Vector<2>>| polygon::meet(one, other);
-            if let Some(first) = loops[..second].iter().position(meets) {
-                let (first, second) = (first + 1, second + 1);
-                return Err(OutlineError::Crossing { path: of(), first, second }.into());
+            for (first, one) in loops[..second].iter().enumerate() {
+                if let Some(place) = polygon::meet(one, other) {
+                    let (first, second, place) = (first + 1, second + 1, place.into());
+                    return Err(OutlineError::Crossing { path: of(), first, second, place }.into());
+                }
             }
         }
         Ok(Self { loops })
@@ -257,12 +279,22 @@ mod tests {
             ("a.csv", "x,y\n0,0\n1,nan\n", "line 3: `nan` is not a finite number"),
             ("a.csv", "x,y\n0,0\n1\n", "line"),
             ("a.csv", "x,y\n", "there is no outline in it"),
-            ("a.csv", "x,y\n0,0\n1,1\n", "a polygon has 2 corners"),
-            ("a.csv", "x,y\n0,0\n1,1\n1,0\n0,1\n", "cross or touch"),
+            ("a.csv", "x,y\n0,0\n1,1\n", "a.csv`: loop 1: a polygon has 2 corners"),
+            // It is drawn in mm and moved.
+            (
+                "a.csv",
+                "x,y\n0,0\n1,1\n1,0\n0,1\n",
+                "a.csv`: loop 1: sides 1 and 3 of a polygon cross or touch at (0.1005, 0.2005) m",
+            ),
+            (
+                "a.csv",
+                "loop,x,y\na,0,0\na,9,0\na,0,9\nb,5,8\nb,9,8\nb,7,8\nb,7,9\n",
+                "loop 2: sides",
+            ),
             (
                 "a.csv",
                 "loop,x,y\n1,0,0\n1,9,0\n1,0,9\n2,1,1\n2,9,9\n2,1,8\n",
-                "loops 1 and 2 cross",
+                "loops 1 and 2 cross or touch at (0.10",
             ),
             ("a.svg", "<svg>\n<path d='M0 0 L", "unexpected end"),
             ("a.svg", "<svg>\n<path d='M0 0 LL'/></svg>", "line 2: the path cannot be read"),

@@ -83,7 +83,10 @@ fn a_box_of_facets_is_a_box() {
     let facets = Facets::new(cuboid(end)).unwrap();
     assert_eq!(facets.volume(), Some(6.0));
     assert_eq!(facets.bounding_box(), (Vector::zeros(), Vector::from(end)));
-    assert!(facets.thinner_than(2.0).is_some_and(|it| (it - 1.0).abs() < 1e-12));
+    let (thickness, spot) = facets.thinner_than(2.0).unwrap();
+    // Facets 9 to 12 have the least to their other sides; of those, x is 0 behind the first.
+    assert!((thickness - 1.0).abs() < 1e-12 && spot.facet == 9, "{thickness} {spot}");
+    assert_eq!(spot.place.x, 0.0);
     assert_eq!(facets.thinner_than(0.9), None);
     assert_eq!(facets.crossings(9), 0);
     let surface = Shape::surface(facets.into()).unwrap();
@@ -155,11 +158,39 @@ fn holes_and_facets_that_are_turned_or_there_twice_do_no_harm() {
     let found = mended.soundness();
     assert_eq!((found.flipped, found.left_out, found.open_edges), (turned, count + 1, 0));
     let text = found.to_string();
-    assert!(text.contains("reversed orientation") && text.contains("left out"), "{text}");
+    let middle = |[a, b, c]: Triangle| (a + b + c) / 3.0;
+    let first = found.first_flipped.unwrap();
+    assert_eq!(first.facet, 6);
+    assert!((first.place - middle(torus(60, 30)[5])).norm() < 1e-12, "{first}");
+    // What is there twice comes behind the others: the first of it is like the first of all.
+    let first = found.first_left_out.unwrap();
+    assert_eq!(first.facet, torus(60, 30).len() + 1);
+    assert!((first.place - middle(torus(60, 30)[0])).norm() < 1e-12, "{first}");
+    assert!(text.contains(&format!(
+        "{turned} facets with reversed orientation were flipped, first facet 6 at (1."
+    )));
+    let said = "that are duplicates or have no area were left out, first facet 3601 at (1.";
+    assert!(text.contains(said), "{text}");
+    let mut one = torus(60, 30);
+    one[6].swap(0, 1);
+    one.push(one[8]);
+    let one = Facets::new(one).unwrap().soundness().to_string();
+    for said in [
+        "1 facet with reversed orientation was flipped, facet 7 at (",
+        "1 facet that is a duplicate or has no area was left out, facet 3601 at (",
+    ] {
+        assert!(one.contains(said), "{one}");
+    }
     // A hole of a facet of 0.13 by 0.08 m.
     let holed = Facets::new(torus(60, 30)[1..].to_vec()).unwrap();
     assert_eq!((holed.soundness().open_edges, holed.volume()), (3, None));
-    assert!(holed.soundness().to_string().contains("3 edges have no facet on their other side"));
+    // The second facet is beside the first one: they have a diagonal in common.
+    let diagonal = (torus(60, 30)[0][0] + torus(60, 30)[0][2]) * 0.5;
+    let first = holed.soundness().first_open.unwrap();
+    assert!(first.facet == 1 && (first.place - diagonal).norm() < 1e-12, "{first}");
+    let said = "3 edges have no facet on their other side, first an edge of facet 1 at (1.3";
+    let text = holed.soundness().to_string();
+    assert!(text.contains(said), "{text}");
     for x in places() {
         let expected = sound.depth(&x);
         assert!((mended.depth(&x) - expected).abs() < 1e-12, "at {x}");
@@ -196,6 +227,13 @@ fn holes_and_facets_that_are_turned_or_there_twice_do_no_harm() {
     assert_eq!(crossings(0.3), 0);
     // Edges of each box go through faces of the other.
     assert!(crossings(0.7) > 0);
+    let both = Facets::new(cuboid([1.0; 3]).into_iter().chain(moved(0.7)).collect()).unwrap();
+    let (first, other) = both.first_crossing().unwrap();
+    // The face z = 1, which facets 3 and 4 make, is the first that the other box sticks out of, by four of its edges.
+    assert!((3..=4).contains(&first.facet) && other > 12, "{first} {other}");
+    assert!((first.place.z - 1.0).abs() < 1e-12, "{first}");
+    assert!(first.place.iter().take(2).all(|x| (0.7..=1.0).contains(x)), "{first}");
+    assert_eq!(Facets::new(cuboid([1.0; 3])).unwrap().first_crossing(), None);
 }
 
 /// A file with these bytes, and what is read of it.
@@ -260,6 +298,13 @@ fn files_of_all_kinds_have_the_same_box() {
         assert_eq!(facets.volume(), Some(6.0), "{name}");
         assert!(facets.soundness().is_sound(), "{name}");
     }
+    // Facets are counted as in the file, also where they have four corners.
+    let open = OBJ.replace("f 1 2 6 5\n", "");
+    let first = read("open.obj", open.as_bytes()).unwrap().soundness().first_open.unwrap();
+    assert!(first.facet == 1 && first.place == Vector::<3>::new(0.5, 0.0, 0.0), "{first}");
+    let turned = PLY.replace("4 1 3 7 5", "4 5 7 3 1");
+    let found = *read("turned.ply", turned.as_bytes()).unwrap().soundness();
+    assert_eq!((found.flipped, found.first_flipped.unwrap().facet), (1, 6));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("box.obj");
     std::fs::write(&path, OBJ).unwrap();
@@ -281,7 +326,14 @@ fn broken_files_are_told() {
     solid[..5].copy_from_slice(b"solid");
     let mut long = binary(&solid, &cuboid([1.0; 3]));
     long.extend([0; 10]);
-    let faults: [(&str, Vec<u8>, &str); 10] = [
+    let mut worded = text(&cuboid([1.0; 3]));
+    worded = worded.replacen("vertex 0 1 0", "vertex 0 NaN 0", 1);
+    let mut bits = b"ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\n\
+        property float z\nend_header\n"
+        .to_vec();
+    bits.extend([0.0, 1.0, 2.0, 3.0, f32::NAN, 4.0].into_iter().flat_map(f32::to_le_bytes));
+    let faults: [(&str, Vec<u8>, &str); 17] = [
+        ("a.ply", bits, "the vertex 1 (from 0) is at (3, NaN, 4), expected finite coordinates"),
         ("a.stl", long, "room for 12.2 facets where a binary file would have 12"),
         (
             "a.ply",
@@ -290,11 +342,49 @@ fn broken_files_are_told() {
             "is broken: ",
         ),
         ("a.stl", short, "room for 8.32 facets where a binary file would have 12"),
-        ("a.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(), "facet 1: "),
+        (
+            "a.stl",
+            b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(),
+            "line 4: expected three finite coordinates after `vertex`, got `vertex 1 2`",
+        ),
+        ("a.stl", b"solid a\nfacet normal 0 0 1\nouter\n".to_vec(), "facet 1: "),
+        (
+            "a.stl",
+            worded.into_bytes(),
+            "line 5: expected three finite coordinates after `vertex`, got `vertex 0 NaN 0`",
+        ),
+        (
+            "a.obj",
+            OBJ.replace("v 1 2 0", "v 1 inf 0").into_bytes(),
+            "line 7: expected three finite coordinates after `v`, got `v 1 inf 0`",
+        ),
+        (
+            "a.obj",
+            OBJ.replace("f 3 7 8 4", "f 3 7/1 9/1 4").into_bytes(),
+            "line 15: a face refers to the vertex `9/1` (from 1) of 8",
+        ),
+        (
+            "a.ply",
+            PLY.replace("0 2 0\n", "0 nan 0\n").into_bytes(),
+            "line 12: expected finite numbers or what the header announces, got `0 nan 0`",
+        ),
+        (
+            "a.ply",
+            PLY.replace("1 2 0\n", "1 two 0\n").into_bytes(),
+            "line 13: expected finite numbers or what the header announces, got `1 two 0`",
+        ),
         ("a.stl", binary(&[b'-'; 80], &nan), "a corner of facet 5 is at [1.0, NaN"),
         ("a.stl", binary(&[b'-'; 80], &[]), "no facets"),
-        ("a.obj", b"v 0 0 0\nf 1 2 3\n".to_vec(), "is broken: "),
-        ("a.ply", PLY.replace("4 1 3 7 5", "4 1 3 7 8").into_bytes(), "the vertex 8 (from 0) of 8"),
+        (
+            "a.obj",
+            b"v 0 0 0\nf 1 2 3\n".to_vec(),
+            "is broken: line 2: a face refers to the vertex `2` (from 1) of 1",
+        ),
+        (
+            "a.ply",
+            PLY.replace("4 1 3 7 5", "4 1 3 7 8").into_bytes(),
+            "facet 6 refers to the vertex 8 (from 0) of 8",
+        ),
         ("a.ply", PLY.replace("float z", "float w").into_bytes(), "a vertex has no number `z`"),
         ("a.step", Vec::new(), "ends with `.stl`, `.obj` or `.ply`"),
     ];

@@ -11,7 +11,7 @@ use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
     Behind, CoupledScheme, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health,
-    Particle, Passage, Phase, Scheme, SchemeDescription, StepLimit,
+    Part, Particle, Passage, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, StepLimit,
 };
 
 /// The fields of walls of the fluid that solids have in it too: what the fluid does to them.
@@ -67,6 +67,14 @@ impl<const D: usize> Scheme for World<D> {
         _method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         Err(DeviceRefusal::Systems)
+    }
+
+    fn share(&self, _part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
+        Err(RankRefusal::Systems)
+    }
+
+    fn shares(&self, _bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        Err(RankRefusal::Systems)
     }
 
     fn particle_count(&self) -> usize {

@@ -308,23 +308,25 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         if !facets.soundness().is_sound() {
             tell(facets.soundness().to_string());
         }
-        match facets.crossings(MOST_CROSSINGS) {
-            0 => (),
-            MOST_CROSSINGS => {
-                tell(format!("{MOST_CROSSINGS} pairs of facets or more cross each other"))
-            }
-            count => tell(format!("{count} pairs of facets cross each other")),
-        }
+        let pairs = match facets.crossings(MOST_CROSSINGS) {
+            0 => continue,
+            1 => "1 pair of facets crosses",
+            MOST_CROSSINGS => &format!("{MOST_CROSSINGS} pairs of facets or more cross each other"),
+            count => &format!("{count} pairs of facets cross each other"),
+        };
+        let first = facets.first_crossing();
+        let first = first.map(|(spot, other)| format!(", first facet {other} and {spot}"));
+        tell(format!("{pairs}{}", first.unwrap_or_default()));
     }
     for body in &case.bodies {
         // What is cut out of a body is no part of it.
         let model::Shape::Surface(surface) = &body.shape.value else { continue };
         let Some(facets) = surface.facets.get() else { continue };
         let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
-        if let Some(thickness) = facets.thinner_than(THIN * spacing) {
+        if let Some((thickness, spot)) = facets.thinner_than(THIN * spacing) {
             let layers = thickness / spacing;
             told.push(format!(
-                "the body `{}` is {layers:.1} spacings thick where it is thinnest, less than \
+                "the body `{}` is {layers:.1} spacings thick where it is thinnest, behind {spot}, less than \
                  {THIN}: make the spacing smaller, or expect fluid on one side to interact with \
                  that on the other",
                 *body.name

@@ -45,7 +45,17 @@ pub(super) fn build(case: &Case) -> Result<Parts, Problems> {
         2 => build_in::<2>(case),
         _ => build_in::<3>(case),
     }
-    .map_err(|problems| case.refuse(problems))
+    .map_err(|problems| case.refuse(with_surfaces(case, problems)))
+}
+
+/// Problems with what is wrong with surfaces from files, which may be their cause.
+fn with_surfaces(case: &Case, mut problems: Vec<Problem>) -> Vec<Problem> {
+    let told = bodies::surfaces(case).join("; ");
+    if let (Some(first), false) = (problems.first_mut(), told.is_empty()) {
+        let help = first.help.take().map(|help| format!("{help}; ")).unwrap_or_default();
+        first.help = Some(format!("{help}this may be the cause: {told}"));
+    }
+    problems
 }
 
 /// A formulation with the integrator that was built for it, and what else was built.
