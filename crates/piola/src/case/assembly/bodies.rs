@@ -217,6 +217,16 @@ fn refuse_spacing(case: &Case, body: &Body, error: &GeometryError) -> Problem {
     if matches!(error, GeometryError::TurnedPeriodic | GeometryError::NotRound) {
         return refuse(case, body, error);
     }
+    // Solids of other systems are walls of the spacing of the fluid to it.
+    let lender = case.bodies.iter().find(|other| other.spacing.place == body.spacing.place);
+    if let Some(lender) = lender.filter(|other| other.name.value != body.name.value) {
+        let (name, other) = (&body.name.value, &lender.name.value);
+        let message =
+            format!("{error}; to the fluid `{other}` the solid is a wall of the same spacing");
+        let help = "make all sizes of the solid multiples of the spacing of the fluid".to_owned();
+        let label = format!("body `{name}`");
+        return case.problem_at(body.shape.place, message, label, Some(help));
+    }
     let label = format!("spacing of body `{}`", body.name.value);
     case.problem_at(body.spacing.place, error.to_string(), label, None)
 }

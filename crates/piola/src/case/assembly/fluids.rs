@@ -233,7 +233,18 @@ impl<const D: usize> Prepared<D> {
         {
             warnings.extend(open_end(&scheme, full));
         }
-        Ok((scheme, Built { probes, lines, bodies, neighbors, poorly_supported, warnings }))
+        Ok((
+            scheme,
+            Built {
+                probes,
+                lines,
+                bodies,
+                neighbors,
+                poorly_supported,
+                warnings,
+                notes: Vec::new(),
+            },
+        ))
     }
 }
 
