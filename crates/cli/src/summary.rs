@@ -94,6 +94,9 @@ pub fn summary(finished: &Finished, end: f64, folder: &Path, seconds: f64) -> St
         );
         line("retry", &text);
     }
+    for note in &finished.notes {
+        line("note", note);
+    }
     for warning in &finished.warnings {
         line("warning", warning);
     }

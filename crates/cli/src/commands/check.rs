@@ -116,6 +116,7 @@ pub fn plan_rows(case: &Case, plan: &Plan) -> Vec<[String; 2]> {
     section("memory", vec![bytes(plan.memory)]);
     section("ranks", ranks(plan));
     section("output", plan.outputs.clone());
+    section("note", plan.notes.clone());
     section("warning", plan.warnings.clone());
     rows
 }

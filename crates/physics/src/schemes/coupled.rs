@@ -19,20 +19,23 @@ pub trait CoupledScheme: Scheme {
     /// The same of a solid.
     fn solid_steps(&self, number: usize, step: f64) -> u64;
 
-    /// Gives the solids the impulse of the forces that the fluid in `state` has on them at `time`, in
-    /// `duration` s.
-    fn push(&mut self, time: f64, duration: f64, state: &mut [f64]);
+    /// Begins a step from a time and of a length in s, of which `counts` of each system are one, the fluid first: finds the
+    /// forces that the fluid in `state` has on the solids, and gives them the impulse in half of their first own step.
+    fn push(&mut self, step: [f64; 2], counts: &[u64], state: &mut [f64]);
 
-    /// The same at a time and for a duration in s behind [`Self::flow`] in `count` steps: with what makes the impulse of the whole step that
-    /// which the fluid has lost.
-    fn repay(&mut self, push: [f64; 2], count: u64, state: &mut [f64]);
+    /// Gives a solid by its number the same forces between two of its own steps: at a time and for a duration in s, to its
+    /// part of a state; what it does is booked in `state`.
+    fn push_on(&mut self, number: usize, push: [f64; 2], own: &mut [f64], state: &mut [f64]);
+
+    /// Ends the step behind [`Self::flow`]: with what makes the impulse of the whole step that which the fluid has lost.
+    fn repay(&mut self, step: [f64; 2], counts: &[u64], state: &mut [f64]);
 
     /// Brings what the solids keep of their forces into line with velocities that have changed.
     fn settle(&mut self, time: f64, state: &mut [f64]);
 
-    /// Takes the fluid in `new` in `count` steps through one from a time and of a length in s, around solids that go from
-    /// where they are in `old` to where they are in `new`, behind [`Self::push`] from `old`.
-    fn flow(&mut self, step: [f64; 2], count: u64, old: &[f64], new: &mut [f64]);
+    /// Takes the fluid in `new` in its steps through one from a time and of a length in s, around solids that go from where
+    /// they are in `old` to where they are in `new`, behind [`Self::push`] from `old`.
+    fn flow(&mut self, step: [f64; 2], counts: &[u64], old: &[f64], new: &mut [f64]);
 
     /// Brings what `state` says of all systems together into line with the systems, which have taken this many steps of
     /// their own, the fluid first.

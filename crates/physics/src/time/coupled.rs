@@ -54,29 +54,32 @@ impl Integrator for Coupled {
         let Some(world) = scheme.coupled() else { return Ok(()) };
         // Where failures have made steps shorter, those within are as much shorter.
         let whole = step / self.factor;
-        let fluid_steps = world.fluid_steps(whole);
         self.counts.clear();
-        self.counts.push(fluid_steps);
+        self.counts.push(world.fluid_steps(whole));
+        self.counts.extend((0..self.solids.len()).map(|number| world.solid_steps(number, whole)));
         parallel::copy(new, old);
-        world.push(time, 0.5 * step, new);
+        world.push([time, step], &self.counts, new);
         world.settle(time, new);
         for (number, integrator) in self.solids.iter_mut().enumerate() {
-            let count = world.solid_steps(number, whole);
-            self.counts.push(count);
-            let (solid, part) = world.solid(number);
+            let count = self.counts[number + 1];
+            let (_, part) = world.solid(number);
             self.old.clear();
             self.old.extend_from_slice(&new[part.clone()]);
             self.new.resize(part.len(), 0.0);
             let own = step / count as f64;
             for k in 0..count {
                 let begin = time + k as f64 * own;
+                if k > 0 {
+                    world.push_on(number, [begin, own], &mut self.old, new);
+                }
+                let (solid, _) = world.solid(number);
                 integrator.step(solid, begin, own, &self.old, &mut self.new)?;
                 std::mem::swap(&mut self.old, &mut self.new);
             }
             new[part].copy_from_slice(&self.old);
         }
-        world.flow([time, step], fluid_steps, old, new);
-        world.repay([time + step, 0.5 * step], fluid_steps, new);
+        world.flow([time, step], &self.counts, old, new);
+        world.repay([time, step], &self.counts, new);
         world.add_up(&self.counts, new);
         Ok(())
     }

@@ -16,6 +16,8 @@ pub struct Finished {
     pub tables: Tables,
     /// Files written, in the order of writing.
     pub files: Vec<PathBuf>,
+    /// What has been chosen for the user.
+    pub notes: Vec<String>,
     /// What the user should know about the case.
     pub warnings: Vec<String>,
     /// Number of particles.

@@ -43,6 +43,8 @@ pub struct Plan {
     pub efficiency: f64,
     /// What will be written, one line each.
     pub outputs: Vec<String>,
+    /// What has been chosen for the user.
+    pub notes: Vec<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -271,6 +273,7 @@ impl Session {
             seconds: steps as f64 * evaluations as f64 * evaluation,
             memory: scheme.memory() + STATES * size_of_val(state.as_slice()),
             outputs: self.planned_outputs(),
+            notes: self.built.notes.clone(),
             warnings,
         }
     }

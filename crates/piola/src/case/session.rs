@@ -335,11 +335,12 @@ impl Session {
                  when"
             ));
         }
+        let notes = built.notes.clone();
         let linear = executor.scheme.linear_costs();
         let own_steps = executor.own_steps();
         let files: Vec<PathBuf> = Vec::new();
         let mut finished =
-            Finished { summary, tables, files, warnings, particles, linear, own_steps };
+            Finished { summary, tables, files, notes, warnings, particles, linear, own_steps };
         let Some(outputs) = outputs.take() else { return Ok(finished) };
         let folder = outputs.folder().to_owned();
         finished.files = outputs.finish(case, &finished, self.build_seconds)?;

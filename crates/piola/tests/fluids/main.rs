@@ -21,6 +21,7 @@ mod runs;
 mod shapes;
 mod solids;
 mod speeds;
+mod stiff;
 mod structures;
 mod subcycles;
 mod support;

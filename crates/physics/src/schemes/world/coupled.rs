@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::contact::Origin;
 use super::description::SHARED;
-use super::flow::{most_steps, shortest, steps_within};
+use super::flow::{Way, most_steps, shortest, steps_within};
 use super::{MOST_STEPS, Solid, World};
 use crate::geometry::turned_normal;
 use crate::schemes::momentum::{MOST_COMPONENTS, add_moments, momentum_components};
@@ -14,6 +14,14 @@ use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme};
 use crate::{Vector, parallel};
 
 impl<const D: usize> Solid<D> {
+    /// Brings what it keeps of its forces in its part of a state at a time in s into line with velocities that have
+    /// changed; what implicit steps keep is of their own making.
+    fn settle(&mut self, time: f64, own: &mut [f64]) {
+        if let (Some(solid), Some(_)) = (self.scheme.split(), self.cfl) {
+            solid.settle(time, own);
+        }
+    }
+
     /// Place and velocity of the wall particle in `row` of the interface.
     pub(super) fn wall(&self, own: &[f64], row: usize) -> [Vector<D>; 2] {
         let place = self.interface.place(row, self.displacements(own, row));
@@ -143,55 +151,77 @@ impl<const D: usize> World<D> {
         self.contact.forces(scale, |solid| solids[solid].law, velocity, bear);
     }
 
-    /// Gives the solids the impulse in `duration` s of forces of the fluid, which are those that a step has left to
-    /// give or those of its state, and of others where they touch.
-    fn push_on(&mut self, time: f64, duration: f64, state: &mut [f64]) {
-        let (works, components) =
-            (self.description.ledger.mechanisms.len(), momentum_components(D).len());
+    /// Finds what acts on the particles of the solids in a state at a time in s: the forces of the fluid, which are those
+    /// that a step has left to give or those of the state, and those of others where they touch.
+    fn find_forces(&mut self, time: f64, state: &[f64]) {
         self.touch(time, state);
-        let (states, tail) = state.split_at_mut(self.ledger_at());
-        for number in 0..self.solids.len() {
-            let [mechanism, way] = self.entries(number);
-            let (solid, part) = (&self.solids[number], &self.parts.all[number + 1].state);
-            let (front, rest) = states.split_at_mut(part.start);
-            let (fluid, own) = (&front[self.parts.all[0].state.clone()], &mut rest[..part.len()]);
-            self.forces.clear();
-            self.forces.resize(solid.mass.len(), Vector::zeros());
+        let fluid = &state[self.parts.all[0].state.clone()];
+        for (forces, solid) in self.forces.iter_mut().zip(&self.solids) {
+            forces.clear();
+            forces.resize(solid.mass.len(), Vector::zeros());
             for (row, &wall) in solid.interface.walls().iter().enumerate() {
                 let left = self.rest.get(solid.first + row).copied();
                 let force = left.unwrap_or_else(|| self.fluid.force_on(fluid, wall));
-                solid.interface.bear(row, &force, &mut self.forces);
-            }
-            for (shared, forces) in [&self.forces, &self.touches[number]].into_iter().enumerate() {
-                if shared > 0 && forces.iter().all(|force| *force == Vector::<D>::zeros()) {
-                    continue;
-                }
-                let column = &mut own[solid.velocities.clone()];
-                let column: &mut [Vector<D>] = bytemuck::cast_slice_mut(column);
-                self.before.clear();
-                self.before.extend_from_slice(column);
-                for ((velocity, force), mass) in column.iter_mut().zip(forces).zip(&solid.mass) {
-                    *velocity += force * (duration / mass);
-                }
-                // What moves as prescribed takes nothing from outside: its support does, and some solids book that.
-                let ledger = solid.scheme.ledger_start();
-                self.booked.clear();
-                self.booked.extend_from_slice(&own[ledger..]);
-                solid.scheme.constrain(time, own);
-                own[ledger..].copy_from_slice(&self.booked);
-                let (before, own) = (&self.before, &*own);
-                let [work, impulse] = parallel::sums(before.len(), |a, sums| {
-                    let [[work, ..], impulse]: &mut [[f64; MOST_COMPONENTS]; 2] = sums;
-                    let (after, place) = (solid.velocity(own, a), solid.place(own, a));
-                    let change = (after - before[a]) * solid.mass[a];
-                    *work += 0.5 * change.dot(&(after + before[a]));
-                    add_moments(&place, &change, impulse);
-                });
-                tail[mechanism + shared] += work[0];
-                let sums = tail[works + (way + shared) * components..].iter_mut();
-                sums.zip(&impulse[..components]).for_each(|(sum, part)| *sum += part);
+                solid.interface.bear(row, &force, forces);
             }
         }
+    }
+
+    /// Gives a solid the impulse in a duration in s, at a time in s, of `forces` of the fluid on its particles and of others
+    /// that it touches: changes its part of a state, and books that in the ledger of all, `tail`.
+    fn kick_solid(
+        &mut self,
+        number: usize,
+        [time, duration]: [f64; 2],
+        forces: [&[Vector<D>]; 2],
+        (own, tail): (&mut [f64], &mut [f64]),
+    ) {
+        let (works, components) =
+            (self.description.ledger.mechanisms.len(), momentum_components(D).len());
+        let [mechanism, way] = self.entries(number);
+        let solid = &self.solids[number];
+        for (shared, forces) in forces.into_iter().enumerate() {
+            if shared > 0 && forces.iter().all(|force| *force == Vector::<D>::zeros()) {
+                continue;
+            }
+            let column = &mut own[solid.velocities.clone()];
+            let column: &mut [Vector<D>] = bytemuck::cast_slice_mut(column);
+            self.before.clear();
+            self.before.extend_from_slice(column);
+            for ((velocity, force), mass) in column.iter_mut().zip(forces).zip(&solid.mass) {
+                *velocity += force * (duration / mass);
+            }
+            // What moves as prescribed takes nothing from outside: its support does, and some solids book that.
+            let ledger = solid.scheme.ledger_start();
+            self.booked.clear();
+            self.booked.extend_from_slice(&own[ledger..]);
+            solid.scheme.constrain(time, own);
+            own[ledger..].copy_from_slice(&self.booked);
+            let (before, own) = (&self.before, &*own);
+            let [work, impulse] = parallel::sums(before.len(), |a, sums| {
+                let [[work, ..], impulse]: &mut [[f64; MOST_COMPONENTS]; 2] = sums;
+                let (after, place) = (solid.velocity(own, a), solid.place(own, a));
+                let change = (after - before[a]) * solid.mass[a];
+                *work += 0.5 * change.dot(&(after + before[a]));
+                add_moments(&place, &change, impulse);
+            });
+            tail[mechanism + shared] += work[0];
+            let sums = tail[works + (way + shared) * components..].iter_mut();
+            sums.zip(&impulse[..components]).for_each(|(sum, part)| *sum += part);
+        }
+    }
+
+    /// The same to its part of the state of all, with `forces` and `touches` by solid.
+    fn kick_in(
+        &mut self,
+        number: usize,
+        push: [f64; 2],
+        [forces, touches]: [&[Vec<Vector<D>>]; 2],
+        state: &mut [f64],
+    ) {
+        let (states, tail) = state.split_at_mut(self.ledger_at());
+        let own = &mut states[self.parts.all[number + 1].state.clone()];
+        self.kick_solid(number, push, [&forces[number], &touches[number]], (own, tail));
     }
 }
 
@@ -221,40 +251,75 @@ impl<const D: usize> CoupledScheme for World<D> {
     }
 
     #[inline(never)]
-    fn push(&mut self, time: f64, duration: f64, state: &mut [f64]) {
+    fn push(&mut self, [time, step]: [f64; 2], counts: &[u64], state: &mut [f64]) {
         self.rest.clear();
         self.follow(state);
-        self.push_on(time, duration, state);
+        self.find_forces(time, state);
+        std::mem::swap(&mut self.forces, &mut self.held[0]);
+        for (held, touches) in self.held[1].iter_mut().zip(&self.touches) {
+            held.clone_from(touches);
+        }
+        let held = std::mem::take(&mut self.held);
+        for (number, &count) in counts[1..].iter().enumerate() {
+            let duration = 0.5 * step / count as f64;
+            self.kick_in(number, [time, duration], [&held[0], &held[1]], state);
+        }
+        self.held = held;
     }
 
     #[inline(never)]
-    fn repay(&mut self, [time, duration]: [f64; 2], count: u64, state: &mut [f64]) {
+    fn push_on(&mut self, number: usize, push: [f64; 2], own: &mut [f64], state: &mut [f64]) {
+        let held = std::mem::take(&mut self.held);
+        let tail = &mut state[self.ledger_at()..];
+        self.kick_solid(number, push, [&held[0][number], &held[1][number]], (own, tail));
+        self.held = held;
+        self.solids[number].settle(push[0], own);
+    }
+
+    #[inline(never)]
+    fn repay(&mut self, [time, step]: [f64; 2], counts: &[u64], state: &mut [f64]) {
         // Its last step has turned the walls.
         self.meet(state);
-        self.push_on(time, duration, state);
+        let time = time + step;
+        self.find_forces(time, state);
+        let (mut forces, mut touches) =
+            (std::mem::take(&mut self.forces), std::mem::take(&mut self.touches));
+        for (number, &count) in counts[1..].iter().enumerate() {
+            // Of the forces at the start it has had more than for half of the step.
+            let excess = 1.0 - 1.0 / count as f64;
+            if excess > 0.0 {
+                for (now, held) in [&mut forces, &mut touches].into_iter().zip(&self.held) {
+                    let pairs = now[number].iter_mut().zip(&held[number]);
+                    pairs.for_each(|(now, held)| *now -= held * excess);
+                }
+            }
+            self.kick_in(number, [time, 0.5 * step], [&forces, &touches], state);
+        }
+        (self.forces, self.touches) = (forces, touches);
         self.carry_walls(state);
         let fluid = &state[self.parts.all[0].state.clone()];
-        let power = self.ways.iter().map(|way| self.fluid.power_on(fluid, way.number)).sum::<f64>();
+        let power = |way: &Way<D>| match way.is_held {
+            true => self.fluid.force_on(fluid, way.number).dot(&way.mean_velocity()),
+            false => self.fluid.power_on(fluid, way.number),
+        };
+        let power = self.ways.iter().map(power).sum::<f64>();
         let entry = self.interface_at();
-        state[entry] -= duration / count as f64 * power;
+        state[entry] -= 0.5 * step / counts[0] as f64 * power;
     }
 
     #[inline(never)]
     fn settle(&mut self, time: f64, state: &mut [f64]) {
         for (solid, part) in self.solids.iter_mut().zip(&self.parts.all[1..]) {
-            // What implicit steps keep is of their own making.
-            if let (Some(solid), Some(_)) = (solid.scheme.split(), solid.cfl) {
-                solid.settle(time, &mut state[part.state.clone()]);
-            }
+            solid.settle(time, &mut state[part.state.clone()]);
         }
     }
 
     #[inline(never)]
-    fn flow(&mut self, [time, step]: [f64; 2], count: u64, old: &[f64], new: &mut [f64]) {
+    fn flow(&mut self, [time, step]: [f64; 2], counts: &[u64], old: &[f64], new: &mut [f64]) {
         // Walls turn on the way.
         self.known.clear();
-        self.find_ways(step, count, [old, new]);
-        self.flow_along(time, step, count, new);
+        self.find_ways(step, counts, [old, new]);
+        self.flow_along(time, step, counts[0], new);
     }
 
     #[inline(never)]

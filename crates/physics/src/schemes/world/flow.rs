@@ -30,6 +30,8 @@ pub(super) struct Way<const D: usize> {
     gradients: [Tensor<D>; 2],
     /// The step in s.
     step: f64,
+    /// Whether the solid takes several own steps in it, with the forces at the start held.
+    pub is_held: bool,
 }
 
 impl<const D: usize> Way<D> {
@@ -40,11 +42,17 @@ impl<const D: usize> Way<D> {
         velocities: [Vector::<D>::from_array_storage(ArrayStorage([[0.0; D]])); 2],
         gradients: [Tensor::<D>::from_array_storage(ArrayStorage([[0.0; D]; D])); 2],
         step: 0.0,
+        is_held: false,
     };
 
     /// That of the wall particle in a `row` of the interface of a solid, from one of its states to another, a step in s later,
-    /// in which the fluid takes `count` of its own.
-    fn of(solid: &Solid<D>, row: usize, states: [&[f64]; 2], (step, count): (f64, u64)) -> Self {
+    /// in which the fluid and the solid take `counts` of their own.
+    fn of(
+        solid: &Solid<D>,
+        row: usize,
+        states: [&[f64]; 2],
+        (step, [count, own]): (f64, [u64; 2]),
+    ) -> Self {
         let [[from, begin], [to, end]] = states.map(|own| solid.wall(own, row));
         // Positions may have been wrapped into the box on the way.
         let to = if solid.is_displaced { to } else { from + solid.domain.separation(&from, &to) };
@@ -55,7 +63,13 @@ impl<const D: usize> Way<D> {
         // The velocity at the end of the step is not known before the solid has the rest of the impulse.
         let end = if count > 1 { (to - from) * (2.0 / step) - begin } else { end };
         let number = solid.interface.walls()[row];
-        Self { number, places: [from, to], velocities: [begin, end], gradients, step }
+        let is_held = own > 1;
+        Self { number, places: [from, to], velocities: [begin, end], gradients, step, is_held }
+    }
+
+    /// Its mean velocity in the step.
+    pub fn mean_velocity(&self) -> Vector<D> {
+        (self.places[1] - self.places[0]) / self.step
     }
 
     /// Where it is after `k` of `count` parts of the step.
@@ -114,17 +128,19 @@ impl<const D: usize> World<D> {
         if self.contact.is_near(domain, spacing) { 1 } else { (count as u64).min(most_steps(cfl)) }
     }
 
-    /// Finds how walls go through a step in `count` parts of the fluid, from one state to another.
-    pub(super) fn find_ways(&mut self, step: f64, count: u64, [old, new]: [&[f64]; 2]) {
+    /// Finds how walls go through a step in which systems take `counts` of their own, the fluid first, from one state to
+    /// another.
+    pub(super) fn find_ways(&mut self, step: f64, counts: &[u64], [old, new]: [&[f64]; 2]) {
         let all = self.solids.iter().map(|solid| solid.interface.walls().len()).sum();
         self.ways.resize(all, Way::NOWHERE);
         let mut rest = self.ways.as_mut_slice();
-        for (solid, part) in self.solids.iter().zip(&self.parts.all[1..]) {
+        let solids = self.solids.iter().zip(&self.parts.all[1..]).zip(&counts[1..]);
+        for ((solid, part), &own_steps) in solids {
             let states = [old, new].map(|state| &state[part.state.clone()]);
             let (own, others) = rest.split_at_mut(solid.interface.walls().len());
             parallel::for_each_chunk(own, |first, ways| {
                 for (row, way) in (first..).zip(ways) {
-                    *way = Way::of(solid, row, states, (step, count));
+                    *way = Way::of(solid, row, states, (step, [counts[0], own_steps]));
                 }
             });
             rest = others;
@@ -166,10 +182,13 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// The power in W of the fluid in its own `state` on walls after `k` of `count` parts of the step.
+    /// The power in W of the fluid in its own `state` on walls after `k` of `count` parts of the step; that of forces that
+    /// are held is what they do on the way of the wall, whose velocity at both ends says little of faster vibrations.
     fn power_of_walls(&self, k: u64, count: u64, state: &[f64]) -> f64 {
-        let power =
-            |way: &Way<D>| self.fluid.force_on(state, way.number).dot(&way.velocity(k, count));
+        let power = |way: &Way<D>| {
+            let velocity = if way.is_held { way.mean_velocity() } else { way.velocity(k, count) };
+            self.fluid.force_on(state, way.number).dot(&velocity)
+        };
         self.ways.iter().map(power).sum()
     }
 

@@ -11,12 +11,13 @@
 //! A step splits what the systems do alone from what they do to each other, theory (82):
 //!
 //! ```text
-//! v_s <- v_s + dt/2 f(t)/m          the solid takes half of the impulse of the fluid
-//! (x_s, v_s, ...) <- n own steps    of the solid, by its own integrator
+//! v_s <- v_s + dt/(2n) f(t)/m       the solid takes a part of the impulse of the fluid
+//! (x_s, v_s, ...) <- n own steps    of the solid, by its own integrator, v_s <- v_s + dt/n f(t)/m between two
 //! m times kick, drift, kick         of the fluid, with walls that go from the old to the new places of the solid
-//! v_s <- v_s + (J - dt/2 f(t))/m    with the impulse J of the fluid in its steps
+//! v_s <- v_s + (J - (1 - 1/(2n)) dt f(t))/m   with the impulse J of the fluid in its steps
 //! ```
 //!
+//! The force is held, as impulses once a step would drive vibrations of the solid with a whole number of periods in it.
 //! Each part is of second order, but for terms of first order that the fluid has by itself. The solid gets the impulse that
 //! the fluid gives, so linear momentum is kept to round-off. A solid with faster waves takes more steps of its own, and
 //! one in implicit steps takes one; of slower and heavy ones the fluid takes several steps in one of theirs.
@@ -144,9 +145,10 @@ pub struct World<const D: usize> {
     /// Those of the fluid, then of each solid.
     parts: Parts,
     start: Vec<f64>,
-    // Scratch: forces on the particles of a solid, their velocities before, how walls go through a step, which forces
-    // are left to give by wall.
-    forces: Vec<Vector<D>>,
+    // Scratch: by solid forces of the fluid on its particles; those of the start of a step and those of others then; velocities
+    // of a solid before, how walls go through a step, which forces are left to give by wall.
+    forces: Vec<Vec<Vector<D>>>,
+    held: [Vec<Vec<Vector<D>>>; 2],
     before: Vec<Vector<D>>,
     /// The ledger of a solid.
     booked: Vec<f64>,
@@ -198,7 +200,8 @@ impl<const D: usize> World<D> {
             walls: fluid.description().ledger.place_of(WALLS),
             parts: Parts::default(),
             start: Vec::new(),
-            forces: Vec::new(),
+            forces: vec![Vec::new(); bound.len()],
+            held: [(); 2].map(|()| vec![Vec::new(); bound.len()]),
             before: Vec::new(),
             booked: Vec::new(),
             touches: vec![Vec::new(); bound.len()],

@@ -338,7 +338,7 @@ impl<const D: usize> Scheme for World<D> {
         let interfaces: usize = self.solids.iter().map(|solid| solid.interface.memory()).sum();
         // Ways and forces are found in the first step.
         let a_wall = size_of::<Way<D>>() + size_of::<[Vector<D>; 3]>();
-        let a_particle = size_of::<[Vector<D>; 4]>();
+        let a_particle = size_of::<[Vector<D>; 6]>();
         let particles: usize = self.solids.iter().map(|solid| solid.mass.len()).sum();
         let passing = self.carried.len() * a_wall + particles * a_particle;
         systems + interfaces + self.contact.memory() + passing + size_of_val(self.start.as_slice())

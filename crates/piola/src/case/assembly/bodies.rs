@@ -213,9 +213,28 @@ pub(super) fn around<const D: usize>(
     surroundings(&shape, &spec, reach).map_err(|error| refuse_spacing(case, body, &error))
 }
 
+/// The body of fluid whose spacing another one has: that of another system, which is a wall to the fluid.
+pub(super) fn lender<'a>(case: &'a Case, body: &Body) -> Option<&'a Body> {
+    let lender = case.bodies.iter().find(|other| other.spacing.place == body.spacing.place);
+    lender.filter(|other| other.name.value != body.name.value)
+}
+
+/// What to do about the size of a solid, to which a body of fluid has lent its spacing.
+pub(super) fn wall_of_solid(lender: &Body) -> String {
+    format!(
+        "to the fluid `{}` the solid is a wall of the same spacing: make its sizes multiples of that",
+        *lender.name
+    )
+}
+
 fn refuse_spacing(case: &Case, body: &Body, error: &GeometryError) -> Problem {
     if matches!(error, GeometryError::TurnedPeriodic | GeometryError::NotRound) {
         return refuse(case, body, error);
+    }
+    if let Some(lender) = lender(case, body) {
+        let label = format!("body `{}`", body.name.value);
+        let help = wall_of_solid(lender);
+        return case.problem_at(body.shape.place, error.to_string(), label, Some(help));
     }
     let label = format!("spacing of body `{}`", body.name.value);
     case.problem_at(body.spacing.place, error.to_string(), label, None)

@@ -212,7 +212,9 @@ impl<const D: usize> Prepared<D> {
                 TransportVelocityError::SelfContact { .. } => {
                     (settings.self_contact.as_ref().map_or(place, |it| it.place), "make it larger")
                 }
-                TransportVelocityError::Spacing { .. } => (case.bodies[0].spacing.place, "spacing"),
+                TransportVelocityError::Spacing { id, .. } => {
+                    return vec![refuse_uneven(case, &bodies, *id, &error)];
+                }
                 _ => (place, "with this smoothing length"),
             };
             vec![case.problem_at(place, error.to_string(), label, None)]
@@ -233,8 +235,39 @@ impl<const D: usize> Prepared<D> {
         {
             warnings.extend(open_end(&scheme, full));
         }
-        Ok((scheme, Built { probes, lines, bodies, neighbors, poorly_supported, warnings }))
+        Ok((
+            scheme,
+            Built {
+                probes,
+                lines,
+                bodies,
+                neighbors,
+                poorly_supported,
+                warnings,
+                notes: Vec::new(),
+            },
+        ))
     }
+}
+
+/// A body with a particle, by its number in the order of creation, whose spacing differs from that of the others.
+fn refuse_uneven(
+    case: &Case,
+    reports: &[BodyReport],
+    id: u32,
+    error: &TransportVelocityError,
+) -> Problem {
+    let mut end = 0;
+    let number = reports.iter().position(|report| {
+        end += report.particles;
+        (id as usize) < end
+    });
+    let body = &case.bodies[number.unwrap_or(0)];
+    let (name, lender) = (&body.name.value, bodies::lender(case, body));
+    let message = format!("body `{name}`: {error}");
+    let place = if lender.is_some() { body.shape.place } else { body.spacing.place };
+    let help = lender.map(bodies::wall_of_solid);
+    case.problem_at(place, message, format!("body `{name}`"), help)
 }
 
 /// What part of the particles within the support around one inside a particle of fluid has at least beside a wall; at a

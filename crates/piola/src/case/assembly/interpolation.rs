@@ -77,6 +77,7 @@ pub(super) fn build<const D: usize>(
             bodies: reports,
             neighbors,
             warnings: warnings.into_iter().collect(),
+            notes: Vec::new(),
         },
     ))
 }

@@ -5,6 +5,7 @@ mod fluids;
 mod functions;
 mod interpolation;
 mod joined;
+mod layers;
 mod levels;
 mod loads;
 mod mirrors;
@@ -70,6 +71,8 @@ pub(super) struct Built {
     /// Particles with fewer neighbours than dimensions, by index in memory.
     pub poorly_supported: Vec<u32>,
     pub warnings: Vec<String>,
+    /// What has been chosen for the user.
+    pub notes: Vec<String>,
 }
 
 fn build_in<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
@@ -198,7 +201,15 @@ fn build_upwind<const D: usize>(
     match scheme {
         Some(scheme) if problems.is_empty() => Ok((
             Box::new(scheme),
-            Built { probes, lines, bodies, neighbors, poorly_supported, warnings },
+            Built {
+                probes,
+                lines,
+                bodies,
+                neighbors,
+                poorly_supported,
+                warnings,
+                notes: Vec::new(),
+            },
         )),
         _ => Err(problems),
     }

@@ -146,7 +146,15 @@ pub(super) fn build<const D: usize>(
     let (neighbors, poorly_supported) = row_statistics(D, sizes);
     Ok((
         Box::new(scheme),
-        Built { probes, lines, bodies: reports, neighbors, poorly_supported, warnings },
+        Built {
+            probes,
+            lines,
+            bodies: reports,
+            neighbors,
+            poorly_supported,
+            warnings,
+            notes: Vec::new(),
+        },
     ))
 }
 

@@ -2,9 +2,10 @@
 
 use super::bodies::{self, BodyReport};
 use super::overlap::REMEDY;
-use super::{Built, Parts, beyond_stable, domain, fluids, integrator, probes, system};
+use super::{Built, Parts, beyond_stable, domain, fluids, integrator, layers, probes, system};
 use crate::case::diagnostics::Problem;
-use crate::case::model::{self, Case, StepControl};
+use crate::case::model::{self, Case, Material, StepControl};
+use crate::schemes::Scheme;
 use crate::schemes::world::{InterfaceError, SolidInput, World, WorldError};
 use crate::time::{Coupled, Integrator};
 
@@ -12,6 +13,7 @@ use crate::time::{Coupled, Integrator};
 pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
     let main = case.part(None);
     let domain = domain::<D>(&main)?;
+    let thin = layers::check(case, &main, &domain)?;
     let (particles, reports) = bodies::particles::<D>(&main, &domain)?;
     let far = probes::far(&main, &particles);
     let model::Scheme::TransportVelocity(settings) = &main.scheme.value else {
@@ -23,13 +25,16 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
         let help = Some("remove `refine`".to_owned());
         return Err(vec![case.problem_at(region.place, message, "no meaning here", help)]);
     }
-    let (fluid, built) = fluids::build_fluid(&main, settings, particles, reports, domain)?;
-    let warnings = [built.warnings, far, unheld(&main).into_iter().collect()].concat();
+    let (mut fluid, built) = fluids::build_fluid(&main, settings, particles, reports, domain)?;
+    let warnings = [built.warnings, far, thin, unheld(&main).into_iter().collect()].concat();
     let mut all = vec![Built { warnings, ..built }];
+    let beat = Beat::of(&main, &mut fluid);
     let (mut solids, mut integrators) = (Vec::new(), Vec::<Box<dyn Integrator>>::new());
     for (number, named) in case.systems.iter().enumerate() {
-        let part = case.part(Some(number));
+        let mut part = case.part(Some(number));
+        let note = beat.and_then(|beat| beat.calm(&mut part));
         let (mut scheme, mut built) = system::<D>(&part)?;
+        built.notes.extend(note);
         built.warnings.extend(beyond_stable(&part));
         integrators.push(integrator(&part, scheme.as_mut())?);
         let numbers = case.bodies_of(Some(number)).into_iter().map(|body| body as u32);
@@ -75,6 +80,86 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
     Ok((Box::new(world), Box::new(Coupled::new(integrators)), built))
 }
 
+/// The steps of a fluid, in which its forces change at once for all of the own steps that solids take in one of them.
+#[derive(Clone, Copy)]
+struct Beat {
+    /// Their length in s, as the fluid is at the start.
+    step: f64,
+    density: f64,
+    wave_speed: f64,
+    spacing: f64,
+}
+
+/// The relaxation time that keeps vibrations of a solid from growing, over the step of the fluid and the square of the phase
+/// of a layer of it on the stiffness of the fluid in that step, theory (82). From 1.82 of `1/pi^3` on none grows.
+const CALMING: f64 = 2.0 / (std::f64::consts::PI * std::f64::consts::PI * std::f64::consts::PI);
+
+impl Beat {
+    /// That of the fluid of a case; none without a fluid that has waves.
+    fn of(main: &Case, fluid: &mut dyn Scheme) -> Option<Self> {
+        let bodies = || main.bodies.iter().filter(|body| body.system.is_none());
+        let body =
+            bodies().find(|body| matches!(*body.material, Material::WeaklyCompressible { .. }))?;
+        let density = body.material.density();
+        let wave_speed = (body.material.bulk_modulus(main.dimension) / density).sqrt();
+        let mut limits = Vec::new();
+        fluid.inspect(&fluid.initial_state(), &mut limits);
+        let stable = |number: f64| {
+            let own =
+                limits.iter().map(|limit| limit.step * if limit.scaled { number } else { 1.0 });
+            own.fold(f64::INFINITY, f64::min)
+        };
+        let step = match *main.time.step {
+            StepControl::Cfl(number) => stable(number),
+            StepControl::Fixed(step) | StepControl::AtMost(step) => step,
+        };
+        let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
+        (step < f64::INFINITY && spacing > 0.0).then_some(Self {
+            step,
+            density,
+            wave_speed,
+            spacing,
+        })
+    }
+
+    /// Makes the solid of a case viscous, as little as keeps the steps of the fluid from driving its vibrations, theory (82),
+    /// where it is elastic, takes explicit steps, has waves that cross its spacing within a step of the fluid, and does not say
+    /// how viscous it is. What to tell of it.
+    fn calm(&self, part: &mut Case) -> Option<String> {
+        if part.time.rule.is_some() || !matches!(*part.time.step, StepControl::Cfl(_)) {
+            return None;
+        }
+        let model::Scheme::TotalLagrangian(settings) = &mut part.scheme.value else { return None };
+        if settings.says_viscosity {
+            return None;
+        }
+        let of = |body: &model::Body| {
+            let Material::Hyperelastic { density, law, .. } = &*body.material else { return 0.0 };
+            let modulus = law.small_strain().pressure_wave_modulus();
+            let spacings = body.spacing.iter().copied();
+            let spacing = spacings.fold(f64::INFINITY, f64::min);
+            if (modulus / density).sqrt() * self.step <= spacing {
+                return 0.0;
+            }
+            let layer = body.spacing.iter().copied().fold(self.spacing, f64::max);
+            let number = self.wave_speed * self.step;
+            let relaxation = CALMING * self.step * self.density / density * number * number
+                / (self.spacing * layer);
+            0.5 * relaxation * modulus
+        };
+        let viscosity = part.bodies.iter().map(of).fold(0.0, f64::max);
+        let is_stiff = viscosity > 0.0 && viscosity < f64::INFINITY;
+        is_stiff.then(|| {
+            settings.dissipation.value.viscosity = viscosity;
+            format!(
+                "`scheme.viscosity` is {} Pa s, the least that keeps the steps of the fluid from driving its vibrations, \
+                 theory (82); a value of its own, or 0, replaces that",
+                crate::case::verify::significant(viscosity, 3)
+            )
+        })
+    }
+}
+
 /// A warning of a fluid that only solids could hold or move.
 fn unheld(main: &Case) -> Option<String> {
     let bounds = |body: &model::Body| body.wall.is_some() || body.opening.is_some();
@@ -108,6 +193,7 @@ fn together<const D: usize>(case: &Case, parts: Vec<Built>, world: &World<D>) ->
         all.poorly_supported.extend(part.poorly_supported);
         let name = &case.systems[number].name.value;
         all.warnings.extend(part.warnings.iter().map(|text| format!("system `{name}`: {text}")));
+        all.notes.extend(part.notes.iter().map(|text| format!("system `{name}`: {text}")));
         let bodies: Vec<BodyReport> = part.bodies;
         for (body, report) in case.bodies_of(Some(number)).into_iter().zip(bodies) {
             all.bodies[body] = report;

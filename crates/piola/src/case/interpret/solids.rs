@@ -54,12 +54,15 @@ impl Reader<'_, '_> {
             tractions,
             dissipation: Located::new(
                 Dissipation {
-                    viscosity: number(record, "viscosity")?,
+                    viscosity: number(record, "viscosity").unwrap_or(0.0),
                     artificial_viscosity: self.artificial_viscosity(record)?,
                     damping: number(record, "damping")?,
                 },
                 first_place(record, &["viscosity", "artificial_viscosity", "damping"]),
             ),
+            says_viscosity: ["viscosity", "artificial_viscosity"]
+                .iter()
+                .any(|key| record.key_place(key).is_some()),
         })
     }
 

@@ -144,6 +144,8 @@ pub struct TotalLagrangian {
     pub tractions: Option<Tractions>,
     /// What dissipates energy.
     pub dissipation: Located<Dissipative>,
+    /// Whether the case says how viscous it is, be it not at all.
+    pub says_viscosity: bool,
 }
 
 /// A paper's choice of the parts of a total Lagrangian solid.

@@ -135,7 +135,7 @@ const fn keys(usual: Usual) -> [KeySpec; 13] {
             "viscosity",
             Kind::Number(Interval::NOT_NEGATIVE),
             "Pa s",
-            Default("0.0"),
+            Derived("0; for solids in a fluid that are stiff that of theory (82)"),
             "Kelvin-Voigt viscosity, theory (65); with explicit steps",
         ),
         key(

@@ -1,0 +1,177 @@
+//! Stiff solids in a fluid, which take many own steps in one of the fluid.
+
+use std::sync::atomic::AtomicBool;
+
+use piola::case::{self, Finished, LoadOptions, Session};
+
+/// A plate that is clamped below and holds back water that is at rest.
+const DAM: &str = r#"
+version = 1
+title = "Dam"
+dimension = 2
+[parameters]
+dx = 0.05
+thickness = 0.15
+pd = "0.05 / 3"
+[[body]]
+name = "water"
+shape = { kind = "box", min = [0.0, 0.0], max = [0.5, 0.5] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 30.0 }
+initial = { pressure = "1000 * 9.81 * (0.5 - y)" }
+[[body]]
+name = "tank"
+shape = { kind = "difference", from = { kind = "box", min = [-0.2, -0.2], max = [1.2, 1.0] }, remove = [ { kind = "box", min = [0.0, 0.0], max = [1.0, 1.2] } ] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 1000.0, wave_speed = 30.0 }
+wall = {}
+[[body]]
+name = "plate"
+system = "plate"
+shape = { kind = "box", min = [0.5, 0.0], max = ["0.5 + thickness", 0.8] }
+spacing = "pd"
+lattice = { on = "cells" }
+material = { kind = "neo_hookean_logarithmic", density = 1100.0, young_modulus = 5e8, poisson_ratio = 0.3 }
+[scheme]
+kind = "transport_velocity"
+free_surface = true
+[[system]]
+name = "plate"
+scheme = { kind = "total_lagrangian" }
+[[load]]
+kind = "body_force"
+acceleration = ["0", "-9.81"]
+[[boundary]]
+name = "foot"
+body = "plate"
+where = { kind = "half_space", point = [0.0, 0.06], normal = [0.0, -1.0] }
+velocity = { x = "0", y = "0" }
+[time]
+end = 0.1
+[output]
+every = 0.1
+table_every = 0.001
+"#;
+
+/// The same with implicit steps, one of which spans one of the water.
+const IMPLICIT: &str = "system.plate.time={ integrator = 'newmark' }";
+
+/// Vibrations stay as they are.
+const INVISCID: &str = "system.plate.scheme.viscosity=0";
+
+fn built(set: &[&str]) -> Result<Session, String> {
+    let overrides = set.iter().map(|text| (*text).to_owned()).collect();
+    let options = LoadOptions { overrides, ..LoadOptions::default() };
+    let case = case::parse(DAM, "case.toml", &options);
+    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+    Session::new(&case).map_err(|problems| problems.to_string())
+}
+
+fn session(set: &[&str]) -> Session {
+    built(set).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn run(set: &[&str]) -> Finished {
+    let finished = session(set).run(&AtomicBool::new(false), &mut |_| {}).expect("it runs");
+    assert_eq!(finished.summary.outcome.summary(), "completed");
+    finished
+}
+
+fn column(finished: &Finished, name: &str) -> Vec<f64> {
+    finished.tables.energy.values(name).expect(name)
+}
+
+/// The largest energy of the plate in J.
+fn most(finished: &Finished) -> f64 {
+    let parts =
+        ["plate.kinetic", "plate.strain", "plate.hourglass"].map(|name| column(finished, name));
+    (0..parts[0].len()).map(|row| parts.iter().map(|part| part[row]).sum()).fold(0.0, f64::max)
+}
+
+/// How many steps the plate takes in one of the water.
+fn own_steps(finished: &Finished) -> f64 {
+    let [water, plate] = [0, 1].map(|number: usize| finished.own_steps[number].1);
+    plate as f64 / water as f64
+}
+
+/// Water at rest does not set a plate into vibration, whatever the frequencies of the plate are in steps of the water:
+/// impulses once a step would drive those with a whole number of periods in it, at 5e8 Pa to eighty times what the same
+/// plate has in implicit steps. What those make of the vibrations with which the plate takes its load, all of which implicit
+/// steps slow down, is a few percent.
+#[test]
+fn water_at_rest_does_not_drive_a_plate() {
+    let thin = ["parameters.thickness=0.1", "parameters.pd=0.05"];
+    let aluminium = "body.plate.material={ kind = 'neo_hookean_logarithmic', density = 2700.0, young_modulus = 67e9, poisson_ratio = 0.33 }";
+    let light = "body.plate.material={ kind = 'neo_hookean_logarithmic', density = 300.0, young_modulus = 2e8, poisson_ratio = 0.3 }";
+    let cases: [&[&str]; 6] = [
+        &[],
+        &["body.plate.material.young_modulus=3e8"],
+        &["time.cfl=0.2"],
+        &[thin[0], thin[1], "body.plate.material.young_modulus=2e8"],
+        &[aluminium, "parameters.pd=0.05", "time.end=0.05", "output.every=0.05"],
+        &[light],
+    ];
+    for set in cases {
+        let [explicit, implicit] = [run(set), run(&[set, &[IMPLICIT]].concat())];
+        assert!(own_steps(&explicit) > 4.0 && own_steps(&implicit) == 1.0, "{set:?}");
+        let [own, reference] = [&explicit, &implicit].map(most);
+        assert!(own < 1.1 * reference, "{set:?}: {own} {reference}");
+        // Nothing moves the tank.
+        let totals = column(&explicit, "total");
+        let scale = totals.iter().fold(0.0, |most: f64, total| most.max(total.abs()));
+        let balance = *column(&explicit, "balance").last().expect("there are rows");
+        assert!(balance.abs() < 1e-3 * scale, "{set:?}: {balance} {scale}");
+    }
+}
+
+/// `eta = tau (lambda + 2 mu)/2` with `tau/dt = 2/pi^3 (rho/rho_s) (c dt)^2/(dx d)`, theory (82), by hand: at the CFL number of
+/// 0.25 the step is 0.25 dx/c, and d is dx.
+#[test]
+fn stiff_plates_are_as_viscous_as_they_need_to_be() {
+    let notes = |set: &[&str]| session(set).plan().notes;
+    let told = notes(&[]);
+    let step = 0.25 * 0.05 / 30.0;
+    let relaxation = step * 2.0 / std::f64::consts::PI.powi(3) / 1.1 * 0.25 * 0.25;
+    let viscosity = 0.5 * relaxation * 5e8 * 0.7 / (1.3 * 0.4);
+    assert!((viscosity - 514.0).abs() < 0.5, "{viscosity}");
+    assert!(told.len() == 1 && told[0].starts_with("system `plate`: "), "{told:?}");
+    assert!(told[0].contains("`scheme.viscosity` is 514 Pa s"), "{told:?}");
+    // Whoever says it knows it; implicit steps and soft plates need none.
+    let artificial = "system.plate.scheme.artificial_viscosity=[0.1, 1.0]";
+    let soft = "body.plate.material.young_modulus=1e6";
+    for set in [INVISCID, artificial, IMPLICIT, soft] {
+        assert_eq!(notes(&[set]), [""; 0], "{set}");
+    }
+}
+
+/// What the viscosity takes is less than the plate has got.
+#[test]
+fn viscosity_is_booked() {
+    let finished = run(&[]);
+    let work = *column(&finished, "plate.viscosity").last().expect("there are rows");
+    assert!(work < 0.0 && work > -most(&finished), "{work}");
+    let none = run(&[INVISCID]);
+    assert_eq!(column(&none, "plate.viscosity").last(), Some(&0.0));
+}
+
+/// A plate of two spacings of the water is told of, one of half a spacing refused, and so is one whose thickness is no multiple
+/// of the spacing: by the name of the plate.
+#[test]
+fn what_is_wrong_with_the_size_of_a_plate_names_it() {
+    let warned = |set: &[&str]| {
+        let warnings = session(set).plan().warnings;
+        warnings
+            .iter()
+            .any(|text| text.contains("the solid `plate` is 2.00 spacings of the fluid thick"))
+    };
+    assert!(warned(&["parameters.thickness=0.1", "parameters.pd=0.05"]));
+    assert!(!warned(&[]));
+    let refused = |set: &[&str]| built(set).err().expect("it is refused");
+    let thin = refused(&["parameters.thickness=0.025", "parameters.pd=0.025"]);
+    assert!(thin.contains("the solid `plate` is 0.50 spacings of the fluid thick"), "{thin}");
+    let uneven = refused(&["parameters.thickness=0.17", "parameters.pd=0.01"]);
+    assert!(uneven.contains("to the fluid `water` the solid is a wall"), "{uneven}");
+    assert!(uneven.contains("body `plate`"), "{uneven}");
+}
