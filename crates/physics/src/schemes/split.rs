@@ -26,6 +26,12 @@ pub trait SplitScheme: Scheme {
     fn settle(&mut self, time: f64, state: &mut [f64]) {
         self.accelerate(time, state);
     }
+
+    /// The same between two steps, where velocities have changed by an acceleration times the length of a step: forces of
+    /// which the order in time is the first anyway may be those of the velocities before.
+    fn settle_between(&mut self, time: f64, state: &mut [f64]) {
+        self.settle(time, state);
+    }
 }
 
 /// A formulation whose accelerations depend on places alone, and all else on velocities and places:

@@ -50,8 +50,21 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
     /// rigid bodies and the powers of loads take velocities where they act from outside.
     #[inline(never)]
     fn settle(&mut self, time: f64, state: &mut [f64]) {
-        let at = self.columns(state);
         let is_at_hand = self.velocity.is_empty() && !self.dissipation.is_viscous();
+        self.settle_with(is_at_hand, time, state);
+    }
+
+    /// Forces of viscosity take the velocities of the middle of the step before, and keep them.
+    fn settle_between(&mut self, time: f64, state: &mut [f64]) {
+        self.settle_with(true, time, state);
+    }
+}
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// Finds the accelerations of a state again, from forces between particles that are at hand if those are of its
+    /// displacements.
+    fn settle_with(&mut self, is_at_hand: bool, time: f64, state: &mut [f64]) {
+        let at = self.columns(state);
         if !(is_at_hand && self.is_evaluated_at(&at)) {
             return self.accelerate(time, state);
         }

@@ -22,6 +22,13 @@ impl<const D: usize> Solid<D> {
         }
     }
 
+    /// The same between two of its own steps.
+    fn settle_between(&mut self, time: f64, own: &mut [f64]) {
+        if let (Some(solid), Some(_)) = (self.scheme.split(), self.cfl) {
+            solid.settle_between(time, own);
+        }
+    }
+
     /// Place and velocity of the wall particle in `row` of the interface.
     pub(super) fn wall(&self, own: &[f64], row: usize) -> [Vector<D>; 2] {
         let place = self.interface.place(row, self.displacements(own, row));
@@ -273,7 +280,7 @@ impl<const D: usize> CoupledScheme for World<D> {
         let tail = &mut state[self.ledger_at()..];
         self.kick_solid(number, push, [&held[0][number], &held[1][number]], (own, tail));
         self.held = held;
-        self.solids[number].settle(push[0], own);
+        self.solids[number].settle_between(push[0], own);
     }
 
     #[inline(never)]
