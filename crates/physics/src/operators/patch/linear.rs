@@ -3,8 +3,8 @@
 use super::System;
 use crate::{Tensor, Vector, parallel};
 
-/// The constant and the linear functions on each part of the particles that hang together, along axes that are not
-/// periodic: multipliers without effect.
+/// The constant and the linear functions on each part of the particles that hang together, along axes across whose
+/// ends it does not reach: multipliers without effect.
 ///
 /// A residual has a share of them from rounding alone, which no step of conjugate gradients can reduce. It is
 /// taken out at each, or they would follow it instead of what is left.
@@ -26,7 +26,7 @@ type Products<const D: usize> = [[f64; 4]; D];
 
 impl<const D: usize> LinearFunctions<D> {
     pub fn new(system: &System<'_, D>) -> Self {
-        let (positions, domain) = (&system.particles.position, &system.support.domain);
+        let positions = &system.particles.position;
         let part_of = system.support.list.parts();
         let count = part_of.iter().max().map_or(0, |&last| last as usize + 1);
         let mut members = vec![Vec::new(); count];
@@ -39,7 +39,9 @@ impl<const D: usize> LinearFunctions<D> {
                 let arm = positions[a as usize] - center;
                 gram += arm * arm.transpose();
             }
-            for (axis, _) in periodic(domain) {
+            let crossed = system.crossed(members.iter().map(|&a| a as usize));
+            let endless = || (0..D).filter(|&axis| crossed[axis]);
+            for axis in endless() {
                 gram.row_mut(axis).fill(0.0);
                 gram.column_mut(axis).fill(0.0);
                 gram[(axis, axis)] = 1.0;
@@ -47,7 +49,7 @@ impl<const D: usize> LinearFunctions<D> {
             let lower = gram.cholesky().map(|gram| gram.l());
             let mut frame =
                 lower.and_then(|lower| lower.try_inverse()).unwrap_or_else(Tensor::zeros);
-            periodic(domain).for_each(|(axis, _)| frame.row_mut(axis).fill(0.0));
+            endless().for_each(|axis| frame.row_mut(axis).fill(0.0));
             Part { members, center, frame }
         };
         Self { parts: members.into_iter().map(part).collect(), part_of }
@@ -79,11 +81,4 @@ impl<const D: usize> LinearFunctions<D> {
             }
         });
     }
-}
-
-/// The axes that are periodic.
-fn periodic<const D: usize>(
-    domain: &crate::neighbors::Domain<D>,
-) -> impl Iterator<Item = (usize, &[f64; 2])> {
-    domain.periodic().iter().enumerate().filter_map(|(axis, ends)| Some((axis, ends.as_ref()?)))
 }

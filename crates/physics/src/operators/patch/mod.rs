@@ -116,9 +116,9 @@ impl<'a, const D: usize> System<'a, D> {
     ) -> Self {
         let (list, volume) = (&support.list, &particles.volume);
         let mut weights = Vec::with_capacity(list.pairs());
-        for a in 0..particles.len() {
+        for (a, volume) in volume.iter().enumerate() {
             let row = gradient.weights(list.range(a));
-            let share = volume[a] / row.iter().sum::<f64>();
+            let share = volume / row.iter().sum::<f64>();
             weights.extend(row.iter().map(|weight| share * weight));
         }
         let dual_weights: Vec<f64> =
@@ -135,6 +135,24 @@ impl<'a, const D: usize> System<'a, D> {
             }
         });
         Self { gradient, particles, support, weights, dual_weights, arms, diagonal }
+    }
+
+    /// The axes along which some of these particles see others across the ends of a period.
+    fn crossed(&self, particles: impl Iterator<Item = usize>) -> [bool; D] {
+        let (list, positions) = (&self.support.list, &self.particles.position);
+        let mut crossed = [false; D];
+        if self.support.domain.is_open() {
+            return crossed;
+        }
+        for a in particles {
+            for &b in list.row(a) {
+                let separation = self.support.separation(positions, a, b);
+                let direct = positions[b as usize] - positions[a];
+                let axes = crossed.iter_mut().zip(separation.iter().zip(&direct));
+                axes.for_each(|(crossed, (one, other))| *crossed |= one != other);
+            }
+        }
+        crossed
     }
 
     /// `sum_b V_a o_ab |X_ab|^4/(4 D (D + 2))` of each particle.

@@ -177,7 +177,7 @@ impl<const D: usize> Lattice<D> {
 
     /// The functions of this lattice as sums of those of the one before, of half the edges: along each axis
     /// functions 2 J - 2 to 2 J + 1 have shares of 1/4, 3/4, 3/4 and 1/4 of function J.
-    fn from_finer(&self, finer: &Self) -> Weights {
+    fn shares_in(&self, finer: &Self) -> Weights {
         Weights::of(finer.functions.iter().map(|&(part, function)| {
             digits::<D>(2).map(move |digits| {
                 let mut weight = 1.0;
@@ -272,7 +272,7 @@ impl<const D: usize> Splines<D> {
             if wider.functions.len() as f64 > MOST_KEPT * count as f64 {
                 return Self { levels, inverse: None };
             }
-            transfer = wider.from_finer(&lattice);
+            transfer = wider.shares_in(&lattice);
             lattice = wider;
         }
     }
@@ -312,13 +312,19 @@ impl<const D: usize> Splines<D> {
     }
 }
 
-/// The first lattice. Along periodic axes the number of its cells can be halved as often as along the others.
+/// The first lattice. Along periodic axes, if particles see others across their ends, the number of its cells can be
+/// halved as often as along the others.
 fn first<const D: usize>(system: &System<'_, D>) -> Lattice<D> {
     let (positions, domain) = (&system.particles.position, &system.support.domain);
     let count = positions.len().max(1) as f64;
     let width = system.support.radius.iter().sum::<f64>() / count;
     let parts = system.support.list.parts();
-    let positions: Vec<Vector<D>> = positions.iter().map(|x| domain.wrap(x)).collect();
+    let crossed = system.crossed(0..positions.len());
+    let inside = |x: &Vector<D>| {
+        let wrapped = domain.wrap(x);
+        Vector::from_fn(|axis, _| if crossed[axis] { wrapped[axis] } else { x[axis] })
+    };
+    let positions: Vec<Vector<D>> = positions.iter().map(inside).collect();
     let end = |axis: usize, start: f64, choose: fn(f64, f64) -> f64| {
         positions.iter().map(|x| x[axis]).fold(start, choose)
     };
@@ -328,7 +334,7 @@ fn first<const D: usize>(system: &System<'_, D>) -> Lattice<D> {
     let longest = (0..D).map(|i| high[i] - low[i]).fold(width, f64::max);
     let halvings = (longest / width).log2().ceil() as i32;
     for (axis, bounds) in domain.periodic().iter().enumerate() {
-        match bounds {
+        match bounds.filter(|_| crossed[axis]) {
             // Particles lie between the faces of cells.
             None => start[axis] -= 0.25 * width,
             Some([lower, upper]) => {
@@ -337,7 +343,7 @@ fn first<const D: usize>(system: &System<'_, D>) -> Lattice<D> {
                 let widest = (wanted / f64::from(1 << halvings)).floor().max(1.0);
                 cells[axis] = widest as i32 * (1 << halvings);
                 edge[axis] = (upper - lower) / f64::from(cells[axis]);
-                start[axis] = *lower;
+                start[axis] = lower;
             }
         }
     }
@@ -410,7 +416,7 @@ mod tests {
             let mut direct = vec![Vector::zeros(); 64];
             wider.at_particles().add(&values, &mut direct);
             let mut between = vec![Vector::zeros(); finer.functions.len()];
-            wider.from_finer(&finer).add(&values, &mut between);
+            wider.shares_in(&finer).add(&values, &mut between);
             let mut nested = vec![Vector::zeros(); 64];
             finer.at_particles().add(&between, &mut nested);
             for (direct, nested) in direct.iter().zip(&nested) {
