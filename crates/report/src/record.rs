@@ -81,6 +81,8 @@ pub struct RunRecord {
     pub references: Vec<ReferenceRecord>,
     /// Files written, relative to the folder of the record, with `/` between their parts.
     pub files: Vec<String>,
+    /// What the program has chosen for the user.
+    pub notes: Vec<String>,
     /// What the user was warned of.
     pub warnings: Vec<String>,
 }
@@ -259,6 +261,7 @@ impl Default for RunRecord {
             figures: Vec::new(),
             references: Vec::new(),
             files: Vec::new(),
+            notes: Vec::new(),
             warnings: Vec::new(),
         }
     }

@@ -93,6 +93,7 @@ impl Outputs {
                 .collect(),
             started: timestamp(SystemTime::now()),
             end_time: *case.time.end,
+            notes: built.notes.clone(),
             warnings: built.warnings.clone(),
             ..RunRecord::default()
         }

@@ -261,9 +261,16 @@ impl<'a, const D: usize> System<'a, D> {
             });
             splines.add(residual, scaled);
         };
-        let (mut solution, mut residual) = (vec![Vector::zeros(); count], right);
+        let (mut solution, mut residual) = (vec![Vector::zeros(); count], right.clone());
         let mut scaled = vec![Vector::zeros(); count];
         linear.remove(&self.particles.position, &mut residual);
+        // What no multiplier changes: areas that do not close the volumes.
+        let removed = right.iter().zip(&residual).map(|(all, left)| (all - left).amax());
+        let left = removed.fold(0.0, f64::max);
+        let most = tolerance / TOLERANCE * MISFIT;
+        if left > most {
+            return Err(OperatorError::NoConvergence { steps: 0, left, tolerance: most });
+        }
         precondition(&residual, &mut scaled);
         let mut direction = scaled.clone();
         let mut product = vec![Vector::zeros(); count];

@@ -56,7 +56,7 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
 
     /// Forces of viscosity take the velocities of the middle of the step before, and keep them.
     fn settle_between(&mut self, time: f64, state: &mut [f64]) {
-        self.settle_with(true, time, state);
+        self.settle_with(self.velocity.is_empty(), time, state);
     }
 }
 

@@ -94,6 +94,10 @@ struct Beat {
 /// of a layer of it on the stiffness of the fluid in that step, theory (82). From 1.82 of `1/pi^3` on none grows.
 const CALMING: f64 = 2.0 / (std::f64::consts::PI * std::f64::consts::PI * std::f64::consts::PI);
 
+/// The longest time of relaxation of shear over the step of the fluid: by `2 pi^2 / 100` times that a mode of a hundred steps
+/// loses of its amplitude in a period, which is 1 % then.
+const MOST_RELAXATION: f64 = 0.05;
+
 impl Beat {
     /// That of the fluid of a case; none without a fluid that has waves.
     fn of(main: &Case, fluid: &mut dyn Scheme) -> Option<Self> {
@@ -124,7 +128,8 @@ impl Beat {
 
     /// Makes the solid of a case viscous, as little as keeps the steps of the fluid from driving its vibrations, theory (82),
     /// where it is elastic, takes explicit steps, has waves that cross its spacing within a step of the fluid, and does not say
-    /// how viscous it is. What to tell of it.
+    /// how viscous it is, unless a mode of a hundred steps of the fluid would lose more than a hundredth of its amplitude in
+    /// a period by it, where it shears or bends. What to tell of it.
     fn calm(&self, part: &mut Case) -> Option<String> {
         if part.time.rule.is_some() || !matches!(*part.time.step, StepControl::Cfl(_)) {
             return None;
@@ -133,28 +138,42 @@ impl Beat {
         if settings.says_viscosity {
             return None;
         }
+        let dimension = part.dimension;
+        // Viscosity that it takes, and which it bears.
         let of = |body: &model::Body| {
-            let Material::Hyperelastic { density, law, .. } = &*body.material else { return 0.0 };
-            let modulus = law.small_strain().pressure_wave_modulus();
+            let Material::Hyperelastic { density, law, plane, .. } = &*body.material else {
+                return [0.0, f64::INFINITY];
+            };
+            let constants = law.small_strain();
+            let modulus = plane.pressure_wave_modulus(&constants, dimension);
+            let bears = MOST_RELAXATION * self.step * constants.mu;
             let spacings = body.spacing.iter().copied();
             let spacing = spacings.fold(f64::INFINITY, f64::min);
             if (modulus / density).sqrt() * self.step <= spacing {
-                return 0.0;
+                return [0.0, bears];
             }
             let layer = body.spacing.iter().copied().fold(self.spacing, f64::max);
             let number = self.wave_speed * self.step;
             let relaxation = CALMING * self.step * self.density / density * number * number
                 / (self.spacing * layer);
-            0.5 * relaxation * modulus
+            [0.5 * relaxation * modulus, bears]
         };
-        let viscosity = part.bodies.iter().map(of).fold(0.0, f64::max);
+        let [viscosity, most] = (part.bodies.iter().map(of))
+            .fold([0.0, f64::INFINITY], |[takes, bears], of| [of[0].max(takes), of[1].min(bears)]);
         let is_stiff = viscosity > 0.0 && viscosity < f64::INFINITY;
+        let shown = crate::case::verify::significant(viscosity, 3);
         is_stiff.then(|| {
+            if viscosity > most {
+                return format!(
+                    "nothing damps its vibrations, which the steps of the fluid may drive slowly, theory (82): a \
+                     `scheme.viscosity` of {shown} Pa s would, but takes more than 1 % a period from slow ones that \
+                     bend it; watch its energy over long runs, or take implicit steps"
+                );
+            }
             settings.dissipation.value.viscosity = viscosity;
             format!(
-                "`scheme.viscosity` is {} Pa s, the least that keeps the steps of the fluid from driving its vibrations, \
-                 theory (82); a value of its own, or 0, replaces that",
-                crate::case::verify::significant(viscosity, 3)
+                "`scheme.viscosity` is {shown} Pa s, the least that keeps the steps of the fluid from driving its \
+                 vibrations, theory (82); a value of its own, or 0, replaces that"
             )
         })
     }

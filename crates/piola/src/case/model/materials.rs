@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use piola_formulas::hyperelastic::{Constant, HyperelasticLaw};
+use piola_formulas::hyperelastic::{Constant, HyperelasticLaw, LameConstants};
 use piola_formulas::volumetric::{self, StressState};
 
 use crate::boundaries::History;
@@ -126,6 +126,16 @@ pub enum PlaneState {
 }
 
 impl PlaneState {
+    /// Density times the square of the speed of waves of pressure in an isotropic elastic body in Pa.
+    pub fn pressure_wave_modulus(self, constants: &LameConstants, dimension: usize) -> f64 {
+        let LameConstants { lambda, mu } = *constants;
+        match (self, dimension) {
+            (Self::Stress, 1) => mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu),
+            (Self::Stress, 2) => 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu),
+            _ => lambda + 2.0 * mu,
+        }
+    }
+
     /// Ratio of pressure to relative change of length, area or volume of an isotropic elastic body
     /// ([`volumetric::bulk_modulus`]); in three dimensions there is no choice. NaN if it does not exist, which is
     /// refused when a case is read.
