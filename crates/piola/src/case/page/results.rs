@@ -152,9 +152,10 @@ impl CaseResults {
         for row in self.rows.iter_mut().filter(|row| !row.was_run()) {
             let known = earlier.rows.iter().find(|known| known.was_run() && known.is_same(row));
             if let Some(known) = known {
-                // What the check says today of the value and its worth stays.
+                // What the check says today of the value and its worth stays; why it is not met is only told of values.
                 let (against, bound) = (row.against, row.bound.clone());
-                let unmet = row.unmet.clone().filter(|_| !known.pass);
+                let unmet = row.unmet.as_ref().or(known.unmet.as_ref()).filter(|_| !known.pass);
+                let unmet = unmet.cloned();
                 *row = Row { check: row.check, against, bound, unmet, ..known.clone() };
             }
         }
