@@ -79,6 +79,7 @@ pub fn end(finished: &Finished, folder: &Path, seconds: f64) {
         "smallest_ratio": summary.worst.smallest_ratio,
         "ratio_mismatch": summary.worst.ratio_mismatch,
         "largest_speed": summary.worst.largest_speed,
+        "notes": finished.notes,
         "warnings": finished.warnings,
         "files": files.map(|file| file.display().to_string()).collect::<Vec<_>>(),
     }));

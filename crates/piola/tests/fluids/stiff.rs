@@ -138,6 +138,16 @@ fn stiff_plates_are_as_viscous_as_they_need_to_be() {
     assert!((viscosity - 514.0).abs() < 0.5, "{viscosity}");
     assert!(told.len() == 1 && told[0].starts_with("system `plate`: "), "{told:?}");
     assert!(told[0].contains("`scheme.viscosity` is 514 Pa s"), "{told:?}");
+    // In plane stress waves have the modulus E/(1 - nu^2).
+    let stress = notes(&["body.plate.material.plane='stress'"]);
+    let viscosity = 0.5 * relaxation * 5e8 / (1.0 - 0.3 * 0.3);
+    assert!((viscosity - 420.0).abs() < 0.5, "{viscosity}");
+    assert!(stress[0].contains("`scheme.viscosity` is 420 Pa s"), "{stress:?}");
+    // Shear relaxes within (1 - nu)/(1 - 2 nu) times 0.00366 of a step, of which 0.05 are allowed: 0.048 at nu 0.48, 0.093
+    // at 0.49.
+    let at = |nu: &str| notes(&[&format!("body.plate.material.poisson_ratio={nu}")]).concat();
+    assert!(at("0.48").contains("`scheme.viscosity` is "), "{}", at("0.48"));
+    assert!(at("0.49").contains("nothing damps its vibrations"), "{}", at("0.49"));
     // Whoever says it knows it; implicit steps and soft plates need none.
     let artificial = "system.plate.scheme.artificial_viscosity=[0.1, 1.0]";
     let soft = "body.plate.material.young_modulus=1e6";
