@@ -152,6 +152,13 @@ impl Plan {
         self.plan.warnings.clone()
     }
 
+    /// What it has been given without being asked for, such as the viscosity of a stiff solid in a fluid, one sentence
+    /// each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.plan.notes.clone()
+    }
+
     fn __str__(&self) -> &str {
         &self.text
     }

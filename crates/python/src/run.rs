@@ -39,12 +39,15 @@ impl Run {
         let summary = &self.finished.summary;
         let time = format!("{} s", summary.time);
         let (steps, particles) = (summary.steps.to_string(), self.finished.particles.to_string());
-        let (outcome, warnings) = (self.outcome(), self.finished.warnings.join("; "));
+        let [notes, warnings] =
+            [&self.finished.notes, &self.finished.warnings].map(|lines| lines.join("; "));
+        let outcome = self.outcome();
         let rows = [
             ["outcome", outcome.as_str()],
             ["time", &time],
             ["steps", &steps],
             ["particles", &particles],
+            ["notes", &notes],
             ["warnings", &warnings],
         ];
         table(&self.title, rows)
@@ -90,6 +93,12 @@ impl Run {
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.finished.warnings.clone()
+    }
+
+    /// What it has been given without being asked for, one sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.finished.notes.clone()
     }
 
     /// The files that were written.

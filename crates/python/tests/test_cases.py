@@ -177,9 +177,37 @@ def test_the_plan_is_that_of_the_program(case, tmp_path):
     assert plan.steps == int(np.ceil(0.2 / plan.step - 1e-9))
     assert plan.neighbors["least"] <= plan.neighbors["mean"] <= plan.neighbors["most"]
     assert plan.seconds > 0 and plan.memory > 45 * 8 and plan.evaluations_per_second > 0
-    assert plan.warnings == [] and len(plan.outputs) == 2
+    assert plan.notes == plan.warnings == [] and len(plan.outputs) == 2
     html = plan._repr_html_()
     assert html.startswith("<table>") and "45 particles" in html and html.count("<tr>") == len(kept[0]) - 1
+
+
+def test_a_stiff_solid_in_a_fluid_is_told_its_viscosity(tmp_path):
+    def body(name, low, high, material, rest=""):
+        lattice = "lattice = { on = 'cells' }"
+        shape = f"shape = {{ kind = 'box', min = {low}, max = {high} }}"
+        return f"[[body]]\nname = '{name}'\n{shape}\n{lattice}\nmaterial = {{ {material} }}\n{rest}\n"
+
+    fluid = "kind = 'weakly_compressible', density = 1000.0, wave_speed = 30.0"
+    solid = "kind = 'saint_venant_kirchhoff', density = 1100.0, young_modulus = 5e8, poisson_ratio = 0.3"
+    text = "".join(
+        [
+            "version = 1\ntitle = 'Plate'\ndimension = 2\n",
+            body("water", [0.0, 0.0], [0.5, 0.5], fluid, "spacing = 0.05"),
+            body("floor", [0.0, -0.15], [0.65, 0.0], fluid, "spacing = 0.05\nwall = {}"),
+            body("plate", [0.5, 0.0], [0.65, 0.6], solid, "spacing = 0.025\nsystem = 'plate'"),
+            "[scheme]\nkind = 'transport_velocity'\nfree_surface = true\n",
+            "[[system]]\nname = 'plate'\nscheme = { kind = 'total_lagrangian' }\n",
+            "[time]\nend = 0.001\n",
+        ]
+    )
+    path = tmp_path / "plate.toml"
+    path.write_text(text)
+    case = piola.Case.load(path)
+    (note,) = case.check().notes
+    assert "system `plate`" in note and "`scheme.viscosity` is" in note
+    run = case.start().run()
+    assert run.notes == [note]
 
 
 def test_the_plan_of_several_ranks(table):

@@ -14,6 +14,7 @@ mod recorder;
 pub mod reduce;
 mod sensor;
 mod tables;
+mod void;
 
 pub use comparison::{Deviation, Norm};
 pub use files::WrittenFiles;
@@ -26,3 +27,4 @@ pub use profile::{Line, ProfileRecorder};
 pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns, momentum_columns};
 pub use sensor::Sensor;
 pub use tables::{Series, SpaceTime, Tables};
+pub use void::Void;

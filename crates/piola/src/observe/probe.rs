@@ -8,6 +8,7 @@ use super::comparison::Deviation;
 use super::flow::{Flux, Gauge};
 use super::interpolation::Interpolated;
 use super::sensor::Sensor;
+use super::void::Void;
 use crate::fields::{FieldDescription, FieldSelector, component_name};
 use crate::output::Column;
 use crate::schemes::{Observation, Sensitivity, Theta, momentum_components};
@@ -73,6 +74,8 @@ pub enum ProbeKind {
     Gauge(Gauge),
     /// The flow through a plane.
     Flux(Flux),
+    /// The largest hole.
+    Void(Void),
     /// What has entered and left through the open boundary whose buffer is the body of this number.
     Opening(u32),
     /// Whole fields interpolated at one fixed point in space; with two points, those at the first less those at the
@@ -134,6 +137,10 @@ impl Probe {
             ProbeKind::Sensor(_) => vec![Column::new(format!("{}.pressure", self.name), "Pa")],
             ProbeKind::Gauge(_) => vec![Column::new(format!("{}.elevation", self.name), "m")],
             ProbeKind::Flux(_) => vec![Column::new(format!("{}.flux", self.name), "kg/s")],
+            ProbeKind::Void(_) => {
+                let unit = ["m", "m^2", "m^3"][dimension - 1];
+                vec![Column::new(format!("{}.volume", self.name), unit)]
+            }
             ProbeKind::Opening(_) => {
                 let own = [("entered", "kg"), ("left", "kg"), ("energy", "J")].into_iter();
                 own.chain(momentum_components(dimension).iter().map(|it| (it.name, it.unit)))
@@ -171,6 +178,7 @@ impl Probe {
             ProbeKind::Point(point) => point.renumber(index),
             ProbeKind::Sensor(sensor) => sensor.renumber(index),
             ProbeKind::Gauge(gauge) => gauge.renumber(index),
+            ProbeKind::Void(void) => void.renumber(index),
             ProbeKind::Opening(_) | ProbeKind::Tangent { .. } => (),
         }
     }
@@ -266,6 +274,7 @@ impl Probe {
             ProbeKind::Sensor(sensor) => row.push(sensor.record(now)),
             ProbeKind::Gauge(gauge) => row.push(gauge.record(now)),
             ProbeKind::Flux(flux) => row.push(flux.record(now)),
+            ProbeKind::Void(void) => row.push(void.record(now)),
             ProbeKind::Opening(body) => {
                 let passed = now.scheme().passed(now.state(), *body);
                 let components = momentum_components(now.scheme().dimension()).len();

@@ -333,6 +333,13 @@ fn openings_that_cannot_work_are_refused() {
                 lattice = { on = 'cells' }, wall = {}, \
                 material = { kind = 'weakly_compressible', density = 2.0, wave_speed = 20.0 } }";
     refused(&[wall], "the wall `wall` is in the opening `inlet`");
+    let across = "body+={ name = 'wall', shape = { kind = 'box', min = [0.3, 0.0], max = [0.35, 0.4] }, spacing = 0.05, \
+                  lattice = { on = 'cells' }, wall = {}, \
+                  material = { kind = 'weakly_compressible', density = 2.0, wave_speed = 20.0 } }";
+    let apart = "body.water.shape={ kind = 'difference', \
+                 from = { kind = 'box', min = [0.0, 0.0], max = [0.6, 0.4] }, \
+                 remove = [{ kind = 'box', min = [0.3, -0.1], max = [0.35, 0.5] }] }";
+    refused(&[across, apart], "no way through the fluid leads from `outlet` to another opening");
 }
 
 /// Where both ends are prescribed and do not agree there is a warning with the difference.

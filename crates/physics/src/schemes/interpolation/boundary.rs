@@ -15,6 +15,9 @@ const NEXT: f64 = 1.01;
 pub enum Boundary {
     /// There are none: sums are cut off.
     Cut,
+    /// There are none, and sums are divided by what they would be of one, the share of the cover that lies within the
+    /// body: the "numerical factor" of 2.8.1, of which the paper says no more.
+    Scaled,
     /// They carry the function on.
     Continued,
     /// They are such that the sum of the function on the boundary is its value there: in one dimension
@@ -28,12 +31,13 @@ pub enum Boundary {
 
 impl Boundary {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Cut, Self::Continued, Self::Value, Self::Slope];
+    pub const ALL: [Self; 5] = [Self::Cut, Self::Scaled, Self::Continued, Self::Value, Self::Slope];
 
     /// Name in a case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cut => "none",
+            Self::Scaled => "scaled",
             Self::Continued => "continued",
             Self::Value => "value",
             Self::Slope => "slope",
@@ -48,7 +52,7 @@ impl Boundary {
     /// How far ghosts lie around a body, in support radii. A gradient of gradients sees twice as far.
     pub fn reach(self) -> f64 {
         match self {
-            Self::Cut => 0.0,
+            Self::Cut | Self::Scaled => 0.0,
             Self::Continued => 2.0,
             Self::Value | Self::Slope => 1.0,
         }

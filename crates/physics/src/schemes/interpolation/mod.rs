@@ -113,16 +113,19 @@ impl<const D: usize> Interpolation<D> {
         let cloud = Cloud::new(&all, count, &matrices, [&function, &slopes[0]]);
         let mut outcome = Outcome::default();
         let field = cloud.field(input.boundary, input.function, &mut outcome)?;
-        let approximation = matrices.value.apply(&field);
-        let mut gradient = matrices.gradient.each_ref().map(|matrix| matrix.apply(&field));
+        let scale =
+            (input.boundary == Boundary::Scaled).then(|| sums(&matrices, &vec![1.0; all.len()]));
+        let sums = |field: &[f64]| match &scale {
+            Some(of_one) => scaled(sums(&matrices, field), of_one),
+            None => sums(&matrices, field),
+        };
+        let (approximation, mut gradient) = sums(&field);
         cloud.meet_gradients(input.boundary, &slopes, &mut gradient, &mut outcome)?;
         outcome.error = match input.boundary {
             Boundary::Slope => cloud.error(&slopes, &gradient),
             _ => cloud.error(&[&function], &[&approximation]),
         };
-        let second = gradient
-            .each_ref()
-            .map(|component| matrices.gradient.each_ref().map(|matrix| matrix.apply(component)));
+        let second = gradient.each_ref().map(|component| sums(component).1);
         Ok(Self {
             gradient: (0..count).map(|a| Vector::from_fn(|i, _| gradient[i][a])).collect(),
             second_gradient: (0..count).map(|a| Tensor::from_fn(|i, j| second[i][j][a])).collect(),
@@ -140,6 +143,27 @@ impl<const D: usize> Interpolation<D> {
         let Outcome { condition, ghosts, .. } = self.outcome;
         (condition > 0.0).then_some((condition, ghosts))
     }
+}
+
+/// `W f` and `X f`.
+fn sums<const D: usize>(matrices: &SphMatrices<D>, field: &[f64]) -> (Vec<f64>, [Vec<f64>; D]) {
+    (matrices.value.apply(field), matrices.gradient.each_ref().map(|matrix| matrix.apply(field)))
+}
+
+/// `<f> = W f / W 1` and its gradient, `(X f - <f> X 1) / W 1`, with the sums of one.
+fn scaled<const D: usize>(
+    (mut value, mut slopes): (Vec<f64>, [Vec<f64>; D]),
+    (share, share_slopes): &(Vec<f64>, [Vec<f64>; D]),
+) -> (Vec<f64>, [Vec<f64>; D]) {
+    value.iter_mut().zip(share).for_each(|(value, share)| *value /= share);
+    for (slope, of_one) in slopes.iter_mut().zip(share_slopes) {
+        let rest = value.iter().zip(share.iter().zip(of_one));
+        let both = slope.iter_mut().zip(rest);
+        both.for_each(|(slope, (value, (share, of_one)))| {
+            *slope = (*slope - value * of_one) / share
+        });
+    }
+    (value, slopes)
 }
 
 /// A function and the components of its gradient at particles, the last ones of which are ghosts.

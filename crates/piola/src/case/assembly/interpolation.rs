@@ -27,7 +27,7 @@ pub(super) fn build<const D: usize>(
     let place = settings.support.place;
     let radius = *settings.support * particles.spacing.iter().copied().fold(0.0, f64::max);
     let ghosts = match settings.boundary {
-        Boundary::Cut => Particles::default(),
+        Boundary::Cut | Boundary::Scaled => Particles::default(),
         boundary => bodies::around(case, &case.bodies[0], &domain, boundary.reach() * radius)
             .map_err(|problem| vec![problem])?,
     };

@@ -11,6 +11,7 @@ use crate::case::expression::Expression;
 use crate::case::model::{self, Body, Case, OpenFlow, Opening};
 use crate::case::source::Located;
 use crate::geometry::Particles;
+use crate::neighbors::search;
 use crate::schemes::transport_velocity::{Flow, OpenBoundaries, OpenBoundary};
 
 /// Relaxation time of mean pressures, in ways of sound through all bodies.
@@ -82,6 +83,9 @@ pub(super) fn open<const D: usize>(
             Err(problem) => problems.push(problem),
         }
     }
+    if problems.is_empty() && open.all.len() > 1 && !settings.settings.free_surface {
+        problems.extend(cut_off(case, particles, &open)?);
+    }
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -100,6 +104,48 @@ pub(super) fn open<const D: usize>(
         open.buffers.push(0);
     }
     Ok((open, warnings))
+}
+
+/// Fluid is continued by particles within this many spacings, neighbours along diagonals included.
+const NEXT: f64 = 1.5;
+
+/// The openings from which no way through the fluid leads to another one.
+fn cut_off<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    open: &OpenBoundaries<D>,
+) -> Result<Vec<Problem>, Vec<Problem>> {
+    let reach: Vec<f64> = particles.spacing.iter().map(|spacing| NEXT * spacing).collect();
+    let list = search(&particles.position, &reach, &super::domain(case)?)
+        .map_err(|error| vec![case.problem_at(case.scheme.place, error.to_string(), "", None)])?;
+    let is_wall = |a: usize| case.bodies[particles.body[a] as usize].wall.is_some();
+    let leads_on = |own: u32| {
+        let of_own = |a: &usize| open.buffers[*a] == own;
+        let mut next: Vec<usize> = (0..particles.len()).filter(of_own).collect();
+        let mut seen: Vec<bool> = (0..particles.len()).map(|a| of_own(&a) || is_wall(a)).collect();
+        while let Some(a) = next.pop() {
+            for b in list.row(a).iter().map(|&b| b as usize) {
+                if seen[b] {
+                    continue;
+                }
+                if open.buffers[b] > 0 {
+                    return true;
+                }
+                seen[b] = true;
+                next.push(b);
+            }
+        }
+        false
+    };
+    let cut = (1..).zip(&open.all).filter(|(own, _)| !leads_on(*own));
+    let problem = |(_, boundary): (u32, &OpenBoundary<D>)| {
+        let place = case.bodies[boundary.body as usize].name.place;
+        let message =
+            format!("no way through the fluid leads from `{}` to another opening", boundary.name);
+        let help = "leave a gap of two spacings in the wall between them, or remove the opening";
+        case.problem_at(place, message, "cut off", Some(help.to_owned()))
+    };
+    Ok(cut.map(problem).collect())
 }
 
 /// The boundary of one buffer, with the volume that comes in at the start in m^D/s, if it is prescribed.

@@ -11,7 +11,7 @@ use crate::case::model::{self, Case};
 use crate::case::source::Located;
 use crate::fields::FieldDescription;
 use crate::geometry::Particles;
-use crate::observe::{Deviation, Flux, Gauge, Interpolated, Line, Probe, ProbeKind, Sensor};
+use crate::observe::{Deviation, Flux, Gauge, Interpolated, Line, Probe, ProbeKind, Sensor, Void};
 use crate::schemes::ImplicitRule;
 use crate::time::Schedule;
 
@@ -75,6 +75,12 @@ pub(super) fn probes<const D: usize>(
                 periods: periods(case),
                 inside: inside.clone(),
                 particles: of_body(particles, body).collect(),
+            }),
+            model::ProbeKind::Void => ProbeKind::Void(Void {
+                periods: periods(case),
+                particles: of_body(particles, body)
+                    .map(|a| (a, particles.spacing[a as usize]))
+                    .collect(),
             }),
             model::ProbeKind::Opening => {
                 ProbeKind::Opening(body.map_or(0, |body| body.value as u32))

@@ -151,6 +151,7 @@ impl Reader<'_, '_> {
             ProbeKind::Sensor { .. } => vec!["pressure".to_owned()],
             ProbeKind::Gauge { .. } => vec!["elevation".to_owned()],
             ProbeKind::Flux { .. } => vec!["flux".to_owned()],
+            ProbeKind::Void => vec!["volume".to_owned()],
             ProbeKind::Opening => vec!["entered".to_owned(), "left".to_owned()],
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS.map(|(own, _)| own.to_owned()).to_vec(),
         };

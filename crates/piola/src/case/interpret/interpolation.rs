@@ -82,7 +82,7 @@ impl Reader<'_, '_> {
             let problem = Problem::new(second.name.place, message, "the second one");
             self.report(problem.help("make one body of them with `kind = \"union\"`"));
         }
-        for body in bodies.iter().filter(|_| *boundary != Boundary::Cut) {
+        for body in bodies.iter().filter(|_| boundary.reach() > 0.0) {
             if body.shape.value.is_from_file() {
                 let message = "ghosts continue a lattice, and particles from a file have none";
                 let problem = Problem::new(body.shape.place, message, "no lattice");

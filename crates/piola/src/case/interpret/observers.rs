@@ -73,6 +73,7 @@ impl Reader<'_, '_> {
                 self.is_of_one_body(record);
                 ProbeKind::Opening
             }
+            "void" => ProbeKind::Void,
             "tangent" => ProbeKind::Tangent { step: record.number("step")?.value },
             "error" => {
                 let parts = self.deviations(record);

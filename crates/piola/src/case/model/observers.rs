@@ -72,6 +72,8 @@ pub enum ProbeKind {
         /// Its radius in m.
         radius: f64,
     },
+    /// The largest hole between particles.
+    Void,
     /// How far a fluid reaches along a line.
     Gauge {
         /// Where the line starts, in m.

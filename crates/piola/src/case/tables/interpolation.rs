@@ -54,6 +54,10 @@ const GRADIENTS: Choices = choices(&[
 
 const BOUNDARIES: Choices = choices(&[
     choice("none", "no ghosts: sums end at the boundary of the body"),
+    choice(
+        "scaled",
+        "no ghosts, and sums divided by the share of the cover inside the body: exact for constants; the factor of Elastodynamics 2.8.1",
+    ),
     choice("continued", "the function"),
     choice(
         "value",
