@@ -233,7 +233,7 @@ fn upwind<const D: usize>(
     support: Support<D>,
     problems: &mut Vec<Problem>,
 ) -> Option<Upwind<D>> {
-    let materials = materials(case, problems);
+    let materials = materials(case);
     let [tau_velocity, tau_pressure] = printed::strengths(case, settings).unwrap_or_else(|found| {
         problems.extend(found);
         [0.0; 2]
@@ -306,34 +306,15 @@ fn correction(settings: &model::Upwind) -> Correction {
     }
 }
 
-fn materials(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material> {
-    let law = |material: &model::Material| {
-        let bulk_modulus = material.bulk_modulus(case.dimension);
-        match *material {
-            // The reader of cases has refused others for this scheme.
-            model::Material::Linear { .. }
-            | model::Material::WeaklyCompressible { .. }
-            | model::Material::Hyperelastic { .. }
-            | model::Material::Rigid { .. }
-            | model::Material::Hypoelastic(_) => VolumetricLaw::linear(bulk_modulus),
-            model::Material::GammaLaw { gamma, .. } => {
-                VolumetricLaw::gamma_law(bulk_modulus, gamma)
-            }
-        }
+fn materials(case: &Case) -> Vec<Material> {
+    let law = |material: &model::Material| match *material {
+        model::Material::Volumetric { law, .. } => law,
+        // The reader of cases has refused others for this scheme.
+        _ => VolumetricLaw::Linear { bulk_modulus: material.bulk_modulus(case.dimension) },
     };
-    let mut materials = Vec::new();
-    for body in &case.bodies {
-        match law(&body.material) {
-            Ok(law) => materials.push(Material { density: body.material.density(), law }),
-            Err(error) => problems.push(case.problem_at(
-                body.material.place,
-                error.to_string(),
-                "this material",
-                None,
-            )),
-        }
-    }
-    materials
+    let of =
+        |material: &model::Material| Material { density: material.density(), law: law(material) };
+    case.bodies.iter().map(|body| of(&body.material)).collect()
 }
 
 fn initial<const D: usize>(case: &Case, particles: &Particles<D>) -> Initial<D> {
