@@ -30,9 +30,9 @@ use super::source::Located;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, NeighborStatistics, spatial_order};
 use crate::observe::{Line, Probe};
-use crate::operators::{Correction, GradientOperator, Support};
+use crate::operators::{GradientOperator, Support};
 use crate::schemes::upwind::{
-    ImplicitSettings, Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
+    ImplicitSettings, Initial, Material, Settings, Upwind, UpwindError, UpwindInput,
 };
 use crate::schemes::{InputError, Scheme};
 use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
@@ -241,7 +241,7 @@ fn upwind<const D: usize>(
     let initial = initial(case, &particles);
     let prescribed = selections::prescribed(case, &particles, problems);
     let body_forces = loads::body_forces(case);
-    let correction = correction(settings);
+    let correction = *settings.correction;
     // The areas of theory (14).
     let areas = || {
         let operator = GradientOperator::new(&particles, &support, correction);
@@ -262,10 +262,7 @@ fn upwind<const D: usize>(
             tau_velocity,
             tau_pressure,
             reconstruction: settings.reconstruction,
-            wave_speed: match settings.wave_speed {
-                model::ReferenceWaveSpeed::Constant => WaveSpeed::Constant,
-                model::ReferenceWaveSpeed::Stretch => WaveSpeed::Stretch,
-            },
+            wave_speed: settings.wave_speed,
         },
         materials,
         initial,
@@ -296,14 +293,6 @@ fn implicit_settings(case: &Case) -> ImplicitSettings {
         settings.newton.tolerance = tolerance;
     }
     settings
-}
-
-fn correction(settings: &model::Upwind) -> Correction {
-    match settings.correction.value {
-        model::Correction::None => Correction::None,
-        model::Correction::Gradient => Correction::Gradient,
-        model::Correction::KernelAndGradient => Correction::KernelAndGradient,
-    }
 }
 
 fn materials(case: &Case) -> Vec<Material> {
