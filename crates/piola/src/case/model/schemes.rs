@@ -186,6 +186,11 @@ impl Preset {
         }
     }
 
+    /// Whether gradients are plain unless the case says otherwise.
+    pub fn is_plain(self) -> bool {
+        self == Self::Elastodynamics
+    }
+
     /// The radius of supports in spacings.
     pub fn support(self, form: Form, dimension: usize) -> f64 {
         match (self, form, dimension) {
