@@ -20,8 +20,7 @@ use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
-    AtSurface, Corrections, DensityRule, Fluid, PressureRule, Settings, Shifting,
-    TransportVelocity, TransportVelocityInput, Viscous,
+    Corrections, Fluid, Settings, TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::kernels::Kernel;
 
@@ -44,16 +43,7 @@ fn vortices<const D: usize>(
         faces: vec![Faces::default(); particles.len()],
         domain: Domain::new([Some([0.0, 1.0]); D]).expect("the bounds are in order"),
         kernel,
-        settings: Settings {
-            density: DensityRule::Continuity,
-            pressure: PressureRule::Edac { alpha: 0.5 },
-            corrections,
-            shifting: Shifting::Sun { factor: 1.0 },
-            viscous: Viscous::Laplacian,
-            artificial_viscosity: 0.0,
-            free_surface: false,
-            at_surface: AtSurface::Held,
-        },
+        settings: Settings { corrections, ..Settings::FLUID },
         initial: Initial { velocity: velocity.collect(), pressure: vec![0.0; particles.len()] },
         walls: Vec::new(),
         motion: Vec::new(),

@@ -18,8 +18,8 @@ use piola::geometry::{Faces, Particles};
 use piola::neighbors::Domain;
 use piola::schemes::Initial;
 use piola::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, Heat, Hypoelastic, PressureRule, Settings,
-    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput, Viscous,
+    AtSurface, Contact, Corrections, Heat, Hypoelastic, PressureRule, Settings, Solid, SolidsInput,
+    TransportVelocity, TransportVelocityInput,
 };
 use piola_formulas::hypoelastic::{EquationOfState, PressureLaw, Strength};
 use piola_formulas::kernels::Kernel;
@@ -79,14 +79,12 @@ fn block<const D: usize>(
         domain: Domain::new([None; D]).expect("an open domain"),
         kernel,
         settings: Settings {
-            density: DensityRule::Continuity,
             pressure: PressureRule::StateEquation,
             corrections: setting.corrections,
-            shifting: Shifting::Sun { factor: 1.0 },
-            viscous: Viscous::Laplacian,
             artificial_viscosity: 1.0,
             free_surface: true,
             at_surface: AtSurface::Along,
+            ..Settings::FLUID
         },
         initial: Initial { velocity: velocity.collect(), pressure: vec![0.0; particles.len()] },
         walls: Vec::new(),

@@ -96,6 +96,18 @@ impl VolumetricLaw {
         }
     }
 
+    /// The modulus `kappa` of the law, Pa.
+    pub fn modulus(&self) -> f64 {
+        match *self {
+            Self::Linear { bulk_modulus } | Self::Gamma { bulk_modulus, .. } => bulk_modulus,
+        }
+    }
+
+    /// Whether full collapse, `J = 0`, costs an energy without bound.
+    pub fn resists_collapse(&self) -> bool {
+        !self.energy(0.0_f64).is_finite()
+    }
+
     /// Linear law of a bulk modulus in Pa, Upwind (3.11).
     ///
     /// # Errors

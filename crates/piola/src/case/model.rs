@@ -31,8 +31,8 @@ pub use loads::{Boundary, Load, LoadKind, Roller, Turning};
 pub use materials::{Material, OpenFlow, Opening, PlaneState, Profile, Stiffness, Wall};
 pub use observers::{Compression, Extremum, Output, Picture, Plot, Probe, ProbeKind};
 pub use schemes::{
-    Correction, Dissipation, GradientKind, Interpolation, Preset, ReferenceWaveSpeed, Scheme,
-    SupportSize, TotalLagrangian, TransportVelocity, Upwind, Weights,
+    Dissipation, GradientKind, Interpolation, Preset, Scheme, SupportSize, TotalLagrangian,
+    TransportVelocity, Upwind, Weights,
 };
 pub use sweeps::{Sweep, SweepKey, SweepValue, coordinates};
 pub(super) use sweeps::{member_name, member_of};

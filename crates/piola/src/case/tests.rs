@@ -72,11 +72,11 @@ fn reads_the_frame_of_a_case() {
     assert_eq!((time.max_steps, time.min_step), (Some(1_000_000), Some(1e-9)));
     let Scheme::Upwind(upwind) = &case.scheme.value else { panic!("the scheme is upwind") };
     assert_eq!((upwind.kernel.as_str(), upwind.smoothing_length.value), ("cubic_spline", 0.7));
-    assert_eq!(upwind.correction.value, Correction::Gradient);
+    assert_eq!(upwind.correction.value, crate::operators::Correction::Gradient);
     assert_eq!(upwind.weights, Weights::Lattice);
     assert_eq!((upwind.tau_velocity, upwind.tau_pressure), (0.5, 0.0));
     assert!(upwind.reconstruction);
-    assert_eq!(upwind.wave_speed, ReferenceWaveSpeed::Stretch);
+    assert_eq!(upwind.wave_speed, crate::schemes::upwind::WaveSpeed::Stretch);
 }
 
 #[test]

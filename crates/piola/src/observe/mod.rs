@@ -22,7 +22,7 @@ pub use flow::{Flux, Gauge};
 pub use frames::FrameWriter;
 pub use interpolation::Interpolated;
 pub use pictures::{PictureRequest, PictureWriter};
-pub use probe::{Probe, ProbeKind, TANGENT_COLUMNS, moment_axes};
+pub use probe::{Probe, ProbeKind, TANGENT_COLUMNS, moment_axes, opening_columns};
 pub use profile::{Line, ProfileRecorder};
 pub use recorder::{Recorder, STEP_COLUMNS, SharedTables, energy_columns, momentum_columns};
 pub use sensor::Sensor;

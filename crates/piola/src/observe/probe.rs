@@ -107,6 +107,12 @@ pub const TANGENT_COLUMNS: [(&str, &str); 7] = [
     ("remainder_5", "kg m/s"),
 ];
 
+/// Columns of what has gone through an opening, with their units.
+pub fn opening_columns(dimension: usize) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let own = [("entered", "kg"), ("left", "kg"), ("energy", "J")].into_iter();
+    own.chain(momentum_components(dimension).iter().map(|it| (it.name, it.unit)))
+}
+
 /// The axes about which there are moments in `dimension` dimensions.
 pub fn moment_axes(dimension: usize) -> &'static [&'static str] {
     match dimension {
@@ -141,12 +147,9 @@ impl Probe {
                 let unit = ["m", "m^2", "m^3"][dimension - 1];
                 vec![Column::new(format!("{}.volume", self.name), unit)]
             }
-            ProbeKind::Opening(_) => {
-                let own = [("entered", "kg"), ("left", "kg"), ("energy", "J")].into_iter();
-                own.chain(momentum_components(dimension).iter().map(|it| (it.name, it.unit)))
-                    .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), unit))
-                    .collect()
-            }
+            ProbeKind::Opening(_) => opening_columns(dimension)
+                .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), unit))
+                .collect(),
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS
                 .iter()
                 .map(|(column, unit)| Column::new(format!("{}.{column}", self.name), *unit))

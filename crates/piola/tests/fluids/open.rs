@@ -145,7 +145,13 @@ fn each_opening_has_its_own_account() {
     let probe = |body: &str| {
         format!("[[probe]]\nname = \"{body}s\"\nkind = \"opening\"\nbody = \"{body}\"\n")
     };
-    let text = [stream(2), probe("inlet"), probe("outlet")].concat();
+    let check = |column: &str| {
+        format!(
+            "[[check]]\nquantity = \"inlets.{column}\"\nreduce = \"final\"\nat_least = 0.0\nsource = \"it enters\"\n"
+        )
+    };
+    let checks = ["entered", "energy", "linear.x"].map(check).concat();
+    let text = [stream(2), probe("inlet"), probe("outlet"), checks].concat();
     let finished = run(&text, &[]);
     for (own, all) in [("inlets.entered", "step.entered"), ("outlets.left", "step.left")] {
         assert!(values(&finished, own).last().is_some_and(|mass| *mass > 0.7));

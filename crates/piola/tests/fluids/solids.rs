@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use piola::geometry::Particles;
 use piola::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, Forces, Heat, PressureRule, Rates, Settings,
-    Shifting, Solid, SolidRates, SolidsInput, TransportVelocityInput, Viscous,
+    Contact, Forces, Heat, PressureRule, Rates, Settings, Shifting, Solid, SolidRates, SolidsInput,
+    TransportVelocityInput,
 };
 use piola::schemes::{Observation, Scheme};
 use piola::{Tensor, Vector};
@@ -15,16 +15,8 @@ use super::support::{Solids, change_matter, change_rows, rows, solids_in_box, un
 
 const K: f64 = 2.0 * PI;
 
-pub const SETTINGS: Settings = Settings {
-    density: DensityRule::Continuity,
-    pressure: PressureRule::StateEquation,
-    corrections: Corrections::FULL,
-    shifting: Shifting::Sun { factor: 1.0 },
-    viscous: Viscous::Laplacian,
-    artificial_viscosity: 0.0,
-    free_surface: false,
-    at_surface: AtSurface::Held,
-};
+pub const SETTINGS: Settings =
+    Settings { pressure: PressureRule::StateEquation, ..Settings::FLUID };
 
 pub const SOLID: Solid = Solid {
     state: EquationOfState {

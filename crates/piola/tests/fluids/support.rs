@@ -7,23 +7,14 @@ use piola::case::{self, Finished, LoadOptions, Session};
 use piola::geometry::{Faces, LatticeSpec, Particles, Placement, Shape, fill};
 use piola::neighbors::Domain;
 use piola::schemes::transport_velocity::{
-    AtSurface, Contact, Corrections, DensityRule, Fluid, Hypoelastic, PressureRule, Settings,
-    Shifting, Solid, SolidsInput, TransportVelocity, TransportVelocityInput, Viscous,
+    Contact, DensityRule, Fluid, Hypoelastic, Settings, Solid, SolidsInput, TransportVelocity,
+    TransportVelocityInput,
 };
 use piola::schemes::{Initial, Scheme};
 use piola_formulas::kernels::Kernel;
 
 /// The settings of CTVF section 4.1.
-pub const SETTINGS: Settings = Settings {
-    density: DensityRule::Summation,
-    pressure: PressureRule::Edac { alpha: 0.5 },
-    corrections: Corrections::FULL,
-    shifting: Shifting::Sun { factor: 1.0 },
-    viscous: Viscous::Laplacian,
-    artificial_viscosity: 0.0,
-    free_surface: false,
-    at_surface: AtSurface::Held,
-};
+pub const SETTINGS: Settings = Settings { density: DensityRule::Summation, ..Settings::FLUID };
 
 /// `side^D` particles in the unit box, each coordinate displaced by up to `jitter` spacings.
 pub fn unit_box<const D: usize>(side: usize, jitter: f64, seed: u64) -> Particles<D> {

@@ -163,6 +163,18 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Those of a fluid without free surfaces in a case that says nothing else.
+    pub const FLUID: Self = Self {
+        density: DensityRule::Continuity,
+        pressure: PressureRule::Edac { alpha: 0.5 },
+        corrections: Corrections::FULL,
+        shifting: Shifting::Sun { factor: 1.0 },
+        viscous: Viscous::Laplacian,
+        artificial_viscosity: 0.0,
+        free_surface: false,
+        at_surface: AtSurface::Held,
+    };
+
     /// Whether pressures follow from densities.
     pub(super) fn is_algebraic(&self) -> bool {
         self.pressure == PressureRule::StateEquation

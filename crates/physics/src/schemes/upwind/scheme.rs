@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use piola_device::{Device, Language};
-use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
+use piola_formulas::volumetric::VolumetricResponse;
 
 use super::fields::{ColumnsMut, Made};
 use super::{ENERGIES, FIGURES, KEPT, LEDGER, Upwind};
@@ -182,13 +182,17 @@ impl<const D: usize> Scheme for Upwind<D> {
     }
 
     fn collapse_advice(&self, index: usize) -> String {
-        match self.law(index).law {
-            VolumetricLaw::Linear { .. } => "the linear law lets a volume vanish at finite \
-                energy, Upwind (6.28): use the `gamma_law`, a lower speed or a stiffer material"
-                .into(),
-            VolumetricLaw::Gamma { .. } => "the gamma law resists collapse, so the step or the \
-                stabilisation is at fault: lower `time.cfl`, or raise `scheme.tau_velocity`"
-                .into(),
+        let law = self.law(index).law;
+        let name = law.name().trim_end_matches("_law");
+        match law.resists_collapse() {
+            false => format!(
+                "the {name} law lets a volume vanish at finite energy, Upwind (6.28): use the \
+                 `gamma_law`, a lower speed or a stiffer material"
+            ),
+            true => format!(
+                "the {name} law resists collapse, so the step or the stabilisation is at fault: \
+                 lower `time.cfl`, or raise `scheme.tau_velocity`"
+            ),
         }
     }
 

@@ -30,9 +30,9 @@ use super::source::Located;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, NeighborStatistics, spatial_order};
 use crate::observe::{Line, Probe};
-use crate::operators::{Correction, GradientOperator, Support};
+use crate::operators::{GradientOperator, Support};
 use crate::schemes::upwind::{
-    ImplicitSettings, Initial, Material, Settings, Upwind, UpwindError, UpwindInput, WaveSpeed,
+    ImplicitSettings, Initial, Material, Settings, Upwind, UpwindError, UpwindInput,
 };
 use crate::schemes::{InputError, Scheme};
 use crate::time::{CheckpointPolicy, Integrator, IntegratorKind, StepControl};
@@ -233,7 +233,7 @@ fn upwind<const D: usize>(
     support: Support<D>,
     problems: &mut Vec<Problem>,
 ) -> Option<Upwind<D>> {
-    let materials = materials(case, problems);
+    let materials = materials(case);
     let [tau_velocity, tau_pressure] = printed::strengths(case, settings).unwrap_or_else(|found| {
         problems.extend(found);
         [0.0; 2]
@@ -241,7 +241,7 @@ fn upwind<const D: usize>(
     let initial = initial(case, &particles);
     let prescribed = selections::prescribed(case, &particles, problems);
     let body_forces = loads::body_forces(case);
-    let correction = correction(settings);
+    let correction = *settings.correction;
     // The areas of theory (14).
     let areas = || {
         let operator = GradientOperator::new(&particles, &support, correction);
@@ -262,10 +262,7 @@ fn upwind<const D: usize>(
             tau_velocity,
             tau_pressure,
             reconstruction: settings.reconstruction,
-            wave_speed: match settings.wave_speed {
-                model::ReferenceWaveSpeed::Constant => WaveSpeed::Constant,
-                model::ReferenceWaveSpeed::Stretch => WaveSpeed::Stretch,
-            },
+            wave_speed: settings.wave_speed,
         },
         materials,
         initial,
@@ -298,42 +295,15 @@ fn implicit_settings(case: &Case) -> ImplicitSettings {
     settings
 }
 
-fn correction(settings: &model::Upwind) -> Correction {
-    match settings.correction.value {
-        model::Correction::None => Correction::None,
-        model::Correction::Gradient => Correction::Gradient,
-        model::Correction::KernelAndGradient => Correction::KernelAndGradient,
-    }
-}
-
-fn materials(case: &Case, problems: &mut Vec<Problem>) -> Vec<Material> {
-    let law = |material: &model::Material| {
-        let bulk_modulus = material.bulk_modulus(case.dimension);
-        match *material {
-            // The reader of cases has refused others for this scheme.
-            model::Material::Linear { .. }
-            | model::Material::WeaklyCompressible { .. }
-            | model::Material::Hyperelastic { .. }
-            | model::Material::Rigid { .. }
-            | model::Material::Hypoelastic(_) => VolumetricLaw::linear(bulk_modulus),
-            model::Material::GammaLaw { gamma, .. } => {
-                VolumetricLaw::gamma_law(bulk_modulus, gamma)
-            }
-        }
+fn materials(case: &Case) -> Vec<Material> {
+    let law = |material: &model::Material| match *material {
+        model::Material::Volumetric { law, .. } => law,
+        // The reader of cases has refused others for this scheme.
+        _ => VolumetricLaw::Linear { bulk_modulus: material.bulk_modulus(case.dimension) },
     };
-    let mut materials = Vec::new();
-    for body in &case.bodies {
-        match law(&body.material) {
-            Ok(law) => materials.push(Material { density: body.material.density(), law }),
-            Err(error) => problems.push(case.problem_at(
-                body.material.place,
-                error.to_string(),
-                "this material",
-                None,
-            )),
-        }
-    }
-    materials
+    let of =
+        |material: &model::Material| Material { density: material.density(), law: law(material) };
+    case.bodies.iter().map(|body| of(&body.material)).collect()
 }
 
 fn initial<const D: usize>(case: &Case, particles: &Particles<D>) -> Initial<D> {

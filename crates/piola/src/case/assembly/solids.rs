@@ -11,7 +11,7 @@ use super::{Built, at_start, integrator_kind, kernel, probes, row_statistics, se
 use crate::Vector;
 use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
-use crate::case::model::{self, Case, GradientKind, Preset, SupportSize};
+use crate::case::model::{self, Case, GradientKind, SupportSize};
 use crate::case::source::Place;
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborError, spatial_order};
@@ -329,9 +329,8 @@ fn gradients<const D: usize>(
     problems: &mut Vec<Problem>,
 ) -> (Gradients<D>, Vec<String>) {
     let wanted = settings.gradients.as_ref();
-    let is_plain = settings.preset == Preset::Elastodynamics
-        || *settings.form == Form::Strong
-        || !mirrors.is_empty();
+    let is_plain =
+        settings.preset.is_plain() || *settings.form == Form::Strong || !mirrors.is_empty();
     match (wanted.map(|kind| kind.value), areas) {
         (Some(GradientKind::Plain), _) => (Gradients::Plain, Vec::new()),
         (None, _) if is_plain => (Gradients::Plain, Vec::new()),

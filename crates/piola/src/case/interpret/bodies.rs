@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::*;
 use nalgebra::{Rotation3, Unit, Vector3};
 use piola_formulas::hyperelastic::HyperelasticLaw;
+use piola_formulas::volumetric::{VolumetricLaw, VolumetricResponse};
 
 use crate::case::expression::Expression;
 use crate::case::model::{
@@ -335,29 +336,43 @@ impl Reader<'_, '_> {
             return Some(Located::new(material, record.place));
         }
         let stiffness = self.stiffness(record);
-        let density = number(record, "density");
-        let material = match record.kind {
-            "linear" => Material::Linear { density: density?, stiffness: stiffness? },
-            "gamma_law" => Material::GammaLaw {
-                density: density?,
-                gamma: number(record, "gamma")?,
-                stiffness: stiffness?,
-            },
-            "weakly_compressible" => Material::WeaklyCompressible {
-                density: density?,
-                stiffness: stiffness?,
-                viscosity: number(record, "viscosity")?,
-            },
-            _ => return None,
+        let density = number(record, "density")?;
+        let stiffness = stiffness?;
+        let is_fluid = record.kind == "weakly_compressible";
+        let gamma = match is_fluid {
+            true => 1.0,
+            false => self.volumetric_law(record, 1.0)?.tangent(1.0),
         };
-        let modulus = material.bulk_modulus(self.dimension);
+        let modulus = stiffness.modulus(density, gamma, self.dimension);
         if !(modulus > 0.0 && modulus.is_finite()) {
             let message =
                 format!("these values give a modulus of {modulus} Pa, which is impossible");
             let place = first_place(record, &STIFFNESSES);
             return self.refuse(Problem::new(place, message, "out of range"));
         }
+        let material = match is_fluid {
+            true => {
+                let viscosity = number(record, "viscosity")?;
+                Material::WeaklyCompressible { density, stiffness, viscosity }
+            }
+            false => Material::Volumetric { density, law: self.volumetric_law(record, modulus)? },
+        };
         Some(Located::new(material, record.place))
+    }
+
+    /// The volumetric law of a record, of a modulus in Pa.
+    fn volumetric_law(&mut self, record: &Record, modulus: f64) -> Option<VolumetricLaw> {
+        let law = match record.kind {
+            "linear" => VolumetricLaw::linear(modulus),
+            "gamma_law" => VolumetricLaw::gamma_law(modulus, number(record, "gamma")?),
+            _ => return None,
+        };
+        match law {
+            Ok(law) => Some(law),
+            Err(error) => {
+                self.refuse(Problem::new(record.place, error.to_string(), "out of range"))
+            }
+        }
     }
 
     fn stiffness(&mut self, record: &Record) -> Option<Stiffness> {

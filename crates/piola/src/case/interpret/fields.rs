@@ -5,7 +5,7 @@ use crate::case::catalogue;
 use crate::case::model::{Probe, ProbeKind, Quantity};
 use crate::case::suggest::one_of;
 use crate::fields::{Component, FieldDescription, FieldKind, FieldSelector, component_name};
-use crate::observe::{TANGENT_COLUMNS, moment_axes};
+use crate::observe::{TANGENT_COLUMNS, moment_axes, opening_columns};
 
 impl Reader<'_, '_> {
     /// The field called `name`, which stands at `place`.
@@ -152,7 +152,9 @@ impl Reader<'_, '_> {
             ProbeKind::Gauge { .. } => vec!["elevation".to_owned()],
             ProbeKind::Flux { .. } => vec!["flux".to_owned()],
             ProbeKind::Void => vec!["volume".to_owned()],
-            ProbeKind::Opening => vec!["entered".to_owned(), "left".to_owned()],
+            ProbeKind::Opening => {
+                opening_columns(self.dimension).map(|(own, _)| own.to_owned()).collect()
+            }
             ProbeKind::Tangent { .. } => TANGENT_COLUMNS.map(|(own, _)| own.to_owned()).to_vec(),
         };
         if names.iter().any(|own| own == column) {

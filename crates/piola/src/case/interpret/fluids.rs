@@ -1,6 +1,7 @@
 //! The scheme `transport_velocity`, walls, and what of a case fits to which scheme.
 
 use piola_formulas::hyperelastic::HyperelasticLaw;
+use piola_formulas::volumetric::VolumetricLaw;
 
 use super::*;
 use crate::case::model::{
@@ -181,7 +182,7 @@ impl Reader<'_, '_> {
                     Material::WeaklyCompressible { .. } | Material::Hypoelastic(_),
                 )
                 | (interpolation::NAME, _)
-                | ("upwind", Material::Linear { .. } | Material::GammaLaw { .. }) => None,
+                | ("upwind", Material::Volumetric { .. }) => None,
                 ("transport_velocity", _) if system.is_some() => {
                     Some("use `hypoelastic`".to_owned())
                 }
@@ -191,7 +192,7 @@ impl Reader<'_, '_> {
                 _ if is_elastic => {
                     Some(format!("use one of {}, rigid", HyperelasticLaw::NAMES.join(", ")))
                 }
-                _ => Some("use `linear` or `gamma_law`".to_owned()),
+                _ => Some(format!("use `{}`", VolumetricLaw::NAMES.join("` or `"))),
             };
             if let Some(help) = help {
                 let message = format!("the scheme `{scheme}` does not know this material");

@@ -6,22 +6,20 @@ use super::*;
 use crate::boundaries::History;
 use crate::case::expression::Expression;
 use crate::case::model::{
-    Boundary, Correction, Dissipation, Load, LoadKind, ReferenceWaveSpeed, Region, Roller, Turning,
-    Upwind, Weights,
+    Boundary, Dissipation, Load, LoadKind, Region, Roller, Turning, Upwind, Weights,
 };
+use crate::operators::Correction;
 use crate::output::Curve;
+use crate::schemes::upwind::WaveSpeed;
 
 /// Settings of the scheme `upwind`.
 pub(super) fn upwind(record: &Record) -> Option<Upwind> {
-    let correction = record.text("correction")?.map(|name| match name.as_str() {
-        "none" => Correction::None,
-        "kernel_and_gradient" => Correction::KernelAndGradient,
-        _ => Correction::Gradient,
-    });
+    let correction = record.text("correction")?;
+    let known = Correction::from_name(&correction)?;
     Some(Upwind {
         kernel: record.text("kernel")?,
         smoothing_length: record.number("smoothing_length")?,
-        correction,
+        correction: correction.map(|_| known),
         weights: weights(record)?,
         tau_velocity: record.number("tau_velocity")?.value,
         tau_pressure: record.number("tau_pressure")?.value,
@@ -33,8 +31,8 @@ pub(super) fn upwind(record: &Record) -> Option<Upwind> {
         }),
         reconstruction: record.boolean("reconstruction")?,
         wave_speed: match record.text("wave_speed")?.as_str() {
-            "stretch" => ReferenceWaveSpeed::Stretch,
-            _ => ReferenceWaveSpeed::Constant,
+            "stretch" => WaveSpeed::Stretch,
+            _ => WaveSpeed::Constant,
         },
     })
 }

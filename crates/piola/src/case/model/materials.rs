@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use piola_formulas::hyperelastic::{Constant, HyperelasticLaw, LameConstants};
-use piola_formulas::volumetric::{self, StressState};
+use piola_formulas::volumetric::{self, StressState, VolumetricLaw};
 
 use crate::boundaries::History;
 use crate::case::expression::Expression;
@@ -12,21 +12,12 @@ use crate::schemes::transport_velocity;
 /// What a body is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Material {
-    /// Pressure linear in the volume ratio, `p = -kappa (J - 1)`, Upwind (3.11) and (3.12) corrected.
-    Linear {
+    /// A material whose energy depends on the volume ratio alone.
+    Volumetric {
         /// Reference density in kg/m^3.
         density: f64,
-        /// How its bulk modulus is given.
-        stiffness: Stiffness,
-    },
-    /// `p = kappa (J^-gamma - 1)`, Upwind (6.30).
-    GammaLaw {
-        /// Reference density in kg/m^3.
-        density: f64,
-        /// Exponent, at least 1.
-        gamma: f64,
-        /// How its bulk modulus is given, never by Young's modulus.
-        stiffness: Stiffness,
+        /// Its law.
+        law: VolumetricLaw,
     },
     /// A fluid with `p = kappa (rho / rho0 - 1)`, CTVF (8).
     WeaklyCompressible {
@@ -60,13 +51,12 @@ pub enum Material {
 impl Material {
     /// A placeholder for bodies whose material is never used.
     pub const PLACEHOLDER: Self =
-        Self::Linear { density: 1.0, stiffness: Stiffness::BulkModulus(1.0) };
+        Self::Volumetric { density: 1.0, law: VolumetricLaw::Linear { bulk_modulus: 1.0 } };
 
     /// Reference density in kg/m^3.
     pub fn density(&self) -> f64 {
         match *self {
-            Self::Linear { density, .. }
-            | Self::GammaLaw { density, .. }
+            Self::Volumetric { density, .. }
             | Self::WeaklyCompressible { density, .. }
             | Self::Hyperelastic { density, .. }
             | Self::Rigid { density } => density,
@@ -76,24 +66,15 @@ impl Material {
 
     /// The modulus kappa of the pressure law in Pa, in a case of `dimension` dimensions; for an elastic solid that at
     /// small strains; a rigid one has none.
-    ///
-    /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
-    /// Upwind (6.31) solved for kappa, with gamma = 1 for the linear law.
     pub fn bulk_modulus(&self, dimension: usize) -> f64 {
-        let (density, gamma, stiffness) = match self.clone() {
-            Self::Linear { density, stiffness } => (density, 1.0, stiffness),
-            Self::GammaLaw { density, gamma, stiffness } => (density, gamma, stiffness),
-            Self::WeaklyCompressible { density, stiffness, .. } => (density, 1.0, stiffness),
-            Self::Hyperelastic { law, .. } => return law.small_strain().bulk_modulus(),
-            Self::Hypoelastic(solid) => return solid.bulk_modulus(),
-            Self::Rigid { .. } => return f64::INFINITY,
-        };
-        match stiffness {
-            Stiffness::BulkModulus(modulus) => modulus,
-            Stiffness::WaveSpeed(speed) => density * speed * speed / gamma,
-            Stiffness::Young { modulus, poisson_ratio, plane } => {
-                plane.bulk_modulus(modulus, poisson_ratio, dimension)
+        match self {
+            Self::Volumetric { law, .. } => law.modulus(),
+            Self::WeaklyCompressible { density, stiffness, .. } => {
+                stiffness.modulus(*density, 1.0, dimension)
             }
+            Self::Hyperelastic { law, .. } => law.small_strain().bulk_modulus(),
+            Self::Hypoelastic(solid) => solid.bulk_modulus(),
+            Self::Rigid { .. } => f64::INFINITY,
         }
     }
 }
@@ -114,6 +95,22 @@ pub enum Stiffness {
         /// The condition in the directions that the case does not resolve. Without meaning in 3D.
         plane: PlaneState,
     },
+}
+
+impl Stiffness {
+    /// The modulus kappa in Pa, in a case of `dimension` dimensions, for a density in kg/m^3.
+    ///
+    /// A given wave speed c of the reference state yields `kappa = rho c^2 / gamma`, which is
+    /// Upwind (6.31) solved for kappa: gamma is the modulus of small changes of volume over kappa.
+    pub fn modulus(self, density: f64, gamma: f64, dimension: usize) -> f64 {
+        match self {
+            Self::BulkModulus(modulus) => modulus,
+            Self::WaveSpeed(speed) => density * speed * speed / gamma,
+            Self::Young { modulus, poisson_ratio, plane } => {
+                plane.bulk_modulus(modulus, poisson_ratio, dimension)
+            }
+        }
+    }
 }
 
 /// The condition in the directions that a case of one or two dimensions does not resolve.

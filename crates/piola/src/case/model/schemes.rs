@@ -3,11 +3,12 @@
 use super::Shape;
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::operators::GradientForm;
+use crate::operators::{Correction, GradientForm};
 use crate::schemes::total_lagrangian::{
     self, Configuration, Dissipation as Dissipative, Form, Tractions,
 };
-use crate::schemes::{SchemeDescription, interpolation, transport_velocity, upwind};
+use crate::schemes::upwind::{self, WaveSpeed};
+use crate::schemes::{SchemeDescription, interpolation, transport_velocity};
 
 /// The formulation with its settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +56,7 @@ pub struct Upwind {
     /// Whether the states at the mid-edge are reconstructed, Upwind (3.53).
     pub reconstruction: bool,
     /// The wave speed of the upwinding.
-    pub wave_speed: ReferenceWaveSpeed,
+    pub wave_speed: WaveSpeed,
 }
 
 /// Which form the upwinding has.
@@ -185,6 +186,11 @@ impl Preset {
         }
     }
 
+    /// Whether gradients are plain unless the case says otherwise.
+    pub fn is_plain(self) -> bool {
+        self == Self::Elastodynamics
+    }
+
     /// The radius of supports in spacings.
     pub fn support(self, form: Form, dimension: usize) -> f64 {
         match (self, form, dimension) {
@@ -249,17 +255,6 @@ pub enum GradientKind {
     PatchConsistent,
 }
 
-/// Correction of kernel and gradient.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Correction {
-    /// The kernel as it is.
-    None,
-    /// Gradients exact for linear fields.
-    Gradient,
-    /// Kernel exact for constants and gradients exact for linear fields.
-    KernelAndGradient,
-}
-
 /// The weights in kernel sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weights {
@@ -267,13 +262,4 @@ pub enum Weights {
     Lattice,
     /// The quadrature volume of the particle.
     Volume,
-}
-
-/// The wave speed that the upwinding of the scheme `upwind` uses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReferenceWaveSpeed {
-    /// That of the reference state.
-    Constant,
-    /// Divided by the stretch, Upwind (3.57).
-    Stretch,
 }

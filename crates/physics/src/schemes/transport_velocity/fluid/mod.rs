@@ -376,18 +376,24 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         values: &mut Vec<f64>,
     ) {
         let Some(field) = Own::of(field) else { return };
-        if field == Own::summed_density {
-            return values.push(summed_density(common, number));
-        }
         let mass = common.mass[number];
-        let [pressure, viscosity] = self.wall_forces(common, number).map(|force| force * mass);
-        let force = match field {
-            _ if !common.is_wall[number] => Vector::zeros(),
-            Own::pressure_force => pressure,
-            Own::viscous_force => viscosity,
-            _ => at.kick[number] * mass - pressure - viscosity,
+        // Of a wall, those of pressure, of viscosity, and the rest.
+        let mut push_force = |part: usize| {
+            let [pressure, viscosity] = self.wall_forces(common, number).map(|force| force * mass);
+            let force = match part {
+                _ if !common.is_wall[number] => Vector::zeros(),
+                0 => pressure,
+                1 => viscosity,
+                _ => at.kick[number] * mass - pressure - viscosity,
+            };
+            values.extend_from_slice(force.as_slice());
         };
-        values.extend_from_slice(force.as_slice());
+        match field {
+            Own::summed_density => values.push(summed_density(common, number)),
+            Own::pressure_force => push_force(0),
+            Own::viscous_force => push_force(1),
+            Own::barrier_force => push_force(2),
+        }
     }
 
     fn memory() -> usize {
