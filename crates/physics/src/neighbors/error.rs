@@ -123,6 +123,9 @@ pub enum NeighborError {
         /// Row that lacks it.
         neighbor: usize,
     },
+    /// One of several ranks has no list.
+    #[error("the neighbours of another rank's particles cannot be found; its own message says why")]
+    OtherRank,
 }
 
 /// Name of a coordinate axis.

@@ -31,7 +31,7 @@ pub fn search<const D: usize>(
     support: &[f64],
     domain: &Domain<D>,
 ) -> Result<NeighborList, NeighborError> {
-    rows(points, support, domain, |found, a, rows| {
+    rows(points, support, domain, points.len(), |found, a, rows| {
         found.sort_unstable();
         let own = found.binary_search(&(a as u32)).expect("a particle is near to itself");
         rows.extend_from_slice(&found[..own]);
@@ -40,16 +40,17 @@ pub fn search<const D: usize>(
 }
 
 /// The list of [`search`] for particles that all have the same support, with rows in ascending
-/// order of `ranks`, the rank of each particle, whose inverse is `ranked`. A particle whose rank is
-/// at least `seen` sees only those with lower ones.
+/// order of `ranks`, the rank of each particle, whose inverse is `ranked`. It has `count` rows, those of the first particles.
+/// A particle whose rank is at least `seen` sees only those with lower ones.
 pub(super) fn search_ranked<const D: usize>(
     points: &[Vector<D>],
     support: f64,
     domain: &Domain<D>,
     [ranks, ranked]: [&[u32]; 2],
-    seen: u32,
+    [count, seen]: [usize; 2],
 ) -> Result<NeighborList, NeighborError> {
-    rows(points, &vec![support; points.len()], domain, |found, a, rows| {
+    let (supports, seen) = (vec![support; points.len()], seen as u32);
+    rows(points, &supports, domain, count, |found, a, rows| {
         found.iter_mut().for_each(|b| *b = ranks[*b as usize]);
         found.sort_unstable();
         let own = ranks[a];
@@ -62,12 +63,13 @@ pub(super) fn search_ranked<const D: usize>(
     })
 }
 
-/// Finds all that are near to each particle, itself included, and has `append(found, a, rows)`
+/// Finds all that are near to each of the first `count` particles, itself included, and has `append(found, a, rows)`
 /// append them to the rows.
 fn rows<const D: usize>(
     points: &[Vector<D>],
     support: &[f64],
     domain: &Domain<D>,
+    count: usize,
     append: impl Fn(&mut [u32], usize, &mut Vec<u32>) + Sync,
 ) -> Result<NeighborList, NeighborError> {
     check(points, support, domain)?;
@@ -81,7 +83,7 @@ fn rows<const D: usize>(
         append(found, a, rows);
     };
     let (particles, most) = (points.len(), MOST_ENTRIES);
-    NeighborList::from_rows(particles, most, Candidates::default, row)
+    NeighborList::from_rows(count, most, Candidates::default, row)
         .ok_or(NeighborError::TooManyEntries { particles, most })
 }
 

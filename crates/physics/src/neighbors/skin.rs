@@ -1,7 +1,10 @@
 //! Neighbour lists of moving particles, kept over many steps.
 
+use std::borrow::Cow;
+
 use super::search::search_ranked;
 use super::{Domain, NeighborError, shorter_way, spatial_order};
+use crate::parallel::Team;
 use crate::{Vector, parallel};
 
 /// Candidates for the neighbours of moving particles: all that were closer than the support
@@ -12,6 +15,9 @@ use crate::{Vector, parallel};
 /// the list so that neighbours stay close. Rows name places, but stand in the order of numbers:
 /// a sum over those in a row that are inside the support is the same to the bit, whenever the
 /// list was made. Particles that are `passive` see only the others, and stand last in their rows.
+///
+/// One of several ranks has rows of its own particles alone, which have the first places; behind them are copies of the
+/// particles of others that stand in these rows. All ranks make their lists at the same time, of all positions.
 pub struct SkinList<const D: usize> {
     domain: Domain<D>,
     support: f64,
@@ -25,7 +31,9 @@ pub struct SkinList<const D: usize> {
     excluded: Vec<bool>,
     /// Whether the list has to be made anew, whoever moved.
     stale: bool,
-    /// Number of the particle at each place, and the reverse.
+    /// Who computes together.
+    team: Team,
+    /// Number of the particle at each place, and place of each own particle.
     numbers: Vec<u32>,
     places: Vec<u32>,
     /// Positions by place, inside the bounds of the domain: now, and when the list was made.
@@ -62,6 +70,7 @@ impl<const D: usize> SkinList<D> {
             active,
             excluded: Vec::new(),
             stale: false,
+            team: Team::default(),
             places: numbers.clone(),
             numbers,
             positions: vec![Vector::zeros(); positions.len()],
@@ -86,18 +95,55 @@ impl<const D: usize> SkinList<D> {
         rows: &mut [T],
         take: impl Fn(usize, &mut T) -> Vector<D> + Sync,
     ) -> Result<bool, NeighborError> {
-        let most = self.take(rows, &take);
+        let own = self.take(rows, &take);
+        let [most] = self.team.largest([own]);
         if self.builds > 0 && !self.stale && most <= 0.25 * self.skin * self.skin {
+            if most >= 0.0 {
+                self.fetch_positions();
+            }
             return Ok(most >= 0.0);
         }
         // Until it is made, the list does not belong to the positions.
         self.stale = true;
-        self.build()?;
-        self.take(rows, &take);
-        self.made_at.clone_from(&self.positions);
-        self.builds += 1;
-        self.stale = false;
-        Ok(true)
+        let built = self.build();
+        if built.is_ok() {
+            self.take(rows, &take);
+            self.made_at.clone_from(&self.positions);
+            self.builds += 1;
+            self.stale = false;
+        }
+        self.fetch_positions();
+        built.map(|()| true)
+    }
+
+    /// Takes the positions of copies from those who have the particles.
+    fn fetch_positions(&mut self) {
+        let owned = self.owned();
+        self.team.refresh(&mut self.positions, owned, 1);
+    }
+
+    /// The list of one of several ranks, which is made at the first update.
+    pub(crate) fn part(&self, team: Team, count: usize) -> Self {
+        let numbers = (0..count as u32).map(|row| row + team.first() as u32);
+        Self {
+            domain: self.domain,
+            support: self.support,
+            skin: self.skin,
+            passive: self.passive.clone(),
+            ranks: self.ranks.clone(),
+            active: self.active,
+            excluded: self.excluded.clone(),
+            stale: true,
+            numbers: numbers.collect(),
+            places: (0..count as u32).collect(),
+            positions: vec![Vector::zeros(); count],
+            made_at: Vec::new(),
+            offsets: vec![0; count + 1],
+            passive_from: vec![0; count],
+            entries: Vec::new(),
+            builds: 0,
+            team,
+        }
     }
 
     /// Sets which particles are passive, and which neither see nor are seen, by number, from the
@@ -120,7 +166,8 @@ impl<const D: usize> SkinList<D> {
     ) -> f64 {
         let (numbers, domain, made_at) = (&self.numbers, &self.domain, &self.made_at);
         let periods = domain.periods();
-        parallel::maximum_of_chunks(&mut self.positions, rows, -1.0, |first, positions, rows| {
+        let positions = &mut self.positions[..self.places.len()];
+        parallel::maximum_of_chunks(positions, rows, -1.0, |first, positions, rows| {
             let (mut has_moved, mut most) = (false, 0.0);
             for (k, (kept, row)) in positions.iter_mut().zip(rows).enumerate() {
                 let position = domain.wrap(&take(numbers[first + k] as usize, row));
@@ -141,41 +188,100 @@ impl<const D: usize> SkinList<D> {
 
     /// Renews the places and lists the candidates of the current positions.
     fn build(&mut self) -> Result<(), NeighborError> {
-        let reach = self.support + self.skin;
-        let mut order = spatial_order(&self.positions, reach)?;
-        // Those that no others see come last and are not looked for: many may be in one place.
-        let is_out = |place: u32| {
-            self.excluded.get(self.numbers[place as usize] as usize).is_some_and(|is_out| *is_out)
+        let (reach, owned, first) = (self.support + self.skin, self.owned(), self.team.first());
+        let (own, (positions, all)) = (first..first + owned, self.all());
+        if positions.len() != self.ranks.len() {
+            return Err(NeighborError::OtherRank);
+        }
+        let mut order = spatial_order(&positions, reach)?;
+        // Those that no others see come last and are not looked for: many may be in one place. Own ones come first.
+        let class = |&at: &u32| {
+            let number = all[at as usize] as usize;
+            let is_out = self.excluded.get(number).is_some_and(|is_out| *is_out);
+            (is_out, !own.contains(&number))
         };
-        order.sort_by_key(|&place| is_out(place));
-        let seen = order.partition_point(|&place| !is_out(place));
-        let ordered: Vec<_> = order.iter().map(|&place| self.positions[place as usize]).collect();
-        let at = |number: &u32| self.ranks[*number as usize];
-        let ranks: Vec<u32> =
-            order.iter().map(|&place| at(&self.numbers[place as usize])).collect();
+        order.sort_by_key(class);
+        let seen = order.partition_point(|at| !class(at).0);
+        let seeing = order.partition_point(|at| class(at) == (false, false));
+        let ordered: Vec<_> = order.iter().map(|&at| positions[at as usize]).collect();
+        let numbers: Vec<u32> = order.iter().map(|&at| all[at as usize]).collect();
+        let ranks: Vec<u32> = numbers.iter().map(|&number| self.ranks[number as usize]).collect();
         let mut ranked = vec![0; ranks.len()];
         for (place, &rank) in ranks.iter().enumerate() {
             ranked[rank as usize] = place as u32;
         }
-        let both = [ranks.as_slice(), ranked.as_slice()];
-        let list = search_ranked(&ordered[..seen], reach, &self.domain, both, self.active)?;
-        self.numbers = order.iter().map(|&place| self.numbers[place as usize]).collect();
-        for (place, &number) in self.numbers.iter().enumerate() {
-            self.places[number as usize] = place as u32;
+        let (both, rows) = ([ranks.as_slice(), ranked.as_slice()], [seeing, self.active as usize]);
+        let list = search_ranked(&ordered[..seen], reach, &self.domain, both, rows);
+        let is_found = self.team.all(list.is_ok());
+        let (mut offsets, mut entries) = list?.into_arrays();
+        if !is_found {
+            return Err(NeighborError::OtherRank);
         }
-        (self.offsets, self.entries) = list.into_arrays();
-        self.offsets.resize(self.numbers.len() + 1, self.entries.len());
-        let active = self.active;
-        self.passive_from = (self.offsets.windows(2))
-            .map(|ends| {
-                let row = &self.entries[ends[0]..ends[1]];
-                ends[0] + row.partition_point(|&place| ranks[place as usize] < active)
-            })
-            .collect();
+        offsets.resize(owned + 1, entries.len());
+        let is_active = |&at: &u32| ranks[at as usize] < self.active;
+        let passive_from = (offsets.windows(2))
+            .map(|ends| ends[0] + entries[ends[0]..ends[1]].partition_point(is_active));
+        self.passive_from = passive_from.collect();
+        let copies = self.copies(&numbers, &mut entries);
+        let in_front = numbers[..seeing].iter().chain(&numbers[seen..][..owned - seeing]);
+        let behind = copies.iter().map(|(_, at)| &numbers[*at]);
+        self.numbers = in_front.chain(behind).copied().collect();
+        for (place, &number) in self.numbers[..owned].iter().enumerate() {
+            self.places[number as usize - first] = place as u32;
+        }
+        (self.offsets, self.entries) = (offsets, entries);
+        self.positions.resize(self.numbers.len(), Vector::zeros());
+        let wanted: Vec<(usize, usize)> =
+            copies.iter().map(|&(rank, at)| (rank, numbers[at] as usize)).collect();
+        self.team.renew(&wanted, |number| self.places[number - first]);
         Ok(())
     }
 
-    /// Number of particles.
+    /// Positions in m and numbers of the particles of all ranks.
+    fn all(&self) -> (Cow<'_, [Vector<D>]>, Cow<'_, [u32]>) {
+        if self.team.is_alone() {
+            return (Cow::Borrowed(&self.positions), Cow::Borrowed(&self.numbers));
+        }
+        let own = self.places.iter().map(|&place| self.positions[place as usize]);
+        let all = self.team.rows_of_all(own.collect());
+        let numbers = (0..all.len() as u32).collect();
+        (Cow::Owned(all), numbers)
+    }
+
+    /// What the rows of `entries`, which say where others stand in the order of `numbers`, name of other ranks: the rank
+    /// and where it stands there, rank by rank. From then on rows name the places of the copies behind own particles.
+    fn copies(&self, numbers: &[u32], entries: &mut [u32]) -> Vec<(usize, usize)> {
+        if self.team.is_alone() {
+            return Vec::new();
+        }
+        let owned = self.owned();
+        let mut is_named = vec![false; numbers.len()];
+        entries.iter().for_each(|&at| is_named[at as usize] = true);
+        let others = numbers.iter().zip(is_named).enumerate().filter(|(_, (number, is_named))| {
+            *is_named && self.team.own(**number as usize, owned).is_none()
+        });
+        let mut copies: Vec<(usize, usize)> =
+            others.map(|(at, (number, _))| (self.team.owner(*number as usize), at)).collect();
+        copies.sort_unstable();
+        let mut places: Vec<u32> = (0..numbers.len() as u32).collect();
+        for (place, (_, at)) in (owned as u32..).zip(&copies) {
+            places[*at] = place;
+        }
+        entries.iter_mut().for_each(|at| *at = places[*at as usize]);
+        copies
+    }
+
+    /// Who computes together.
+    pub fn team(&self) -> &Team {
+        &self.team
+    }
+
+    /// Number of own particles, which have the first places.
+    pub fn owned(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Number of particles, with the copies of those of other ranks.
     pub fn len(&self) -> usize {
         self.numbers.len()
     }
@@ -190,7 +296,7 @@ impl<const D: usize> SkinList<D> {
         &self.numbers
     }
 
-    /// Place of each particle.
+    /// Place of each own particle, in the order of numbers.
     pub fn places(&self) -> &[u32] {
         &self.places
     }
@@ -209,6 +315,11 @@ impl<const D: usize> SkinList<D> {
     /// Number of candidates of all particles.
     pub fn entries(&self) -> usize {
         self.entries.len()
+    }
+
+    /// Candidates of the particle at `place`.
+    pub fn row(&self, place: usize) -> &[u32] {
+        &self.entries[self.offsets[place]..self.offsets[place + 1]]
     }
 
     /// Number of candidates of all particles before `place`.

@@ -54,8 +54,8 @@ impl<const D: usize> Reach<D> {
 impl InsideRows {
     /// Picks the rows anew.
     pub fn pick<const D: usize>(&mut self, list: &SkinList<D>, reach: &Reach<D>) {
-        self.rows.resize(list.len(), Row::default());
-        self.places.resize(list.entries() + ROOM * list.len(), 0);
+        self.rows.resize(list.owned(), Row::default());
+        self.places.resize(list.entries() + ROOM * list.owned(), 0);
         parallel::for_each_span(
             &mut self.places,
             &mut self.rows,

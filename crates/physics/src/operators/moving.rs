@@ -10,6 +10,7 @@ use super::gather::{Among, Pairs};
 use super::inside::{InsideRows, Reach};
 use crate::Vector;
 use crate::neighbors::{Domain, NeighborError, SkinList};
+use crate::parallel::Team;
 
 /// Neighbours of a particle that have not been looked at yet.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +78,23 @@ impl<const D: usize> MovingSupport<D> {
         })
     }
 
+    /// That of one of several ranks with `count` particles, which find their neighbours at the first update.
+    pub(crate) fn part(&self, team: Team, count: usize) -> Self {
+        let list = self.list.part(team, count);
+        let mut inside = InsideRows::default();
+        inside.pick(&list, &self.reach);
+        Self {
+            kernel: self.kernel,
+            smoothing_length: self.smoothing_length,
+            many: self.kernel.many::<D>(self.smoothing_length),
+            reach: self.reach,
+            list,
+            inside,
+            sides: Vec::new(),
+            is_turned: false,
+        }
+    }
+
     /// Takes new positions in m by number.
     ///
     /// # Errors
@@ -85,7 +103,7 @@ impl<const D: usize> MovingSupport<D> {
         &mut self,
         position: impl Fn(usize) -> Vector<D> + Sync,
     ) -> Result<(), NeighborError> {
-        self.update_with(&mut vec![(); self.list.len()], |number, ()| position(number))
+        self.update_with(&mut vec![(); self.list.owned()], |number, ()| position(number))
     }
 
     /// Takes new positions in m: `take(number, row)` is that of a particle, and fills the row at its
@@ -238,80 +256,4 @@ fn separate<const D: usize>(
 }
 
 #[cfg(test)]
-mod tests {
-    use rand::{RngExt, SeedableRng};
-    use rand_pcg::Pcg64;
-
-    use super::super::LANES;
-    use super::*;
-    use piola_formulas::Lanes;
-
-    /// What [`MovingSupport`] shows of a particle: numbers in order, the passive ones last.
-    fn shown<const D: usize>(support: &MovingSupport<D>, number: usize) -> Vec<u32> {
-        let place = support.list().places()[number] as usize;
-        let (kernel, h) = (support.kernel(), support.smoothing_length());
-        let (mut row, mut block) = (support.row(place, Among::All), NeighborBlock::default());
-        let mut numbers = Vec::new();
-        loop {
-            let count = support.next(&mut row, Needs::Both, &mut block);
-            if count == 0 {
-                break;
-            }
-            let (mut all, mut true_ones) = (0.0, 0.0);
-            for k in 0..count {
-                let (other, pair) = support.one(&block, k);
-                numbers.push(support.list().numbers()[other]);
-                true_ones += kernel.value(D, pair.square.sqrt(), h);
-            }
-            // Lanes that are filled up add nothing.
-            for first in (0..count.next_multiple_of(LANES)).step_by(WIDTH) {
-                all += support.four(&block, first).1.value.store().iter().sum::<f64>();
-            }
-            assert!((all - true_ones).abs() <= 1e-13 * all);
-        }
-        numbers
-    }
-
-    /// Particles that wander in a box that is periodic along all axes but the last, so that some
-    /// are near to its bounds, compared with a look at all pairs after each of several moves. The
-    /// steps are so short that most of the lists are old ones.
-    fn compare<const D: usize>(count: usize, h: f64) {
-        let domain = Domain::new(std::array::from_fn(|axis| (axis + 1 < D).then_some([0.0, 1.0])));
-        let domain = domain.expect("the bounds are in order");
-        let mut source = Pcg64::seed_from_u64(7);
-        let mut positions: Vec<Vector<D>> =
-            (0..count).map(|_| Vector::from_fn(|_, _| source.random_range(0.0..1.0))).collect();
-        let passive: Vec<bool> = (0..count).map(|number| number % 5 == 0).collect();
-        let kernel = Kernel::QuinticSpline;
-        let mut support =
-            MovingSupport::new(&positions, passive.clone(), kernel, h, domain).expect("it fits");
-        let radius = kernel.support_radius(h);
-        let reach = 0.04 * radius;
-        for _ in 0..6 {
-            for a in 0..count {
-                let is_near = |b: usize| {
-                    let separation = domain.separation(&positions[a], &positions[b]);
-                    b != a && separation.norm() < radius && !(passive[a] && passive[b])
-                };
-                let near = |is_passive: bool| -> Vec<u32> {
-                    let others = (0..count).filter(|&b| passive[b] == is_passive && is_near(b));
-                    others.map(|b| b as u32).collect()
-                };
-                let expected = [near(false), near(true)].concat();
-                assert_eq!(shown(&support, a), expected, "{D}D, particle {a}");
-            }
-            for position in &mut positions {
-                *position += Vector::from_fn(|_, _| source.random_range(-reach..reach));
-            }
-            support.update(|number| positions[number]).expect("it fits");
-        }
-        assert!((2..5).contains(&support.list().builds()), "{D}D {}", support.list().builds());
-    }
-
-    #[test]
-    fn neighbors_are_those_inside_the_support_in_the_order_of_their_numbers() {
-        compare::<1>(60, 0.05);
-        compare::<2>(400, 0.045);
-        compare::<3>(500, 0.08);
-    }
-}
+mod tests;

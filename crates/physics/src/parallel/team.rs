@@ -13,7 +13,7 @@ use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use piola_formulas::pairs::{Of, Record};
 use piola_ranks::{Exact, LIMBS, Message, RankError, Ranks};
 
-use super::{ExactSums, Parts, Reduce, Sums, add_sums_over_parts, reduce};
+use super::{ExactSums, Parts, Reduce, Sums, add_sums, add_sums_over_parts, reduce};
 
 /// Those that compute a system together.
 #[derive(Clone, Default)]
@@ -24,12 +24,11 @@ pub struct Team {
 /// What a rank knows of the others.
 struct Shared {
     ranks: Arc<dyn Ranks>,
-    /// Number of its first particle among all.
-    first: usize,
+    /// Where the particles of each rank begin among all, and where those of the last end.
+    bounds: Vec<usize>,
     /// Particles a chunk.
     chunk: usize,
-    halo: Halo,
-    messages: Mutex<[Vec<Message>; 2]>,
+    plan: Mutex<Plan>,
     limbs: Mutex<Vec<i64>>,
     /// Why the ranks cannot go on, from then on.
     fault: OnceLock<RankError>,
@@ -46,23 +45,91 @@ pub struct Halo {
     pub copied: Vec<(usize, usize)>,
 }
 
-impl Team {
-    /// A rank whose first particle has the number `first` among `all`, with a plan of the copies.
-    pub fn new(ranks: Arc<dyn Ranks>, [first, all]: [usize; 2], halo: Halo) -> Self {
+impl Halo {
+    /// That of ranks each of which wants copies of others, rank by rank: of whom, and by which name that one knows the
+    /// particle; `row` is where an own particle with a name stands. All ranks call this together.
+    ///
+    /// # Errors
+    /// A rank is lost.
+    pub fn agree(
+        ranks: &dyn Ranks,
+        wanted: &[(usize, usize)],
+        row: impl Fn(usize) -> u32,
+    ) -> Result<Self, RankError> {
+        let size = ranks.size();
+        let of_rank = |rank: usize| {
+            let place = |rank: usize| wanted.partition_point(|(owner, _)| *owner < rank);
+            &wanted[place(rank)..place(rank + 1)]
+        };
+        let counts: Vec<f64> = (0..size).map(|rank| of_rank(rank).len() as f64).collect();
+        let all = ranks.gather_to_all(&counts)?;
+        let others = || (0..size).filter(|&rank| !of_rank(rank).is_empty());
+        let names = |rank: usize| of_rank(rank).iter().map(|(_, name)| *name as f64).collect();
+        let asked: Vec<Message> =
+            others().map(|rank| Message { rank, numbers: names(rank) }).collect();
+        let of_others = all.iter().map(|counts| counts[ranks.rank()] as usize);
+        let mut lent: Vec<Message> = (of_others.enumerate())
+            .filter(|(_, count)| *count > 0)
+            .map(|(rank, count)| Message { rank, numbers: vec![0.0; count] })
+            .collect();
+        ranks.exchange(&asked, &mut lent)?;
+        let own = |message: Message| {
+            (message.rank, message.numbers.iter().map(|&name| row(name as usize)).collect())
+        };
+        Ok(Self {
+            lent: lent.into_iter().map(own).collect(),
+            copied: others().map(|rank| (rank, of_rank(rank).len())).collect(),
+        })
+    }
+}
+
+/// A plan of copies, and the messages that it takes: those that go out, and those that come.
+struct Plan {
+    halo: Halo,
+    messages: [Vec<Message>; 2],
+}
+
+impl Plan {
+    fn new(halo: Halo) -> Self {
         let message = |rank: usize| Message { rank, numbers: Vec::new() };
         let lent = halo.lent.iter().map(|(rank, _)| message(*rank)).collect();
         let copied = halo.copied.iter().map(|(rank, _)| message(*rank)).collect();
-        let messages = Mutex::new([lent, copied]);
-        let (chunk, fault) = (super::chunk(all), OnceLock::new());
-        let costs = Default::default();
-        let limbs = Mutex::default();
-        let shared = Shared { ranks, first, chunk, halo, messages, limbs, fault, costs };
+        Self { halo, messages: [lent, copied] }
+    }
+}
+
+impl Team {
+    /// A rank of those whose particles begin and end where `bounds` has it, with a plan of the copies.
+    pub fn new(ranks: Arc<dyn Ranks>, bounds: Vec<usize>, halo: Halo) -> Self {
+        let all = bounds.last().copied().unwrap_or_default();
+        let (chunk, plan) = (super::chunk(all), Mutex::new(Plan::new(halo)));
+        let (limbs, fault, costs) = (Mutex::default(), OnceLock::new(), Default::default());
+        let shared = Shared { ranks, bounds, chunk, plan, limbs, fault, costs };
         Self { shared: Some(Arc::new(shared)) }
     }
 
-    /// The number of particle `a` among those of all ranks.
-    pub fn number(&self, a: usize) -> usize {
-        self.shared.as_ref().map_or(a, |shared| shared.first + a)
+    /// Whether there is one rank.
+    pub fn is_alone(&self) -> bool {
+        self.shared.is_none()
+    }
+
+    /// Plans the copies anew, as [`Halo::agree`]. All ranks call this together.
+    pub fn renew(&self, wanted: &[(usize, usize)], row: impl Fn(usize) -> u32) {
+        let Some(shared) = &self.shared else { return };
+        if let Some(halo) = shared.told(|| Halo::agree(shared.ranks.as_ref(), wanted, row)) {
+            *shared.plan.lock().unwrap_or_else(PoisonError::into_inner) = Plan::new(halo);
+        }
+    }
+
+    /// The number of the first particle among those of all ranks.
+    pub fn first(&self) -> usize {
+        self.shared.as_ref().map_or(0, |shared| shared.bounds[shared.ranks.rank()])
+    }
+
+    /// The rank that has the particle with a number among those of all ranks.
+    pub fn owner(&self, number: usize) -> usize {
+        let Some(shared) = &self.shared else { return 0 };
+        shared.bounds.partition_point(|&bound| bound <= number) - 1
     }
 
     /// Particles a chunk, of `count` here.
@@ -72,8 +139,7 @@ impl Team {
 
     /// The particle with a number among those of all ranks, if it is one of `count` here.
     pub fn own(&self, number: usize, count: usize) -> Option<usize> {
-        let first = self.shared.as_ref().map_or(0, |shared| shared.first);
-        number.checked_sub(first).filter(|&a| a < count)
+        number.checked_sub(self.first()).filter(|&a| a < count)
     }
 
     /// Seconds of telling and waiting, messages and bytes that were sent.
@@ -100,6 +166,55 @@ impl Team {
         let mut exact = ExactSums::NONE;
         add_sums_over_parts([count, self.chunk(count)], parts, body, &mut exact);
         self.close(exact)
+    }
+
+    /// The sums of a loop over the particles of all ranks, as [`sums`](super::sums), of which `count` are its own.
+    pub fn sums<T: Sums>(&self, count: usize, add: impl Fn(usize, &mut T) + Sync) -> T {
+        let mut exact = ExactSums::NONE;
+        add_sums([count, self.chunk(count)], add, &mut exact);
+        self.close(exact)
+    }
+
+    /// The sum of a few terms of all ranks, added one after the other in the order of ranks.
+    pub fn sum_in_order<T: Sums>(&self, own: &[T]) -> T {
+        let mut numbers = Vec::with_capacity(own.len() * T::NUMBERS);
+        for mut term in own.iter().copied() {
+            term.each(&mut |number| numbers.push(*number));
+        }
+        let mut total = T::ZERO;
+        for term in self.rows_of_all(numbers).chunks_exact(T::NUMBERS) {
+            let (mut part, mut rest) = (T::ZERO, term.iter());
+            part.each(&mut |number| *number = rest.next().copied().unwrap_or_default());
+            total.add(&part);
+        }
+        total
+    }
+
+    /// What all ranks have, in the order of ranks.
+    pub fn rows_of_all<T: Pod>(&self, own: Vec<T>) -> Vec<T> {
+        let Some(shared) = &self.shared else { return own };
+        let others = shared.ranks.size() as u64 - 1;
+        shared.count([0, others, others * size_of_val(own.as_slice()) as u64]);
+        let told = shared.told(|| shared.ranks.gather_to_all(cast_slice(&own)));
+        told.iter().flatten().flat_map(|part| cast_slice::<f64, T>(part)).copied().collect()
+    }
+
+    /// The largest of what all ranks have, number by number.
+    pub fn largest<const N: usize>(&self, own: [f64; N]) -> [f64; N] {
+        if self.is_alone() {
+            return own;
+        }
+        let all = self.rows_of_all(own.to_vec());
+        let larger =
+            |own: [f64; N], other: &[f64]| std::array::from_fn(|k| super::larger(own[k], other[k]));
+        all.chunks_exact(N).fold(own, larger)
+    }
+
+    /// The smallest of what ranks have, if any has something.
+    pub fn least(&self, own: Option<usize>) -> Option<usize> {
+        let none = f64::NEG_INFINITY;
+        let [most] = self.largest([own.map_or(none, |own| -(own as f64))]);
+        (most > none).then_some(-most as usize)
     }
 
     /// The sum of terms of all ranks, none of which is rounded.
@@ -179,6 +294,19 @@ impl Team {
                 R::map([&R::zero::<f64>()], &|_: [f64; 1]| numbers[next.replace(next.get() + 1)]);
         });
     }
+
+    /// Fetches `length` numbers of each copy: `show` appends those of an own particle, and `take` has those of a copy,
+    /// counted from 0.
+    pub fn refresh_numbers(
+        &self,
+        length: usize,
+        show: impl Fn(usize, &mut Vec<f64>),
+        take: impl FnMut(usize, &[f64]),
+    ) {
+        if let Some(shared) = &self.shared {
+            shared.exchange(length, show, take);
+        }
+    }
 }
 
 impl Shared {
@@ -190,18 +318,20 @@ impl Shared {
         show: impl Fn(usize, &mut Vec<f64>),
         mut take: impl FnMut(usize, &[f64]),
     ) {
-        let mut messages = self.messages.lock().unwrap_or_else(PoisonError::into_inner);
-        let [send, receive] = &mut *messages;
-        for (message, (_, lent)) in send.iter_mut().zip(&self.halo.lent) {
+        let mut plan = self.plan.lock().unwrap_or_else(PoisonError::into_inner);
+        let Plan { halo, messages: [send, receive] } = &mut *plan;
+        for (message, (_, lent)) in send.iter_mut().zip(&halo.lent) {
             message.numbers.clear();
             lent.iter().for_each(|&a| show(a as usize, &mut message.numbers));
         }
-        for (message, (_, copied)) in receive.iter_mut().zip(&self.halo.copied) {
+        for (message, (_, copied)) in receive.iter_mut().zip(&halo.copied) {
             message.numbers.resize(copied * length, 0.0);
         }
         let sent: usize = send.iter().map(|message| message.numbers.len()).sum();
         self.count([0, send.len() as u64, (sent * size_of::<f64>()) as u64]);
-        self.told(|| self.ranks.exchange(send, receive));
+        if self.told(|| self.ranks.exchange(send, receive)).is_none() {
+            return;
+        }
         let rows = receive.iter().flat_map(|message| message.numbers.chunks_exact(length));
         rows.enumerate().for_each(|(copy, numbers)| take(copy, numbers));
     }

@@ -95,8 +95,9 @@ pub(crate) fn look<const D: usize, const N: usize>(
     least: [f64; N],
     see: impl Fn(usize) -> Option<Seen<D, N>> + Sync,
 ) -> (Health, [Most; N]) {
+    let first = team.first();
     let see = |a: usize, sight: &mut Sight<N>| {
-        let (particle, seen) = (team.number(a), see(a));
+        let (particle, seen) = (first + a, see(a));
         let Some(seen) = seen else {
             sight.first_not_finite.get_or_insert(particle);
             return;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use piola_ranks::{Message, RankError, Ranks};
+use piola_ranks::{RankError, Ranks};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -69,32 +69,9 @@ impl Part {
     /// # Errors
     /// A rank is lost.
     pub fn team(&self, slots: &Slots) -> Result<Team, RankError> {
-        let (ranks, size) = (&self.ranks, self.ranks.size());
-        let of_rank = |rank: usize| {
-            let place = |rank: usize| slots.copies.partition_point(|(owner, _)| *owner < rank);
-            &slots.copies[place(rank)..place(rank + 1)]
-        };
-        let wanted: Vec<f64> = (0..size).map(|rank| of_rank(rank).len() as f64).collect();
-        let all = ranks.gather_to_all(&wanted)?;
-        let others = || (0..size).filter(|&rank| !of_rank(rank).is_empty());
-        let numbers = |rank: usize| of_rank(rank).iter().map(|(_, slot)| *slot as f64).collect();
-        let asked: Vec<Message> =
-            others().map(|rank| Message { rank, numbers: numbers(rank) }).collect();
-        let of_others = all.iter().map(|wanted| wanted[ranks.rank()] as usize);
-        let mut lent: Vec<Message> = (of_others.enumerate())
-            .filter(|(_, count)| *count > 0)
-            .map(|(rank, count)| Message { rank, numbers: vec![0.0; count] })
-            .collect();
-        ranks.exchange(&asked, &mut lent)?;
-        let own = |message: Message| {
-            let rows = message.numbers.iter().map(|&slot| slots.place(slot as u32));
-            (message.rank, rows.collect())
-        };
-        let halo = Halo {
-            lent: lent.into_iter().map(own).collect(),
-            copied: others().map(|rank| (rank, of_rank(rank).len())).collect(),
-        };
-        Ok(Team::new(ranks.clone(), [self.own().start, self.bounds[size]], halo))
+        let place = |slot: usize| slots.place(slot as u32);
+        let halo = Halo::agree(self.ranks.as_ref(), &slots.copies, place)?;
+        Ok(Team::new(self.ranks.clone(), self.bounds.clone(), halo))
     }
 }
 

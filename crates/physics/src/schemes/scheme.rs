@@ -72,6 +72,9 @@ pub trait Scheme: Send + Sync {
     /// of one in `limits`, which is cleared first.
     fn inspect(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health;
 
+    /// Finds the neighbours at a state that somebody else has come to, for [`Scheme::figures`].
+    fn find_neighbors(&mut self, _state: &[f64]) {}
+
     /// What the user should know of the state that [`Scheme::inspect`] has just looked at, though it is
     /// sound.
     fn warning(&self) -> Option<String> {

@@ -422,8 +422,7 @@ impl Executor {
             let is_new = !self.is_here;
             self.bring();
             if is_new {
-                // Figures are of neighbours at this state.
-                self.scheme.inspect(&self.run.state, &mut Vec::new());
+                self.ask();
             }
         }
         let Run { clock, tally, state, due, .. } = &mut self.run;

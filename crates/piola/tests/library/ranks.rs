@@ -8,7 +8,7 @@ use piola::case::{self, LoadOptions, Session};
 use piola::time::{Moment, ObserveError, Observer, Schedule};
 
 /// What a run leaves: its tables, and every column of its last state.
-fn run(
+pub fn run(
     text: &str,
     set: &[&str],
     ranks: usize,
@@ -44,7 +44,7 @@ fn run(
 }
 
 /// The same bits on any number of ranks, with one thread each and with several.
-fn same_on_any_number(text: &str, set: &[&str]) {
+pub fn same_on_any_number(text: &str, set: &[&str]) {
     let alone = run(text, set, 1, 1);
     for (ranks, threads) in [(2, 1), (2, 4), (3, 1), (4, 8), (7, 7)] {
         let shared = run(text, set, ranks, threads);
@@ -336,6 +336,14 @@ fn what_does_not_run_on_several_ranks_is_named() {
         "2 ranks are too many for 12 particles, of which each rank needs at least a chunk of 16: \
          leave out `--ranks`",
     );
+    let channel = include_str!("../../../../cases/open/channel/case.toml");
+    let open =
+        "open boundaries do not run on several ranks yet: leave them out, or leave out `--ranks`";
+    refused(channel, &[], open);
+    let refined = include_str!("../../../../cases/open/resolution/case.toml");
+    let finer =
+        "regions of finer spacing do not run on several ranks yet: leave out `scheme.refine`";
+    refused(refined, &[], finer);
     let gate = include_str!("../../../../cases/coupled/plate/case.toml");
     refused(
         gate,

@@ -122,7 +122,7 @@ fn side_by_side<T: Sync>(all: &[T], each: impl Fn(&T) + Sync) {
 
 /// Which cases run on several ranks.
 #[test]
-fn solids_in_explicit_steps_are_shared() {
+fn one_system_in_explicit_steps_is_shared() {
     let cases = cases();
     let shared = cases.par_iter().filter(|path| on_ranks(path, None, &[]).is_some());
     let names = shared.filter_map(|path| path.parent()?.file_name()?.to_str());

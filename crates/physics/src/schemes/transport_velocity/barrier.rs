@@ -19,7 +19,7 @@ pub(super) struct Hold<const D: usize> {
     acceleration: Vector<D>,
     /// What it takes from its deviation in m/s.
     deviation: Vector<D>,
-    /// The place of the wall particle that bears it.
+    /// The number of the wall particle that bears it.
     wall: u32,
 }
 
@@ -44,7 +44,8 @@ impl<const D: usize> Common<D> {
     pub(super) fn hold_off(&mut self) {
         let mut holds = std::mem::take(&mut self.holds);
         let list = self.support.list();
-        parallel::for_each_chunk(&mut holds, |first, rows| {
+        let owned = list.owned();
+        parallel::for_each_chunk(&mut holds[..owned], |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
@@ -55,7 +56,8 @@ impl<const D: usize> Common<D> {
             }
         });
         if let Shifting::Sun { .. } = self.settings.shifting {
-            parallel::for_each_pair_of_chunks(&mut self.sides, &mut holds, |_, sides, holds| {
+            let (sides, holds) = (&mut self.sides[..owned], &mut holds[..owned]);
+            parallel::for_each_pair_of_chunks(sides, holds, |_, sides, holds| {
                 for (side, hold) in sides.iter_mut().zip(holds) {
                     side.deviation -= hold.deviation;
                 }
@@ -66,11 +68,12 @@ impl<const D: usize> Common<D> {
 
     /// Adds what walls do to what touches them to the forces of both.
     pub(super) fn bear(&mut self) {
-        let holds = &self.holds;
+        let (holds, team) = (&self.holds, self.team());
         let holds_any = |place: usize| f64::from(u8::from(holds[place].wall != u32::MAX));
-        if parallel::maximum(holds.len(), 0.0, holds_any) == 0.0 {
+        if team.largest([parallel::maximum(self.count(), 0.0, holds_any)]) == [0.0] {
             return;
         }
+        self.show_holds();
         let mut forces = std::mem::take(&mut self.forces);
         let (list, sides, holds) = (self.support.list(), &self.sides, &self.holds);
         parallel::for_each_chunk(&mut forces, |first, rows| {
@@ -82,7 +85,7 @@ impl<const D: usize> Common<D> {
                     continue;
                 }
                 let add = |other: usize, _: &_| {
-                    if holds[other].wall == place as u32 {
+                    if holds[other].wall == list.numbers()[place] {
                         let ratio = sides[other].mass() / sides[place].mass();
                         row.walls -= holds[other].acceleration * ratio;
                     }
@@ -92,6 +95,20 @@ impl<const D: usize> Common<D> {
             }
         });
         self.forces = forces;
+    }
+
+    /// Shows what walls do to own particles to the ranks that have copies of them.
+    fn show_holds(&mut self) {
+        let (team, owned) = (self.support.list().team(), self.support.list().owned());
+        let (own, copies) = self.holds.split_at_mut(owned);
+        let show = |place: usize, numbers: &mut Vec<f64>| {
+            numbers.extend_from_slice(own[place].acceleration.as_slice());
+            numbers.push(f64::from(own[place].wall));
+        };
+        team.refresh_numbers(D + 1, show, |copy, numbers| {
+            copies[copy].acceleration.copy_from_slice(&numbers[..D]);
+            copies[copy].wall = numbers[D] as u32;
+        });
     }
 
     /// What walls do to the particle at `place`. In a corner several faces do.
@@ -141,7 +158,7 @@ impl<const D: usize> Common<D> {
         let push = -(load + hold.acceleration).dot(normal) - approach * rate;
         if push > 0.0 {
             hold.acceleration += normal * push;
-            hold.wall = wall as u32;
+            hold.wall = numbers[wall];
         }
     }
 

@@ -192,8 +192,9 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         };
         let densities = particles.body.iter().zip(&initial.pressure).map(density);
         let densities: Vec<f64> = densities.collect();
-        let (walls, matter_at_rest) = ((is_wall, walls), (at_rest, densities.as_slice()));
-        let mut common = Common::new(particles, support, settings, walls, matter_at_rest);
+        let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
+        let (walls, masses) = ((is_wall, walls), (at_rest, mass.collect()));
+        let mut common = Common::new(particles, support, settings, walls, masses);
         (common.motion, common.sliding) = (motion, sliding);
         common.body_forces = felt_by_walls(input.body_forces, &input.walls);
         let mut matter = M::bind(matter, &mut common)?;

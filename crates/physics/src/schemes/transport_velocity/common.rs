@@ -1,6 +1,8 @@
 //! What fluids and solids share: particles that move with a transport velocity, their neighbours, walls,
 //! surfaces and shifting. Nothing here knows of what matter they are.
 
+use std::ops::Range;
+
 use piola_formulas::pairs::Record;
 use piola_formulas::pairs::fluid::FluidSide;
 
@@ -16,6 +18,7 @@ use crate::boundaries::BodyForce;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::geometry::Particles;
 use crate::operators::MovingSupport;
+use crate::parallel::Team;
 
 /// The matter of a body where nothing presses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +54,7 @@ pub struct Common<const D: usize> {
     pub(super) continua: Continua<D>,
     /// The largest speed that the last pass over densities has seen, in m/s.
     pub(super) fastest: f64,
-    // Scratch, by place.
+    // Scratch, by place: that of which neighbours see something has room for copies, too.
     pub(super) sides: Vec<Side<D>>,
     pub(super) forces: Vec<Forces<D>>,
     /// What walls do to what touches them; empty without walls.
@@ -72,20 +75,19 @@ pub struct Common<const D: usize> {
 }
 
 impl<const D: usize> Common<D> {
-    /// Particles with their neighbours, each with a density in kg/m^3.
+    /// Particles with their neighbours, each with a mass in kg.
     pub(super) fn new(
         particles: Particles<D>,
         support: MovingSupport<D>,
         settings: Settings,
         (is_wall, walls): (Vec<bool>, Vec<WallParticle<D>>),
-        (at_rest, densities): (Vec<AtRest>, &[f64]),
+        (at_rest, mass): (Vec<AtRest>, Vec<f64>),
     ) -> Self {
-        let count = particles.len();
+        let count = support.list().owned();
         let touched = if walls.is_empty() { 0 } else { count };
         let looked_for = if settings.free_surface { count } else { 0 };
-        let mass = densities.iter().zip(&particles.volume).map(|(rho, volume)| rho * volume);
         Self {
-            mass: mass.collect(),
+            mass,
             sides: vec![FluidSide::zero(); count],
             forces: vec![Forces::default(); count],
             holds: vec![Hold::default(); touched],
@@ -114,14 +116,78 @@ impl<const D: usize> Common<D> {
         }
     }
 
+    /// Those of a rank which has `count` of them.
+    pub(super) fn part(&self, team: Team, count: usize) -> Self {
+        let support = self.support.part(team, count);
+        let walls = (self.is_wall.clone(), self.walls.clone());
+        let matter = (self.at_rest.clone(), self.mass.clone());
+        Self {
+            unshifted: self.unshifted.clone(),
+            motion: self.motion.clone(),
+            sliding: self.sliding.clone(),
+            body_forces: self.body_forces.clone(),
+            continua: self.continua.renewed(),
+            iteration: self.iteration.clone(),
+            guard: self.guard.clone(),
+            removed: self.removed.clone(),
+            ..Self::new(self.particles.clone(), support, self.settings, walls, matter)
+        }
+    }
+
     /// The columns of a state, and what stands behind them.
     pub(super) fn columns<'a>(&self, state: &'a [f64]) -> Columns<'a, D> {
-        Columns::of(state, self.particles.len())
+        Columns::of(state, self.count())
     }
 
     /// The same, to be changed.
     pub(super) fn parts<'a>(&self, state: &'a mut [f64]) -> (ColumnsMut<'a, D>, &'a mut [f64]) {
-        ColumnsMut::of(state, self.particles.len())
+        ColumnsMut::of(state, self.count())
+    }
+
+    /// Who computes together.
+    pub(super) fn team(&self) -> &Team {
+        self.support.list().team()
+    }
+
+    /// The particles of a state: all, or those of this rank.
+    pub(super) fn count(&self) -> usize {
+        self.support.list().owned()
+    }
+
+    /// The number of the first particle of a state, whose row is 0.
+    pub(super) fn first(&self) -> usize {
+        self.team().first()
+    }
+
+    /// The row of a particle (number) in a state, if it is one of this rank.
+    pub(super) fn row(&self, number: usize) -> Option<usize> {
+        self.team().own(number, self.count())
+    }
+
+    /// The walls (indices) of this rank.
+    pub(super) fn own_walls(&self) -> Range<usize> {
+        let place =
+            |number: usize| self.walls.partition_point(|wall| (wall.number as usize) < number);
+        place(self.first())..place(self.first() + self.count())
+    }
+
+    /// Makes room for what places have, of which a new list may have more.
+    pub(super) fn make_room(&mut self) {
+        let all = self.support.list().len();
+        self.sides.resize(all, FluidSide::zero());
+        if !self.holds.is_empty() {
+            self.holds.resize(all, Hold::default());
+        }
+        if self.settings.free_surface {
+            self.openings.resize(all, Opening::default());
+            self.marks.resize(all, false);
+        }
+    }
+
+    /// Shows what neighbours see of own particles to the ranks that have copies of them.
+    pub(super) fn show_sides(&mut self) {
+        let (team, owned) = (self.support.list().team(), self.support.list().owned());
+        team.refresh_records::<FluidSide<D>>(&mut self.sides, owned);
     }
 
     /// Matter of a particle (number) where nothing presses.

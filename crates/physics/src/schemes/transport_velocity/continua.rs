@@ -55,6 +55,11 @@ impl<const D: usize> Continua<D> {
         }
     }
 
+    /// The same for other places.
+    pub fn renewed(&self) -> Self {
+        Self { builds: None, ..self.clone() }
+    }
+
     /// Whether there are several bodies, or parts of one, that are apart from each other.
     pub fn are_several(&self) -> bool {
         !self.labels.is_empty()
@@ -74,6 +79,12 @@ impl<const D: usize> Continua<D> {
         }
         self.builds = Some(list.builds());
         let numbers = list.numbers();
+        if self.are_several() {
+            self.labels.resize(numbers.len(), WALL);
+        }
+        if !self.starts.is_empty() {
+            self.starts.resize(numbers.len(), Vector::zeros());
+        }
         parallel::for_each_chunk(&mut self.labels, |first, labels| {
             for (label, &number) in labels.iter_mut().zip(&numbers[first..]) {
                 *label = match is_wall[number as usize] {

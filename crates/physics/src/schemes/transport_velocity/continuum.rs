@@ -51,6 +51,17 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// Parts that do not fit together.
     fn bind(input: Self::Input, common: &mut Common<D>) -> Result<Self, TransportVelocityError>;
 
+    /// What of it cannot be shared among ranks yet, with what a case has to be like instead.
+    fn unshared(&self) -> Option<[&'static str; 2]> {
+        None
+    }
+
+    /// That of a rank with these particles.
+    fn part(&self, common: &Common<D>) -> Self;
+
+    /// How many numbers of its own a pass shows of a particle to ranks that have a copy.
+    fn shows(pass: Pass<Self::Own>) -> usize;
+
     /// Fills what a state of the start has besides the columns of all matter.
     fn begin(&self, _common: &Common<D>, _state: &mut [f64]) {}
 
@@ -169,8 +180,14 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     ) {
     }
 
+    /// Makes room for what neighbours see of places, of which a new list may have more.
+    fn make_room(&mut self, _common: &Common<D>) {}
+
     /// Takes the values of the wall particle at `place`.
     fn set_wall(&mut self, place: usize, values: &WallValues<D>);
+
+    /// Shows those of all walls of this rank to ranks that have copies of them.
+    fn show_walls(&mut self, common: &Common<D>);
 
     /// Square of the speed in m^2/s^2 of the particle at `place` that shifting takes for its own.
     fn speed_squared(&self, common: &Common<D>, place: usize) -> f64 {
@@ -185,8 +202,8 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         None
     }
 
-    /// That of a particle (number), if what it has besides the columns of all matter is finite.
-    fn wave_speed_of(&self, _common: &Common<D>, _number: usize, _state: &[f64]) -> Option<f64> {
+    /// That of a particle (row), if what it has besides the columns of all matter is finite.
+    fn wave_speed_of(&self, _common: &Common<D>, _row: usize, _state: &[f64]) -> Option<f64> {
         Some(0.0)
     }
 

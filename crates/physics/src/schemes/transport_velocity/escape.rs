@@ -1,6 +1,7 @@
 //! Particles that leave the others: through a wall, or out of the box around everything.
 
 use super::extent::Extent;
+use super::walls::WallParticle;
 use super::{ColumnsMut, Common};
 use crate::Vector;
 use crate::parallel;
@@ -76,28 +77,28 @@ impl<const D: usize> Common<D> {
 
     /// Takes particles out of the interaction, or back into it, as `state` has them.
     pub(super) fn follow_removals(&mut self, state: &[f64]) {
-        let (removed, density) = (&self.removed, self.columns(state).density);
-        let differs =
-            |number: usize| f64::from(Self::is_removed(density[number]) != removed[number]);
-        if parallel::maximum(removed.len(), 0.0, differs) == 0.0 {
+        let (begin, density) = (self.first(), self.columns(state).density);
+        let removed = &self.removed[begin..];
+        let differs = |row: usize| Self::is_removed(density[row]) != removed[row];
+        let own = parallel::maximum(density.len(), 0.0, |row| f64::from(differs(row)));
+        if self.team().largest([own]) == [0.0] {
             return;
         }
-        for (number, density) in density.iter().enumerate() {
-            let is_removed = Self::is_removed(*density);
-            if is_removed != self.removed[number] {
-                (self.removed[number], self.is_wall[number]) = (is_removed, is_removed);
-            }
+        let own = (0..density.len()).filter(|row| differs(*row)).map(|row| (begin + row) as u64);
+        for number in self.team().rows_of_all(own.collect()) {
+            let is_removed = &mut self.removed[number as usize];
+            *is_removed = !*is_removed;
+            self.is_wall[number as usize] = *is_removed;
         }
         self.support.exclude(&self.is_wall, &self.removed);
     }
 
-    /// The particles that have escaped in `state`, which has been loaded, by number.
+    /// The particles of this rank that have escaped in `state`, which has been loaded, by number.
     pub(super) fn escaped(&self, state: &[f64]) -> Vec<usize> {
         let Some(room) = self.room(state).filter(|_| self.lost.is_none()) else {
             return Vec::new();
         };
-        let count = self.particles.len();
-        let any = parallel::maximum(count, 0.0, |place| {
+        let any = parallel::maximum(self.count(), 0.0, |place| {
             f64::from(self.escape_at(place, &room).is_some())
         });
         if any == 0.0 {
@@ -105,7 +106,7 @@ impl<const D: usize> Common<D> {
         }
         let places = self.support.list().places().iter().enumerate();
         let escaped = places.filter(|(_, place)| self.escape_at(**place as usize, &room).is_some());
-        escaped.map(|(number, _)| number).collect()
+        escaped.map(|(row, _)| self.first() + row).collect()
     }
 
     /// What is known of a particle that has escaped in `state`, which has been loaded.
@@ -145,8 +146,13 @@ impl<const D: usize> Common<D> {
     /// The box around the cells of all particles of walls in `state`.
     pub(super) fn extent_of_walls(&self, state: &[f64]) -> Option<Extent<D>> {
         let at = self.columns(state);
-        let places = self.walls.iter().map(|wall| at.position[wall.number as usize]);
-        Extent::around(places).map(|all| all.widened(0.5 * self.particles.spacing[0]))
+        let row = |wall: &WallParticle<D>| wall.number as usize - self.first();
+        let places = self.walls[self.own_walls()].iter().map(|wall| at.position[row(wall)]);
+        let own = Extent::around(places)
+            .map_or([[f64::NEG_INFINITY; D]; 2], |own| [(-own.low).into(), own.high.into()]);
+        let [low, high] = own.map(|ends| Vector::from(self.team().largest(ends)));
+        let all = Extent { low: -low, high };
+        (!self.walls.is_empty()).then(|| all.widened(0.5 * self.particles.spacing[0]))
     }
 
     /// Where the particle at `place` has escaped to, if it has.
@@ -204,10 +210,12 @@ impl<const D: usize> Common<D> {
         if !self.guard.as_ref().is_some_and(|(guard, _)| guard.removes) {
             return Total::default();
         }
-        self.load(state);
+        self.find_neighbors(state);
         let escaped = self.escaped(state);
-        let matter = |number| [self.mass[number], self.compliance(number)];
-        take_out(&escaped, matter, &mut self.parts(state).0)
+        let begin = self.first();
+        let rows: Vec<usize> = escaped.iter().map(|number| number - begin).collect();
+        let matter = |row: usize| [self.mass[begin + row], self.compliance(begin + row)];
+        self.team().sum_in_order(&take_out(&rows, matter, &mut self.parts(state).0))
     }
 
     /// Number of particles that have been removed in `state`.
@@ -217,24 +225,24 @@ impl<const D: usize> Common<D> {
     }
 }
 
-/// Takes particles (numbers) out of their columns, and returns what leaves with them. `matter` has the mass in kg and
+/// Takes particles (rows) out of their columns, and returns what leaves with each. `matter` has the mass in kg and
 /// `1 / (rho0 c)^2` of each.
 pub(super) fn take_out<const D: usize>(
-    numbers: &[usize],
+    rows: &[usize],
     matter: impl Fn(usize) -> [f64; 2],
     own: &mut ColumnsMut<'_, D>,
-) -> Total {
-    let mut total = Total::default();
-    for &number in numbers {
-        let [mass, compliance] = matter(number);
-        let (velocity, pressure) = (own.velocity[number], own.pressure[number]);
+) -> Vec<Total> {
+    let mut take = |&row: &usize| {
+        let [mass, compliance] = matter(row);
+        let (velocity, pressure) = (own.velocity[row], own.pressure[row]);
         let energy = velocity.norm_squared() + compliance * pressure * pressure;
-        total.power -= 0.5 * mass * energy;
-        add_moments(&own.position[number], &(velocity * -mass), &mut total.force);
+        let mut total = Total::of(-0.5 * mass * energy);
+        add_moments(&own.position[row], &(velocity * -mass), &mut total.force);
         for column in [&mut *own.velocity, own.deviation, own.kick] {
-            column[number] = Vector::zeros();
+            column[row] = Vector::zeros();
         }
-        (own.pressure[number], own.density[number]) = (0.0, REMOVED);
-    }
-    total
+        (own.pressure[row], own.density[row]) = (0.0, REMOVED);
+        total
+    };
+    rows.iter().map(&mut take).collect()
 }

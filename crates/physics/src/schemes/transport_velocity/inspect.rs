@@ -1,7 +1,6 @@
 //! One look over a state: is it sound, and how large may the next step be.
 
 use super::{Continuum, TransportVelocity};
-use crate::parallel::Team;
 use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, StepLimit};
 
@@ -38,7 +37,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     pub(super) fn look(&mut self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         self.matter.follow(&mut self.common, state);
         if self.common.guard.is_some() {
-            self.common.load(state);
+            self.common.find_neighbors(state);
         }
         let mut health = self.bound_step(state, limits);
         let common = &self.common;
@@ -46,7 +45,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             && !guard.removes
             && health.first_not_finite.is_none()
         {
-            health.first_escaped = common.escaped(state).first().copied();
+            health.first_escaped = common.team().least(common.escaped(state).first().copied());
         }
         health.first_escaped =
             health.first_escaped.or(self.matter.starved(common, state).map(|(number, _)| number));
@@ -57,9 +56,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     fn bound_step(&self, state: &[f64], limits: &mut Vec<StepLimit>) -> Health {
         let common = &self.common;
         let (mut health, [signal, acceleration, damping]) =
-            look(&Team::default(), common.particles.len(), [0.0; 3], |number| {
-                self.look_at(number, state)
-            });
+            look(common.team(), common.count(), [0.0; 3], |row| self.look_at(row, state));
         let fastest = Most { value: health.largest_speed, particle: health.largest_speed_particle };
         let signal = match self.matter.wave_speed() {
             None => signal,
@@ -77,21 +74,21 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         health
     }
 
-    /// What a particle contributes: the speed of signals, waves and what carries them, in m/s, its
+    /// What a particle (row) contributes: the speed of signals, waves and what carries them, in m/s, its
     /// squared acceleration, and the rate of its damping in 1/s.
     #[inline]
-    fn look_at(&self, number: usize, state: &[f64]) -> Option<Seen<D, 3>> {
+    fn look_at(&self, row: usize, state: &[f64]) -> Option<Seen<D, 3>> {
         let common = &self.common;
         let at = common.columns(state);
         let vectors = [&at.position, &at.velocity, &at.deviation, &at.kick];
-        let mut vectors = vectors.iter().flat_map(|column| column[number].iter());
-        let scalars = [at.density[number], at.pressure[number]];
+        let mut vectors = vectors.iter().flat_map(|column| column[row].iter());
+        let scalars = [at.density[row], at.pressure[row]];
         if !vectors.all(|value| value.is_finite()) || !scalars.iter().all(|value| value.is_finite())
         {
             return None;
         }
         let (velocity, wave_speed) =
-            (at.velocity[number], self.matter.wave_speed_of(common, number, state)?);
+            (at.velocity[row], self.matter.wave_speed_of(common, row, state)?);
         let mut seen = Seen {
             velocity,
             wave_speed: 0.0,
@@ -99,12 +96,13 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             mismatch: 0.0,
             figures: [0.0; 3],
         };
+        let number = common.first() + row;
         if !common.is_wall[number] {
             // The inverse has the sign of the density, and is the volume ratio.
-            seen.ratio = common.at_rest(number).density / at.density[number];
+            seen.ratio = common.at_rest(number).density / at.density[row];
             seen.wave_speed = wave_speed;
-            let damping = self.matter.damping_at(&at.position[number]);
-            seen.figures = [wave_speed + velocity.norm(), at.kick[number].norm_squared(), damping];
+            let damping = self.matter.damping_at(&at.position[row]);
+            seen.figures = [wave_speed + velocity.norm(), at.kick[row].norm_squared(), damping];
         }
         Some(seen)
     }

@@ -47,6 +47,7 @@ mod levels;
 mod sample;
 mod scheme;
 mod settings;
+mod share;
 mod shifting;
 mod sides;
 mod solids;

@@ -1,15 +1,18 @@
 //! The transport-velocity formulation as integrators, clock and output see it.
 
+use std::ops::Range;
+
 use piola_device::{Device, Language};
 
 use super::fields::Made;
 use super::{Continuum, TransportVelocity};
 use crate::fields::FieldDescription;
+use crate::parallel::Team;
 use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Behind, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle,
-    Passage, Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
+    Behind, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Part, Particle,
+    Passage, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
@@ -22,7 +25,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
     }
 
     fn particle_count(&self) -> usize {
-        self.common.particles.len()
+        self.common.count()
     }
 
     #[inline(never)]
@@ -44,8 +47,9 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         M::DESCRIPTION.ledger.add(D, &totals, self.tail(state));
         let (own, _) = common.parts(state);
         for entry in common.motion.iter() {
-            let number = common.walls[entry.particle].number as usize;
-            own.velocity[number][entry.component] = entry.at(time);
+            if let Some(row) = common.row(common.walls[entry.particle].number as usize) {
+                own.velocity[row][entry.component] = entry.at(time);
+            }
         }
     }
 
@@ -208,6 +212,29 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
         method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         M::device_stages(self, language, method.unless_kicked()?)
+    }
+
+    #[inline(never)]
+    fn share(&self, part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
+        Ok(Box::new(self.shared(part)?))
+    }
+
+    fn cost(&self, particles: Range<usize>) -> f64 {
+        let list = self.common.support.list();
+        let places = &list.places()[particles];
+        places.iter().map(|&place| (1 + list.row(place as usize).len()) as f64).sum()
+    }
+
+    fn shares(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        self.planned(bounds)
+    }
+
+    fn team(&self) -> Option<&Team> {
+        Some(self.common.team())
+    }
+
+    fn find_neighbors(&mut self, state: &[f64]) {
+        self.common.find_neighbors(state);
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitScheme> {

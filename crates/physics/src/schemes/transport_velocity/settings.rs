@@ -180,6 +180,11 @@ impl Settings {
         self.pressure == PressureRule::StateEquation
     }
 
+    /// Whether densities or pressures are functions of places or of each other.
+    pub(super) fn sets_state(&self) -> bool {
+        self.density == DensityRule::Summation || self.is_algebraic()
+    }
+
     /// Diffusivity of the pressure in m^2/s, CTVF (24), for a smoothing length in m and a wave speed in
     /// m/s; zero where it does not diffuse.
     pub(super) fn diffusivity(&self, smoothing_length: f64, wave_speed: f64) -> f64 {

@@ -8,12 +8,12 @@ use crate::{Vector, parallel};
 /// A particle as its neighbours see it.
 pub(super) type Side<const D: usize> = fluid::Side<f64, D>;
 
-/// Takes what a state says of a particle (number) with a mass in kg.
+/// Takes what a state says of a particle (row) with a mass in kg.
 #[inline]
-fn take<const D: usize>(side: &mut Side<D>, mass: f64, at: &Columns<'_, D>, number: usize) {
-    side.velocity = at.velocity[number];
-    side.deviation = at.deviation[number];
-    side.set(mass, at.density[number], at.pressure[number]);
+fn take<const D: usize>(side: &mut Side<D>, mass: f64, at: &Columns<'_, D>, row: usize) {
+    side.velocity = at.velocity[row];
+    side.deviation = at.deviation[row];
+    side.set(mass, at.density[row], at.pressure[row]);
 }
 
 impl<const D: usize> Common<D> {
@@ -22,31 +22,42 @@ impl<const D: usize> Common<D> {
         if self.support.list().builds() == builds {
             return;
         }
+        self.make_room();
         let (list, mass, at) = (self.support.list(), &self.mass, self.columns(state));
-        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+        let begin = self.first();
+        parallel::for_each_chunk(&mut self.sides[..list.owned()], |first, sides| {
             for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
-                take(side, mass[number as usize], &at, number as usize);
+                take(side, mass[number as usize], &at, number as usize - begin);
             }
         });
+        self.show_sides();
         self.find_continua();
     }
 
     /// Finds the neighbours at the positions of `state` and fills the sides of all particles.
     /// Those of walls are completed by the pass over walls.
     pub(super) fn load(&mut self, state: &[f64]) {
+        self.find_neighbors(state);
+        self.show_sides();
+    }
+
+    /// The same for those who need no sides of copies.
+    pub(super) fn find_neighbors(&mut self, state: &[f64]) {
         if !self.removed.is_empty() {
             self.follow_removals(state);
         }
-        let at = self.columns(state);
-        let (mass, sides) = (&self.mass, &mut self.sides);
+        let (at, begin, owned) = (self.columns(state), self.first(), self.count());
+        let (mass, sides) = (&self.mass, &mut self.sides[..owned]);
         let updated = self.support.update_with(sides, |number, side| {
-            take(side, mass[number], &at, number);
-            at.position[number]
+            take(side, mass[number], &at, number - begin);
+            at.position[number - begin]
         });
+        self.make_room();
         self.find_continua();
         self.lost = updated.is_err().then(|| {
             let lost = |position: &Vector<D>| !position.iter().all(|x| x.is_finite());
-            at.position.iter().position(lost).unwrap_or(0)
+            let own = at.position.iter().position(lost).map(|row| begin + row);
+            self.team().least(own).unwrap_or(0)
         });
     }
 

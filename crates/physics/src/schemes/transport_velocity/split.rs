@@ -37,18 +37,18 @@ impl<const D: usize, M: Continuum<D>> SplitScheme for TransportVelocity<D, M> {
 impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     /// The ledger of a state and what stands behind it.
     pub(super) fn tail<'a>(&self, state: &'a mut [f64]) -> &'a mut [f64] {
-        &mut state[self.common.particles.len() * width(M::DESCRIPTION.fields, D)..]
+        &mut state[self.common.count() * width(M::DESCRIPTION.fields, D)..]
     }
 
     /// IPST, of a state that has been loaded.
     pub(super) fn iterate(&mut self, step: f64, state: &mut [f64]) {
         let (common, matter) = (&self.common, &self.matter);
         let list = common.support.list();
-        let square =
-            parallel::maximum(common.sides.len(), 0.0, |place| match list.is_passive(place) {
-                true => 0.0,
-                false => matter.speed_squared(common, place),
-            });
+        let own = parallel::maximum(list.owned(), 0.0, |place| match list.is_passive(place) {
+            true => 0.0,
+            false => matter.speed_squared(common, place),
+        });
+        let [square] = common.team().largest([own]);
         let passes = self.common.iterate_positions(square.sqrt(), step, state);
         M::DESCRIPTION.ledger.behind_mut(D, self.tail(state))[0] = passes;
     }
@@ -58,11 +58,11 @@ impl<const D: usize> Common<D> {
     /// Changes velocities by stored accelerations.
     fn kick(&self, duration: f64, state: &mut [f64]) {
         let (own, _) = self.parts(state);
-        let (is_wall, kick) = (&self.is_wall, own.kick);
+        let (is_wall, kick) = (&self.is_wall[self.first()..], own.kick);
         parallel::for_each_chunk(own.velocity, |first, velocity| {
-            for (number, velocity) in (first..).zip(velocity) {
-                if !is_wall[number] {
-                    *velocity += kick[number] * duration;
+            for (row, velocity) in (first..).zip(velocity) {
+                if !is_wall[row] {
+                    *velocity += kick[row] * duration;
                 }
             }
         });
@@ -71,10 +71,10 @@ impl<const D: usize> Common<D> {
     /// Writes what the passes have found to the state, with the powers of all accelerations.
     pub(super) fn store<M: Continuum<D>>(&self, state: &mut [f64], totals: &mut Totals) {
         let (own, _) = self.parts(state);
-        let (places, lost) = (self.support.list().places(), self.lost);
-        let sums: Kick = parallel::sums_over_parts(places.len(), own, |first, mut own, sums| {
+        let (places, begin) = (self.support.list().places(), self.first());
+        let sums: Kick = self.team().sums_over_parts(places.len(), own, |first, mut own, sums| {
             for k in 0..own.position.len() {
-                let (number, place) = (first + k, places[first + k] as usize);
+                let (number, place) = (begin + first + k, places[first + k] as usize);
                 self.store_one([number, place, k], &mut own);
                 if !self.is_wall[number] {
                     let at = [&own.position[k], &own.velocity[k]];
@@ -85,8 +85,8 @@ impl<const D: usize> Common<D> {
         for (entry, sum) in M::ACCELERATING.iter().zip(&sums) {
             entry.iter().for_each(|entry| totals.drive(*entry, sum));
         }
-        if let Some(number) = lost {
-            self.parts(state).0.kick[number][0] = f64::NAN;
+        if let Some(row) = self.lost.and_then(|number| self.row(number)) {
+            self.parts(state).0.kick[row][0] = f64::NAN;
         }
     }
 
@@ -123,8 +123,9 @@ impl<const D: usize> Common<D> {
     pub(super) fn move_walls(&self, step: f64, middle: f64, state: &mut [f64]) {
         let (own, _) = self.parts(state);
         for entry in self.motion.iter() {
-            let number = self.walls[entry.particle].number as usize;
-            own.position[number][entry.component] += step * entry.at(middle);
+            if let Some(row) = self.row(self.walls[entry.particle].number as usize) {
+                own.position[row][entry.component] += step * entry.at(middle);
+            }
         }
     }
 

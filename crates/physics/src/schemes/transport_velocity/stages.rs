@@ -203,6 +203,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     pub(super) fn load(&mut self, state: &[f64]) {
         self.matter.follow(&mut self.common, state);
         self.common.load(state);
+        self.matter.make_room(&self.common);
         self.matter.load(&self.common, state);
     }
 

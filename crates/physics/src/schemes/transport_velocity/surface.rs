@@ -86,7 +86,8 @@ impl<const D: usize> Common<D> {
     pub(super) fn sharpen(&mut self) {
         let h = self.support.smoothing_length();
         let (forces, list) = (&self.forces, self.support.list());
-        let (openings, marks) = (&mut self.openings, &mut self.marks);
+        let owned = list.owned();
+        let (openings, marks) = (&mut self.openings[..owned], &mut self.marks[..owned]);
         parallel::for_each_pair_of_chunks(openings, marks, |first, rows, marks| {
             for (offset, (row, mark)) in rows.iter_mut().zip(marks).enumerate() {
                 let place = first + offset;
@@ -97,6 +98,22 @@ impl<const D: usize> Common<D> {
                     row.sharp = sum.normalize();
                 }
             }
+        });
+        self.show_openings();
+    }
+
+    /// Shows the sharp normals and the marks to the ranks that have copies.
+    fn show_openings(&mut self) {
+        let (team, owned) = (self.support.list().team(), self.support.list().owned());
+        let (own, copies) = self.openings.split_at_mut(owned);
+        let (own_marks, marks) = self.marks.split_at_mut(owned);
+        let show = |place: usize, numbers: &mut Vec<f64>| {
+            numbers.extend_from_slice(own[place].sharp.as_slice());
+            numbers.push(f64::from(u8::from(own_marks[place])));
+        };
+        team.refresh_numbers(D + 1, show, |copy, numbers| {
+            copies[copy].sharp.copy_from_slice(&numbers[..D]);
+            marks[copy] = numbers[D] > 0.0;
         });
     }
 
@@ -119,7 +136,8 @@ impl<const D: usize> Common<D> {
                 }
             }
         });
-        let (openings, marks) = (&mut self.openings, &mut self.marks);
+        let owned = list.owned();
+        let (openings, marks) = (&mut self.openings[..owned], &mut self.marks[..owned]);
         parallel::for_each_pair_of_chunks(marks, openings, |first, marks, rows| {
             for (offset, (mark, row)) in marks.iter_mut().zip(rows).enumerate() {
                 (row.normal, row.is_surface) = found[first + offset];
@@ -127,13 +145,14 @@ impl<const D: usize> Common<D> {
             }
         });
         self.found = found;
+        self.show_openings();
     }
 
     /// Fills how far surfaces are.
     pub(super) fn reach_surfaces(&mut self) {
         let mut openings = std::mem::take(&mut self.openings);
         let (list, surfaces) = (self.support.list(), self.marks.as_slice());
-        parallel::for_each_chunk(&mut openings, |first, rows| {
+        parallel::for_each_chunk(&mut openings[..list.owned()], |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;

@@ -72,15 +72,17 @@ impl<const D: usize> Common<D> {
         }
         let mut values = std::mem::take(&mut self.wall_values);
         self.move_surfaces(time, &mut values);
-        parallel::for_each_chunk(&mut values, |first, rows| {
+        let own = self.own_walls();
+        let walls = &self.walls[own.clone()];
+        parallel::for_each_chunk(&mut values[own.clone()], |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
-                self.extrapolate(matter, &self.walls[first + offset], time, row, &mut block);
+                self.extrapolate(matter, &walls[first + offset], time, row, &mut block);
             }
         });
-        for (wall, values) in self.walls.iter().zip(&values) {
+        for (wall, values) in walls.iter().zip(&values[own]) {
             let number = wall.number as usize;
-            let place = self.support.list().places()[number] as usize;
+            let place = self.place_of_wall(wall);
             let AtRest { density, wave_speed } = *self.at_rest(number);
             let side = &mut self.sides[place];
             side.velocity = values.velocity;
@@ -90,6 +92,8 @@ impl<const D: usize> Common<D> {
             matter.set_wall(place, values);
         }
         self.wall_values = values;
+        self.show_sides();
+        matter.show_walls(self);
     }
 
     /// Sets velocity and acceleration of the walls themselves.
@@ -119,7 +123,7 @@ impl<const D: usize> Common<D> {
         values: &mut WallValues<D>,
         block: &mut NeighborBlock<D>,
     ) {
-        let place = self.support.list().places()[wall.number as usize] as usize;
+        let place = self.place_of_wall(wall);
         let around = matter.around(self, place, values, block);
         let surface = values.motion + values.sliding;
         if !(around.weight > 0.0) {
@@ -140,6 +144,11 @@ impl<const D: usize> Common<D> {
             Slip::Free => ghost.velocity,
         };
         matter.reflect(wall.slip, normal, &ghost, values);
+    }
+
+    /// The place of a wall particle of this rank.
+    fn place_of_wall(&self, wall: &WallParticle<D>) -> usize {
+        self.support.list().places()[wall.number as usize - self.first()] as usize
     }
 
     /// Which wall particle has a number.

@@ -90,10 +90,12 @@ impl Executor {
         Ok(self.scheme.inspect(&self.run.state, &mut self.limits))
     }
 
-    /// Lets the formulation here look at the state, which a device or ranks have looked at: for what it has to say of that.
+    /// Lets the formulation here look at the state, which a device or ranks have looked at: for what it has to say of that,
+    /// and as figures are of neighbours at this state.
     pub(super) fn ask(&mut self) {
         if self.device.is_some() {
             self.bring();
+            self.scheme.find_neighbors(&self.run.state);
             self.scheme.inspect(&self.run.state, &mut Vec::new());
         }
     }

@@ -10,6 +10,7 @@ use super::super::stages::Pass;
 use super::super::{Columns, ColumnsMut, Common};
 use super::passes::if_fluid;
 use super::{OnDevice, Plan};
+use crate::parallel::Team;
 use crate::schemes::device::one;
 use crate::schemes::ledger::Total;
 
@@ -95,7 +96,7 @@ impl<const D: usize> OnDevice<D> {
         }
         let escaped: Vec<usize> = (0..self.count).filter(|&number| told[number] > 0.0).collect();
         let matter = |number: usize| [removal.mass[number], self.plan.compliance];
-        let total = take_out(&escaped, matter, &mut own);
+        let total = Team::default().sum_in_order(&take_out(&escaped, matter, &mut own));
         self.take_over(&state)?;
         Ok(total)
     }

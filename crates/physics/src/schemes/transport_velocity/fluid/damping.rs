@@ -22,6 +22,11 @@ impl<const D: usize> Damping<D> {
         Self { rate: Some(rate), accelerations: vec![Vector::zeros(); count] }
     }
 
+    /// The same for another number of particles.
+    pub fn part(&self, count: usize) -> Self {
+        self.rate.clone().map_or_else(Self::default, |rate| Self::new(rate, count))
+    }
+
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.rate.is_none()
@@ -58,13 +63,13 @@ impl<const D: usize> WeaklyCompressible<D> {
             return Total::default();
         }
         let at = common.columns(state);
-        let places = common.support.list().places();
-        parallel::sums(places.len(), |number, sum: &mut Total| {
-            let place = places[number] as usize;
-            let (row, mass) = (self.damping.accelerations[place], common.mass[number]);
-            if row != Vector::<D>::zeros() && !common.is_wall[number] {
-                sum.push(&at.position[number], &at.velocity[number], &(row * mass));
-                sum.growth += mass * row.dot(&common.forces[place].total());
+        let (places, first) = (common.support.list().places(), common.first());
+        common.team().sums(places.len(), |row, sum: &mut Total| {
+            let (number, place) = (first + row, places[row] as usize);
+            let (damping, mass) = (self.damping.accelerations[place], common.mass[number]);
+            if damping != Vector::<D>::zeros() && !common.is_wall[number] {
+                sum.push(&at.position[row], &at.velocity[row], &(damping * mass));
+                sum.growth += mass * damping.dot(&common.forces[place].total());
             }
         })
     }

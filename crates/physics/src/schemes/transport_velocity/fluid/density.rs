@@ -34,7 +34,8 @@ impl<const D: usize> WeaklyCompressible<D> {
             self.sum_densities(common);
         }
         let (densities, list, fluid) = (&self.densities, common.support.list(), self.fluid);
-        let nothing = &mut vec![(); common.sides.len()];
+        let owned = list.owned();
+        let nothing = &mut vec![(); owned];
         let update = |first: usize, sides: &mut [Side<D>], _: &mut [()]| {
             let mut fastest = 0.0;
             for (offset, side) in sides.iter_mut().enumerate() {
@@ -54,6 +55,12 @@ impl<const D: usize> WeaklyCompressible<D> {
             }
             fastest
         };
-        parallel::maximum_of_chunks(&mut common.sides, nothing, 0.0, update).sqrt()
+        let own = &mut common.sides[..owned];
+        let own = parallel::maximum_of_chunks(own, nothing, 0.0, update);
+        if common.settings.sets_state() {
+            common.show_sides();
+        }
+        let [square] = common.team().largest([own]);
+        square.sqrt()
     }
 }

@@ -1,7 +1,6 @@
 //! A drift of a fluid: density, pressure and places.
 
 use super::{Common, DensityRule, WeaklyCompressible};
-use crate::parallel;
 use crate::schemes::transport_velocity::ledger::Drift;
 
 impl<const D: usize> WeaklyCompressible<D> {
@@ -11,15 +10,15 @@ impl<const D: usize> WeaklyCompressible<D> {
         let diffuses = !common.settings.is_algebraic();
         let compliance = self.compliance();
         let (own, _) = common.parts(state);
-        let places = common.support.list().places();
-        parallel::sums_over_parts(places.len(), own, |first, own, sums: &mut Drift| {
+        let (places, begin) = (common.support.list().places(), common.first());
+        common.team().sums_over_parts(places.len(), own, |first, own, sums: &mut Drift| {
             let moving = own.position.iter_mut().zip(own.velocity.iter().zip(&*own.deviation));
             for (k, (position, (velocity, deviation))) in moving.enumerate() {
-                let number = first + k;
+                let number = begin + first + k;
                 if common.is_wall[number] {
                     continue;
                 }
-                let place = places[number] as usize;
+                let place = places[first + k] as usize;
                 if diffuses {
                     let (rates, mass) = (self.pressure_rates(common, place), common.mass[number]);
                     let rate = rates.iter().sum::<f64>();
@@ -41,11 +40,11 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// Energy of compression in J: `sum m p^2 / (2 rho0^2 c^2)`.
     pub(super) fn compression_energy(&self, common: &Common<D>, state: &[f64]) -> f64 {
         let (stiffness, at) = (self.compliance(), common.columns(state));
-        parallel::sum(common.particles.len(), |number| match common.is_wall[number] {
-            true => 0.0,
-            false => {
-                let pressure = at.pressure[number];
-                0.5 * common.mass[number] * stiffness * pressure * pressure
+        let first = common.first();
+        common.team().sums(common.count(), |row, sum: &mut f64| {
+            let (number, pressure) = (first + row, at.pressure[row]);
+            if !common.is_wall[number] {
+                *sum += 0.5 * common.mass[number] * stiffness * pressure * pressure;
             }
         })
     }

@@ -143,6 +143,20 @@ pub enum Ends {
 }
 
 impl<const D: usize> WeaklyCompressible<D> {
+    /// A fluid without open boundaries and damping.
+    fn new(fluid: Fluid, common: &Common<D>) -> Self {
+        let count = common.count();
+        let touched = if common.walls.is_empty() { 0 } else { count };
+        Self {
+            fluid,
+            densities: vec![0.0; count],
+            rates: vec![Rates::default(); count],
+            shear: vec![Vector::zeros(); touched],
+            open: Open::none(),
+            damping: Damping::default(),
+        }
+    }
+
     /// What it is made of.
     pub(super) fn fluid(&self) -> &Fluid {
         &self.fluid
@@ -178,16 +192,19 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     }
 
     fn bind(fluid: Fluid, common: &mut Common<D>) -> Result<Self, TransportVelocityError> {
-        let count = common.particles.len();
-        let touched = if common.walls.is_empty() { 0 } else { count };
-        Ok(Self {
-            fluid,
-            densities: vec![0.0; count],
-            rates: vec![Rates::default(); count],
-            shear: vec![Vector::zeros(); touched],
-            open: Open::none(),
-            damping: Damping::default(),
-        })
+        Ok(Self::new(fluid, common))
+    }
+
+    fn unshared(&self) -> Option<[&'static str; 2]> {
+        (!self.open.is_empty()).then_some(["open boundaries do not run", "leave them out"])
+    }
+
+    fn part(&self, common: &Common<D>) -> Self {
+        Self { damping: self.damping.part(common.count()), ..Self::new(self.fluid, common) }
+    }
+
+    fn shows(pass: Pass<Ends>) -> usize {
+        if pass == Pass::Walls { D } else { 0 }
     }
 
     fn begin(&self, common: &Common<D>, state: &mut [f64]) {
@@ -199,7 +216,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     }
 
     fn damp_by(&mut self, rate: Arc<dyn SpaceTime>, common: &Common<D>) {
-        self.damping = Damping::new(rate, common.particles.len());
+        self.damping = Damping::new(rate, common.count());
     }
 
     fn damping_at(&self, place: &Vector<D>) -> f64 {
@@ -227,7 +244,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         if Common::<D>::is_removed(at.density[number]) {
             return None;
         }
-        let stored = Stored::<D>::of(at.tail, common.particles.len());
+        let stored = Stored::<D>::of(at.tail, common.count());
         if self.open.hides(stored.nesting[number]) {
             return None;
         }
@@ -236,7 +253,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
 
     fn birth_of(&self, common: &Common<D>, number: usize, state: &[f64]) -> u32 {
         let tail = common.columns(state).tail;
-        Stored::<D>::of(tail, common.particles.len()).birth[number] as u32
+        Stored::<D>::of(tail, common.count()).birth[number] as u32
     }
 
     fn is_open(&self) -> bool {
@@ -338,8 +355,18 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         totals.book(PRESSURE, &Total::of(gained));
     }
 
+    fn make_room(&mut self, common: &Common<D>) {
+        if !self.shear.is_empty() {
+            self.shear.resize(common.support.list().len(), Vector::zeros());
+        }
+    }
+
     fn set_wall(&mut self, place: usize, values: &WallValues<D>) {
         self.shear[place] = values.shear;
+    }
+
+    fn show_walls(&mut self, common: &Common<D>) {
+        common.team().refresh(&mut self.shear, common.count(), 1);
     }
 
     fn rates_at(&self, place: usize) -> &Rates {

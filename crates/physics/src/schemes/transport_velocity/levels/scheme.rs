@@ -7,8 +7,8 @@ use crate::fields::FieldDescription;
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
-    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Particle, Passage,
-    Phase, Scheme, SchemeDescription, SplitScheme, StepLimit,
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Part, Particle, Passage,
+    Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 /// Why it is on no device.
@@ -16,6 +16,12 @@ fn refusal() -> DeviceRefusal {
     let (what, instead) = ("a fluid with regions of finer spacing", "leave out `scheme.refine`");
     DeviceRefusal::Stage { what: what.into(), instead }
 }
+
+/// Why several ranks have no part of it.
+const UNSHARED: RankRefusal = RankRefusal::Feature {
+    what: "regions of finer spacing do not run",
+    instead: "leave out `scheme.refine`",
+};
 
 impl<const D: usize> Scheme for Levels<D> {
     fn description(&self) -> &'static SchemeDescription {
@@ -41,6 +47,14 @@ impl<const D: usize> Scheme for Levels<D> {
 
     fn ledger_start(&self) -> usize {
         self.parts.end()
+    }
+
+    fn share(&self, _part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
+        Err(UNSHARED)
+    }
+
+    fn shares(&self, _bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        Err(UNSHARED)
     }
 
     #[inline(never)]

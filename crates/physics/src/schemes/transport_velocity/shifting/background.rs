@@ -23,25 +23,26 @@ impl<const D: usize> Common<D> {
     pub(in super::super) fn push_apart(&mut self, step: f64, state: &mut [f64]) {
         let Shifting::Background { most } = self.settings.shifting else { return };
         let (own, _) = self.parts(state);
-        let scheme = &*self;
+        let (scheme, begin) = (&*self, self.first());
         parallel::for_each_chunk(own.deviation, |first, deviation| {
-            for (number, deviation) in (first..).zip(deviation) {
-                *deviation = scheme.background_push(number, most) * (0.5 * step);
+            for (row, deviation) in (first..).zip(deviation) {
+                *deviation = scheme.background_push(row, most) * (0.5 * step);
             }
         });
         let (list, deviation) = (self.support.list(), &*own.deviation);
-        parallel::for_each_chunk(&mut self.sides, |first, sides| {
+        parallel::for_each_chunk(&mut self.sides[..list.owned()], |first, sides| {
             for (side, &number) in sides.iter_mut().zip(&list.numbers()[first..]) {
-                side.deviation = deviation[number as usize];
+                side.deviation = deviation[number as usize - begin];
             }
         });
+        self.show_sides();
     }
 
-    /// The acceleration by the background pressure of a particle (number), in m/s^2, which is at most
+    /// The acceleration by the background pressure of a particle (row), in m/s^2, which is at most
     /// `most` times `rho_0 c^2`.
-    fn background_push(&self, number: usize, most: f64) -> Vector<D> {
+    fn background_push(&self, row: usize, most: f64) -> Vector<D> {
         let (support, list) = (&self.support, self.support.list());
-        let place = list.places()[number] as usize;
+        let (number, place) = (self.first() + row, list.places()[row] as usize);
         let me = &self.sides[place];
         if list.is_passive(place) || me.pressure == 0.0 || self.is_unshifted(number) {
             return Vector::zeros();

@@ -12,9 +12,9 @@ pub(in super::super) struct Iteration<const D: usize> {
     /// `chi` of CTVF (40) in the configuration at the start: its mean, or at free surfaces its
     /// largest value.
     pub even: f64,
-    /// Positions in m by number.
+    /// Positions in m by row.
     positions: Vec<Vector<D>>,
-    /// Free surfaces at the start of the step, by number.
+    /// Free surfaces at the start of the step, by row.
     openings: Vec<Opening<D>>,
     /// Displacement in m and `chi` by place.
     found: Vec<(Vector<D>, f64)>,
@@ -54,11 +54,11 @@ impl<const D: usize> Common<D> {
             let places = self.support.list().places().iter();
             iteration.openings.extend(places.map(|&place| self.openings[place as usize]));
         }
-        let mut passes = 0.0;
+        let (mut passes, begin) = (0.0, self.first());
         for _ in 0..most_passes {
             let (positions, builds) = (&iteration.positions, self.support.list().builds());
             // Places that are lost are noticed when the state is loaded.
-            if self.support.update(|number| positions[number]).is_err() {
+            if self.support.update(|number| positions[number - begin]).is_err() {
                 break;
             }
             self.follow_places(builds, state);
@@ -71,7 +71,7 @@ impl<const D: usize> Common<D> {
             let (found, places) = (&iteration.found, self.support.list().places());
             parallel::for_each_chunk(&mut iteration.positions, |first, rows| {
                 for (offset, (row, &place)) in rows.iter_mut().zip(&places[first..]).enumerate() {
-                    if !self.is_unshifted(first + offset) {
+                    if !self.is_unshifted(begin + first + offset) {
                         *row += found[place as usize].0;
                     }
                 }
@@ -81,8 +81,8 @@ impl<const D: usize> Common<D> {
         let (own, _) = self.parts(state);
         let places = own.position;
         parallel::for_each_chunk(own.deviation, |first, deviation| {
-            for (number, deviation) in (first..).zip(deviation) {
-                *deviation = (positions[number] - places[number]) / step;
+            for (row, deviation) in (first..).zip(deviation) {
+                *deviation = (positions[row] - places[row]) / step;
             }
         });
         self.iteration = iteration;
@@ -106,15 +106,15 @@ impl<const D: usize> Common<D> {
     }
 
     /// Fills the displacements and `chi` of the fluid, and returns the largest `chi`.
-    /// `openings` by number tell where surfaces are, if there are any.
+    /// `openings` by row tell where surfaces are, if there are any.
     fn displacements(
         &self,
         reach: f64,
         openings: &[Opening<D>],
         found: &mut Vec<(Vector<D>, f64)>,
     ) -> f64 {
-        found.resize(self.sides.len(), (Vector::zeros(), 0.0));
-        let (support, list) = (&self.support, self.support.list());
+        let (support, list, begin) = (&self.support, self.support.list(), self.first());
+        found.resize(list.owned(), (Vector::zeros(), 0.0));
         let h = support.smoothing_length();
         let scale = h.powi(D as i32);
         let is_along = self.settings.at_surface == AtSurface::Along;
@@ -127,7 +127,7 @@ impl<const D: usize> Common<D> {
                 if list.is_passive(place) {
                     continue;
                 }
-                let opening = openings.get(list.numbers()[place] as usize);
+                let opening = openings.get(list.numbers()[place] as usize - begin);
                 let within = opening.map(|opening| opening.reach).filter(|&reach| reach < h);
                 let smoothing_length = within.filter(|_| !is_along);
                 let law = Displacement::<D> { kernel: support.kernel(), smoothing_length };
@@ -144,6 +144,8 @@ impl<const D: usize> Common<D> {
                 *row = (direction * reach, scale * sum);
             }
         });
-        parallel::maximum(found.len(), 0.0, |place| found[place].1)
+        let own = parallel::maximum(found.len(), 0.0, |place| found[place].1);
+        let [largest] = self.team().largest([own]);
+        largest
     }
 }

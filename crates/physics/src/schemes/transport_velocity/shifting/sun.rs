@@ -43,7 +43,7 @@ impl<const D: usize> Common<D> {
             self.volumes.extend(sides.iter().map(|side| side.volume));
         }
         let (list, h) = (self.support.list(), self.support.smoothing_length());
-        parallel::for_each_chunk(&mut sides, |first, sides| {
+        parallel::for_each_chunk(&mut sides[..list.owned()], |first, sides| {
             let mut block = NeighborBlock::default();
             for (offset, side) in sides.iter_mut().enumerate() {
                 let place = first + offset;

@@ -26,12 +26,13 @@ impl<const D: usize> Hypoelastic<D> {
         let places = common.support.list().places();
         let (own, rest) = common.parts(state);
         let (stored, _) = StoredMut::<D>::of(rest, places.len());
+        let begin = common.first();
         let evolves = !common.settings.is_algebraic();
         let drift = |[number, k]: [usize; 2],
                      own: &mut ColumnsMut<'_, D>,
                      matter: &mut Matter,
                      sums: &mut Drift| {
-            let place = places[number] as usize;
+            let place = places[number - begin] as usize;
             let (side, rates) = (&common.sides[place], &self.rates[place]);
             let material = self.solid(common, number);
             let around = Surroundings {
@@ -64,7 +65,8 @@ impl<const D: usize> Hypoelastic<D> {
             plasticity.power -= work;
         };
         let parts = (own, stored);
-        parallel::sums_over_parts(places.len(), parts, |first, (mut own, mut stored), sums| {
+        common.team().sums_over_parts(places.len(), parts, |first, (mut own, mut stored), sums| {
+            let first = begin + first;
             for k in (0..own.position.len()).filter(|k| !common.is_wall[first + k]) {
                 let mut matter = stored.matter(k);
                 drift([first + k, k], &mut own, &mut matter, sums);

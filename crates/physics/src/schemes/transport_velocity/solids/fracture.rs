@@ -9,6 +9,7 @@ const FIRST: f64 = 1.2;
 const LINK: f64 = 1.5;
 
 /// Pairs of particles of solids that are first neighbours at the start.
+#[derive(Default)]
 pub(super) struct Bonds {
     pairs: Vec<[u32; 2]>,
 }

@@ -14,21 +14,26 @@ impl<const D: usize> Hypoelastic<D> {
         time: f64,
         state: &mut [f64],
     ) -> Total {
-        let mut total = Total::default();
+        let mut totals = Vec::new();
         let (own, _) = common.parts(state);
         for entry in self.held.iter() {
-            let velocity = &mut own.velocity[entry.particle][entry.component];
+            let Some(row) = common.row(entry.particle) else { continue };
+            let velocity = &mut own.velocity[row][entry.component];
             let (mass, old) = (common.mass[entry.particle], *velocity);
             let new = entry.at(time);
             if new != old {
                 *velocity = new;
-                total.power += 0.5 * mass * (new - old) * (new + old);
+                let mut total = Total::of(0.5 * mass * (new - old) * (new + old));
                 let mut momentum = Vector::zeros();
                 momentum[entry.component] = mass * (new - old);
-                add_moments(&own.position[entry.particle], &momentum, &mut total.force);
+                add_moments(&own.position[row], &momentum, &mut total.force);
+                totals.push(total);
             }
         }
-        total
+        match self.held.is_empty() {
+            true => Total::default(),
+            false => common.team().sum_in_order(&totals),
+        }
     }
 
     /// Takes from the accelerations what prescribed velocities do not follow: the reaction, which
@@ -36,7 +41,8 @@ impl<const D: usize> Hypoelastic<D> {
     pub(super) fn hold_accelerations(&self, common: &mut Common<D>) {
         let places = common.support.list().places();
         for entry in self.held.iter() {
-            let forces = &mut common.forces[places[entry.particle] as usize];
+            let Some(row) = common.row(entry.particle) else { continue };
+            let forces = &mut common.forces[places[row] as usize];
             let total = forces.total()[entry.component];
             forces.walls[entry.component] -= total;
         }

@@ -1,6 +1,7 @@
 //! What solids take from a state and put into it: matter by place, pressures, stresses.
 
 use piola_formulas::hypoelastic::shear_energy;
+use piola_formulas::pairs::solid::SolidTension;
 
 use super::{Common, ENERGY, Hypoelastic, Matter, Solid, Stored, entry, full};
 use crate::parallel;
@@ -11,15 +12,22 @@ impl<const D: usize> Hypoelastic<D> {
     /// Fills what neighbours see of solids, by place, from a state whose neighbours are known.
     pub(super) fn load_matter(&mut self, common: &Common<D>, state: &[f64]) {
         let (list, own) = (common.support.list(), Stored::in_state(common, state));
-        parallel::for_each_chunk(&mut self.matter, |first, places| {
+        let begin = common.first();
+        parallel::for_each_chunk(&mut self.matter[..list.owned()], |first, places| {
             for (matter, &number) in places.iter_mut().zip(&list.numbers()[first..]) {
-                *matter = own.matter(number as usize);
+                *matter = own.matter(number as usize - begin);
             }
         });
+        self.show_matter(common);
         if self.builds != Some(list.builds()) {
             self.builds = Some(list.builds());
             self.load_constants(common);
         }
+    }
+
+    /// Shows what neighbours see of solids to the ranks that have copies.
+    pub(super) fn show_matter(&mut self, common: &Common<D>) {
+        common.team().refresh(&mut self.matter, common.count(), 1);
     }
 
     /// Fills what does not change but with the places: constants of the materials.
@@ -57,13 +65,21 @@ impl<const D: usize> Hypoelastic<D> {
             }
             fastest
         };
-        parallel::maximum_of_chunks(&mut common.sides, &mut self.matter, 0.0, update).sqrt()
+        let owned = list.owned();
+        let (sides, matter) = (&mut common.sides[..owned], &mut self.matter[..owned]);
+        let own = parallel::maximum_of_chunks(sides, matter, 0.0, update);
+        if algebraic {
+            common.show_sides();
+        }
+        let [square] = common.team().largest([own]);
+        square.sqrt()
     }
 
     /// Fills the stresses that forces gather, of solids and walls.
     pub(super) fn tension_pass(&mut self, common: &Common<D>) {
         let (sides, matter, corrections) = (&common.sides, &self.matter, &self.corrections);
-        parallel::for_each_chunk(&mut self.tensions, |first, rows| {
+        let owned = common.count();
+        parallel::for_each_chunk(&mut self.tensions[..owned], |first, rows| {
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 let (side, matter) = (&sides[place], &matter[place]);
@@ -77,6 +93,7 @@ impl<const D: usize> Hypoelastic<D> {
                 (row.tensor, row.weight, row.share) = (tensor, weight, share);
             }
         });
+        common.team().refresh_records::<SolidTension<D>>(&mut self.tensions, owned);
     }
 
     /// Gives the wall particle at a place its deviatoric stress. Of a wall that lets slide it is the

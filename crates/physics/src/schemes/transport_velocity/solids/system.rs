@@ -113,7 +113,7 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
     }
 
     fn bind(input: SolidsInput, common: &mut Common<D>) -> Result<Self, TransportVelocityError> {
-        let (count, support) = (common.particles.len(), common.support.list().support());
+        let (count, support) = (common.count(), common.support.list().support());
         if let Some(distance) = input.self_contact.filter(|&distance| !(distance > support)) {
             return Err(TransportVelocityError::SelfContact { distance, support });
         }
@@ -141,8 +141,35 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
         })
     }
 
+    fn part(&self, common: &Common<D>) -> Self {
+        let (count, all) = (common.count(), common.support.list().len());
+        Self {
+            materials: self.materials.clone(),
+            contact: self.contact,
+            held: self.held.clone(),
+            // Figures are those of all particles.
+            bonds: Bonds::default(),
+            matter: vec![[0.0; MATTER]; all],
+            builds: None,
+            tensions: vec![SolidTension::zero(); all],
+            rates: vec![SolidRates::default(); count],
+            corrections: vec![
+                Tensor::identity();
+                if self.corrections.is_empty() { 0 } else { count }
+            ],
+        }
+    }
+
+    fn shows(pass: Pass<Stress>) -> usize {
+        match pass {
+            Pass::Load | Pass::Walls => MATTER,
+            Pass::Own(Stress::Tension) => SolidTension::<D>::NUMBERS,
+            _ => 0,
+        }
+    }
+
     fn begin(&self, common: &Common<D>, state: &mut [f64]) {
-        let (own, _) = StoredMut::<D>::of(common.parts(state).1, common.particles.len());
+        let (own, _) = StoredMut::<D>::of(common.parts(state).1, common.count());
         for (temperature, &body) in own.temperature.iter_mut().zip(&common.particles.body) {
             *temperature = self.materials[body as usize].heat.temperature;
         }
@@ -250,8 +277,18 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
         }
     }
 
+    fn make_room(&mut self, common: &Common<D>) {
+        let all = common.support.list().len();
+        self.matter.resize(all, [0.0; MATTER]);
+        self.tensions.resize(all, SolidTension::zero());
+    }
+
     fn set_wall(&mut self, place: usize, values: &WallValues<D>) {
         self.set_deviator(place, &values.deviator, values.mirror.as_ref());
+    }
+
+    fn show_walls(&mut self, common: &Common<D>) {
+        self.show_matter(common);
     }
 
     fn speed_squared(&self, common: &Common<D>, place: usize) -> f64 {
@@ -264,12 +301,13 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
     }
 
     /// That of longitudinal waves.
-    fn wave_speed_of(&self, common: &Common<D>, number: usize, state: &[f64]) -> Option<f64> {
-        let matter = matter_of(common, number, state);
+    fn wave_speed_of(&self, common: &Common<D>, row: usize, state: &[f64]) -> Option<f64> {
+        let matter = matter_of(common, row, state);
         if !matter.iter().all(|value| value.is_finite()) {
             return None;
         }
-        let (solid, density) = (self.solid(common, number), common.columns(state).density[number]);
+        let solid = self.solid(common, common.first() + row);
+        let density = common.columns(state).density[row];
         let bulk = solid.state.wave_speed_squared(density, matter[ENERGY]);
         Some((bulk + 4.0 / 3.0 * solid.shear_modulus / density).sqrt())
     }
@@ -314,16 +352,14 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
 impl<const D: usize> Stored<'_, D> {
     /// The columns of a state.
     pub fn in_state<'a>(common: &Common<D>, state: &'a [f64]) -> Stored<'a, D> {
-        Stored::of(common.columns(state).tail, common.particles.len())
+        Stored::of(common.columns(state).tail, common.count())
     }
 
-    /// What a particle (number) has.
+    /// What a particle (row) has.
     #[inline]
-    pub fn matter(&self, number: usize) -> Matter {
-        row(
-            &self.deviatoric_stress[number],
-            [self.plastic_strain[number], self.temperature[number], self.internal_energy[number]],
-        )
+    pub fn matter(&self, a: usize) -> Matter {
+        let scalars = [self.plastic_strain[a], self.temperature[a], self.internal_energy[a]];
+        row(&self.deviatoric_stress[a], scalars)
     }
 }
 
@@ -350,12 +386,8 @@ fn row(&[a, b, c, d, e, f]: &[f64; 6], [plastic, temperature, energy]: [f64; 3])
     [a, b, c, d, e, f, plastic, temperature, energy]
 }
 
-/// The matter of a particle (number) in a state.
+/// The matter of a particle (row) in a state.
 #[inline]
-pub(super) fn matter_of<const D: usize>(
-    common: &Common<D>,
-    number: usize,
-    state: &[f64],
-) -> Matter {
-    Stored::in_state(common, state).matter(number)
+pub(super) fn matter_of<const D: usize>(common: &Common<D>, row: usize, state: &[f64]) -> Matter {
+    Stored::in_state(common, state).matter(row)
 }

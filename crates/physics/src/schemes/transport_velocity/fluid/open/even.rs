@@ -76,7 +76,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         state: &[f64],
     ) -> (Vec<u32>, Vec<bool>) {
         let at = common.columns(state);
-        let opening = Stored::<D>::of(at.tail, common.particles.len()).opening;
+        let opening = Stored::<D>::of(at.tail, common.count()).opening;
         let spacing = common.particles.spacing[0];
         let counted = |number: usize| {
             if opening[number] as usize == role + 1 {

@@ -243,7 +243,7 @@ pub(super) struct Kept<'a> {
 
 impl<'a> Kept<'a> {
     fn of<const D: usize>(common: &Common<D>, state: &'a mut [f64]) -> (StoredMut<'a, D>, Self) {
-        let count = common.particles.len();
+        let count = common.count();
         let (stored, tail) = StoredMut::of(common.parts(state).1, count);
         let (counts, each) = LEDGER.behind_mut(D, tail)[1..].split_at_mut(COUNTS);
         (stored, Self { counts, each })
@@ -263,7 +263,7 @@ impl<'a> Kept<'a> {
 impl<const D: usize> WeaklyCompressible<D> {
     /// Gives it open boundaries.
     pub(super) fn open_up(&mut self, boundaries: OpenBoundaries<D>, common: &mut Common<D>) {
-        let count = common.particles.len();
+        let count = common.count();
         self.open = Open::new(boundaries, &common.particles.position);
         common.removed = vec![false; count];
         self.shear = vec![Vector::zeros(); count];
@@ -279,7 +279,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         if open.is_empty() {
             return;
         }
-        let (count, reserve) = (common.particles.len(), open.boundaries.reserve);
+        let (count, reserve) = (common.count(), open.boundaries.reserve);
         let (own, _) = common.parts(state);
         for number in count - reserve..count {
             (own.density[number], own.pressure[number]) = (0.0, 0.0);
@@ -371,7 +371,7 @@ impl<const D: usize> WeaklyCompressible<D> {
 
     fn counts<'a>(&self, common: &Common<D>, state: &'a [f64]) -> Option<&'a [f64]> {
         let at: Columns<'a, D> = common.columns(state);
-        let stored = Stored::<D>::of(at.tail, common.particles.len());
+        let stored = Stored::<D>::of(at.tail, common.count());
         (!self.open.is_empty()).then(|| &LEDGER.behind(D, stored.tail)[1..])
     }
 

@@ -124,7 +124,7 @@ impl<const D: usize> WeaklyCompressible<D> {
         let (mut total, mut parents) = (Total::default(), Vec::new());
         self.follow_roles(common, state);
         let Some(nesting) = self.open.boundaries.nesting.take() else { return (total, parents) };
-        let count = common.particles.len();
+        let count = common.count();
         let at = common.columns(state);
         let stored = Stored::<D>::of(at.tail, count);
         let next = |number: usize| {
@@ -208,8 +208,8 @@ impl<const D: usize> WeaklyCompressible<D> {
         state: &[f64],
     ) -> [f64; 2] {
         let at = common.columns(state);
-        let Stored { nesting, opening, .. } = Stored::<D>::of(at.tail, common.particles.len());
-        let counted = (0..common.particles.len() as u32).filter(|&number| {
+        let Stored { nesting, opening, .. } = Stored::<D>::of(at.tail, common.count());
+        let counted = (0..common.count() as u32).filter(|&number| {
             let a = number as usize;
             let is_there = nesting[a] != FOLLOWS
                 && opening[a] == 0.0

@@ -1,0 +1,57 @@
+//! Fluids, and solids whose particles find new neighbours, that several ranks share, compared with those of one.
+//!
+//! Runs are so long that the lists of neighbours are renewed several times, and with them the plan of copies.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+use super::ranks::same_on_any_number;
+
+const VORTICES: &str = include_str!("../../../../cases/ctvf/taylor-green/case.toml");
+
+/// 400 particles that move by six skins.
+const SHORT: [&str; 3] = ["parameters.side=20", "time.end=0.1", "output.every=0.05"];
+
+#[test]
+fn vortices_are_the_same_on_any_number_of_ranks() {
+    same_on_any_number(VORTICES, &SHORT);
+    let integrated = ["scheme.density='continuity'", "scheme.artificial_viscosity=0.1"];
+    same_on_any_number(VORTICES, &[&SHORT[..], &integrated].concat());
+    let algebraic = ["scheme.density='continuity'", "scheme.pressure='state_equation'"];
+    same_on_any_number(VORTICES, &[&SHORT[..], &algebraic].concat());
+}
+
+#[test]
+fn all_ways_to_spread_particles_are_the_same_on_any_number_of_ranks() {
+    for shifting in ["ipst", "background", "none"] {
+        let shifting = format!("scheme.shifting='{shifting}'");
+        same_on_any_number(VORTICES, &[&SHORT[..], &[shifting.as_str()]].concat());
+    }
+}
+
+#[test]
+fn vortices_in_space_are_the_same_on_any_number_of_ranks() {
+    let vortices = include_str!("../../../../cases/ctvf/taylor-green-3d/case.toml");
+    same_on_any_number(vortices, &["parameters.side=8", "time.end=0.4", "output.every=0.2"]);
+}
+
+#[test]
+fn a_driven_cavity_is_the_same_on_any_number_of_ranks() {
+    let cavity = include_str!("../../../../cases/ctvf/cavity/case.toml");
+    same_on_any_number(cavity, &["parameters.side=16", "time.end=0.3", "output.every=0.1"]);
+}
+
+/// Walls that are touched, a free surface, and drops that fly over the end of a wall and are taken out.
+#[test]
+fn a_dam_break_is_the_same_on_any_number_of_ranks() {
+    let dam = include_str!("../../../../cases/ctvf/dam-break/case.toml");
+    let sets = ["parameters.dx=0.1", "parameters.walls=2.1", "time.end=1.4", "output.every=0.5"];
+    same_on_any_number(dam, &sets);
+    same_on_any_number(dam, &[&sets[..], &["scheme.shifting='ipst'", "time.end=0.7"]].concat());
+    let damped = ["scheme.damping='x'", "scheme.escaped='stop'", "time.end=0.3"];
+    same_on_any_number(dam, &[&sets[..], &damped].concat());
+}
+
+#[test]
+fn solids_that_flow_are_the_same_on_any_number_of_ranks() {
+    let bar = include_str!("../../../../cases/ctvf/taylor-bar/case.toml");
+    same_on_any_number(bar, &["parameters.across=4", "time.end=20e-6", "output.every=10e-6"]);
+}
