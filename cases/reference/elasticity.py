@@ -1,14 +1,16 @@
 """Reference numbers of the cases of solids, by quadratic finite elements: `python3 elasticity.py CASE [n]`.
 
-CASE is one of plate, rubber, rubber-stress, hole, cube, cantilever, clamped, compression, vibration, modes, swing; n is the
-number of elements along the length named in README.md. Units are those of the case; SI where nothing is said."""
+CASE is one of plate, rubber, rubber-stress, rubber-incompressible, hole, cube, cube-incompressible, cantilever, clamped,
+compression, vibration, modes, swing; n is the number of elements along the length named in README.md. Units are those of
+the case; SI where nothing is said."""
 
 import sys
 
 import numpy as np
 from skfem import MeshHex, MeshQuad, MeshQuad2
 
-from elements import Solid, graded, linear, logarithmic, neo_hookean, solve
+from elements import (Mixed, Solid, graded, linear, logarithmic, mixed_logarithmic, mixed_neo_hookean, neo_hookean,
+                      solve)
 
 
 def plate(n=32):
@@ -21,18 +23,20 @@ def plate(n=32):
     show(widest_ux=u[:, 0].max(), lowest_uy=u[:, 1].min())
 
 
-def rubber(n=10, plane_stress=False):
+def rubber(n=10, plane_stress=False, incompressible=False):
     """Quarter of the sheet, in mm and MPa; forces in N per m of thickness."""
-    x, y = graded(n, 30, "end"), graded(n, 30, "start")
-    solid = Solid(MeshQuad.init_tensor(x, y), logarithmic(0.2, 0.45, plane_stress))
+    ratio, pulls = (3, [0.5, 1]) if incompressible else (30, [0.5, 1, 2, 3, 4, 5])
+    mesh = MeshQuad.init_tensor(graded(n, ratio, "end"), graded(n, ratio, "start"))
+    solid = Mixed(mesh, mixed_logarithmic(0.2, 0.4999)) if incompressible \
+        else Solid(mesh, logarithmic(0.2, 0.45, plane_stress))
     foot = solid.where(lambda x, y: y < 1e-9, 0, 1)
     middle = solid.where(lambda x, y: y > 1 - 1e-9, 1)
     axis = np.setdiff1d(solid.where(lambda x, y: x < 1e-9, 0), foot)
     held = np.concatenate([foot, axis, middle])
     rise = np.concatenate([np.zeros(len(foot) + len(axis)), np.ones(len(middle))])
-    for pull, u in solid.statics(np.zeros(solid.size), held, lambda t: t * rise, [0.5, 1, 2, 3, 4, 5]):
+    for pull, u in solid.statics(np.zeros(solid.size), held, lambda t: t * rise, pulls):
         show(elongation=f"{100 * pull:.0f} %", force=2000 * solid.internal(u)[1][middle].sum(),
-             waist_ux=u.reshape(-1, 2)[solid.node(1, 1), 0])
+             waist_ux=u[2 * solid.node(1, 1)])
 
 
 def hole(n=32):
@@ -55,15 +59,16 @@ def hole(n=32):
              end_ux=u[solid.node(side, 0), 0], above_uy=u[solid.node(0, side), 1])
 
 
-def cube(n=8):
+def cube(n=8, incompressible=False):
     """n elements along an edge; half of the cube, x from 0 to its middle. A dead pressure on y < 1/2."""
     half, whole = np.linspace(0, 0.5, n // 2 + 1), np.linspace(0, 1, n + 1)
-    solid = Solid(MeshHex.init_tensor(half, whole, whole), neo_hookean(10.0, 0.3))
+    mesh = MeshHex.init_tensor(half, whole, whole)
+    solid = Mixed(mesh, mixed_neo_hookean(10.0, 0.4999)) if incompressible else Solid(mesh, neo_hookean(10.0, 0.3))
     foot = solid.where(lambda x, y, z: z < 1e-9, 0, 1, 2)
     held = np.union1d(foot, solid.where(lambda x, y, z: x > 0.5 - 1e-9, 0))
     load = solid.traction(lambda x: (x[2] > 1 - 1e-9) & (x[1] < 0.5), 2, lambda x, y, z: -2.0 + 0 * x)
-    for t, u in solid.statics(load, held, None, [0.25, 0.5, 0.75, 1.0]):
-        u = u.reshape(-1, 3)
+    for t, u in solid.statics(load, held, None, [0.25, 0.5] if incompressible else [0.25, 0.5, 0.75, 1.0]):
+        u = u[:solid.moving].reshape(-1, 3)
         show(load=t, lowest_uz=u[:, 2].min(), corner_uz=u[solid.node(0, 0, 1), 2], corner_uy=u[solid.node(0, 0, 1), 1])
 
 
@@ -177,7 +182,8 @@ def show(**numbers):
 
 
 CASES = {"plate": plate, "rubber": rubber, "rubber-stress": lambda *n: rubber(*(n or (10,)), plane_stress=True),
-         "hole": hole, "cube": cube, "cantilever": cantilever, "clamped": clamped, "compression": compression, "vibration": vibration,
+         "rubber-incompressible": lambda *n: rubber(*(n or (10,)), incompressible=True),
+         "hole": hole, "cube": cube, "cube-incompressible": lambda *n: cube(*(n or (8,)), incompressible=True), "cantilever": cantilever, "clamped": clamped, "compression": compression, "vibration": vibration,
          "modes": modes, "swing": swing}
 
 if __name__ == "__main__":

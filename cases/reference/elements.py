@@ -6,7 +6,7 @@ have two axes more in front. Nothing here is shared with piola."""
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import eigsh, splu
-from skfem import Basis, ElementHex2, ElementQuad2, FacetBasis, LinearForm, asm
+from skfem import Basis, ElementHex1, ElementHex2, ElementQuad1, ElementQuad2, FacetBasis, LinearForm, asm
 
 
 def lame(young, poisson):
@@ -67,14 +67,46 @@ def neo_hookean(young, poisson):
 
     def law(f):
         j, g = inverse(f)
-        first, m, p = (f**2).sum((0, 1)), mu * j ** (-2 / 3), kappa * j * (j - 1)
-        df, dg, gg = products(f, g)
-        fg = np.einsum("ij...,kl...->ijkl...", f, g)
-        tangent = (m * df + (p - m * first / 3) * dg + (kappa * j * (2 * j - 1) + 2 / 9 * m * first) * gg
-                   - 2 / 3 * m * (fg + np.einsum("klij...->ijkl...", fg)))
-        energy = kappa / 2 * (j - 1) ** 2 + mu / 2 * (j ** (-2 / 3) * first - 3)
-        return energy, m * f + (p - m * first / 3) * g, tangent
+        stress, tangent = neo_hookean_shear(mu, f, j, g)
+        _, dg, gg = products(f, g)
+        p = kappa * j * (j - 1)
+        energy = kappa / 2 * (j - 1) ** 2 + mu / 2 * (j ** (-2 / 3) * (f**2).sum((0, 1)) - 3)
+        return energy, stress + p * g, tangent + p * dg + kappa * j * (2 * j - 1) * gg
     return law
+
+
+def neo_hookean_shear(mu, f, j, g):
+    """Stress and tangent of mu/2 (J^(-2/3) I1 - 3)."""
+    first, m = (f**2).sum((0, 1)), mu * j ** (-2 / 3)
+    df, dg, gg = products(f, g)
+    fg = np.einsum("ij...,kl...->ijkl...", f, g)
+    tangent = (m * df - m * first / 3 * dg + 2 / 9 * m * first * gg
+               - 2 / 3 * m * (fg + np.einsum("klij...->ijkl...", fg)))
+    return m * f - m * first / 3 * g, tangent
+
+
+def mixed_logarithmic(young, poisson):
+    """The law of `logarithmic` in plane strain with the pressure p of its own: p ln J - p^2/(2 lambda) for lambda/2 (ln J)^2."""
+    lam, mu = lame(young, poisson)
+
+    def law(f, p):
+        j, g = inverse(f)
+        df, dg, _ = products(f, g)
+        return mu * f + (p - mu) * g, mu * df + (p - mu) * dg, np.log(j) - p / lam, g
+    return law, lam
+
+
+def mixed_neo_hookean(young, poisson):
+    """The law of `neo_hookean` with p (J - 1) - p^2/(2 kappa) for kappa/2 (J - 1)^2."""
+    lam, mu = lame(young, poisson)
+    kappa = lam + 2 * mu / 3
+
+    def law(f, p):
+        j, g = inverse(f)
+        stress, tangent = neo_hookean_shear(mu, f, j, g)
+        _, dg, gg = products(f, g)
+        return stress + p * j * g, tangent + p * j * (dg + gg), j - 1 - p / kappa, j * g
+    return law, kappa
 
 
 class Solid:
@@ -85,7 +117,7 @@ class Solid:
         self.element = ElementQuad2() if self.dim == 2 else ElementHex2()
         self.basis = Basis(mesh, self.element, intorder=4 if self.dim == 3 else 5)
         self.places = self.basis.doflocs.T
-        self.size = self.dim * self.basis.N
+        self.size = self.moving = self.dim * self.basis.N
         self.gradients = np.array([field[0].grad for field in self.basis.basis])
         self.shapes = np.array([np.broadcast_to(field[0].value, self.basis.dx.shape) for field in self.basis.basis])
         nodes = self.basis.element_dofs
@@ -102,7 +134,7 @@ class Solid:
     def deformation(self, u, gradients=None, nodes=None):
         gradients = self.gradients if gradients is None else gradients
         nodes = self.basis.element_dofs if nodes is None else nodes
-        local = u.reshape(-1, self.dim)[nodes]
+        local = u[:self.moving].reshape(-1, self.dim)[nodes]
         return np.einsum("aei,ajeq->ijeq", local, gradients) + np.eye(self.dim)[..., None, None]
 
     def traction(self, condition, direction, value):
@@ -110,17 +142,21 @@ class Solid:
         facets = self.mesh.facets_satisfying(condition, boundaries_only=True)
         basis = FacetBasis(self.mesh, self.element, facets=facets, intorder=6)
         force = np.zeros(self.size)
-        force[direction::self.dim] = asm(LinearForm(lambda v, w: value(*w.x) * v), basis)
+        force[direction:self.moving:self.dim] = asm(LinearForm(lambda v, w: value(*w.x) * v), basis)
         return force
 
-    def assemble(self, values):
-        rows = np.broadcast_to(self.dofs[:, None], values.shape)
-        columns = np.broadcast_to(self.dofs[None], values.shape)
+    def assemble(self, values, rows=None, columns=None):
+        rows = np.broadcast_to((self.dofs if rows is None else rows)[:, None], values.shape)
+        columns = np.broadcast_to((self.dofs if columns is None else columns)[None], values.shape)
         return coo_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(self.size,) * 2).tocsc()
 
     def internal(self, u):
         """Strain energy, nodal forces and tangent."""
         energy, stress, tangent = self.law(self.deformation(u))
+        return (energy * self.basis.dx).sum(), *self.integrated(stress, tangent)
+
+    def integrated(self, stress, tangent):
+        """Nodal forces and the matrix of their changes."""
         d, (a, _, e, q) = self.dim, self.gradients.shape
         force = np.einsum("ijeq,ajeq,eq->aie", stress, self.gradients, self.basis.dx).reshape(a * d, e)
         forces = np.zeros(self.size)
@@ -130,7 +166,7 @@ class Solid:
         right = t.transpose(4, 5, 0, 2, 1, 3) @ self.gradients.transpose(2, 3, 1, 0)[:, :, None, None]
         right = right.transpose(0, 1, 4, 2, 3, 5).reshape(e, q * d, d * d * a)
         values = (g @ right).reshape(e, a, d, d, a).transpose(1, 2, 4, 3, 0).reshape(a * d, a * d, e)
-        return (energy * self.basis.dx).sum(), forces, self.assemble(values)
+        return forces, self.assemble(values)
 
     def mass(self, density):
         scalar = density * np.einsum("aeq,beq,eq->abe", self.shapes, self.shapes, self.basis.dx)
@@ -167,10 +203,11 @@ class Solid:
             residual = (load - force - tangent @ change)[free]
             change[free] = solve(tangent[free][:, free], residual)
             u += change
-            if not np.all(np.isfinite(u)) or np.abs(change).max() > 10 * np.abs(self.places).max() \
+            moved = np.abs(change[:self.moving]).max()
+            if not np.all(np.isfinite(u)) or moved > 10 * np.abs(self.places).max() \
                     or np.linalg.det(np.moveaxis(self.deformation(u), (0, 1), (-2, -1))).min() <= 0:
                 return None
-            if np.abs(change).max() < tolerance * np.abs(u).max():
+            if moved < tolerance * np.abs(u[:self.moving]).max():
                 return u
             change[:] = 0
         return None
@@ -191,6 +228,31 @@ class Solid:
         gradients = np.array([field[0].grad for field in basis.basis])
         f = self.deformation(u, gradients, self.basis.element_dofs[:, [element]])
         return f[..., 0, 0], self.law(f)[1][..., 0, 0]
+
+
+class Mixed(Solid):
+    """With continuous linear pressures (Q2-Q1, Taylor and Hood) behind the displacements, for laws of the form above."""
+
+    def __init__(self, mesh, law):
+        super().__init__(mesh, law[0])
+        self.bulk = law[1]
+        pressures = self.basis.with_element(ElementQuad1() if self.dim == 2 else ElementHex1())
+        self.linear = np.array([np.broadcast_to(field[0].value, self.basis.dx.shape) for field in pressures.basis])
+        self.pressures = self.moving + pressures.element_dofs
+        self.size += pressures.N
+
+    def internal(self, u):
+        """No energy; forces, behind them what is missing of the volumes, and the matrix."""
+        p = np.einsum("ae,aeq->eq", u[self.pressures], self.linear)
+        stress, tangent, gap, slope = self.law(self.deformation(u), p)
+        forces, matrix = self.integrated(stress, tangent)
+        np.add.at(forces, self.pressures, np.einsum("aeq,eq,eq->ae", self.linear, gap, self.basis.dx))
+        coupling = np.einsum("beq,ijeq,ajeq,eq->aibe", self.linear, slope, self.gradients, self.basis.dx)
+        coupling = coupling.reshape(-1, *coupling.shape[2:])
+        across = self.assemble(coupling, self.dofs, self.pressures)
+        mass = np.einsum("aeq,beq,eq->abe", self.linear, self.linear, self.basis.dx)
+        own = self.assemble(-mass / self.bulk, self.pressures, self.pressures)
+        return None, forces, (matrix + across + across.T + own).tocsc()
 
 
 def solve(matrix, right):

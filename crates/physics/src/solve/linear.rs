@@ -122,8 +122,10 @@ const POOREST: f64 = 0.5;
 /// Steps of a Krylov method that are always allowed; a slender body needs many.
 const LEAST_STEPS: usize = 5000;
 /// First shift of an indefinite matrix over its largest diagonal entry; each further one is ten
-/// times as large.
-const FIRST_SHIFT: f64 = 1e-4;
+/// times as large. Entries of nearly incompressible materials are of the size of the bulk modulus, and eigenvalues
+/// along motions without a change of volume a small part of the shear modulus: at a Poisson's ratio of 0.4999 a part in
+/// 10^6. A shift that is much larger than these makes Newton's method crawl.
+const FIRST_SHIFT: f64 = 1e-6;
 
 /// Steps of a Krylov method that are allowed for a number of unknowns.
 pub fn most_steps(unknowns: usize) -> usize {

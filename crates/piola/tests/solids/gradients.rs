@@ -1,6 +1,7 @@
 //! Gradients on supports that differ, and their correction for constant stress.
 
 use piola::Vector;
+use piola::geometry::Particles;
 use piola::neighbors::Domain;
 use piola::operators::{DirectedSupport, DualGradient, OperatorError, nearest_radii};
 use piola_formulas::kernels::Kernel;
@@ -105,4 +106,105 @@ fn what_has_no_gradient_is_named() {
     let error = plain.patch_consistent(&open.particles, &open.support(), &open.areas).unwrap_err();
     assert!(matches!(error, OperatorError::Areas { body: 0, .. }), "{error}");
     assert!(error.to_string().contains("do not enclose its volume"));
+}
+
+/// Patch-consistent gradients in a domain, with the lists that they belong to.
+fn corrected(
+    particles: &Particles<2>,
+    radius: &[f64],
+    domain: Domain<2>,
+    areas: &[Vector<2>],
+) -> Result<(DirectedSupport<2>, DualGradient<2>), OperatorError> {
+    let support =
+        DirectedSupport::new(particles, Kernel::QuinticSpline, radius.to_vec(), domain).unwrap();
+    let plain = DualGradient::plain(particles, &support).unwrap();
+    let patch = plain.patch_consistent(particles, &support, areas)?;
+    Ok((support, patch))
+}
+
+/// A body that lies across the ends of a period, with places on both sides of the domain, has the gradients that it has
+/// elsewhere, and areas that do not close it are refused as they are there.
+#[test]
+fn a_body_across_the_ends_of_a_period_is_like_any_other() {
+    let cloud = Cloud::simplices([2.0, 1.0], [16, 8], 0.25);
+    let radius = cloud.support().radius;
+    let domain = Domain::new([Some([0.0, 4.0]), None]).unwrap();
+    let mut across = cloud.particles.clone();
+    across.position.iter_mut().for_each(|x| *x = domain.wrap(&(*x + Vector::from([3.1, 0.0]))));
+    assert!(across.position.iter().any(|x| x[0] < 1.1) && across.position[0][0] > 3.0);
+    let (open, expected) =
+        corrected(&cloud.particles, &radius, Domain::open(), &cloud.areas).unwrap();
+    let (support, found) = corrected(&across, &radius, domain, &cloud.areas).unwrap();
+    for a in 0..across.len() {
+        let row = |support: &DirectedSupport<2>, gradient: &DualGradient<2>| {
+            let coefficients = gradient.coefficients(support.list.range(a)).to_vec();
+            let mut row: Vec<_> = support.list.row(a).iter().copied().zip(coefficients).collect();
+            row.sort_by_key(|(b, _)| *b);
+            row
+        };
+        let (expected, found) = (row(&open, &expected), row(&support, &found));
+        let scale = expected.iter().flat_map(|(_, g)| g).fold(0.0_f64, |most, g| most.max(g.abs()));
+        for ((b, expected), (other, found)) in expected.iter().zip(&found) {
+            assert_eq!(b, other);
+            let off = (Vector::from(*expected) - Vector::from(*found)).amax();
+            assert!(off < 1e-9 * scale, "{a}, {b}: {off} of {scale}");
+        }
+    }
+    for axis in 0..2 {
+        let mut wide = cloud.areas.clone();
+        wide.iter_mut().for_each(|area| area[axis] *= 1.01);
+        let error = corrected(&across, &radius, domain, &wide).unwrap_err();
+        assert!(matches!(error, OperatorError::Areas { .. }), "{error}");
+    }
+}
+
+/// A strip that goes on for ever along x: its areas along y have to close it, and along x to add up to nothing.
+#[test]
+fn areas_that_do_not_close_an_endless_strip_are_refused() {
+    let (count, dx) = (10, 0.1);
+    let domain = Domain::new([Some([0.0, count as f64 * dx]), None]).unwrap();
+    let strip = Cloud::block([count as f64 * dx, 0.5], [count, 5], 0.2);
+    let is_kept = |x: &Vector<2>| x[0] < domain.periodic()[0].unwrap()[1];
+    let kept: Vec<usize> =
+        (0..strip.particles.len()).filter(|&a| is_kept(&strip.particles.position[a])).collect();
+    let position: Vec<Vector<2>> = kept.iter().map(|&a| strip.particles.position[a]).collect();
+    let share = |x: &Vector<2>| if x[1] == 0.0 || x[1] == 0.5 { 0.5 } else { 1.0 };
+    let particles = Particles {
+        volume: position.iter().map(|x| share(x) * dx * dx).collect(),
+        weight: vec![dx * dx; kept.len()],
+        spacing: vec![dx; kept.len()],
+        body: vec![0; kept.len()],
+        id: (0..kept.len() as u32).collect(),
+        surface: strip.particles.surface.clone(),
+        position: position.clone(),
+    };
+    let outwards = |x: &Vector<2>| f64::from(i8::from(x[1] == 0.5) - i8::from(x[1] == 0.0));
+    let areas: Vec<_> = position.iter().map(|x| Vector::from([0.0, outwards(x) * dx])).collect();
+    let radius = vec![2.5 * dx; position.len()];
+    let (support, gradient) = corrected(&particles, &radius, domain, &areas).unwrap();
+    let found = gradient.areas(&support, &particles.volume);
+    let off = found.iter().zip(&areas).map(|(found, area)| (found - area).amax());
+    assert!(off.fold(0.0, f64::max) < 1e-11 * dx);
+    let stretched: Vec<_> = areas.iter().map(|area| area * 1.01).collect();
+    let mut open = areas;
+    open[0][0] = 0.1 * dx;
+    for areas in [stretched, open] {
+        let error = corrected(&particles, &radius, domain, &areas).unwrap_err();
+        assert!(matches!(error, OperatorError::Areas { .. }), "{error}");
+    }
+}
+
+/// A particle of negative volume has a negative weight in what is to be least: there is nothing to be found, and that is
+/// told at the first direction of negative energy.
+#[test]
+fn conjugate_gradients_stop_where_there_is_no_least_change() {
+    let mut cloud = Cloud::simplices([1.0, 1.0], [9, 9], 0.3);
+    let volume = &mut cloud.particles.volume;
+    volume[46] += 11.0 * volume[45];
+    volume[45] *= -10.0;
+    let (particles, support) = (&cloud.particles, cloud.support());
+    let plain = DualGradient::plain(particles, &support).unwrap();
+    let error = plain.patch_consistent(particles, &support, &cloud.areas).unwrap_err();
+    let OperatorError::NoConvergence { steps, .. } = error else { panic!("{error}") };
+    assert!(steps < 100, "{steps} steps");
 }

@@ -1,10 +1,11 @@
 //! Linear functions, which the equations of the correction do not see.
 
 use super::System;
+use super::unrolled::Unrolled;
 use crate::{Tensor, Vector, parallel};
 
-/// The constant and the linear functions on each part of the particles that hang together, along axes across whose
-/// ends it does not reach: multipliers without effect.
+/// The constant and the linear functions on each part of the particles that hang together, along axes on which it
+/// ends: multipliers without effect.
 ///
 /// A residual has a share of them from rounding alone, which no step of conjugate gradients can reduce. It is
 /// taken out at each, or they would follow it instead of what is left.
@@ -26,21 +27,18 @@ type Products<const D: usize> = [[f64; 4]; D];
 
 impl<const D: usize> LinearFunctions<D> {
     pub fn new(system: &System<'_, D>) -> Self {
-        let positions = &system.particles.position;
-        let part_of = system.support.list.parts();
-        let count = part_of.iter().max().map_or(0, |&last| last as usize + 1);
-        let mut members = vec![Vec::new(); count];
+        let Unrolled { places, part_of, endless } = &system.unrolled;
+        let mut members = vec![Vec::new(); endless.len()];
         part_of.iter().enumerate().for_each(|(a, &part)| members[part as usize].push(a as u32));
-        let part = |members: Vec<u32>| {
-            let mean = members.iter().map(|&a| positions[a as usize]).sum::<Vector<D>>();
+        let part = |(members, endless): (Vec<u32>, &[bool; D])| {
+            let mean = members.iter().map(|&a| places[a as usize]).sum::<Vector<D>>();
             let center = mean / members.len() as f64;
             let mut gram = Tensor::<D>::zeros();
             for &a in &members {
-                let arm = positions[a as usize] - center;
+                let arm = places[a as usize] - center;
                 gram += arm * arm.transpose();
             }
-            let crossed = system.crossed(members.iter().map(|&a| a as usize));
-            let endless = || (0..D).filter(|&axis| crossed[axis]);
+            let endless = || (0..D).filter(|&axis| endless[axis]);
             for axis in endless() {
                 gram.row_mut(axis).fill(0.0);
                 gram.column_mut(axis).fill(0.0);
@@ -52,15 +50,16 @@ impl<const D: usize> LinearFunctions<D> {
             endless().for_each(|axis| frame.row_mut(axis).fill(0.0));
             Part { members, center, frame }
         };
-        Self { parts: members.into_iter().map(part).collect(), part_of }
+        let parts = members.into_iter().zip(endless).map(part).collect();
+        Self { parts, part_of: part_of.clone() }
     }
 
     /// Takes them out of the values of particles.
-    pub fn remove(&self, positions: &[Vector<D>], values: &mut [Vector<D>]) {
+    pub fn remove(&self, places: &[Vector<D>], values: &mut [Vector<D>]) {
         let of_part = |part: &Part<D>| -> Products<D> {
             parallel::sums(part.members.len(), |k, sums: &mut Products<D>| {
                 let a = part.members[k] as usize;
-                let along = part.frame * (positions[a] - part.center);
+                let along = part.frame * (places[a] - part.center);
                 for (sums, value) in sums.iter_mut().zip(&values[a]) {
                     sums[0] += value;
                     (0..D).for_each(|axis| sums[1 + axis] += value * along[axis]);
@@ -73,7 +72,7 @@ impl<const D: usize> LinearFunctions<D> {
                 let a = first + offset;
                 let number = self.part_of[a] as usize;
                 let part = &self.parts[number];
-                let along = part.frame * (positions[a] - part.center);
+                let along = part.frame * (places[a] - part.center);
                 for (value, products) in value.iter_mut().zip(&all[number]) {
                     let linear: f64 = (0..D).map(|axis| products[1 + axis] * along[axis]).sum();
                     *value -= products[0] / part.members.len() as f64 + linear;

@@ -2,6 +2,7 @@
 
 mod linear;
 mod splines;
+mod unrolled;
 
 use super::directed::DirectedSupport;
 use super::dual_gradient::DualGradient;
@@ -10,6 +11,7 @@ use crate::geometry::Particles;
 use crate::{Tensor, Vector, parallel};
 use linear::LinearFunctions;
 use splines::Splines;
+use unrolled::Unrolled;
 
 /// Steps of conjugate gradients after which the correction is given up; tens are usual.
 const MOST_STEPS: usize = 20_000;
@@ -31,7 +33,7 @@ impl<const D: usize> DualGradient<D> {
     ///
     /// # Errors
     /// [`OperatorError::Areas`] where the areas do not close the volumes of a body: they must sum
-    /// to zero, and `sum_b N_b (x) X_b` to the volume times the identity.
+    /// to zero, and `sum_b N_b (x) X_b` to the volume times the identity, but for axes along which it goes on for ever.
     /// [`OperatorError::NoConvergence`] where the system has no solution that is found.
     pub fn patch_consistent(
         mut self,
@@ -39,9 +41,8 @@ impl<const D: usize> DualGradient<D> {
         support: &DirectedSupport<D>,
         areas: &[Vector<D>],
     ) -> Result<Self, OperatorError> {
-        if support.domain.is_open() {
-            check_areas(particles, &support.list.parts(), areas)?;
-        }
+        let unrolled = Unrolled::new(support, &particles.position);
+        check_areas(particles, &unrolled, areas)?;
         let wanted: Vec<Vector<D>> = self
             .areas(support, &particles.volume)
             .iter()
@@ -53,7 +54,7 @@ impl<const D: usize> DualGradient<D> {
         if scale == 0.0 {
             return Ok(self);
         }
-        let system = System::new(&self, particles, support);
+        let system = System::new(&self, particles, support, unrolled);
         let multipliers = system.solve(wanted, TOLERANCE * scale)?;
         let mut changed = self.coefficients.clone();
         system.change(&multipliers, &mut changed);
@@ -63,21 +64,22 @@ impl<const D: usize> DualGradient<D> {
     }
 }
 
-/// Whether areas and volumes of each of the `parts` that hang together belong to one surface.
+/// Whether areas and volumes of each of the parts that hang together belong to one surface.
 fn check_areas<const D: usize>(
     particles: &Particles<D>,
-    parts: &[u32],
+    unrolled: &Unrolled<D>,
     areas: &[Vector<D>],
 ) -> Result<(), OperatorError> {
-    let count = parts.iter().max().map_or(0, |&part| part + 1);
-    for part in 0..count {
-        let own = || (0..particles.len()).filter(|&a| parts[a] == part);
+    for (part, endless) in unrolled.endless.iter().enumerate() {
+        let own = || (0..particles.len()).filter(|&a| unrolled.part_of[a] as usize == part);
         let body = own().next().map_or(0, |a| particles.body[a]);
         let volume: f64 = own().map(|a| particles.volume[a]).sum();
         let size: f64 = own().map(|a| areas[a].norm()).sum();
         let sum: Vector<D> = own().map(|a| areas[a]).sum();
-        let moment: Tensor<D> = own().map(|a| areas[a] * particles.position[a].transpose()).sum();
-        let misfit = (moment / volume - Tensor::identity()).amax();
+        let moment: Tensor<D> = own().map(|a| areas[a] * unrolled.places[a].transpose()).sum();
+        let mut misfit = moment / volume - Tensor::identity();
+        (0..D).filter(|&axis| endless[axis]).for_each(|axis| misfit.column_mut(axis).fill(0.0));
+        let misfit = misfit.amax();
         if !(sum.amax() <= MISFIT * size && misfit <= MISFIT) {
             return Err(OperatorError::Areas { body, sum: sum.iter().copied().collect(), misfit });
         }
@@ -91,6 +93,7 @@ struct System<'a, const D: usize> {
     gradient: &'a DualGradient<D>,
     particles: &'a Particles<D>,
     support: &'a DirectedSupport<D>,
+    unrolled: Unrolled<D>,
     /// `V_a o_ab` of each entry of the list in m^D.
     weights: Vec<f64>,
     /// The same in the order of the dual list.
@@ -113,6 +116,7 @@ impl<'a, const D: usize> System<'a, D> {
         gradient: &'a DualGradient<D>,
         particles: &'a Particles<D>,
         support: &'a DirectedSupport<D>,
+        unrolled: Unrolled<D>,
     ) -> Self {
         let (list, volume) = (&support.list, &particles.volume);
         let mut weights = Vec::with_capacity(list.pairs());
@@ -134,25 +138,7 @@ impl<'a, const D: usize> System<'a, D> {
                 *diagonal += dual_weights[support.dual.range(a)].iter().sum::<f64>();
             }
         });
-        Self { gradient, particles, support, weights, dual_weights, arms, diagonal }
-    }
-
-    /// The axes along which some of these particles see others across the ends of a period.
-    fn crossed(&self, particles: impl Iterator<Item = usize>) -> [bool; D] {
-        let (list, positions) = (&self.support.list, &self.particles.position);
-        let mut crossed = [false; D];
-        if self.support.domain.is_open() {
-            return crossed;
-        }
-        for a in particles {
-            for &b in list.row(a) {
-                let separation = self.support.separation(positions, a, b);
-                let direct = positions[b as usize] - positions[a];
-                let axes = crossed.iter_mut().zip(separation.iter().zip(&direct));
-                axes.for_each(|(crossed, (one, other))| *crossed |= one != other);
-            }
-        }
-        crossed
+        Self { gradient, particles, support, unrolled, weights, dual_weights, arms, diagonal }
     }
 
     /// `sum_b V_a o_ab |X_ab|^4/(4 D (D + 2))` of each particle.
@@ -261,22 +247,16 @@ impl<'a, const D: usize> System<'a, D> {
             });
             splines.add(residual, scaled);
         };
-        let (mut solution, mut residual) = (vec![Vector::zeros(); count], right.clone());
+        let (mut solution, mut residual) = (vec![Vector::zeros(); count], right);
         let mut scaled = vec![Vector::zeros(); count];
-        linear.remove(&self.particles.position, &mut residual);
-        // What no multiplier changes: areas that do not close the volumes.
-        let removed = right.iter().zip(&residual).map(|(all, left)| (all - left).amax());
-        let left = removed.fold(0.0, f64::max);
-        let most = tolerance / TOLERANCE * MISFIT;
-        if left > most {
-            return Err(OperatorError::NoConvergence { steps: 0, left, tolerance: most });
-        }
+        linear.remove(&self.unrolled.places, &mut residual);
         precondition(&residual, &mut scaled);
         let mut direction = scaled.clone();
         let mut product = vec![Vector::zeros(); count];
         let mut scratch = self.scratch();
         let mut energy = dots(&residual, &scaled);
-        for _ in 0..MOST_STEPS {
+        let mut steps = 0;
+        loop {
             let left = Vector::<D>::from_fn(|i, _| {
                 parallel::maximum(count, 0.0, |k| residual[k][i].abs())
             });
@@ -286,6 +266,12 @@ impl<'a, const D: usize> System<'a, D> {
             let is_left = left.map(|left| left > tolerance);
             self.apply(&direction, &mut scratch, &mut product);
             let of_direction = dots(&direction, &product);
+            // Without a positive energy along a direction there is no least change, and no step leads further.
+            let is_broken = (0..D).any(|i| is_left[i] && !(of_direction[i] > 0.0));
+            if is_broken || steps == MOST_STEPS {
+                return Err(OperatorError::NoConvergence { steps, left: left.amax(), tolerance });
+            }
+            steps += 1;
             let length = Vector::<D>::from_fn(|i, _| match is_left[i] {
                 true => energy[i] / of_direction[i],
                 false => 0.0,
@@ -297,7 +283,7 @@ impl<'a, const D: usize> System<'a, D> {
                     *residual -= product[first + k].component_mul(&length);
                 }
             });
-            linear.remove(&self.particles.position, &mut residual);
+            linear.remove(&self.unrolled.places, &mut residual);
             precondition(&residual, &mut scaled);
             let next = dots(&residual, &scaled);
             let turn = Vector::<D>::from_fn(|i, _| match is_left[i] {
@@ -311,8 +297,6 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             });
         }
-        let left = residual.iter().map(Vector::amax).fold(0.0, f64::max);
-        Err(OperatorError::NoConvergence { steps: MOST_STEPS, left, tolerance })
     }
 }
 

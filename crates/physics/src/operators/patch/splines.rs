@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::System;
+use super::unrolled::Unrolled;
 use crate::{Vector, parallel};
 
 /// Functions of the widest lattice, at most, whose equations are solved as a whole.
@@ -312,14 +313,14 @@ impl<const D: usize> Splines<D> {
     }
 }
 
-/// The first lattice. Along periodic axes, if particles see others across their ends, the number of its cells can be
+/// The first lattice. Along periodic axes, if bodies go on for ever there, the number of its cells can be
 /// halved as often as along the others.
 fn first<const D: usize>(system: &System<'_, D>) -> Lattice<D> {
-    let (positions, domain) = (&system.particles.position, &system.support.domain);
+    let Unrolled { places: positions, part_of, endless } = &system.unrolled;
+    let domain = &system.support.domain;
     let count = positions.len().max(1) as f64;
     let width = system.support.radius.iter().sum::<f64>() / count;
-    let parts = system.support.list.parts();
-    let crossed = system.crossed(0..positions.len());
+    let crossed: [bool; D] = std::array::from_fn(|axis| endless.iter().any(|part| part[axis]));
     let inside = |x: &Vector<D>| {
         let wrapped = domain.wrap(x);
         Vector::from_fn(|axis, _| if crossed[axis] { wrapped[axis] } else { x[axis] })
@@ -352,7 +353,7 @@ fn first<const D: usize>(system: &System<'_, D>) -> Lattice<D> {
         let cell = std::array::from_fn(|i| wrap(along[i].floor() as i32, cells[i]));
         Place { cell: (part, cell), at: along.map(|along| along - along.floor()) }
     };
-    let places = positions.iter().zip(&parts).map(place).collect();
+    let places = positions.iter().zip(part_of).map(place).collect();
     Lattice::new(edge, cells, places)
 }
 

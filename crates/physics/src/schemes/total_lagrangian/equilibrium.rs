@@ -5,8 +5,8 @@ use piola_formulas::hyperelastic::HyperelasticLaw;
 use super::fields::ColumnsMut;
 use super::statics::Known;
 use super::{
-    ARC_SCALE, BODY_FORCE, BOUNDARY_MOTION, ITERATIONS, LEDGER, LOAD_FACTOR, Matrices, PRESSURE,
-    StaticState, Statics, StaticsError, TRACTION, TotalLagrangian,
+    ARC_SCALE, BODY_FORCE, BOUNDARY_MOTION, ITERATIONS, LEDGER, LOAD_FACTOR, Matrices, Mixture,
+    PRESSURE, StaticState, Statics, StaticsError, TRACTION, TotalLagrangian,
 };
 use crate::boundaries::{pressure::Pressed, traction::Loaded};
 use crate::schemes::ledger::{Total, Totals};
@@ -26,12 +26,13 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<(), NoSolution> {
+        let remedy = self.remedy();
         self.settle([from, to], from, old, new, |statics, known| {
             statics.advance(known, to).map_err(|error| NoSolution {
                 kind: kind(&error),
                 time: to,
                 reached: from,
-                message: advised(&error),
+                message: advised(&error) + remedy,
             })
         })
     }
@@ -84,6 +85,18 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
+    /// What helps where a material keeps its volume: particles in rows have pressures that alternate from row to row, theory
+    /// (47), under which the body buckles in the same pattern.
+    fn remedy(&self) -> &'static str {
+        match self.solid.mixtures.iter().any(Mixture::is_nearly_incompressible) {
+            true => {
+                "; as the material is nearly incompressible, particles in rows may buckle against their neighbours: \
+                 displace them (`lattice.jitter = 0.2`), use smaller spacings, or lower `scheme.hourglass`"
+            }
+            false => "",
+        }
+    }
+
     /// Writes the state that `find` finds after the one in `old`, which is in equilibrium with the
     /// loads of `factor`, in a step of time, or what takes its part.
     fn settle(

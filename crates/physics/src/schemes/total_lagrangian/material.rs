@@ -46,6 +46,14 @@ impl<const D: usize> Mixture<D> {
         self.mean(|material| material.law.law().small_strain().mu)
     }
 
+    /// Whether one of its materials has a Poisson's ratio of 0.49 or more.
+    pub(super) fn is_nearly_incompressible(&self) -> bool {
+        self.0.iter().any(|(material, _)| {
+            let LameConstants { lambda, mu } = material.law.law().small_strain();
+            lambda >= 49.0 * mu
+        })
+    }
+
     /// First Piola-Kirchhoff stress of a displacement gradient, Pa.
     pub fn stress(&self, gradient: &Tensor<D>) -> Tensor<D> {
         self.0.iter().map(|(material, share)| material.law.stress(gradient) * *share).sum()

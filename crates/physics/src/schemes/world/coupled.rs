@@ -14,19 +14,11 @@ use crate::schemes::{CoupledScheme, Ledger, Scheme, SplitScheme};
 use crate::{Vector, parallel};
 
 impl<const D: usize> Solid<D> {
-    /// Brings what it keeps of its forces in its part of a state at a time in s into line with velocities that have
-    /// changed; what implicit steps keep is of their own making.
-    fn settle(&mut self, time: f64, own: &mut [f64]) {
-        if let (Some(solid), Some(_)) = (self.scheme.split(), self.cfl) {
-            solid.settle(time, own);
-        }
-    }
-
-    /// The same between two of its own steps.
-    fn settle_between(&mut self, time: f64, own: &mut [f64]) {
-        if let (Some(solid), Some(_)) = (self.scheme.split(), self.cfl) {
-            solid.settle_between(time, own);
-        }
+    /// What brings forces that it keeps in its part of a state into line with velocities that have changed; what implicit
+    /// steps keep is of their own making.
+    fn settling(&mut self) -> Option<&mut dyn SplitScheme> {
+        let is_explicit = self.cfl.is_some();
+        self.scheme.split().filter(|_| is_explicit)
     }
 
     /// Place and velocity of the wall particle in `row` of the interface.
@@ -280,7 +272,9 @@ impl<const D: usize> CoupledScheme for World<D> {
         let tail = &mut state[self.ledger_at()..];
         self.kick_solid(number, push, [&held[0][number], &held[1][number]], (own, tail));
         self.held = held;
-        self.solids[number].settle_between(push[0], own);
+        if let Some(solid) = self.solids[number].settling() {
+            solid.settle_between(push[0], own);
+        }
     }
 
     #[inline(never)]
@@ -317,7 +311,9 @@ impl<const D: usize> CoupledScheme for World<D> {
     #[inline(never)]
     fn settle(&mut self, time: f64, state: &mut [f64]) {
         for (solid, part) in self.solids.iter_mut().zip(&self.parts.all[1..]) {
-            solid.settle(time, &mut state[part.state.clone()]);
+            if let Some(solid) = solid.settling() {
+                solid.settle(time, &mut state[part.state.clone()]);
+            }
         }
     }
 
