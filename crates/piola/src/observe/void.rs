@@ -6,7 +6,7 @@ use crate::schemes::Observation;
 const CELLS: f64 = 3.0;
 
 /// Cells that a grid may have at most: a byte each.
-const MOST: f64 = 3e8;
+const MOST: f64 = 1e8;
 
 /// The volume of the largest void. A point is empty if it is farther than a spacing from every particle, so that a
 /// particle more has room there. Empty points that hang together, and from which no empty way leads out of the box around
@@ -48,10 +48,12 @@ enum Cell {
     Empty,
     /// Near a particle.
     Filled,
-    /// Empty, and of a void that has been found, or with a way out.
-    Seen,
-    /// Near a particle, and counted with the largest void.
-    Edge,
+    /// Empty, with a way out.
+    Outside,
+    /// Empty, and of a void.
+    Inside,
+    /// Of the largest void, or near a particle and counted with it.
+    Counted,
 }
 
 /// Cells of a box, along three axes of which unused ones have one cell.
@@ -75,15 +77,15 @@ fn largest_void(particles: &[(&[f64], f64)], periods: &[f64]) -> f64 {
         grid.fill(place, *spacing);
     }
     grid.open();
-    let mut largest = Vec::new();
+    let mut largest = (0, 0);
     for cell in 0..grid.cells.len() {
-        let core = grid.connected(vec![cell]);
-        if core.len() > largest.len() {
-            largest = core;
+        if grid.cells[cell] == Cell::Empty {
+            let size = grid.follow(vec![cell], [Cell::Empty, Cell::Inside], |_, _| ());
+            largest = largest.max((size, cell));
         }
     }
     let of_cell: f64 = grid.pitch[..grid.dimension].iter().product();
-    grid.grown(&largest, 0.5 * finest) as f64 * of_cell
+    grid.grown(largest.1, 0.5 * finest) as f64 * of_cell
 }
 
 impl Grid {
@@ -173,47 +175,60 @@ impl Grid {
             })
         };
         let outer = (0..self.cells.len()).filter(is_outer).collect();
-        self.connected(outer);
+        self.follow(outer, [Cell::Empty, Cell::Outside], |_, _| ());
     }
 
-    /// The empty cells that hang together with some, these included, which are marked.
-    fn connected(&mut self, mut open: Vec<usize>) -> Vec<usize> {
-        let mut found = Vec::new();
-        while let Some(cell) = open.pop() {
-            if self.cells[cell] != Cell::Empty {
-                continue;
-            }
-            self.cells[cell] = Cell::Seen;
-            found.push(cell);
+    /// Turns the cells of one kind that hang together with some, these included, into another, and calls `visit` with each.
+    /// How many there are.
+    fn follow(
+        &mut self,
+        mut next: Vec<usize>,
+        [from, to]: [Cell; 2],
+        mut visit: impl FnMut(&mut Self, usize),
+    ) -> usize {
+        let mut count = 0;
+        next.retain(|&cell| self.turn(cell, [from, to]));
+        while let Some(cell) = next.pop() {
+            count += 1;
+            visit(self, cell);
             let at = self.numbers(cell);
             for axis in 0..self.dimension {
                 for step in [-1, 1] {
-                    let mut next = at;
-                    next[axis] += step;
-                    open.extend(self.index(next));
+                    let mut beside = at;
+                    beside[axis] += step;
+                    next.extend(self.index(beside).filter(|&cell| self.turn(cell, [from, to])));
                 }
             }
         }
-        found
+        count
     }
 
-    /// How many cells there are in some, and within `reach` in m around them.
-    fn grown(&mut self, core: &[usize], reach: f64) -> usize {
+    /// Turns a cell of one kind into another; whether it was of that kind.
+    fn turn(&mut self, cell: usize, [from, to]: [Cell; 2]) -> bool {
+        let is_one = self.cells[cell] == from;
+        if is_one {
+            self.cells[cell] = to;
+        }
+        is_one
+    }
+
+    /// How many cells there are in the void that one belongs to, and within `reach` in m around it.
+    fn grown(&mut self, cell: usize, reach: f64) -> usize {
         let mut edge = 0;
-        for &cell in core {
-            let at = self.numbers(cell);
+        let core = self.follow(vec![cell], [Cell::Inside, Cell::Counted], |grid, cell| {
+            let at = grid.numbers(cell);
             let place: [f64; 3] = std::array::from_fn(|axis| {
-                self.lower[axis] + (at[axis] as f64 + 0.5) * self.pitch[axis]
+                grid.lower[axis] + (at[axis] as f64 + 0.5) * grid.pitch[axis]
             });
-            let dimension = self.dimension;
-            self.near(&place[..dimension], reach, |cell| {
+            let dimension = grid.dimension;
+            grid.near(&place[..dimension], reach, |cell| {
                 if *cell == Cell::Filled {
-                    *cell = Cell::Edge;
+                    *cell = Cell::Counted;
                     edge += 1;
                 }
             });
-        }
-        core.len() + edge
+        });
+        core + edge
     }
 }
 

@@ -200,7 +200,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
         },
         KindSpec {
             name: "void",
-            meaning: "the largest void: points farther than a spacing from all particles, those of walls included, with no empty way out of the box around them all; column `NAME.volume`, its volume (area in 2D). With the key `body` only particles of that body count. In a closed tank that is not full, the air is a void. No value if particles are so far apart that the grid, a third of a spacing fine, would need more than 3e8 cells",
+            meaning: "the largest void: points farther than a spacing from all particles, those of walls included, with no empty way out of the box around them all; column `NAME.volume`, its volume (area in 2D). With the key `body` only particles of that body count. In a closed tank that is not full, the air is a void. No value if particles are so far apart that the grid, a third of a spacing fine, would need more than 1e8 cells",
             dimensions: &[2, 3],
             keys: &[],
         },
