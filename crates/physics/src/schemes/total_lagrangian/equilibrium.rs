@@ -32,7 +32,7 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
                 kind: kind(&error),
                 time: to,
                 reached: from,
-                message: advised(&error) + remedy,
+                message: advised(&error, "a load step", remedy),
             })
         })
     }
@@ -48,16 +48,14 @@ impl<const D: usize> StaticScheme for TotalLagrangian<D> {
     ) -> Result<(), NoSolution> {
         let known = LEDGER.behind(D, self.columns(old).tail);
         let [factor, scale] = [known[LOAD_FACTOR], known[ARC_SCALE]];
+        let remedy = self.remedy();
         let mut radius = (from > 0.0).then_some(scale * (to - from));
         self.settle([from, to], factor, old, new, |statics, known| {
             statics.advance_along(known, to - from, &mut radius).map_err(|error| NoSolution {
                 kind: kind(&error),
                 time: to,
                 reached: from,
-                message: format!(
-                    "{error} (a step of arc length is `time.step`; `time.on_failure = \"retry\"` \
-                     halves it)"
-                ),
+                message: advised(&error, "a step of arc length", remedy),
             })
         })?;
         if let Some(radius) = radius {
@@ -216,9 +214,13 @@ pub(super) fn kind(error: &StaticsError) -> Missed {
     }
 }
 
-fn advised(error: &StaticsError) -> String {
-    if kind(error) == Missed::Unstable {
-        return error.to_string();
-    }
-    format!("{error} (a load step is `time.step`; `time.on_failure = \"retry\"` halves it)")
+/// An error with what may help: a shorter step, as it is called here, and a remedy of the material where no equilibrium is
+/// found.
+fn advised(error: &StaticsError, step: &str, remedy: &str) -> String {
+    let halved = match kind(error) {
+        Missed::Unstable => String::new(),
+        _ => format!(" ({step} is `time.step`; `time.on_failure = \"retry\"` halves it)"),
+    };
+    let is_lost = matches!(error, StaticsError::Load(_)) && kind(error) != Missed::Inverted;
+    format!("{error}{halved}{}", if is_lost { remedy } else { "" })
 }

@@ -46,11 +46,11 @@ impl<const D: usize> Mixture<D> {
         self.mean(|material| material.law.law().small_strain().mu)
     }
 
-    /// Whether one of its materials has a Poisson's ratio of 0.49 or more.
+    /// Whether one of its materials has a bulk modulus of more than 45 shear moduli, a Poisson's ratio above 0.489.
     pub(super) fn is_nearly_incompressible(&self) -> bool {
         self.0.iter().any(|(material, _)| {
             let LameConstants { lambda, mu } = material.law.law().small_strain();
-            lambda >= 49.0 * mu
+            lambda + 2.0 / 3.0 * mu > 45.0 * mu
         })
     }
 

@@ -83,7 +83,9 @@ pub(super) fn open<const D: usize>(
             Err(problem) => problems.push(problem),
         }
     }
-    if problems.is_empty() && open.all.len() > 1 && !settings.settings.free_surface {
+    // What is in the way may move out of it.
+    let is_fixed = case.boundaries.is_empty() && case.systems.is_empty();
+    if problems.is_empty() && open.all.len() > 1 && is_fixed && !settings.settings.free_surface {
         problems.extend(cut_off(case, particles, &open)?);
     }
     if !problems.is_empty() {
@@ -142,7 +144,8 @@ fn cut_off<const D: usize>(
         let place = case.bodies[boundary.body as usize].name.place;
         let message =
             format!("no way through the fluid leads from `{}` to another opening", boundary.name);
-        let help = "leave a gap of two spacings in the wall between them, or remove the opening";
+        let help =
+            "let fluid fill a way between them, two spacings wide at least, or remove the opening";
         case.problem_at(place, message, "cut off", Some(help.to_owned()))
     };
     Ok(cut.map(problem).collect())

@@ -56,7 +56,7 @@ const BOUNDARIES: Choices = choices(&[
     choice("none", "no ghosts: sums end at the boundary of the body"),
     choice(
         "scaled",
-        "no ghosts, and sums divided by the share of the cover inside the body: exact for constants; the factor of Elastodynamics 2.8.1",
+        "no ghosts, and sums divided by the share of the cover inside the body: exact for constants; one reading of the factor that Elastodynamics 2.8.1 mentions",
     ),
     choice("continued", "the function"),
     choice(
