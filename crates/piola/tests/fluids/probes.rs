@@ -109,6 +109,13 @@ body = "water"
 at = [0.43, 0.31]
 relative_to = [1.71, 0.77]
 fields = ["pressure"]
+[[probe]]
+name = "hole"
+kind = "void"
+[[probe]]
+name = "bare"
+kind = "void"
+body = "water"
 [[plot]]
 name = "both"
 curves = ["level.elevation", "lift.force.y"]
@@ -127,6 +134,8 @@ end = 1e-5
         "side.pressure",
         "above.pressure",
         "between.pressure",
+        "hole.volume",
+        "bare.volume",
     ];
     let found = columns(still, &[], names).map(|column| column[0]);
     // The box displaces 0.12 m2 of water.
@@ -146,6 +155,9 @@ end = 1e-5
     assert_eq!(found[9], 0.0);
     // Interpolation is exact for what is linear.
     assert!((found[10] - 9810.0 * 0.46).abs() < 1e-6, "{found:?}");
+    // The box fills its hole in the water, whose volume is known to a cell of a third of a spacing along its edge.
+    assert_eq!(found[11], 0.0);
+    assert!((found[12] - 0.12).abs() < 1.4 * 0.05 / 3.0, "{found:?}");
     let misplaced = [
         ("at = [0.43, 0.0]", "at = [0.43, 0.5]", "no particle of the wall is behind this place"),
         (
