@@ -81,7 +81,9 @@ fn total(scheme: &dyn Scheme, state: &[f64]) -> f64 {
     energies.iter().sum()
 }
 
-/// `dt c/dx` of the symbols of the kernels on an endless row, to a part in a thousand.
+/// `dt c/dx` of the symbols of the kernels on an endless row, to a part in a thousand: the numbers have up to 6 in ten thousand
+/// of rounding, and Lanczos' eigenvalues lie up to a part in a thousand below the largest one, which allows half of that in a
+/// step. For that the step is made for eigenvalues 1.002 times as large as what is found.
 #[test]
 fn the_stable_step_is_that_of_the_kernels_symbol() {
     let known = [
@@ -103,8 +105,8 @@ fn the_stable_step_is_that_of_the_kernels_symbol() {
     for (kernel, cover, expected) in known {
         let made = input([200], HyperelasticLaw::linear_elastic, (kernel, cover), strong());
         let mut scheme = TotalLagrangian::new(made).unwrap();
-        let got = stable_step(&mut scheme) * speed;
-        assert!((got / expected - 1.0).abs() < 4e-3, "{kernel:?} {cover}: {got}, not {expected}");
+        let got = stable_step(&mut scheme) * speed * 1.002_f64.sqrt();
+        assert!((got / expected - 1.0).abs() < 1e-3, "{kernel:?} {cover}: {got}, not {expected}");
     }
 }
 
