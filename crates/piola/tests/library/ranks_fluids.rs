@@ -55,3 +55,11 @@ fn solids_that_flow_are_the_same_on_any_number_of_ranks() {
     let bar = include_str!("../../../../cases/ctvf/taylor-bar/case.toml");
     same_on_any_number(bar, &["parameters.across=4", "time.end=20e-6", "output.every=10e-6"]);
 }
+
+/// What is prescribed of solids takes work that is added up particle by particle.
+#[test]
+fn a_rod_that_is_pulled_is_the_same_on_any_number_of_ranks() {
+    let rod = include_str!("../../../../cases/ctvf/johnson-cook/case.toml");
+    let pull = "boundary.all.velocity={ x = 'rate * x * (1 + 1e5 * t)' }";
+    same_on_any_number(rod, &["parameters.dx=0.0001", "parameters.end=1e-6", pull]);
+}
