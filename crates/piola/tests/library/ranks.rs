@@ -245,6 +245,21 @@ fn what_is_set_between_steps_reaches_all_ranks() {
     assert!(changed(3) == alone && changed(4) == alone);
 }
 
+/// How a run ends that fails after as many retries, in words.
+pub fn failure(text: &str, sets: &[&str], ranks: usize, retries: usize) -> String {
+    let overrides = sets.iter().map(|set| (*set).to_owned());
+    let overrides = overrides.chain([format!("compute.ranks={ranks}")]).collect();
+    let options = LoadOptions { overrides, ..LoadOptions::default() };
+    let case = case::parse(text, "shared.toml", &options).unwrap_or_else(|told| panic!("{told}"));
+    let mut session = Session::new(&case).unwrap_or_else(|told| panic!("{told}"));
+    while session.step().unwrap() {}
+    let summary = session.finish().unwrap().summary;
+    assert_eq!(summary.retries.len(), retries, "{:?}", summary.outcome);
+    let told = format!("{:?} {:?} {:?}", summary.outcome, summary.retries, summary.warnings);
+    assert!(told.contains("Failed"), "{told}");
+    told
+}
+
 /// A body that is pressed until it collapses fails in the same words, and retries as often.
 #[test]
 fn failures_are_the_same_on_any_number_of_ranks() {
@@ -254,21 +269,7 @@ fn failures_are_the_same_on_any_number_of_ranks() {
         "time.on_failure='retry'",
         "time.retries=2",
     ];
-    let outcome = |ranks: usize| {
-        let overrides = sets.iter().map(|set| (*set).to_owned());
-        let overrides = overrides.chain([format!("compute.ranks={ranks}")]).collect();
-        let options = LoadOptions { overrides, ..LoadOptions::default() };
-        let case =
-            case::parse(BLOCK, "shared.toml", &options).unwrap_or_else(|told| panic!("{told}"));
-        let mut session = Session::new(&case).unwrap_or_else(|told| panic!("{told}"));
-        while session.step().unwrap() {}
-        let summary = session.finish().unwrap().summary;
-        assert_eq!(summary.retries.len(), 2, "{:?}", summary.outcome);
-        format!("{:?} {:?} {:?}", summary.outcome, summary.retries, summary.warnings)
-    };
-    let alone = outcome(1);
-    assert!(alone.contains("Failed"), "{alone}");
-    assert_eq!(outcome(3), alone);
+    assert_eq!(failure(BLOCK, &sets, 3, 2), failure(BLOCK, &sets, 1, 2));
 }
 
 /// An observer that panics.

@@ -3,7 +3,7 @@
 //! Runs are so long that the lists of neighbours are renewed several times, and with them the plan of copies.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
 
-use super::ranks::same_on_any_number;
+use super::ranks::{failure, same_on_any_number};
 
 const VORTICES: &str = include_str!("../../../../cases/ctvf/taylor-green/case.toml");
 
@@ -39,19 +39,50 @@ fn a_driven_cavity_is_the_same_on_any_number_of_ranks() {
     same_on_any_number(cavity, &["parameters.side=16", "time.end=0.3", "output.every=0.1"]);
 }
 
+const DAM: &str = include_str!("../../../../cases/ctvf/dam-break/case.toml");
+
+/// A tank of whose walls the water reaches the end.
+const LOW: [&str; 5] = [
+    "parameters.dx=0.1",
+    "parameters.walls=2.1",
+    "parameters.length=2.0",
+    "time.end=1.4",
+    "output.every=0.5",
+];
+
 /// Walls that are touched, a free surface, and drops that fly over the end of a wall and are taken out.
 #[test]
 fn a_dam_break_is_the_same_on_any_number_of_ranks() {
-    let dam = include_str!("../../../../cases/ctvf/dam-break/case.toml");
-    let sets = ["parameters.dx=0.1", "parameters.walls=2.1", "time.end=1.4", "output.every=0.5"];
-    same_on_any_number(dam, &sets);
-    same_on_any_number(dam, &[&sets[..], &["scheme.shifting='ipst'", "time.end=0.7"]].concat());
+    same_on_any_number(DAM, &LOW);
+    same_on_any_number(DAM, &[&LOW[..], &["scheme.shifting='ipst'", "time.end=0.7"]].concat());
     let damped = ["scheme.damping='x'", "scheme.escaped='stop'", "time.end=0.3"];
-    same_on_any_number(dam, &[&sets[..], &damped].concat());
+    same_on_any_number(DAM, &[&LOW[..], &damped].concat());
+}
+
+/// A particle that escapes, and one that is pulled by what is no number, are told in the same words.
+#[test]
+fn what_goes_wrong_in_a_fluid_is_the_same_on_any_number_of_ranks() {
+    let escaped = [&LOW[..], &["scheme.escaped='stop'"]].concat();
+    let told = failure(DAM, &escaped, 1, 0);
+    assert!(told.contains("Escaped"), "{told}");
+    assert_eq!(failure(DAM, &escaped, 3, 0), told);
+    let pull = "load+={ kind = 'body_force', acceleration = ['sqrt(0.05 - t) * x', '0'] }";
+    let pulled = [&LOW[..], &[pull]].concat();
+    let told = failure(DAM, &pulled, 1, 0);
+    assert!(told.contains("NotFinite"), "{told}");
+    assert_eq!(failure(DAM, &pulled, 4, 0), told);
 }
 
 #[test]
 fn solids_that_flow_are_the_same_on_any_number_of_ranks() {
     let bar = include_str!("../../../../cases/ctvf/taylor-bar/case.toml");
     same_on_any_number(bar, &["parameters.across=4", "time.end=20e-6", "output.every=10e-6"]);
+}
+
+/// What is prescribed of solids takes work that is added up particle by particle.
+#[test]
+fn a_rod_that_is_pulled_is_the_same_on_any_number_of_ranks() {
+    let rod = include_str!("../../../../cases/ctvf/johnson-cook/case.toml");
+    let pull = "boundary.all.velocity={ x = 'rate * x * (1 + 1e5 * t)' }";
+    same_on_any_number(rod, &["parameters.dx=0.0001", "parameters.end=1e-6", pull]);
 }

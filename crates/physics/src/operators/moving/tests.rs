@@ -82,6 +82,8 @@ fn ranks_show_the_neighbors_of_one() {
     let mut source = Pcg64::seed_from_u64(11);
     let mut positions: Vec<Vector<2>> =
         (0..count).map(|_| Vector::from_fn(|_, _| source.random_range(0.0..1.0))).collect();
+    // Each rank has a stripe.
+    positions.sort_by(|one, other| one[1].total_cmp(&other[1]));
     let mut rounds = Vec::new();
     for _ in 0..8 {
         rounds.push(positions.clone());
