@@ -124,7 +124,7 @@ pub enum NeighborError {
         neighbor: usize,
     },
     /// One of several ranks has no list.
-    #[error("the neighbours of another rank's particles cannot be found; its own message says why")]
+    #[error("the neighbours of another rank's particles cannot be found")]
     OtherRank,
 }
 

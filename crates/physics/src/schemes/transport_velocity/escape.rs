@@ -215,7 +215,7 @@ impl<const D: usize> Common<D> {
         let begin = self.first();
         let rows: Vec<usize> = escaped.iter().map(|number| number - begin).collect();
         let matter = |row: usize| [self.mass[begin + row], self.compliance(begin + row)];
-        self.team().sum_in_order(&take_out(&rows, matter, &mut self.parts(state).0))
+        self.team().sum_in_order(take_out(&rows, matter, &mut self.parts(state).0).into_iter())
     }
 
     /// Number of particles that have been removed in `state`.

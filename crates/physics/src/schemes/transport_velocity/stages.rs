@@ -125,11 +125,11 @@ pub(super) fn stage_of<const D: usize, M: Continuum<D>>(pass: Pass<M::Own>) -> S
         Pass::Reach => ("reach", [&["on_surface"], &["on_surface"], &["reach"], &[]]),
         Pass::Shift => {
             let reads = &["crowding", "fastest"];
-            ("shift", [reads, &["side.density"], &[], &["side.shifting_velocity"]])
+            ("shift", [reads, &["side.density"], &["side.shifting_velocity"], &[]])
         }
         Pass::HoldOff => {
             let reads = &["forces", "side.velocity", "side.shifting_velocity", "wall_motion"];
-            ("hold_off", [reads, &["position"], &[], &["barrier", "side.shifting_velocity"]])
+            ("hold_off", [reads, &["position"], &["side.shifting_velocity"], &["barrier"]])
         }
         Pass::Bear => ("bear", [&["forces", "barrier"], &["barrier"], &["forces"], &[]]),
         Pass::Store => {
