@@ -183,9 +183,7 @@ impl Team {
             return total;
         }
         let mut numbers = Vec::new();
-        for mut term in own {
-            term.each(&mut |number| numbers.push(*number));
-        }
+        own.for_each(|mut term| term.each(&mut |number| numbers.push(*number)));
         for term in self.rows_of_all(numbers).chunks_exact(T::NUMBERS) {
             let (mut part, mut rest) = (T::ZERO, term.iter());
             part.each(&mut |number| *number = rest.next().copied().unwrap_or_default());

@@ -2,6 +2,7 @@
 
 use super::{Common, Hypoelastic};
 use crate::Vector;
+use crate::boundaries::prescribed::Entry;
 use crate::schemes::ledger::Total;
 use crate::schemes::momentum::add_moments;
 
@@ -18,7 +19,7 @@ impl<const D: usize> Hypoelastic<D> {
             return Total::default();
         }
         let (own, _) = common.parts(state);
-        let changes = self.held.iter().filter_map(|entry| {
+        let hold = |entry: &Entry| {
             let row = common.row(entry.particle)?;
             let velocity = &mut own.velocity[row][entry.component];
             let (mass, old) = (common.mass[entry.particle], *velocity);
@@ -32,8 +33,8 @@ impl<const D: usize> Hypoelastic<D> {
             momentum[entry.component] = mass * (new - old);
             add_moments(&own.position[row], &momentum, &mut total.force);
             Some(total)
-        });
-        common.team().sum_in_order(changes)
+        };
+        common.team().sum_in_order(self.held.iter().filter_map(hold))
     }
 
     /// Takes from the accelerations what prescribed velocities do not follow: the reaction, which
