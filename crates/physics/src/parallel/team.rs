@@ -176,12 +176,14 @@ impl Team {
     }
 
     /// The sum of a few terms of all ranks, added one after the other in the order of ranks.
-    pub fn sum_in_order<T: Sums>(&self, own: &[T]) -> T {
-        let mut numbers = Vec::with_capacity(own.len() * T::NUMBERS);
-        for mut term in own.iter().copied() {
-            term.each(&mut |number| numbers.push(*number));
-        }
+    pub fn sum_in_order<T: Sums>(&self, own: impl Iterator<Item = T>) -> T {
         let mut total = T::ZERO;
+        if self.is_alone() {
+            own.for_each(|term| total.add(&term));
+            return total;
+        }
+        let mut numbers = Vec::new();
+        own.for_each(|mut term| term.each(&mut |number| numbers.push(*number)));
         for term in self.rows_of_all(numbers).chunks_exact(T::NUMBERS) {
             let (mut part, mut rest) = (T::ZERO, term.iter());
             part.each(&mut |number| *number = rest.next().copied().unwrap_or_default());

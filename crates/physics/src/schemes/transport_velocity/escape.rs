@@ -215,7 +215,7 @@ impl<const D: usize> Common<D> {
         let begin = self.first();
         let rows: Vec<usize> = escaped.iter().map(|number| number - begin).collect();
         let matter = |row: usize| [self.mass[begin + row], self.compliance(begin + row)];
-        self.team().sum_in_order(&take_out(&rows, matter, &mut self.parts(state).0))
+        self.team().sum_in_order(take_out(&rows, matter, &mut self.parts(state).0))
     }
 
     /// Number of particles that have been removed in `state`.
@@ -231,8 +231,8 @@ pub(super) fn take_out<const D: usize>(
     rows: &[usize],
     matter: impl Fn(usize) -> [f64; 2],
     own: &mut ColumnsMut<'_, D>,
-) -> Vec<Total> {
-    let mut take = |&row: &usize| {
+) -> impl Iterator<Item = Total> {
+    rows.iter().map(move |&row| {
         let [mass, compliance] = matter(row);
         let (velocity, pressure) = (own.velocity[row], own.pressure[row]);
         let energy = velocity.norm_squared() + compliance * pressure * pressure;
@@ -243,6 +243,5 @@ pub(super) fn take_out<const D: usize>(
         }
         (own.pressure[row], own.density[row]) = (0.0, REMOVED);
         total
-    };
-    rows.iter().map(&mut take).collect()
+    })
 }

@@ -96,7 +96,7 @@ impl<const D: usize> OnDevice<D> {
         }
         let escaped: Vec<usize> = (0..self.count).filter(|&number| told[number] > 0.0).collect();
         let matter = |number: usize| [removal.mass[number], self.plan.compliance];
-        let total = Team::default().sum_in_order(&take_out(&escaped, matter, &mut own));
+        let total = Team::default().sum_in_order(take_out(&escaped, matter, &mut own));
         self.take_over(&state)?;
         Ok(total)
     }

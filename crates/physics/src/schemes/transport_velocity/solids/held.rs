@@ -2,6 +2,7 @@
 
 use super::{Common, Hypoelastic};
 use crate::Vector;
+use crate::boundaries::prescribed::Entry;
 use crate::schemes::ledger::Total;
 use crate::schemes::momentum::add_moments;
 
@@ -14,26 +15,26 @@ impl<const D: usize> Hypoelastic<D> {
         time: f64,
         state: &mut [f64],
     ) -> Total {
-        let mut totals = Vec::new();
+        if self.held.is_empty() {
+            return Total::default();
+        }
         let (own, _) = common.parts(state);
-        for entry in self.held.iter() {
-            let Some(row) = common.row(entry.particle) else { continue };
+        let hold = |entry: &Entry| {
+            let row = common.row(entry.particle)?;
             let velocity = &mut own.velocity[row][entry.component];
             let (mass, old) = (common.mass[entry.particle], *velocity);
             let new = entry.at(time);
-            if new != old {
-                *velocity = new;
-                let mut total = Total::of(0.5 * mass * (new - old) * (new + old));
-                let mut momentum = Vector::zeros();
-                momentum[entry.component] = mass * (new - old);
-                add_moments(&own.position[row], &momentum, &mut total.force);
-                totals.push(total);
+            if new == old {
+                return None;
             }
-        }
-        match self.held.is_empty() {
-            true => Total::default(),
-            false => common.team().sum_in_order(&totals),
-        }
+            *velocity = new;
+            let mut total = Total::of(0.5 * mass * (new - old) * (new + old));
+            let mut momentum = Vector::zeros();
+            momentum[entry.component] = mass * (new - old);
+            add_moments(&own.position[row], &momentum, &mut total.force);
+            Some(total)
+        };
+        common.team().sum_in_order(self.held.iter().filter_map(hold))
     }
 
     /// Takes from the accelerations what prescribed velocities do not follow: the reaction, which
