@@ -71,7 +71,7 @@ const CASES: [(&str, &str); 4] = [
     ("dual-support/free-vibration", "--set parameters.dx=0.5 --set time.end=0.05"),
     ("elastodynamics/wave-2d", ""),
     ("upwind/column-impact", "--set time.end=0.5"),
-    ("ctvf/dam-break", "--set parameters.dx=0.1 --set time.end=0.5"),
+    ("ctvf/dam-break", "--set parameters.dx=0.1 --set time.end=0.2"),
 ];
 
 /// A folder with a case in `plate.toml`.
