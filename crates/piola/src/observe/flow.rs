@@ -33,12 +33,6 @@ pub struct Gauge {
 }
 
 impl Gauge {
-    /// Renumbers its particles; those without a number no longer count.
-    pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
-        let renamed = self.particles.iter().filter_map(|&(a, volume)| Some((index(a)?, volume)));
-        self.particles = renamed.collect();
-    }
-
     pub(super) fn record(&self, now: &mut Observation) -> f64 {
         let dimension = now.scheme().dimension();
         let particles: Vec<u32> = self.particles.iter().map(|(a, _)| *a).collect();

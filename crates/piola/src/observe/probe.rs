@@ -180,8 +180,10 @@ impl Probe {
             }
             ProbeKind::Point(point) => point.renumber(index),
             ProbeKind::Sensor(sensor) => sensor.renumber(index),
-            ProbeKind::Gauge(gauge) => gauge.renumber(index),
-            ProbeKind::Void(void) => void.renumber(index),
+            ProbeKind::Gauge(Gauge { particles, .. }) | ProbeKind::Void(Void { particles, .. }) => {
+                let renamed = particles.iter().filter_map(|&(a, size)| Some((index(a)?, size)));
+                *particles = renamed.collect();
+            }
             ProbeKind::Opening(_) | ProbeKind::Tangent { .. } => (),
         }
     }

@@ -21,12 +21,6 @@ pub struct Void {
 }
 
 impl Void {
-    /// Renumbers its particles; those without a number no longer count.
-    pub fn renumber(&mut self, index: &dyn Fn(u32) -> Option<u32>) {
-        let renamed = self.particles.iter().filter_map(|&(a, spacing)| Some((index(a)?, spacing)));
-        self.particles = renamed.collect();
-    }
-
     /// In m^D; not a number if the particles are too far apart for a grid.
     pub(super) fn record(&self, now: &mut Observation) -> f64 {
         let all: Vec<u32> = self.particles.iter().map(|(a, _)| *a).collect();
