@@ -209,7 +209,9 @@ impl Context<'_> {
             }
             (Kind::List(inner), Value::List(list)) => {
                 self.not_too_many(name, list)?;
-                Datum::List(list.iter().filter_map(|item| self.value(name, inner, item)).collect())
+                let refused = |item: &Node| Located::new(Datum::Refused, item.place);
+                let read = |item| self.value(name, inner, item).unwrap_or_else(|| refused(item));
+                Datum::List(list.iter().map(read).collect())
             }
             (Kind::Parameters, Value::Table(_)) => return None,
             _ => self.simple(name, kind, node)?,

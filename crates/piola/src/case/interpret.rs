@@ -152,7 +152,7 @@ pub(super) fn case(
     let output = reader.output(record, end);
     let pictures: Vec<_> =
         record.records("picture").map(|picture| reader.picture(picture, end)).collect();
-    let known_probes = probes.as_deref();
+    let known_probes = probes.as_deref().filter(|_| record.is_whole("probe"));
     let plots: Vec<_> =
         record.records("plot").map(|plot| reader.plot(plot, known_probes)).collect();
     let variants: Vec<_> = record.records("variant").map(|it| reader.variant(it)).collect();

@@ -18,6 +18,8 @@ pub(super) enum Datum {
     Record(Record),
     /// Paths of keys with one or more values, unchecked but for their number.
     Keys(Vec<(Located<String>, Vec<Node>)>),
+    /// An entry of a list that was refused.
+    Refused,
 }
 
 /// A checked table.
@@ -107,6 +109,11 @@ impl Record {
             Some(Datum::List(list)) => list,
             _ => &[],
         }
+    }
+
+    /// Whether no entry of a list was refused.
+    pub(super) fn is_whole(&self, key: &str) -> bool {
+        !self.list(key).iter().any(|item| matches!(item.value, Datum::Refused))
     }
 
     pub(super) fn numbers(&self, key: &str) -> Option<Located<Vec<f64>>> {

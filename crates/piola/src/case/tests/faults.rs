@@ -44,6 +44,16 @@ fn of_an_unknown_scheme_nothing_else_is_said() {
 }
 
 #[test]
+fn of_a_probe_of_an_unknown_kind_nothing_else_is_said() {
+    let said = broken(
+        "[time]",
+        "[[probe]]\nname = \"top\"\nkind = \"extremun\"\n[[plot]]\nname = \"top\"\ncurves = [\"top.position.y\"]\n[time]",
+    );
+    assert!(said.contains("[[probe]] has no kind `extremun`"), "{said}");
+    assert_eq!(said.matches("error:").count(), 1, "{said}");
+}
+
+#[test]
 fn the_good_case_is_good() {
     let case = read_with(GOOD, &[]).unwrap_or_else(|problems| panic!("{problems}"));
     assert_eq!(case.output.every.value, 0.03);
