@@ -11,6 +11,8 @@ use piola::output::checkpoint;
 use piola::time::{Outcome, Progress};
 use rayon::prelude::*;
 
+use super::ranks_coupled::TANK;
+
 fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
     let options = LoadOptions {
@@ -219,6 +221,27 @@ fn solids_of_each_kind_in_a_fluid_resume_to_the_bit() {
     let slab = all.iter().find(|path| path.ends_with("slab/case.toml")).unwrap();
     let variants = ["upwind", "upwind-damped", "upwind-implicit", "hypoelastic-fine"];
     side_by_side(&variants, |variant| resumes_to_the_bit(slab, Some(variant)));
+}
+
+/// A fluid with solids that touch what moves, broken off on two ranks, continued on three and ended on one.
+#[test]
+fn a_fluid_with_solids_goes_on_on_another_number_of_ranks() {
+    let on = |ranks: usize| {
+        let overrides = vec![format!("compute.ranks={ranks}"), "output.compression='none'".into()];
+        let options = LoadOptions { overrides, ..LoadOptions::default() };
+        case::parse(TANK, "tank.toml", &options).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, broken] = ["whole", "broken"].map(|name| folder.path().join(name));
+    let unbroken = run(&on(1), &whole, false, 1, u64::MAX);
+    let steps = unbroken.summary.steps;
+    run(&on(2), &broken, false, 2, steps / 3);
+    let second = run(&on(3), &broken, true, 3, 2 * steps / 3);
+    assert_eq!(second.summary.resumed.map(|(_, step)| step), Some(steps / 3));
+    let last = run(&on(1), &broken, true, 1, u64::MAX);
+    assert_eq!(last.summary.resumed.map(|(_, step)| step), Some(2 * steps / 3));
+    assert_same(&whole, &broken, "a tank");
+    assert_eq!(last.tables, unbroken.tables);
 }
 
 /// Steps of particles after which a run ends here: what a state has to keep shows early. In explicit and in implicit
