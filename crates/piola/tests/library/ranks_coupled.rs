@@ -141,16 +141,14 @@ fn solids_on_a_floor_that_stands_are_the_same_on_any_number_of_ranks() {
     same_on_any_number(TANK, &sets);
 }
 
-/// A gate that opens, a plate under the weight of water, and one in a dam break in space.
+/// A gate that opens, and a plate under the weight of water.
 #[test]
 fn gates_and_plates_are_the_same_on_any_number_of_ranks() {
     let gate = include_str!("../../../../cases/coupled/gate/case.toml");
-    same_on_any_number(gate, &["parameters.across=1", "time.end=4e-3", "output.every=2e-3"]);
+    same_on_any_number(gate, &["parameters.across=2", "time.end=2e-3", "output.every=1e-3"]);
     let plate = include_str!("../../../../cases/coupled/plate/case.toml");
     let coarse = ["parameters.across=1", "parameters.layers=3", "time.end=5e-3"];
     same_on_any_number(plate, &coarse);
-    let dam = include_str!("../../../../cases/coupled/dam-break-plate-3d/case.toml");
-    same_on_any_number(dam, &["parameters.across=1", "parameters.layers=2", "time.end=5e-4"]);
 }
 
 const SLAB: &str = include_str!("../../../../cases/coupled/slab/case.toml");
@@ -174,11 +172,14 @@ fn slabs_of_each_kind_are_the_same_on_any_number_of_ranks() {
     }
 }
 
-/// A rigid box in water in space.
+/// A rigid box in water in space, and a soft one.
 #[test]
 fn a_box_that_floats_is_the_same_on_any_number_of_ranks() {
     let floating = include_str!("../../../../cases/coupled/floating-box/case.toml");
-    same_on_any_number(floating, &["parameters.n=3", "time.end=0.1", "output.every=0.05"]);
+    let short = ["parameters.n=4", "time.end=0.05"];
+    same_on_any_number(floating, &short);
+    let soft = "body.box.material={ kind = 'neo_hookean_logarithmic', density = '0.5 * rho', young_modulus = 1e5, poisson_ratio = 0.3 }";
+    same_on_any_number(floating, &[&short[..], &[soft]].concat());
 }
 
 /// A block that goes through a floor which is too soft is told in the same words, after as many attempts with shorter
