@@ -145,9 +145,9 @@ fn solids_on_a_floor_that_stands_are_the_same_on_any_number_of_ranks() {
 #[test]
 fn gates_and_plates_are_the_same_on_any_number_of_ranks() {
     let gate = include_str!("../../../../cases/coupled/gate/case.toml");
-    same_on_any_number(gate, &["parameters.across=2", "time.end=2e-3", "output.every=1e-3"]);
+    same_on_any_number(gate, &["parameters.across=2", "time.end=1e-3", "output.every=1e-3"]);
     let plate = include_str!("../../../../cases/coupled/plate/case.toml");
-    let coarse = ["parameters.across=1", "parameters.layers=3", "time.end=5e-3"];
+    let coarse = ["parameters.across=1", "parameters.layers=3", "time.end=3e-3"];
     same_on_any_number(plate, &coarse);
 }
 
@@ -172,14 +172,11 @@ fn slabs_of_each_kind_are_the_same_on_any_number_of_ranks() {
     }
 }
 
-/// A rigid box in water in space, and a soft one.
+/// A rigid box in water in space.
 #[test]
 fn a_box_that_floats_is_the_same_on_any_number_of_ranks() {
     let floating = include_str!("../../../../cases/coupled/floating-box/case.toml");
-    let short = ["parameters.n=4", "time.end=0.05"];
-    same_on_any_number(floating, &short);
-    let soft = "body.box.material={ kind = 'neo_hookean_logarithmic', density = '0.5 * rho', young_modulus = 1e5, poisson_ratio = 0.3 }";
-    same_on_any_number(floating, &[&short[..], &[soft]].concat());
+    same_on_any_number(floating, &["parameters.n=4", "time.end=0.04"]);
 }
 
 /// A block that goes through a floor which is too soft is told in the same words, after as many attempts with shorter
