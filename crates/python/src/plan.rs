@@ -114,7 +114,7 @@ impl Plan {
 
     /// A dict for each rank, by number, where the case has several (`compute.ranks`): its particles; the copies of particles
     /// of others that it keeps, and of how many ranks (partners) they are; bytes of copies that come with an evaluation of the
-    /// rates (bytes) and in a step (step_bytes); load, what it computes over the mean; and efficiency, the share of its time
+    /// rates (bytes) and in a step (step_bytes); load, what it computes over an even share; and efficiency, the share of its time
     /// in which it computes, as predicted for a network with 1.5 µs a message and 12 GB/s.
     #[getter]
     fn ranks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {

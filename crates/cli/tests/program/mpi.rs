@@ -66,12 +66,13 @@ const LONG: &str = "--set time.end=2.0 --set output.every=0.2 --set output.table
                     checkpoint.every_steps=100";
 
 /// Cases of the repository that run on several ranks, made shorter: energies of hourglass modes, mirrors, neighbours that
-/// move, and new ones in a fluid between walls.
-const CASES: [(&str, &str); 4] = [
+/// move, new ones in a fluid between walls, and a solid in a fluid.
+const CASES: [(&str, &str); 5] = [
     ("dual-support/free-vibration", "--set parameters.dx=0.5 --set time.end=0.05"),
     ("elastodynamics/wave-2d", ""),
     ("upwind/column-impact", "--set time.end=0.5"),
     ("ctvf/dam-break", "--set parameters.dx=0.1 --set time.end=0.2"),
+    ("coupled/gate", "--set time.end=0.003"),
 ];
 
 /// A folder with a case in `plate.toml`.

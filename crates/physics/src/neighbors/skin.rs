@@ -286,6 +286,11 @@ impl<const D: usize> SkinList<D> {
         self.numbers.len()
     }
 
+    /// Number of particles of all ranks.
+    pub fn all_count(&self) -> usize {
+        self.ranks.len()
+    }
+
     /// Whether there is no particle.
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()

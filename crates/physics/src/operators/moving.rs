@@ -90,7 +90,7 @@ impl<const D: usize> MovingSupport<D> {
             reach: self.reach,
             list,
             inside,
-            sides: Vec::new(),
+            sides: self.sides.clone(),
             is_turned: false,
         }
     }
@@ -127,7 +127,7 @@ impl<const D: usize> MovingSupport<D> {
     /// Lets a passive particle (number) be seen, from the next update on, only by those that `side` points
     /// to from where it is, a vector of any length; by all if it is zero.
     pub fn show_on(&mut self, number: u32, side: Vector<D>) {
-        self.sides.resize(self.list.len(), Vector::zeros());
+        self.sides.resize(self.list.all_count(), Vector::zeros());
         let known = &mut self.sides[number as usize];
         self.is_turned |= *known != side;
         *known = side;

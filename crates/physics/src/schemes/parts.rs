@@ -6,6 +6,7 @@ use super::{Health, Scheme};
 use crate::fields::FieldDescription;
 
 /// Where a system stands in the state and among the particles of all.
+#[derive(Clone)]
 pub(super) struct Part {
     /// Its part of a state.
     pub state: Range<usize>,
@@ -18,7 +19,7 @@ pub(super) struct Part {
 }
 
 /// Systems one after another.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Parts {
     /// Each of them.
     pub all: Vec<Part>,
@@ -46,6 +47,16 @@ impl Parts {
         let from = start.len();
         start.extend(system.initial_state());
         self.all.push(Part { state: from..start.len(), shown, first, index });
+    }
+
+    /// The same in a state in which the first system has `fewer` numbers.
+    pub fn without(&self, fewer: usize) -> Self {
+        let mut parts = self.clone();
+        for (k, Part { state, .. }) in parts.all.iter_mut().enumerate() {
+            let start = if k > 0 { state.start - fewer } else { 0 };
+            *state = start..state.end - fewer;
+        }
+        parts
     }
 
     /// The system of a particle (index in the run), and its index there.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use piola_ranks::{RankError, Ranks};
+use piola_ranks::{Alone, RankError, Ranks};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -21,12 +21,18 @@ pub struct Part {
 }
 
 impl Part {
+    /// That of the only rank of `count` particles.
+    pub fn whole(count: usize) -> Self {
+        Self { ranks: Arc::new(Alone), bounds: vec![0, count] }
+    }
+
     /// Where the particles of each of `size` ranks begin, and where those of the last end: whole chunks, with about the
-    /// same cost.
+    /// same cost. Of several systems they are those of the one that ranks [divide](Scheme::divided).
     ///
     /// # Errors
     /// There are fewer chunks than ranks.
     pub fn bounds(scheme: &dyn Scheme, size: usize) -> Result<Vec<usize>, RankRefusal> {
+        let scheme = scheme.divided().unwrap_or(scheme);
         let count = scheme.particle_count();
         let length = parallel::chunk(count);
         let chunks = count.div_ceil(length);
@@ -64,11 +70,19 @@ impl Part {
         self.bounds[rank]..self.bounds[rank + 1]
     }
 
+    /// Whether there is one rank.
+    pub fn is_whole(&self) -> bool {
+        self.ranks.size() == 1
+    }
+
     /// The team of this rank, which has these slots. All ranks call this together.
     ///
     /// # Errors
     /// A rank is lost.
     pub fn team(&self, slots: &Slots) -> Result<Team, RankError> {
+        if self.is_whole() {
+            return Ok(Team::default());
+        }
         let place = |slot: usize| slots.place(slot as u32);
         let halo = Halo::agree(self.ranks.as_ref(), &slots.copies, place)?;
         Ok(Team::new(self.ranks.clone(), self.bounds.clone(), halo))
@@ -84,8 +98,10 @@ pub struct RankRows {
 }
 
 impl RankRows {
-    /// Those of ranks whose particles begin and end where `bounds` has it.
+    /// Those of ranks whose particles begin and end where `bounds` has it. Of several systems, those that stand behind the
+    /// one that ranks [divide](Scheme::divided) are behind all columns.
     pub fn of(scheme: &dyn Scheme, bounds: &[usize]) -> Self {
+        let scheme = scheme.divided().unwrap_or(scheme);
         let of_rank = |ends: &[usize]| {
             let fields = scheme.description().fields.iter();
             fields.filter_map(|field| scheme.stretch(field, &(ends[0]..ends[1]))).collect()
@@ -151,7 +167,7 @@ pub struct RankShare {
     pub partners: usize,
     /// Bytes that come in an evaluation of the rates.
     pub bytes: usize,
-    /// What it computes over the mean of all ranks.
+    /// What it computes over an even share of all that there is to compute.
     pub load: f64,
 }
 
@@ -177,9 +193,6 @@ pub enum RankRefusal {
     /// The formulation has no parts.
     #[error("the formulation `{0}` does not run on several ranks yet: leave out `--ranks`")]
     Formulation(&'static str),
-    /// There are several systems.
-    #[error("several systems in one run do not run on several ranks yet: leave out `--ranks`")]
-    Systems,
     /// Something of the case has none.
     #[error("{what} on several ranks yet: {instead}, or leave out `--ranks`")]
     Feature {

@@ -237,6 +237,12 @@ pub trait Scheme: Send + Sync {
         Err(RankRefusal::Formulation(self.description().name))
     }
 
+    /// The system that ranks divide among them, of several that stand one after another in a state: the first one. Each
+    /// rank has all of the others.
+    fn divided(&self) -> Option<&dyn Scheme> {
+        None
+    }
+
     /// What some particles cost in a step, in units of one's own.
     fn cost(&self, particles: Range<usize>) -> f64 {
         particles.len() as f64

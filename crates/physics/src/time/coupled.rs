@@ -39,6 +39,13 @@ impl Integrator for Coupled {
         self.factor = factor;
     }
 
+    fn renewed(&self, scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
+        let world = scheme.coupled()?;
+        let solids = self.solids.iter().enumerate();
+        let solids = solids.map(|(number, solid)| solid.renewed(world.solid(number).0));
+        Some(Box::new(Self::new(solids.collect::<Option<_>>()?)))
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

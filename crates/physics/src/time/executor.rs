@@ -60,6 +60,15 @@ pub struct Executor {
     is_here: bool,
 }
 
+/// Brings accelerations that a state holds, and what a formulation knows of neighbours, into line with the rest of it.
+fn refresh(scheme: &mut dyn Scheme, time: f64, state: &mut [f64]) {
+    if let Some(scheme) = scheme.split() {
+        scheme.accelerate(time, state);
+    } else if let Some(scheme) = scheme.coupled() {
+        scheme.refresh(time, state);
+    }
+}
+
 impl Executor {
     /// The default floor of the step as a fraction of the first.
     pub const FLOOR: f64 = 1e-6;
@@ -181,11 +190,7 @@ impl Executor {
         let state = Arc::make_mut(state);
         change(state);
         self.scheme.constrain(clock.time, state);
-        if let Some(scheme) = self.scheme.split() {
-            scheme.accelerate(clock.time, state);
-        } else if let Some(scheme) = self.scheme.coupled() {
-            scheme.refresh(clock.time, state);
-        }
+        refresh(self.scheme.as_mut(), clock.time, state);
         *history = History::new(Mark::of(clock, tally, due, state));
         self.is_seen = false;
         self.hand_over();
@@ -251,11 +256,11 @@ impl Executor {
         let mut outcome = self.outcome.get_or_insert(Outcome::Interrupted).clone();
         let trace = match &outcome {
             Outcome::Failed(failure) => failure.particle().map(|index| {
-                if let (Some(_), Some(scheme)) = (&self.device, self.scheme.split()) {
-                    // Who is near is asked of the formulation, which has not seen this state yet.
-                    scheme.accelerate(self.run.clock.time, &mut self.run.state.to_vec());
-                }
                 let (scheme, integrator) = (self.scheme.as_mut(), self.integrator.as_mut());
+                if self.device.is_some() {
+                    // Who is near is asked of the formulation, which has not seen this state yet.
+                    refresh(scheme, self.run.clock.time, &mut self.run.state.to_vec());
+                }
                 self.run.history.trace(scheme, integrator, index)
             }),
             _ => None,
@@ -381,6 +386,7 @@ impl Executor {
         let soonest = run.due.iter().flatten().copied().fold(self.end, f64::min);
         let met = self.control.meet(chosen, run.clock.time, soonest);
         integrator.shorten(run.tally.factor);
+        device.iter_mut().for_each(|device| device.shorten(run.tally.factor));
         let taken = run.tally.watches.step.time(|| match device {
             Some(device) => device.step(run.clock.time, met.step).map_err(Failure::from),
             None => {

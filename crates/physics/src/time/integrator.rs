@@ -12,7 +12,7 @@ use super::runge_kutta::RungeKutta;
 use crate::schemes::{Capability, ImplicitRule, NEWTON_ITERATIONS, Newmark, Scheme, Theta};
 
 /// A method that takes a state one step further.
-pub trait Integrator: Send {
+pub trait Integrator: Send + Sync {
     /// Name in a case file.
     fn name(&self) -> &'static str;
 
@@ -49,6 +49,12 @@ pub trait Integrator: Send {
 
     /// Says what failures have multiplied steps by, which holds for steps within a step as well.
     fn shorten(&mut self, _factor: f64) {}
+
+    /// One that takes the same steps of `scheme`, which is a part of what this one moves or all of it, and remembers
+    /// nothing; `None` where it has no parts.
+    fn renewed(&self, _scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
+        None
+    }
 
     /// What the next step should be over the one that was tried last, for its error to be what is
     /// allowed; `None` where no error is estimated.

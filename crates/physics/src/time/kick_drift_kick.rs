@@ -72,6 +72,10 @@ impl Integrator for KickDriftKick {
         Some(if half <= 1.0 { 1.0 } else { (half + (half * half - 1.0).sqrt()).powi(2) })
     }
 
+    fn renewed(&self, _scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
+        Some(Box::new(Self::default()))
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

@@ -48,6 +48,10 @@ impl Integrator for RungeKutta {
         Some((self.energy)(phase * phase))
     }
 
+    fn renewed(&self, scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
+        Some(Box::new(Self { rate: vec![0.0; scheme.initial_state().len()], ..*self }))
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

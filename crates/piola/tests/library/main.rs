@@ -26,6 +26,7 @@ mod operators;
 mod pair_pass;
 mod profiles;
 mod ranks;
+mod ranks_coupled;
 mod ranks_fluids;
 mod resume;
 mod sensitivity;

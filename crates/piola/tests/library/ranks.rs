@@ -326,6 +326,11 @@ fn what_does_not_run_on_several_ranks_is_named() {
     );
     let spring = "load.pull={ kind = 'spring', body = 'plate', to = [0.0, 0.0], stiffness = 10.0 }";
     refused(PLATE, &[spring], "springs do not act on several ranks yet: leave them out");
+    let rigid = [
+        "body.other.material={ kind = 'rigid', density = 500.0 }",
+        "scheme.kind='total_lagrangian'",
+    ];
+    refused(PLATE, &rigid, "rigid bodies do not run on several ranks yet: leave them out");
     let few = "body.block.spacing=0.3";
     refused(BLOCK, &[few, "compute.ranks=9"], "ranks are too many for");
     refused(BLOCK, &[few, "compute.ranks=9"], "a chunk of 16: take 3 ranks or fewer");
@@ -345,10 +350,10 @@ fn what_does_not_run_on_several_ranks_is_named() {
     let finer =
         "regions of finer spacing do not run on several ranks yet: leave out `scheme.refine`";
     refused(refined, &[], finer);
-    let gate = include_str!("../../../../cases/coupled/plate/case.toml");
+    let plate = include_str!("../../../../cases/coupled/plate/case.toml");
     refused(
-        gate,
-        &[],
-        "several systems in one run do not run on several ranks yet: leave out `--ranks`",
+        plate,
+        &["system.plate.time={ integrator = 'newmark' }"],
+        "statics and implicit steps do not run on several ranks yet: take explicit steps",
     );
 }

@@ -11,6 +11,8 @@ use piola::output::checkpoint;
 use piola::time::{Outcome, Progress};
 use rayon::prelude::*;
 
+use super::ranks_coupled::TANK;
+
 fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
     let options = LoadOptions {
@@ -122,7 +124,7 @@ fn side_by_side<T: Sync>(all: &[T], each: impl Fn(&T) + Sync) {
 
 /// Which cases run on several ranks.
 #[test]
-fn one_system_in_explicit_steps_is_shared() {
+fn explicit_steps_are_shared() {
     let cases = cases();
     let shared = cases.par_iter().filter(|path| on_ranks(path, None, &[]).is_some());
     let names = shared.filter_map(|path| path.parent()?.file_name()?.to_str());
@@ -130,8 +132,19 @@ fn one_system_in_explicit_steps_is_shared() {
 }
 
 /// The cases of which several ranks have a part each.
-const SHARED: [&str; 45] = [
+const SHARED: [&str; 56] = [
     "dam-break-box",
+    "dam-break-plate",
+    "dam-break-plate-3d",
+    "floating-box",
+    "gate",
+    "hull",
+    "leaflet",
+    "plate",
+    "plate-3d",
+    "ring",
+    "slab",
+    "wedge",
     "cavity",
     "compression",
     "contact",
@@ -219,6 +232,27 @@ fn solids_of_each_kind_in_a_fluid_resume_to_the_bit() {
     let slab = all.iter().find(|path| path.ends_with("slab/case.toml")).unwrap();
     let variants = ["upwind", "upwind-damped", "upwind-implicit", "hypoelastic-fine"];
     side_by_side(&variants, |variant| resumes_to_the_bit(slab, Some(variant)));
+}
+
+/// A fluid with solids that touch what moves, broken off on two ranks, continued on three and ended on one.
+#[test]
+fn a_fluid_with_solids_goes_on_on_another_number_of_ranks() {
+    let on = |ranks: usize| {
+        let overrides = vec![format!("compute.ranks={ranks}"), "output.compression='none'".into()];
+        let options = LoadOptions { overrides, ..LoadOptions::default() };
+        case::parse(TANK, "tank.toml", &options).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, broken] = ["whole", "broken"].map(|name| folder.path().join(name));
+    let unbroken = run(&on(1), &whole, false, 1, u64::MAX);
+    let steps = unbroken.summary.steps;
+    run(&on(2), &broken, false, 2, steps / 3);
+    let second = run(&on(3), &broken, true, 3, 2 * steps / 3);
+    assert_eq!(second.summary.resumed.map(|(_, step)| step), Some(steps / 3));
+    let last = run(&on(1), &broken, true, 1, u64::MAX);
+    assert_eq!(last.summary.resumed.map(|(_, step)| step), Some(2 * steps / 3));
+    assert_same(&whole, &broken, "a tank");
+    assert_eq!(last.tables, unbroken.tables);
 }
 
 /// Steps of particles after which a run ends here: what a state has to keep shows early. In explicit and in implicit

@@ -44,6 +44,9 @@ pub trait DeviceSteps: Send {
     /// When the device refuses, or a rank is lost.
     fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError>;
 
+    /// Says what failures have multiplied steps by, which holds for steps within a step as well.
+    fn shorten(&mut self, _factor: f64) {}
+
     /// Looks once over the state, as [`Scheme::inspect`](super::Scheme::inspect).
     ///
     /// # Errors

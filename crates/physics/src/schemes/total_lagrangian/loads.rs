@@ -17,7 +17,7 @@ pub(super) struct Loads<const D: usize> {
 }
 
 impl<const D: usize> Loads<D> {
-    /// Those on some particles, of which `place` says where they stand now; of springs none.
+    /// Those on some particles, of which `place` says where they stand now, and all springs.
     pub fn part(&self, place: impl Fn(usize) -> Option<usize>) -> Self {
         let loaded = self.loaded.iter().filter_map(|it| Some(it.clone().on(place(it.particle)?)));
         let pressed = self.pressed.iter().filter_map(|it| Some(it.clone().on(place(it.particle)?)));
@@ -25,7 +25,7 @@ impl<const D: usize> Loads<D> {
             body_forces: self.body_forces.clone(),
             loaded: loaded.collect(),
             pressed: pressed.collect(),
-            springs: Vec::new(),
+            springs: self.springs.clone(),
         }
     }
 

@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::fields::Made;
-use super::rigid::RigidBodies;
 use super::{Discrete, Matrices, TotalLagrangian};
 use crate::fields::width;
 use crate::operators::Slots;
@@ -12,8 +11,9 @@ use crate::schemes::{Part, RankRefusal, RankRows, RankShare};
 use crate::{Tensor, Vector};
 
 impl<const D: usize> TotalLagrangian<D> {
-    /// What cannot be shared yet, with what a case has to be like instead.
-    fn unshared(&self) -> Option<[&'static str; 2]> {
+    /// What this many ranks cannot share yet, with what a case has to be like instead.
+    fn unshared(&self, ranks: usize) -> Option<[&'static str; 2]> {
+        let is_divided = ranks > 1;
         let features = [
             (
                 self.matrices.edges().is_some(),
@@ -24,15 +24,18 @@ impl<const D: usize> TotalLagrangian<D> {
                 ["statics and implicit steps do not run", "take explicit steps"],
             ),
             (self.updated.is_some(), ["the updated configuration does not run", "leave it out"]),
-            (!self.rigid.is_empty(), ["rigid bodies do not run", "leave them out"]),
-            (!self.loads.springs.is_empty(), ["springs do not act", "leave them out"]),
+            (is_divided && !self.rigid.is_empty(), ["rigid bodies do not run", "leave them out"]),
+            (
+                is_divided && !self.loads.springs.is_empty(),
+                ["springs do not act", "leave them out"],
+            ),
         ];
         features.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what)
     }
 
-    /// The gradients, if all of it can be shared.
-    fn whole(&self) -> Result<&Discrete<D>, RankRefusal> {
-        match (&self.matrices, self.unshared()) {
+    /// The gradients, if this many ranks can share all of it.
+    fn whole(&self, ranks: usize) -> Result<&Discrete<D>, RankRefusal> {
+        match (&self.matrices, self.unshared(ranks)) {
             (Matrices::Adjoint(whole), None) => Ok(whole),
             (_, Some([what, instead])) => Err(RankRefusal::Feature { what, instead }),
             _ => Err(RankRefusal::Formulation(self.description.name)),
@@ -47,7 +50,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// What ranks would have whose particles begin and end where `bounds` has it.
     pub(super) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
-        let whole = self.whole()?;
+        let whole = self.whole(bounds.len() - 1)?;
         // Where there are images, copies are fetched before and after these are made.
         let fields = 1 + usize::from(self.dissipation.is_viscous() || self.has_images);
         let vectors = fields * (1 + usize::from(self.has_images));
@@ -57,7 +60,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// The particles of a rank, with the same coefficients.
     pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
-        let whole = self.whole()?;
+        let whole = self.whole(part.ranks.size())?;
         let own = part.own();
         let slots = Self::slots(whole, own.clone(), &part.bounds);
         let team = part.team(&slots)?;
@@ -65,6 +68,11 @@ impl<const D: usize> TotalLagrangian<D> {
         let solid = Arc::new(self.solid.part(own.clone()));
         let (count, all) = (own.len(), slots.iter().count());
         let is_viscous = self.dissipation.is_viscous();
+        // Planes know how fast they move by a particle, which another rank may have.
+        let is_continued = match part.is_whole() {
+            true => is_viscous && self.has_images,
+            false => is_viscous || self.has_images,
+        };
         let place = |a: usize| own.contains(&a).then(|| a - own.start);
         let planes = whole.planes.iter();
         let planes = planes.map(|&(plane, on)| (plane, slots.place(on as u32) as usize)).collect();
@@ -78,7 +86,8 @@ impl<const D: usize> TotalLagrangian<D> {
             has_images: self.has_images,
             team,
             prescribed: self.prescribed.part(place),
-            rigid: RigidBodies::new(Vec::new(), &solid),
+            // Ranks that divide the particles among them have none.
+            rigid: self.rigid.clone(),
             statics: None,
             is_static: false,
             stable: self.stable,
@@ -88,8 +97,7 @@ impl<const D: usize> TotalLagrangian<D> {
             has_matrices: true,
             stages: self.stages.clone(),
             displacement: vec![Vector::zeros(); all],
-            // Planes know how fast they move by a particle, which another rank may have.
-            velocity: vec![Vector::zeros(); if is_viscous || self.has_images { all } else { 0 }],
+            velocity: vec![Vector::zeros(); if is_continued { all } else { 0 }],
             acceleration: Vec::new(),
             strained: matrices.strained(count),
             gradient_rate: vec![Tensor::zeros(); if is_viscous { count } else { 0 }],

@@ -125,6 +125,7 @@ impl<const D: usize> Common<D> {
             unshifted: self.unshifted.clone(),
             motion: self.motion.clone(),
             sliding: self.sliding.clone(),
+            guided: self.guided.clone(),
             body_forces: self.body_forces.clone(),
             continua: self.continua.renewed(),
             iteration: self.iteration.clone(),

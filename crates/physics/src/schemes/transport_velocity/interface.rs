@@ -1,5 +1,9 @@
 //! Walls that somebody else moves: the surfaces of solids in the fluid.
 
+use std::ops::Range;
+
+use bytemuck::Pod;
+
 use super::TransportVelocity;
 use super::fluid::LEDGER;
 use crate::geometry::Faces;
@@ -53,7 +57,68 @@ impl<const D: usize> Default for Guided<D> {
     }
 }
 
+/// Wall particles by number, in an order that somebody else has.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WallSelection {
+    numbers: Vec<u32>,
+    /// Their indices in the order of numbers, of which each rank has a range.
+    order: Vec<u32>,
+}
+
+impl WallSelection {
+    /// Those of these numbers.
+    pub fn new(numbers: Vec<u32>) -> Self {
+        let mut order: Vec<u32> = (0..numbers.len() as u32).collect();
+        order.sort_unstable_by_key(|&index| numbers[index as usize]);
+        Self { numbers, order }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Indices of those with numbers of a range.
+    pub fn within(&self, range: &Range<usize>) -> &[u32] {
+        let number = |index: u32| self.numbers[index as usize] as usize;
+        let place = |bound: usize| self.order.partition_point(|&index| number(index) < bound);
+        &self.order[place(range.start)..place(range.end)]
+    }
+
+    /// Bytes that it holds.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.numbers.as_slice()) + size_of_val(self.order.as_slice())
+    }
+}
+
 impl<const D: usize> TransportVelocity<D> {
+    /// The numbers of its particles: all, or those of this rank.
+    pub(crate) fn own(&self) -> Range<usize> {
+        self.common.first()..self.common.first() + self.common.count()
+    }
+
+    /// What wall particles have, whichever rank they are of: `of` takes the row of one in a state of this rank, and its
+    /// number.
+    fn of_walls<T: Pod>(
+        &self,
+        walls: &WallSelection,
+        of: impl Fn(usize, usize) -> T,
+        found: &mut Vec<T>,
+    ) {
+        let (team, own) = (self.common.team(), self.own());
+        let of = |number: u32| of(number as usize - own.start, number as usize);
+        if team.is_alone() {
+            found.clear();
+            found.extend(walls.numbers.iter().map(|&number| of(number)));
+            return;
+        }
+        let mine = walls.within(&own).iter().map(|&index| of(walls.numbers[index as usize]));
+        found.resize(walls.len(), T::zeroed());
+        for (&index, value) in walls.order.iter().zip(team.rows_of_all(mine.collect())) {
+            found[index as usize] = value;
+        }
+    }
+
     /// The particles of walls that are of some bodies: numbers, bodies and reference positions in m.
     pub(crate) fn walls_of(&self, bodies: &[u32]) -> Vec<(u32, u32, Vector<D>)> {
         let particles = &self.common.particles;
@@ -92,17 +157,31 @@ impl<const D: usize> TransportVelocity<D> {
         !self.common.motion.is_empty()
     }
 
-    /// Place of a wall particle (number) in a state.
-    pub(crate) fn place_of(&self, state: &[f64], number: u32) -> Vector<D> {
-        self.common.columns(state).position[number as usize]
+    /// Finds places and velocities of walls that nothing else moves in a state.
+    pub(crate) fn places_of(
+        &self,
+        state: &[f64],
+        walls: &WallSelection,
+        found: &mut Vec<[Vector<D>; 2]>,
+    ) {
+        // Those that do not move are where they were.
+        let is_known = walls.numbers.is_empty() || !self.moves_walls();
+        if is_known && found.len() == walls.len() {
+            return;
+        }
+        let at = self.common.columns(state);
+        self.of_walls(walls, |row, _| [at.position[row], at.velocity[row]], found);
     }
 
-    /// The velocity of the surface of a wall particle (number) in a state of a time in s.
-    pub(crate) fn surface_velocity(&self, time: f64, state: &[f64], number: u32) -> Vector<D> {
-        let common = &self.common;
-        let mut velocity = common.columns(state).velocity[number as usize];
-        if let Some(index) = common.wall_of(number) {
-            for entry in common.sliding.of(index) {
+    /// The velocity at a time in s of the surface of a wall particle (index in a selection) that moves with a velocity.
+    pub(crate) fn surface_velocity(
+        &self,
+        time: f64,
+        (walls, index): (&WallSelection, usize),
+        mut velocity: Vector<D>,
+    ) -> Vector<D> {
+        if let Some(index) = self.common.wall_of(walls.numbers[index]) {
+            for entry in self.common.sliding.of(index) {
                 velocity[entry.component] += entry.at(time);
             }
         }
@@ -172,7 +251,7 @@ impl<const D: usize> TransportVelocity<D> {
         }
     }
 
-    /// Puts a wall particle (number) somewhere in a state.
+    /// Puts a wall particle (number) somewhere in a state, if it is one of this rank.
     pub(crate) fn place_wall(
         &self,
         state: &mut [f64],
@@ -180,20 +259,21 @@ impl<const D: usize> TransportVelocity<D> {
         place: &Vector<D>,
         velocity: &Vector<D>,
     ) {
-        let place = self.domain().wrap(place);
+        let Some(row) = self.common.row(number as usize) else { return };
         let (own, _) = self.common.parts(state);
-        own.position[number as usize] = place;
-        own.velocity[number as usize] = *velocity;
+        own.position[row] = self.domain().wrap(place);
+        own.velocity[row] = *velocity;
     }
 
-    /// The force of the fluid on a wall particle (number) in N, as a state has it.
-    pub(crate) fn force_on(&self, state: &[f64], number: u32) -> Vector<D> {
-        self.common.columns(state).kick[number as usize] * self.common.mass[number as usize]
-    }
-
-    /// Its power in W on a wall particle (number) with the velocity in a state.
-    pub(crate) fn power_on(&self, state: &[f64], number: u32) -> f64 {
-        self.force_on(state, number).dot(&self.common.columns(state).velocity[number as usize])
+    /// Finds the forces of the fluid on walls in N, as a state has them.
+    pub(crate) fn forces_on(
+        &self,
+        state: &[f64],
+        walls: &WallSelection,
+        found: &mut Vec<Vector<D>>,
+    ) {
+        let at = self.common.columns(state);
+        self.of_walls(walls, |row, number| at.kick[row] * self.common.mass[number], found);
     }
 
     /// Finds the accelerations of the start anew, with walls as they have been placed and guided since.

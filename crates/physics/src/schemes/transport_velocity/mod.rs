@@ -64,7 +64,7 @@ pub use fluid::{
     DESCRIPTION as FLUIDS, Flow, Nesting, OpenBoundaries, OpenBoundary, Refined, WeaklyCompressible,
 };
 pub use forces::{Forces, Rates};
-pub(crate) use interface::Guide;
+pub(crate) use interface::{Guide, WallSelection};
 pub use levels::{Levels, refined};
 pub use settings::{
     AtSurface, Corrections, DensityRule, Dilatation, Divergence, Fluid, PressureRule, Settings,

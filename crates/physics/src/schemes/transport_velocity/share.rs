@@ -49,13 +49,13 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     }
 
     /// What ranks would have at the start whose particles begin and end where `bounds` has it.
-    pub(super) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+    pub(crate) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
         self.check_shared()?;
         Ok(Part::planned(self, bounds, self.told(), |own| self.slots(own, bounds)))
     }
 
     /// The particles of a rank. What does not change of particles it knows of all.
-    pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
+    pub(crate) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
         self.check_shared()?;
         let team = part.team(&Slots::default())?;
         let common = self.common.part(team, part.own().len());

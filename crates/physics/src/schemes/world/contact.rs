@@ -85,8 +85,8 @@ impl ContactLaw {
 /// Whose a point is, and what of it: walls and solids are apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Origin {
-    /// A particle (number) of a wall of the fluid, with one of its faces.
-    Wall { number: u32, face: usize },
+    /// A particle (index among the [walls](Contact::walls)) of a wall of the fluid, with one of its faces.
+    Wall { wall: usize, face: usize },
     /// A row of the interface of a solid, with one of its faces.
     Solid { solid: usize, row: usize, face: usize },
 }
@@ -133,6 +133,8 @@ struct Plane<const D: usize> {
 /// What touches what.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contact<const D: usize> {
+    /// The wall particles of the fluid, by number, that have points.
+    walls: Vec<u32>,
     origins: Vec<Origin>,
     /// The points of the same particle, by index: the first, and the one after the last.
     together: Vec<[usize; 2]>,
@@ -159,7 +161,7 @@ impl<const D: usize> Contact<D> {
         let behind = BEHIND * fluid.spacing();
         let mut add = |number: u32, density: f64, origin: &dyn Fn(usize) -> Origin| {
             let Some(faces) = fluid.faces_of(number).filter(|it| it.depth() < behind) else {
-                return;
+                return false;
             };
             let first = made.origins.len();
             let all = faces.normals().iter().zip(faces.depths());
@@ -170,16 +172,27 @@ impl<const D: usize> Contact<D> {
                 made.normals.push(*normal);
                 made.densities.push(density);
             }
+            true
         };
+        let mut walls = Vec::new();
         for number in fluid.own_walls() {
-            add(number, f64::INFINITY, &|face| Origin::Wall { number, face });
+            let wall = walls.len();
+            if add(number, f64::INFINITY, &|face| Origin::Wall { wall, face }) {
+                walls.push(number);
+            }
         }
         for (solid, own) in solids.iter().enumerate() {
             for (row, &number) in own.interface.walls().iter().enumerate() {
                 add(number, own.density(row), &|face| Origin::Solid { solid, row, face });
             }
         }
+        made.walls = walls;
         made
+    }
+
+    /// The wall particles of the fluid, by number, that have points.
+    pub fn walls(&self) -> &[u32] {
+        &self.walls
     }
 
     /// The solid and the row of a point that has gone through another surface, at the last look.

@@ -102,12 +102,11 @@ impl<const D: usize> World<D> {
             self.known.extend_from_slice(places);
         }
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
-        let (domain, spacing) = (fluid.domain(), fluid.spacing());
+        fluid.places_of(&state[parts.all[0].state.clone()], &self.fixed, &mut self.fixed_at);
+        let (domain, spacing, fixed_at) = (fluid.domain(), fluid.spacing(), &self.fixed_at);
         let of = |solid: usize| (&solids[solid], &state[parts.all[solid + 1].state.clone()]);
         let place = |origin: &Origin, offset: &Vector<D>| match *origin {
-            Origin::Wall { number, .. } => {
-                fluid.place_of(&state[parts.all[0].state.clone()], number) + offset
-            }
+            Origin::Wall { wall, .. } => fixed_at[wall][0] + offset,
             Origin::Solid { solid, row, .. } => {
                 let (solid, own) = of(solid);
                 solid.interface.place_at(row, offset, solid.displacements(own, row))
@@ -133,8 +132,8 @@ impl<const D: usize> World<D> {
         }
         let touches = &mut self.touches;
         let velocity = |origin: &Origin, offset: &Vector<D>| match *origin {
-            Origin::Wall { number, .. } => {
-                fluid.surface_velocity(time, &state[parts.all[0].state.clone()], number)
+            Origin::Wall { wall, .. } => {
+                fluid.surface_velocity(time, (&self.fixed, wall), self.fixed_at[wall][1])
             }
             Origin::Solid { solid, row, .. } => {
                 let (solid, own) = (&solids[solid], &state[parts.all[solid + 1].state.clone()]);
@@ -150,18 +149,23 @@ impl<const D: usize> World<D> {
         self.contact.forces(scale, |solid| solids[solid].law, velocity, bear);
     }
 
+    /// Finds the forces of the fluid on walls, as a state has them.
+    pub(super) fn pull(&mut self, state: &[f64]) {
+        let fluid = &state[self.parts.all[0].state.clone()];
+        self.fluid.forces_on(fluid, &self.guided, &mut self.pulls);
+    }
+
     /// Finds what acts on the particles of the solids in a state at a time in s: the forces of the fluid, which are those
-    /// that a step has left to give or those of the state, and those of others where they touch.
+    /// that a step has left to give or those that [`Self::pull`] has found, and those of others where they touch.
     fn find_forces(&mut self, time: f64, state: &[f64]) {
         self.touch(time, state);
-        let fluid = &state[self.parts.all[0].state.clone()];
+        let given = if self.rest.is_empty() { &self.pulls } else { &self.rest };
         for (forces, solid) in self.forces.iter_mut().zip(&self.solids) {
             forces.clear();
             forces.resize(solid.mass.len(), Vector::zeros());
-            for (row, &wall) in solid.interface.walls().iter().enumerate() {
-                let left = self.rest.get(solid.first + row).copied();
-                let force = left.unwrap_or_else(|| self.fluid.force_on(fluid, wall));
-                solid.interface.bear(row, &force, forces);
+            let walls = solid.first..solid.first + solid.interface.walls().len();
+            for (row, force) in given[walls].iter().enumerate() {
+                solid.interface.bear(row, force, forces);
             }
         }
     }
@@ -253,6 +257,7 @@ impl<const D: usize> CoupledScheme for World<D> {
     fn push(&mut self, [time, step]: [f64; 2], counts: &[u64], state: &mut [f64]) {
         self.rest.clear();
         self.follow(state);
+        self.pull(state);
         self.find_forces(time, state);
         std::mem::swap(&mut self.forces, &mut self.held[0]);
         for (held, touches) in self.held[1].iter_mut().zip(&self.touches) {
@@ -298,12 +303,11 @@ impl<const D: usize> CoupledScheme for World<D> {
         }
         (self.forces, self.touches) = (forces, touches);
         self.carry_walls(state);
-        let fluid = &state[self.parts.all[0].state.clone()];
-        let power = |way: &Way<D>| match way.is_held {
-            true => self.fluid.force_on(fluid, way.number).dot(&way.mean_velocity()),
-            false => self.fluid.power_on(fluid, way.number),
+        let power = |((way, force), [_, velocity]): ((&Way<D>, &Vector<D>), &[Vector<D>; 2])| {
+            force.dot(&if way.is_held { way.mean_velocity() } else { *velocity })
         };
-        let power = self.ways.iter().map(power).sum::<f64>();
+        let walls = self.ways.iter().zip(&self.pulls).zip(&self.carried);
+        let power = walls.map(power).sum::<f64>();
         let entry = self.interface_at();
         state[entry] -= 0.5 * step / counts[0] as f64 * power;
     }

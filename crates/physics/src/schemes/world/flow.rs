@@ -153,18 +153,15 @@ impl<const D: usize> World<D> {
         let (fluid, own) = (self.parts.all[0].state.clone(), step / count as f64);
         self.rest.clear();
         if count > 1 {
-            let ways = self.ways.iter();
-            self.rest
-                .extend(ways.map(|way| -self.fluid.force_on(&state[fluid.clone()], way.number)));
+            self.rest.extend(self.pulls.iter().map(|force| -force));
         }
         let entry = self.interface_at();
         for k in 0..count {
             let begin = time + k as f64 * own;
             // What the end of the step has of the work follows when the solids have the rest of the impulse.
             let weight = if k > 0 { own } else { 0.5 * own };
-            let power = self.power_of_walls(k, count, &state[fluid.clone()]);
-            state[entry] -= weight * power;
-            self.bear_part(own / step, &state[fluid.clone()]);
+            state[entry] -= weight * self.power_of_walls(k, count);
+            self.bear_part(own / step);
             // The drift sees walls where they were, turned as they were, as it sees the fluid.
             self.fluid.guide(|wall| self.ways[wall].guide_on(k, count));
             let part = &mut state[fluid.clone()];
@@ -178,24 +175,24 @@ impl<const D: usize> World<D> {
             self.fluid.constrain(begin + own, part);
             self.fluid.accelerate(begin + own, part);
             self.fluid.kick(0.5 * own, part);
-            self.bear_part(own / step, &state[fluid.clone()]);
+            self.pull(state);
+            self.bear_part(own / step);
         }
     }
 
-    /// The power in W of the fluid in its own `state` on walls after `k` of `count` parts of the step; that of forces that
-    /// are held is what they do on the way of the wall, whose velocity at both ends says little of faster vibrations.
-    fn power_of_walls(&self, k: u64, count: u64, state: &[f64]) -> f64 {
-        let power = |way: &Way<D>| {
-            let velocity = if way.is_held { way.mean_velocity() } else { way.velocity(k, count) };
-            self.fluid.force_on(state, way.number).dot(&velocity)
+    /// The power in W of the fluid on walls after `k` of `count` parts of the step; that of forces that are held is what
+    /// they do on the way of the wall, whose velocity at both ends says little of faster vibrations.
+    fn power_of_walls(&self, k: u64, count: u64) -> f64 {
+        let power = |(way, force): (&Way<D>, &Vector<D>)| {
+            force.dot(&if way.is_held { way.mean_velocity() } else { way.velocity(k, count) })
         };
-        self.ways.iter().map(power).sum()
+        self.ways.iter().zip(&self.pulls).map(power).sum()
     }
 
-    /// Adds the forces of the fluid in its own `state` on walls for half of one of its steps, a `share` of the whole.
-    fn bear_part(&mut self, share: f64, state: &[f64]) {
-        for (rest, way) in self.rest.iter_mut().zip(&self.ways) {
-            *rest += self.fluid.force_on(state, way.number) * share;
+    /// Adds the forces of the fluid on walls for half of one of its steps, a `share` of the whole.
+    fn bear_part(&mut self, share: f64) {
+        for (rest, force) in self.rest.iter_mut().zip(&self.pulls) {
+            *rest += force * share;
         }
     }
 }

@@ -32,6 +32,7 @@ mod description;
 mod flow;
 mod interface;
 mod scheme;
+mod share;
 
 use std::ops::Range;
 
@@ -47,7 +48,7 @@ pub use self::interface::{InterfaceError, MOST_RATIO};
 use crate::fields::FieldKind;
 use crate::neighbors::Domain;
 use crate::schemes::parts::Parts;
-use crate::schemes::transport_velocity::TransportVelocity;
+use crate::schemes::transport_velocity::{TransportVelocity, WallSelection};
 use crate::schemes::{Particle, Scheme, SchemeDescription, StepLimit};
 use crate::{Tensor, Vector};
 
@@ -140,6 +141,9 @@ pub struct World<const D: usize> {
     cfl: Option<f64>,
     solids: Vec<Solid<D>>,
     contact: Contact<D>,
+    /// The wall particles of the fluid that stand for solids, and those that solids may touch.
+    guided: WallSelection,
+    fixed: WallSelection,
     /// Where the work of all walls stands among those of the fluid.
     walls: usize,
     /// Those of the fluid, then of each solid.
@@ -157,9 +161,12 @@ pub struct World<const D: usize> {
     /// Places of the solids for which walls have been turned and surfaces have met; none while they turn.
     known: Vec<f64>,
     ways: Vec<Way<D>>,
-    /// By wall, its place and its velocity.
+    /// By wall, its place and its velocity, and the force of the fluid at the moment in N.
     carried: Vec<[Vector<D>; 2]>,
+    pulls: Vec<Vector<D>>,
     rest: Vec<Vector<D>>,
+    /// Places and velocities of the walls that solids may touch.
+    fixed_at: Vec<[Vector<D>; 2]>,
     /// Bounds on the step of the fluid by itself, of the state that was looked at last.
     limits: Vec<StepLimit>,
 }
@@ -195,8 +202,11 @@ impl<const D: usize> World<D> {
         }
         fluid.let_walls_be_guided(&guided);
         let description = fluid.description().with_solids(&names);
+        let contact = Contact::new(&fluid, &bound);
         let mut world = Self {
             description,
+            fixed: WallSelection::new(contact.walls().to_vec()),
+            guided: WallSelection::new(guided.clone()),
             walls: fluid.description().ledger.place_of(WALLS),
             parts: Parts::default(),
             start: Vec::new(),
@@ -205,11 +215,13 @@ impl<const D: usize> World<D> {
             before: Vec::new(),
             booked: Vec::new(),
             touches: vec![Vec::new(); bound.len()],
-            contact: Contact::new(&fluid, &bound),
+            contact,
             known: Vec::new(),
             ways: Vec::new(),
             carried: vec![[Vector::zeros(); 2]; guided.len()],
+            pulls: Vec::new(),
             rest: Vec::new(),
+            fixed_at: Vec::new(),
             limits: Vec::new(),
             fluid,
             cfl,

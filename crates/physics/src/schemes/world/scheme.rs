@@ -7,6 +7,7 @@ use super::flow::Way;
 use super::{MOST_STEPS, World};
 use crate::Vector;
 use crate::fields::{ABSENT, FieldDescription};
+use crate::parallel::Team;
 use crate::schemes::momentum::MOST_COMPONENTS;
 use crate::schemes::parts::{own_field, rename};
 use crate::schemes::{
@@ -69,16 +70,24 @@ impl<const D: usize> Scheme for World<D> {
         Err(DeviceRefusal::Systems)
     }
 
-    fn share(&self, _part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
-        Err(RankRefusal::Systems)
+    fn share(&self, part: &Part) -> Result<Box<dyn Scheme>, RankRefusal> {
+        Ok(Box::new(self.shared(part)?))
     }
 
-    fn shares(&self, _bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
-        Err(RankRefusal::Systems)
+    fn divided(&self) -> Option<&dyn Scheme> {
+        Some(&self.fluid)
+    }
+
+    fn shares(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
+        self.planned(bounds)
+    }
+
+    fn team(&self) -> Option<&Team> {
+        self.fluid.team()
     }
 
     fn particle_count(&self) -> usize {
-        self.parts.bodies.len()
+        self.count_with(&self.fluid.own())
     }
 
     /// The fields are columns of its systems, and of no state of all.
@@ -131,6 +140,15 @@ impl<const D: usize> Scheme for World<D> {
     fn constrain(&self, time: f64, state: &mut [f64]) {
         for (k, part) in self.parts.all.iter().enumerate() {
             self.system(k).constrain(time, &mut state[part.state.clone()]);
+        }
+    }
+
+    #[inline(never)]
+    fn find_neighbors(&mut self, state: &[f64]) {
+        self.follow(state);
+        self.fluid.find_neighbors(&state[self.parts.all[0].state.clone()]);
+        for (solid, part) in self.solids.iter_mut().zip(&self.parts.all[1..]) {
+            solid.scheme.find_neighbors(&state[part.state.clone()]);
         }
     }
 
@@ -337,11 +355,17 @@ impl<const D: usize> Scheme for World<D> {
         let systems: usize = (0..self.parts.all.len()).map(|k| self.system(k).memory()).sum();
         let interfaces: usize = self.solids.iter().map(|solid| solid.interface.memory()).sum();
         // Ways and forces are found in the first step.
-        let a_wall = size_of::<Way<D>>() + size_of::<[Vector<D>; 3]>();
+        let a_wall = size_of::<Way<D>>() + size_of::<[Vector<D>; 4]>();
         let a_particle = size_of::<[Vector<D>; 6]>();
         let particles: usize = self.solids.iter().map(|solid| solid.mass.len()).sum();
         let passing = self.carried.len() * a_wall + particles * a_particle;
-        systems + interfaces + self.contact.memory() + passing + size_of_val(self.start.as_slice())
+        let selections = self.guided.memory() + self.fixed.memory();
+        systems
+            + interfaces
+            + self.contact.memory()
+            + passing
+            + selections
+            + size_of_val(self.start.as_slice())
     }
 
     /// Its systems are moved by integrators of their own.

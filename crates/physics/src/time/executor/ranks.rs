@@ -16,15 +16,15 @@ use crate::schemes::{
     DeviceSteps, Health, Part, Phase, RankCosts, RankRefusal, RankRows, Scheme, StepLimit,
     StepsError,
 };
-use crate::time::integrator::{Integrator, IntegratorKind};
+use crate::time::integrator::Integrator;
 
 /// What all ranks are to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Order {
     /// Take over what rank 0 has for them.
     Put,
-    /// Take a step from a time, both in s.
-    Step { time: f64, step: f64 },
+    /// Take a step from a time, both in s, where failures have multiplied steps by a factor.
+    Step { time: f64, step: f64, factor: f64 },
     /// Look at the state.
     Inspect,
     /// Give the state to rank 0.
@@ -41,7 +41,7 @@ impl Order {
     fn pack(self) -> Vec<f64> {
         match self {
             Self::Put => vec![0.0],
-            Self::Step { time, step } => vec![1.0, time, step],
+            Self::Step { time, step, factor } => vec![1.0, time, step, factor],
             Self::Inspect => vec![2.0],
             Self::Fetch => vec![3.0],
             Self::FetchBefore => vec![4.0],
@@ -53,7 +53,7 @@ impl Order {
     fn unpack(said: &[f64]) -> Option<Self> {
         Some(match *said {
             [0.0] => Self::Put,
-            [1.0, time, step] => Self::Step { time, step },
+            [1.0, time, step, factor] => Self::Step { time, step, factor },
             [2.0] => Self::Inspect,
             [3.0] => Self::Fetch,
             [4.0] => Self::FetchBefore,
@@ -68,7 +68,6 @@ impl Order {
 struct Worker {
     ranks: Arc<dyn Ranks>,
     scheme: Box<dyn Scheme>,
-    kind: IntegratorKind,
     integrator: Box<dyn Integrator>,
     state: Vec<f64>,
     before: Vec<f64>,
@@ -82,20 +81,21 @@ struct Worker {
 }
 
 impl Worker {
-    /// That of a rank, with an integrator of this name. All ranks call this together.
-    fn new(whole: &dyn Scheme, part: &Part, integrator: &'static str) -> Result<Self, RankRefusal> {
-        let refused = || RankRefusal::Integrator(integrator);
+    /// That of a rank of a run with this integrator. All ranks call this together.
+    fn new(
+        whole: &dyn Scheme,
+        part: &Part,
+        integrator: &dyn Integrator,
+    ) -> Result<Self, RankRefusal> {
         let mut scheme = whole.share(part)?;
-        let mut kinds = IntegratorKind::ALL.into_iter();
-        let kind = kinds.find(|kind| kind.name() == integrator).ok_or_else(refused)?;
-        let integrator = kind.build(scheme.as_mut()).map_err(|_| refused())?;
+        let own = integrator.renewed(scheme.as_mut());
+        let integrator = own.ok_or_else(|| RankRefusal::Integrator(integrator.name()))?;
         let state = scheme.initial_state();
         Ok(Self {
             ranks: part.ranks.clone(),
             before: state.clone(),
             next: state.clone(),
             scheme,
-            kind,
             integrator,
             state,
             limits: Vec::new(),
@@ -109,7 +109,7 @@ impl Worker {
     /// ranks only, which then would not take part in what the others tell each other.
     fn take(&mut self, state: Vec<f64>) {
         self.state = state;
-        if let Ok(integrator) = self.kind.build(self.scheme.as_mut()) {
+        if let Some(integrator) = self.integrator.renewed(self.scheme.as_mut()) {
             self.integrator = integrator;
         }
     }
@@ -139,7 +139,10 @@ impl Worker {
             Order::Inspect => {
                 self.inspect()?;
             }
-            Order::Step { time, step } => self.step(time, step)?,
+            Order::Step { time, step, factor } => {
+                self.integrator.shorten(factor);
+                self.step(time, step)?;
+            }
             Order::End => {}
         }
         Ok(())
@@ -194,6 +197,8 @@ struct RankSteps {
     rows: RankRows,
     /// Whether any rank has something to say of the state, and whether any is asked to stop.
     told: [bool; 2],
+    /// What failures have multiplied steps by.
+    factor: f64,
     /// The threads that rank 0 computes with, if the ranks are threads.
     pool: Option<ThreadPool>,
     others: Vec<JoinHandle<()>>,
@@ -231,7 +236,12 @@ impl DeviceSteps for RankSteps {
     }
 
     fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError> {
-        Ok(self.order(Order::Step { time, step })?)
+        let factor = self.factor;
+        Ok(self.order(Order::Step { time, step, factor })?)
+    }
+
+    fn shorten(&mut self, factor: f64) {
+        self.factor = factor;
     }
 
     fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
@@ -310,7 +320,7 @@ impl Executor {
     /// # Errors
     /// [`RankRefusal`] for what does not run on several ranks, and where there are more ranks than chunks of particles.
     pub fn use_ranks(&mut self, count: usize) -> Result<(), RankRefusal> {
-        let (scheme, integrator) = (self.scheme.as_ref(), self.integrator.name());
+        let (scheme, integrator) = (self.scheme.as_ref(), self.integrator.as_ref());
         // What cannot be shared is refused before there are threads.
         scheme.shares(&Part::bounds(scheme, count)?)?;
         let threads = (rayon::current_num_threads() / count).max(1);
@@ -345,7 +355,7 @@ impl Executor {
     /// As [`Self::use_ranks`].
     pub fn lead(&mut self, ranks: Arc<dyn Ranks>) -> Result<(), RankRefusal> {
         let part = part(self.scheme.as_ref(), ranks)?;
-        let worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.name())?;
+        let worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.as_ref())?;
         self.lead_with(worker, &part, (None, Vec::new()))
     }
 
@@ -356,7 +366,7 @@ impl Executor {
     /// As [`Self::use_ranks`], and where a rank is lost.
     pub fn serve(self, ranks: Arc<dyn Ranks>, stop: Arc<AtomicBool>) -> Result<(), RankRefusal> {
         let part = part(self.scheme.as_ref(), ranks)?;
-        let mut worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.name())?;
+        let mut worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.as_ref())?;
         worker.stop = Some(stop);
         drop(self);
         Ok(worker.serve()?)
@@ -369,7 +379,7 @@ impl Executor {
         (pool, others): (Option<ThreadPool>, Vec<JoinHandle<()>>),
     ) -> Result<(), RankRefusal> {
         let rows = RankRows::of(self.scheme.as_ref(), &part.bounds);
-        let steps = RankSteps { worker, rows, told: [false; 2], pool, others };
+        let steps = RankSteps { worker, rows, told: [false; 2], factor: 1.0, pool, others };
         self.use_steps(Box::new(steps)).map_err(|error| match error {
             StepsError::Ranks(error) => error.into(),
             StepsError::Device(_) => RankRefusal::Formulation(self.scheme.description().name),

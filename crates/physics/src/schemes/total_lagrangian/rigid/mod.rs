@@ -46,6 +46,7 @@ pub struct RigidBody<const D: usize> {
 }
 
 /// A body bound to its particles.
+#[derive(Clone)]
 struct Bound<const D: usize> {
     particles: Vec<u32>,
     /// How displacements of its particles make that of its point.
@@ -56,7 +57,7 @@ struct Bound<const D: usize> {
 }
 
 /// The rigid bodies of a solid.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct RigidBodies<const D: usize> {
     bodies: Vec<Bound<D>>,
     /// Whether a particle belongs to one; empty where there is none.
