@@ -41,6 +41,9 @@ pub trait CoupledScheme: Scheme {
     /// their own, the fluid first.
     fn add_up(&mut self, counts: &[u64], state: &mut [f64]);
 
+    /// Forgets what is known of one state for the next: another one follows.
+    fn forget(&mut self);
+
     /// Brings the fluid into line with solids that have been changed from outside.
     fn refresh(&mut self, time: f64, state: &mut [f64]);
 }

@@ -90,15 +90,12 @@ pub fn seconds_told(size: usize, evaluations: f64, [bytes, partners]: [f64; 2]) 
     [evaluations * copies, evaluations * reduced, rounds, (size - 1.0) * LATENCY]
 }
 
-/// What ranks will have and do that have as many threads each as take this many seconds for an evaluation of all particles,
-/// and the speed of all of them over that of ranks with even shares that tell each other nothing.
-fn planned_ranks(
-    shares: Vec<RankShare>,
-    evaluations: u64,
-    evaluation: f64,
-) -> (Vec<PlannedRank>, f64) {
+/// What ranks will have and do that have as many threads each as take this many seconds for a `step` of all particles, with
+/// so many evaluations of those that are divided, and the speed of all of them over that of ranks with even shares that tell
+/// each other nothing.
+fn planned_ranks(shares: Vec<RankShare>, evaluations: u64, step: f64) -> (Vec<PlannedRank>, f64) {
     let (size, count) = (shares.len(), evaluations as f64);
-    let even = count * evaluation / size.max(1) as f64;
+    let even = step / size.max(1) as f64;
     let mut slowest = even;
     let of_rank = |share: RankShare| {
         let computed = share.load * even;
@@ -251,7 +248,12 @@ impl Session {
             let bounds = Part::bounds(scheme.as_ref(), usize::try_from(**ranks).ok()?).ok()?;
             scheme.shares(&bounds).ok()
         });
-        let (ranks, efficiency) = planned_ranks(ranks.unwrap_or_default(), evaluations, evaluation);
+        let of_first = own_steps.first().map_or(1, |(_, steps)| *steps);
+        let (ranks, efficiency) = planned_ranks(
+            ranks.unwrap_or_default(),
+            evaluations * of_first,
+            evaluations as f64 * evaluation,
+        );
         Plan {
             efficiency,
             ranks,

@@ -4,16 +4,23 @@
 use std::sync::mpsc;
 use std::time::Duration;
 
-use piola::case::{self, LoadOptions, Session};
+use piola::case::{self, Finished, LoadOptions, Session};
 use piola::time::{Moment, ObserveError, Observer, Schedule};
+use rayon::prelude::*;
 
-/// What a run leaves: its tables, and every column of its last state.
-pub fn run(
-    text: &str,
-    set: &[&str],
-    ranks: usize,
-    threads: usize,
-) -> (String, Vec<(String, Vec<u64>)>) {
+use super::resume::{cases, on_ranks};
+
+/// What a run leaves.
+pub struct Left {
+    pub finished: Finished,
+    /// Its tables, and what its summary tells of the state.
+    tables: String,
+    /// Every column of its last state.
+    columns: Vec<(String, Vec<u64>)>,
+}
+
+/// Runs a case.
+fn run(text: &str, set: &[&str], ranks: usize, threads: usize) -> Left {
     let ranks = format!("compute.ranks={ranks}");
     let overrides = set.iter().copied().chain([ranks.as_str()]).map(str::to_owned).collect();
     let options = LoadOptions { overrides, ..LoadOptions::default() };
@@ -39,19 +46,26 @@ pub fn run(
         });
         let columns = columns.collect();
         let told = (summary.step_range, summary.worst, &summary.warnings, &summary.retries);
-        (format!("{:?} {told:?}", finished.tables), columns)
+        Left { tables: format!("{:?} {told:?}", finished.tables), columns, finished }
     })
 }
 
-/// The same bits on any number of ranks, with one thread each and with several.
-pub fn same_on_any_number(text: &str, set: &[&str]) {
+/// The same bits on any number of ranks, with one thread each and with several; the run on one.
+pub fn same_on_any_number(text: &str, set: &[&str]) -> Left {
     let alone = run(text, set, 1, 1);
     for (ranks, threads) in [(2, 1), (2, 4), (3, 1), (4, 8), (7, 7)] {
-        let shared = run(text, set, ranks, threads);
-        assert!(alone.0 == shared.0, "{set:?}: tables on {ranks} ranks differ");
-        for (one, other) in alone.1.iter().zip(&shared.1) {
-            assert!(one == other, "{set:?}: {} on {ranks} ranks differs", one.0);
-        }
+        same(&alone, &run(text, set, ranks, threads), &format!("{set:?} on {ranks} ranks"));
+    }
+    alone
+}
+
+/// The same tables and columns.
+#[track_caller]
+fn same(alone: &Left, shared: &Left, what: &str) {
+    assert!(alone.tables == shared.tables, "{what}: tables differ");
+    assert_eq!(alone.columns.len(), shared.columns.len(), "{what}");
+    for (one, other) in alone.columns.iter().zip(&shared.columns) {
+        assert!(one == other, "{what}: {} differs", one.0);
     }
 }
 
@@ -217,7 +231,7 @@ fn many_particles_are_the_same_on_any_number_of_ranks() {
     let sets = ["body.plate.spacing=0.017", "time.end=8e-3", "output.table_every=2e-3"];
     let alone = run(PLATE, &sets, 1, 1);
     for (ranks, threads) in [(2, 4), (3, 9)] {
-        assert!(alone == run(PLATE, &sets, ranks, threads), "{ranks} ranks");
+        same(&alone, &run(PLATE, &sets, ranks, threads), &format!("{ranks} ranks"));
     }
 }
 
@@ -357,3 +371,72 @@ fn what_does_not_run_on_several_ranks_is_named() {
         "statics and implicit steps do not run on several ranks yet: take explicit steps",
     );
 }
+
+/// Which cases run on several ranks.
+#[test]
+fn explicit_steps_are_shared() {
+    let cases = cases();
+    let shared = cases.par_iter().filter(|path| on_ranks(path, None, &[]).is_some());
+    let names = shared.filter_map(|path| path.parent()?.file_name()?.to_str());
+    assert_eq!(names.collect::<Vec<&str>>(), SHARED);
+}
+
+/// The cases of which several ranks have a part each.
+const SHARED: [&str; 56] = [
+    "dam-break-box",
+    "dam-break-plate",
+    "dam-break-plate-3d",
+    "floating-box",
+    "gate",
+    "hull",
+    "leaflet",
+    "plate",
+    "plate-3d",
+    "ring",
+    "slab",
+    "wedge",
+    "cavity",
+    "compression",
+    "contact",
+    "couette",
+    "dam-break",
+    "dam-break-3d",
+    "drop",
+    "free-surface",
+    "impact",
+    "impact-3d",
+    "jet",
+    "jet-3d",
+    "plane-shock",
+    "poiseuille",
+    "rings",
+    "rings-3d",
+    "still-water",
+    "swinging-plate",
+    "swinging-plate-3d",
+    "taylor-bar",
+    "taylor-green",
+    "taylor-green-3d",
+    "free-vibration",
+    "biaxial",
+    "hole",
+    "pulse-3d",
+    "reflection-3d",
+    "wave-2d",
+    "wave-3d",
+    "solitary",
+    "standing-wave",
+    "wave-tank",
+    "waves",
+    "presets",
+    "bar-sine",
+    "bar-step",
+    "column-impact",
+    "column-impact-3d",
+    "dam-break",
+    "dam-break-3d",
+    "drop-3d",
+    "impact-linear",
+    "piston",
+    "piston-steps",
+];

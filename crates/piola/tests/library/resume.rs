@@ -9,7 +9,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use piola::case::{self, Case, Finished, Level, LoadOptions, RunError, Session};
 use piola::output::checkpoint;
 use piola::time::{Outcome, Progress};
-use rayon::prelude::*;
 
 use super::ranks_coupled::TANK;
 
@@ -83,7 +82,7 @@ fn assert_same(whole: &Path, broken: &Path, what: &str) {
     }
 }
 
-fn cases() -> Vec<PathBuf> {
+pub fn cases() -> Vec<PathBuf> {
     fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
         let entries = fs::read_dir(folder).unwrap();
         let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -122,77 +121,8 @@ fn side_by_side<T: Sync>(all: &[T], each: impl Fn(&T) + Sync) {
     std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
 }
 
-/// Which cases run on several ranks.
-#[test]
-fn explicit_steps_are_shared() {
-    let cases = cases();
-    let shared = cases.par_iter().filter(|path| on_ranks(path, None, &[]).is_some());
-    let names = shared.filter_map(|path| path.parent()?.file_name()?.to_str());
-    assert_eq!(names.collect::<Vec<&str>>(), SHARED);
-}
-
-/// The cases of which several ranks have a part each.
-const SHARED: [&str; 56] = [
-    "dam-break-box",
-    "dam-break-plate",
-    "dam-break-plate-3d",
-    "floating-box",
-    "gate",
-    "hull",
-    "leaflet",
-    "plate",
-    "plate-3d",
-    "ring",
-    "slab",
-    "wedge",
-    "cavity",
-    "compression",
-    "contact",
-    "couette",
-    "dam-break",
-    "dam-break-3d",
-    "drop",
-    "free-surface",
-    "impact",
-    "impact-3d",
-    "jet",
-    "jet-3d",
-    "plane-shock",
-    "poiseuille",
-    "rings",
-    "rings-3d",
-    "still-water",
-    "swinging-plate",
-    "swinging-plate-3d",
-    "taylor-bar",
-    "taylor-green",
-    "taylor-green-3d",
-    "free-vibration",
-    "biaxial",
-    "hole",
-    "pulse-3d",
-    "reflection-3d",
-    "wave-2d",
-    "wave-3d",
-    "solitary",
-    "standing-wave",
-    "wave-tank",
-    "waves",
-    "presets",
-    "bar-sine",
-    "bar-step",
-    "column-impact",
-    "column-impact-3d",
-    "dam-break",
-    "dam-break-3d",
-    "drop-3d",
-    "impact-linear",
-    "piston",
-    "piston-steps",
-];
-
 /// The case on as many ranks as it can be shared among, up to 7.
-fn on_ranks(path: &Path, variant: Option<&str>, set: &[&str]) -> Option<Case> {
+pub fn on_ranks(path: &Path, variant: Option<&str>, set: &[&str]) -> Option<Case> {
     for ranks in [7, 4, 3, 2] {
         let more = format!("compute.ranks={ranks}");
         let case = load(path, variant, &[set, &[more.as_str()]].concat());
@@ -234,11 +164,25 @@ fn solids_of_each_kind_in_a_fluid_resume_to_the_bit() {
     side_by_side(&variants, |variant| resumes_to_the_bit(slab, Some(variant)));
 }
 
-/// A fluid with solids that touch what moves, broken off on two ranks, continued on three and ended on one.
+/// A fluid with solids that touch what moves, broken off on two ranks, continued on three and ended on one; the same with
+/// a thin plate that moves on without turning.
 #[test]
 fn a_fluid_with_solids_goes_on_on_another_number_of_ranks() {
+    goes_on_on_another_number_of_ranks(&[]);
+    goes_on_on_another_number_of_ranks(&[
+        "boundary.foot=",
+        "body.plate.material={ kind = 'rigid', density = 1500.0 }",
+        "system.plate.scheme={ kind = 'total_lagrangian' }",
+        "body.plate.shape.min=[0.5, 0.1]",
+        "body.plate.initial={ velocity = ['1', '0'] }",
+    ]);
+}
+
+fn goes_on_on_another_number_of_ranks(set: &[&str]) {
     let on = |ranks: usize| {
-        let overrides = vec![format!("compute.ranks={ranks}"), "output.compression='none'".into()];
+        let overrides = set.iter().map(|text| (*text).to_owned());
+        let more = [format!("compute.ranks={ranks}"), "output.compression='none'".to_owned()];
+        let overrides = overrides.chain(more).collect();
         let options = LoadOptions { overrides, ..LoadOptions::default() };
         case::parse(TANK, "tank.toml", &options).unwrap_or_else(|problems| panic!("{problems}"))
     };

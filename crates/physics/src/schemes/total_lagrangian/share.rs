@@ -69,10 +69,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let (count, all) = (own.len(), slots.iter().count());
         let is_viscous = self.dissipation.is_viscous();
         // Planes know how fast they move by a particle, which another rank may have.
-        let is_continued = match part.is_whole() {
-            true => is_viscous && self.has_images,
-            false => is_viscous || self.has_images,
-        };
+        let is_told = !part.is_whole() && (is_viscous || self.has_images);
+        let is_continued = is_told || !self.velocity.is_empty();
         let place = |a: usize| own.contains(&a).then(|| a - own.start);
         let planes = whole.planes.iter();
         let planes = planes.map(|&(plane, on)| (plane, slots.place(on as u32) as usize)).collect();

@@ -157,16 +157,17 @@ impl<const D: usize> TransportVelocity<D> {
         !self.common.motion.is_empty()
     }
 
-    /// Finds places and velocities of walls that nothing else moves in a state.
+    /// Finds places and velocities of walls that nothing else moves in a state. On several ranks, what has been `found` of
+    /// walls that stand is kept.
     pub(crate) fn places_of(
         &self,
         state: &[f64],
         walls: &WallSelection,
         found: &mut Vec<[Vector<D>; 2]>,
     ) {
-        // Those that do not move are where they were.
-        let is_known = walls.numbers.is_empty() || !self.moves_walls();
-        if is_known && found.len() == walls.len() {
+        // Other ranks need not be asked again for those that stand, nor for none.
+        let is_known = walls.len() == 0 || !self.moves_walls() && found.len() == walls.len();
+        if is_known && !self.common.team().is_alone() {
             return;
         }
         let at = self.common.columns(state);

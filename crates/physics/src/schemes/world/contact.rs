@@ -21,7 +21,7 @@
 
 use super::Solid;
 use crate::neighbors::{Domain, search};
-use crate::schemes::transport_velocity::TransportVelocity;
+use crate::schemes::transport_velocity::{TransportVelocity, WallSelection};
 use crate::{Vector, parallel};
 
 /// How far in spacings the points of a surface make a plane along it.
@@ -134,7 +134,7 @@ struct Plane<const D: usize> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contact<const D: usize> {
     /// The wall particles of the fluid, by number, that have points.
-    walls: Vec<u32>,
+    walls: WallSelection,
     origins: Vec<Origin>,
     /// The points of the same particle, by index: the first, and the one after the last.
     together: Vec<[usize; 2]>,
@@ -186,12 +186,12 @@ impl<const D: usize> Contact<D> {
                 add(number, own.density(row), &|face| Origin::Solid { solid, row, face });
             }
         }
-        made.walls = walls;
+        made.walls = WallSelection::new(walls);
         made
     }
 
     /// The wall particles of the fluid, by number, that have points.
-    pub fn walls(&self) -> &[u32] {
+    pub fn walls(&self) -> &WallSelection {
         &self.walls
     }
 
@@ -390,7 +390,8 @@ impl<const D: usize> Contact<D> {
     pub fn memory(&self) -> usize {
         let near = self.near.iter();
         let near = near.map(|it| size_of_val(it) + it.others.len() * (4 + size_of::<(u32, f64)>()));
-        size_of_val(self.origins.as_slice())
+        self.walls.memory()
+            + size_of_val(self.origins.as_slice())
             + size_of_val(self.points.as_slice())
             + 3 * size_of_val(self.seen.as_slice())
             + near.sum::<usize>()

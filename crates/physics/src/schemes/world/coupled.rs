@@ -102,7 +102,11 @@ impl<const D: usize> World<D> {
             self.known.extend_from_slice(places);
         }
         let (solids, fluid, parts) = (&self.solids, &self.fluid, &self.parts);
-        fluid.places_of(&state[parts.all[0].state.clone()], &self.fixed, &mut self.fixed_at);
+        fluid.places_of(
+            &state[parts.all[0].state.clone()],
+            self.contact.walls(),
+            &mut self.fixed_at,
+        );
         let (domain, spacing, fixed_at) = (fluid.domain(), fluid.spacing(), &self.fixed_at);
         let of = |solid: usize| (&solids[solid], &state[parts.all[solid + 1].state.clone()]);
         let place = |origin: &Origin, offset: &Vector<D>| match *origin {
@@ -133,7 +137,7 @@ impl<const D: usize> World<D> {
         let touches = &mut self.touches;
         let velocity = |origin: &Origin, offset: &Vector<D>| match *origin {
             Origin::Wall { wall, .. } => {
-                fluid.surface_velocity(time, (&self.fixed, wall), self.fixed_at[wall][1])
+                fluid.surface_velocity(time, (self.contact.walls(), wall), self.fixed_at[wall][1])
             }
             Origin::Solid { solid, row, .. } => {
                 let (solid, own) = (&solids[solid], &state[parts.all[solid + 1].state.clone()]);
@@ -354,11 +358,16 @@ impl<const D: usize> CoupledScheme for World<D> {
         }
     }
 
+    fn forget(&mut self) {
+        self.known.clear();
+        self.fixed_at.clear();
+    }
+
     #[inline(never)]
     fn refresh(&mut self, time: f64, state: &mut [f64]) {
         self.carry_walls(state);
         self.guide(state);
-        self.known.clear();
+        self.forget();
         self.fluid.accelerate(time, &mut state[self.parts.all[0].state.clone()]);
     }
 }

@@ -141,9 +141,8 @@ pub struct World<const D: usize> {
     cfl: Option<f64>,
     solids: Vec<Solid<D>>,
     contact: Contact<D>,
-    /// The wall particles of the fluid that stand for solids, and those that solids may touch.
+    /// The wall particles of the fluid that stand for solids.
     guided: WallSelection,
-    fixed: WallSelection,
     /// Where the work of all walls stands among those of the fluid.
     walls: usize,
     /// Those of the fluid, then of each solid.
@@ -202,10 +201,8 @@ impl<const D: usize> World<D> {
         }
         fluid.let_walls_be_guided(&guided);
         let description = fluid.description().with_solids(&names);
-        let contact = Contact::new(&fluid, &bound);
         let mut world = Self {
             description,
-            fixed: WallSelection::new(contact.walls().to_vec()),
             guided: WallSelection::new(guided.clone()),
             walls: fluid.description().ledger.place_of(WALLS),
             parts: Parts::default(),
@@ -215,7 +212,7 @@ impl<const D: usize> World<D> {
             before: Vec::new(),
             booked: Vec::new(),
             touches: vec![Vec::new(); bound.len()],
-            contact,
+            contact: Contact::new(&fluid, &bound),
             known: Vec::new(),
             ways: Vec::new(),
             carried: vec![[Vector::zeros(); 2]; guided.len()],

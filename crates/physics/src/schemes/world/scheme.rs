@@ -359,12 +359,13 @@ impl<const D: usize> Scheme for World<D> {
         let a_particle = size_of::<[Vector<D>; 6]>();
         let particles: usize = self.solids.iter().map(|solid| solid.mass.len()).sum();
         let passing = self.carried.len() * a_wall + particles * a_particle;
-        let selections = self.guided.memory() + self.fixed.memory();
+        let fixed = self.contact.walls().len() * size_of::<[Vector<D>; 2]>();
         systems
             + interfaces
             + self.contact.memory()
             + passing
-            + selections
+            + fixed
+            + self.guided.memory()
             + size_of_val(self.start.as_slice())
     }
 

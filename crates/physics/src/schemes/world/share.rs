@@ -60,12 +60,14 @@ impl<const D: usize> World<D> {
         }
         let shares = self.fluid.planned(bounds)?;
         let of_solids = self.cost_of_solids();
+        let count = self.fluid_steps_of(&self.limits) as usize;
         let of_fluid = self.fluid.cost(0..self.fluid.particle_count());
         let even = (of_fluid + of_solids) / shares.len() as f64;
         let share = |(share, ends): (RankShare, &[usize])| {
             let own = ends[0]..ends[1];
-            // Each gets the forces on the walls of the others.
+            // Each gets the forces on the walls of the others, when a step begins and after each step of the fluid in it.
             let told = (self.guided.len() - self.guided.within(&own).len()) * D;
+            let told = told * (count + 1) / count;
             RankShare {
                 particles: self.count_with(&own),
                 bytes: share.bytes + told * size_of::<f64>(),
@@ -88,7 +90,6 @@ impl<const D: usize> World<D> {
             cfl: self.cfl,
             contact: self.contact.clone(),
             guided: self.guided.clone(),
-            fixed: self.fixed.clone(),
             walls: self.walls,
             parts: self.parts.without(self.start.len() - start.len()),
             start,

@@ -109,6 +109,9 @@ impl Worker {
     /// ranks only, which then would not take part in what the others tell each other.
     fn take(&mut self, state: Vec<f64>) {
         self.state = state;
+        if let Some(systems) = self.scheme.coupled() {
+            systems.forget();
+        }
         if let Some(integrator) = self.integrator.renewed(self.scheme.as_mut()) {
             self.integrator = integrator;
         }
