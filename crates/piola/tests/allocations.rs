@@ -77,6 +77,18 @@ const SOME: usize = piola::parallel::CHUNK + 1;
 /// A slab that is heavy and soft, for which one step is several of the water.
 const SOFT: &str = "body.slab.material={ kind='linear_elastic', density='10 * rho', young_modulus='2.5 * rho * c^2', poisson_ratio=0 }";
 
+/// A case at its start, which writes nothing before its end.
+fn session(name: &str, variant: Option<&str>, overrides: &[&str]) -> Session {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
+    let never = ["output.every=1e9", "output.table_every=1e9"];
+    let overrides = overrides.iter().chain(&never).map(|text| (*text).to_owned()).collect();
+    let variant = variant.map(str::to_owned);
+    let options = LoadOptions { overrides, variant, ..LoadOptions::default() };
+    let case = case::load(&path.join("case.toml"), &options);
+    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+    Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
 /// Particles of a case, of which there are no fewer than `least`, and the allocations of each of some steps after the first
 /// ones, with all that a run does between steps but for its output.
 fn of_case(
@@ -84,13 +96,7 @@ fn of_case(
     least: usize,
     [before, measured]: [u32; 2],
 ) -> (u64, Vec<u64>) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
-    let never = ["output.every=1e9", "output.table_every=1e9"];
-    let set = overrides.iter().chain(&never).map(|text| (*text).to_owned()).collect();
-    let options = LoadOptions { overrides: set, ..LoadOptions::default() };
-    let case = case::load(&path.join("case.toml"), &options);
-    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
-    let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut session = session(name, None, overrides);
     let count = session.scheme().particle_count();
     if overrides.contains(&SOFT) {
         assert!(session.plan().own_steps[0].1 > 1, "steps are several of the water");
@@ -144,7 +150,8 @@ fn explicit_steps_of_all_schemes_allocate_nothing() {
     ];
     let gtvf =
         [&rings[..], &["scheme.shifting='background'", "scheme.corrections='gtvf'"]].concat();
-    let flows: [(&str, &[&str]); 15] = [
+    let flows: [(&str, &[&str]); 16] = [
+        ("open/channel", &["parameters.across=52"]),
         ("coupled/slab", &[fine, narrow]),
         ("coupled/slab", &[fine, narrow, upwind, law]),
         ("coupled/slab", &[fine, narrow, hypoelastic, rates]),
@@ -202,4 +209,29 @@ fn steps_that_solve_equations_allocate_nothing_a_particle() {
         ("dual-support/arch", &[]),
     ];
     each(&cases, SOME, [3, 3], |particles, counts| counts.iter().all(|count| *count < particles));
+}
+
+/// What a run holds does not grow with its steps: the four cases whose energy is checked over a million steps, each for
+/// a tenth of that. The arrays of the neighbours of water are as long as they happen to be.
+#[test]
+fn over_many_steps_memory_does_not_grow() {
+    let held = |(name, most): (&str, i64)| {
+        let mut session = session(name, Some("million"), &[]);
+        let mut run = |steps: u32| {
+            for _ in 0..steps {
+                assert!(session.step().expect("nothing is written"), "{name} goes on");
+            }
+        };
+        run(1000);
+        let grown = allocation_counter::measure(|| run(100_000)).bytes_current;
+        assert!(grown <= most, "{name}: {grown} bytes more");
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    let cases = [
+        ("upwind/piston", 0),
+        ("dual-support/plate", 0),
+        ("elastodynamics/wave-2d", 0),
+        ("ctvf/still-water", 10_000),
+    ];
+    pool.install(|| cases.into_iter().for_each(held));
 }
