@@ -59,8 +59,17 @@ fn unheld(table: &str, case: &CaseResults, folder: &str) -> Vec<String> {
 /// Text that says by which command its numbers came about.
 const COMMANDS: [&str; 4] = ["`--", "`piola ", ".py`", "`parameters."];
 
+/// Whether `word` is the number of an equation of a paper, as `(3.38)` is.
+fn is_equation(word: &str) -> bool {
+    let word = word.trim_end_matches(['.', ',', ';', ':']);
+    let number = word.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
+    let parts = number.and_then(|number| number.split_once('.'));
+    let counts = |part: &str| part.parse::<u32>().is_ok_and(|count| count > 0);
+    parts.is_some_and(|(chapter, equation)| counts(chapter) && counts(equation))
+}
+
 /// What `text` claims: its tables and its paragraphs and items, but for blocks of code, those that say how to get their
-/// numbers, and places in papers.
+/// numbers, places in papers, and what links lead to.
 fn claims(text: &str) -> String {
     let outside = text.split("```").step_by(2);
     let blocks = outside.flat_map(|part| part.split("\n\n")).flat_map(|block| block.split("\n- "));
@@ -76,9 +85,10 @@ fn claims(text: &str) -> String {
                 word => of_place && word.ends_with(','),
             };
             was_place = of_place;
-            !of_place
+            !of_place && !is_equation(word)
         })
     });
+    let words = words.map(|word| word.split_once("](").map_or(word, |(text, _)| text));
     words.collect::<Vec<_>>().join(" ")
 }
 
@@ -119,6 +129,8 @@ fn numbers_are_compared_with_the_digits_they_have() {
     assert_eq!(written("| 0.008 | -1.5e-3 m, 25 | v1.2.3 |"), ["0.008", "1.5e-3"]);
     let text = "In figures 4.1, 4.2 and 4.3 it is 0.5.\n- `--set a=1` gives 0.7\n- and 0.8\n```\n0.9\n```\n";
     assert_eq!(written(&claims(text)), ["0.5", "0.8"]);
+    let text = "from (3.38), (3.41); it is (0.5): ![at 0.6 s](at-0.7.png) [a 1.5](b-1.6.png).";
+    assert_eq!(written(&claims(text)), ["0.5", "0.6", "1.5"]);
     assert!(is_rounded("0.008", 0.00799) && !is_rounded("0.008", 0.0086));
     assert!(is_rounded("1.5e-3", 0.00149) && is_rounded("0.77", 0.7699));
 }
