@@ -1,4 +1,5 @@
-//! No number in a table of a README or of the gallery that the results or the case do not hold.
+//! No number in a README of a case or in the gallery that neither the results nor the files of the case hold, and that has
+//! no command beside it.
 
 use piola::case::page::CaseResults;
 
@@ -26,7 +27,8 @@ fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, String) {
         words.filter_map(|word| word.trim_end_matches('%').parse().ok()).collect::<Vec<f64>>()
     };
     let numbers = case.rows.iter().flat_map(|row| {
-        let own = [&row.got, &row.expected, &row.tolerance, &row.off_by, &row.source];
+        let own =
+            [&row.quantity, &row.got, &row.expected, &row.tolerance, &row.off_by, &row.source];
         let texts = own.into_iter().chain(&row.members).chain(&row.run).chain(&row.bound);
         texts.flat_map(|text| cells(text)).collect::<Vec<_>>()
     });
@@ -54,12 +56,44 @@ fn unheld(table: &str, case: &CaseResults, folder: &str) -> Vec<String> {
     written(table).into_iter().filter(|number| !held(number)).collect()
 }
 
-fn tables(text: &str) -> String {
-    text.lines().filter(|line| line.starts_with('|')).collect::<Vec<_>>().join("\n")
+/// Text that says by which command its numbers came about.
+const COMMANDS: [&str; 4] = ["`--", "`piola ", ".py`", "`parameters."];
+
+/// Whether `word` is the number of an equation of a paper, as `(3.38)` is.
+fn is_equation(word: &str) -> bool {
+    let word = word.trim_end_matches(['.', ',', ';', ':']);
+    let number = word.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
+    let parts = number.and_then(|number| number.split_once('.'));
+    let counts = |part: &str| part.parse::<u32>().is_ok_and(|count| count > 0);
+    parts.is_some_and(|(chapter, equation)| counts(chapter) && counts(equation))
+}
+
+/// What `text` claims: its tables and its paragraphs and items, but for blocks of code, those that say how to get their
+/// numbers, places in papers, and what links lead to.
+fn claims(text: &str) -> String {
+    let outside = text.split("```").step_by(2);
+    let blocks = outside.flat_map(|part| part.split("\n\n")).flat_map(|block| block.split("\n- "));
+    let is_open = |block: &&str| !COMMANDS.iter().any(|command| block.contains(command));
+    let words = blocks.filter(is_open).flat_map(|block| {
+        let (mut is_place, mut was_place) = (false, false);
+        block.split_whitespace().filter(move |word| {
+            let of_place = is_place;
+            let name = word.trim_start_matches('(').trim_end_matches('s').to_lowercase();
+            is_place = match name.as_str() {
+                "section" | "figure" | "table" => true,
+                "and" | "to" => was_place,
+                word => of_place && word.ends_with(','),
+            };
+            was_place = of_place;
+            !of_place && !is_equation(word)
+        })
+    });
+    let words = words.map(|word| word.split_once("](").map_or(word, |(text, _)| text));
+    words.collect::<Vec<_>>().join(" ")
 }
 
 #[test]
-fn numbers_in_tables_of_cases_are_those_of_the_results() {
+fn numbers_of_cases_are_those_of_the_results() {
     let results = results();
     let mut wrong = Vec::new();
     for case in &results.cases {
@@ -69,7 +103,7 @@ fn numbers_in_tables_of_cases_are_those_of_the_results() {
         let base = root().canonicalize().expect("it is there");
         let folder = folder.strip_prefix(base).expect("it is below the root").display().to_string();
         let readme = page(&format!("{folder}/README.md"));
-        let numbers = unheld(&tables(&readme.text), case, &folder);
+        let numbers = unheld(&claims(&readme.text), case, &folder);
         if !numbers.is_empty() {
             wrong.push(format!("{}: {}", readme.name, numbers.join(", ")));
         }
@@ -83,12 +117,20 @@ fn numbers_in_tables_of_cases_are_those_of_the_results() {
             wrong.push(format!("docs/gallery.md, {folder}: {}", numbers.join(", ")));
         }
     }
-    assert!(wrong.is_empty(), "neither results nor files of the case hold:\n{}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "neither results nor files of the case hold, and no command is beside:\n{}",
+        wrong.join("\n")
+    );
 }
 
 #[test]
 fn numbers_are_compared_with_the_digits_they_have() {
     assert_eq!(written("| 0.008 | -1.5e-3 m, 25 | v1.2.3 |"), ["0.008", "1.5e-3"]);
+    let text = "In figures 4.1, 4.2 and 4.3 it is 0.5.\n- `--set a=1` gives 0.7\n- and 0.8\n```\n0.9\n```\n";
+    assert_eq!(written(&claims(text)), ["0.5", "0.8"]);
+    let text = "from (3.38), (3.41); it is (0.5): ![at 0.6 s](at-0.7.png) [a 1.5](b-1.6.png).";
+    assert_eq!(written(&claims(text)), ["0.5", "0.6", "1.5"]);
     assert!(is_rounded("0.008", 0.00799) && !is_rounded("0.008", 0.0086));
     assert!(is_rounded("1.5e-3", 0.00149) && is_rounded("0.77", 0.7699));
 }
