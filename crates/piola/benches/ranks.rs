@@ -213,9 +213,7 @@ fn model(second: f64, [surface, bytes]: [f64; 2]) {
         BANDWIDTH * 1e-9
     );
     for (title, whole) in [("1e6 particles each", None), ("1e8 particles in all", Some(1e8))] {
-        println!(
-            "  {title}\n  ranks  efficiency  ms computing  us copies  us sums  us rounds  us to rank 0"
-        );
+        println!("  {title}\n  ranks  efficiency  ms computing  us copies  us sums  us rounds");
         for ranks in [1, 8, 64, 512, 4096] {
             let particles = whole.map_or(1e6, |all: f64| all / ranks as f64);
             let copies = surface * particles.powf(2.0 / 3.0);
@@ -224,9 +222,9 @@ fn model(second: f64, [surface, bytes]: [f64; 2]) {
             let told = seconds_told(ranks, 1.0, [others, beside]);
             let computed = particles * second;
             let efficiency = computed / (computed + told.iter().sum::<f64>());
-            let [copies, sums, rounds, first] = told.map(|seconds| seconds * 1e6);
+            let [copies, sums, rounds] = told.map(|seconds| seconds * 1e6);
             println!(
-                "  {ranks:5}  {efficiency:10.3}  {:12.1}  {copies:9.0}  {sums:7.0}  {rounds:9.0}  {first:12.0}",
+                "  {ranks:5}  {efficiency:10.3}  {:12.1}  {copies:9.0}  {sums:7.0}  {rounds:9.0}",
                 computed * 1e3
             );
         }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::search::search_ranked;
+use super::search::{check_points, search_ranked};
 use super::{Domain, NeighborError, shorter_way, spatial_order};
 use crate::parallel::Team;
 use crate::{Vector, parallel};
@@ -189,10 +189,7 @@ impl<const D: usize> SkinList<D> {
     /// Renews the places and lists the candidates of the current positions.
     fn build(&mut self) -> Result<(), NeighborError> {
         let (reach, owned, first) = (self.support + self.skin, self.owned(), self.team.first());
-        let (own, (positions, all)) = (first..first + owned, self.all());
-        if positions.len() != self.ranks.len() {
-            return Err(NeighborError::OtherRank);
-        }
+        let (own, (positions, all)) = (first..first + owned, self.around(reach)?);
         let mut order = spatial_order(&positions, reach)?;
         // Those that no others see come last and are not looked for: many may be in one place. Own ones come first.
         let class = |&at: &u32| {
@@ -206,7 +203,7 @@ impl<const D: usize> SkinList<D> {
         let ordered: Vec<_> = order.iter().map(|&at| positions[at as usize]).collect();
         let numbers: Vec<u32> = order.iter().map(|&at| all[at as usize]).collect();
         let ranks: Vec<u32> = numbers.iter().map(|&number| self.ranks[number as usize]).collect();
-        let mut ranked = vec![0; ranks.len()];
+        let mut ranked = vec![0; self.ranks.len()];
         for (place, &rank) in ranks.iter().enumerate() {
             ranked[rank as usize] = place as u32;
         }
@@ -237,15 +234,32 @@ impl<const D: usize> SkinList<D> {
         Ok(())
     }
 
-    /// Positions in m and numbers of the particles of all ranks.
-    fn all(&self) -> (Cow<'_, [Vector<D>]>, Cow<'_, [u32]>) {
+    /// Positions in m and numbers of own particles and of all others in a box around them that is wider by `reach` m: no
+    /// one else can be their neighbour.
+    fn around(&self, reach: f64) -> Result<(Cow<'_, [Vector<D>]>, Cow<'_, [u32]>), NeighborError> {
         if self.team.is_alone() {
-            return (Cow::Borrowed(&self.positions), Cow::Borrowed(&self.numbers));
+            return Ok((Cow::Borrowed(&self.positions), Cow::Borrowed(&self.numbers)));
         }
-        let own = self.places.iter().map(|&place| self.positions[place as usize]);
-        let all = self.team.rows_of_all(own.collect());
-        let numbers = (0..all.len() as u32).collect();
-        (Cow::Owned(all), numbers)
+        let own: Vec<_> = self.places.iter().map(|&at| self.positions[at as usize]).collect();
+        let mut corners = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::<D>::repeat);
+        for point in &own {
+            corners = [corners[0].inf(point), corners[1].sup(point)];
+        }
+        let all = self.team.rows_of_all(own);
+        if all.len() != self.ranks.len() {
+            return Err(NeighborError::OtherRank);
+        }
+        check_points(&all)?;
+        let (center, periods) = ((corners[0] + corners[1]) / 2.0, self.domain.periods());
+        // More than rounding takes.
+        let half = (corners[1] - corners[0]).add_scalar(2.002 * reach) / 2.0;
+        let is_near = |point: &Vector<D>| {
+            let way = |axis: usize| shorter_way(point[axis] - center[axis], periods[axis]);
+            (0..D).all(|axis| way(axis).abs() <= half[axis])
+        };
+        let near = (0..).zip(&all).filter(|(_, point)| is_near(point));
+        let (numbers, positions): (Vec<u32>, Vec<_>) = near.unzip();
+        Ok((Cow::Owned(positions), Cow::Owned(numbers)))
     }
 
     /// What the rows of `entries`, which say where others stand in the order of `numbers`, name of other ranks: the rank

@@ -71,23 +71,24 @@ pub const BANDWIDTH: f64 = 12e9;
 /// with their forces, and of how fast powers grow.
 const SUMS: [f64; 2] = [2.0, 38_080.0];
 
-/// What all ranks tell all in a step beside sums, and what goes from one to all.
-const ROUNDS: f64 = 8.0;
+/// What all ranks tell all in a step beside sums, what goes from one to all, and the number of those that have something to
+/// say, which goes up a tree and down again.
+const ROUNDS: f64 = 10.0;
 
 /// Bytes of a rank that all ranks get in a step: what is largest, and who has it.
 const LOOK: f64 = 120.0;
 
 /// Seconds in a step of so many evaluations in which a rank of `size` tells others and is told, in a network with [`LATENCY`]
 /// and [`BANDWIDTH`], by kind: copies, of which so many bytes come from so many ranks in an evaluation; sums over all ranks;
-/// rounds of all ranks; what each rank tells rank 0 alone.
-pub fn seconds_told(size: usize, evaluations: f64, [bytes, partners]: [f64; 2]) -> [f64; 4] {
+/// rounds of all ranks.
+pub fn seconds_told(size: usize, evaluations: f64, [bytes, partners]: [f64; 2]) -> [f64; 3] {
     let (size, [sums, summed]) = (size as f64, SUMS);
     let levels = size.log2().ceil();
     // It sends to those that it gets from. Sums are scattered, added and gathered again.
     let copies = bytes / BANDWIDTH + 2.0 * partners * LATENCY;
     let reduced = 2.0 * (1.0 - 1.0 / size) * summed / BANDWIDTH + 2.0 * sums * levels * LATENCY;
     let rounds = ROUNDS * levels * LATENCY + size * LOOK / BANDWIDTH;
-    [evaluations * copies, evaluations * reduced, rounds, (size - 1.0) * LATENCY]
+    [evaluations * copies, evaluations * reduced, rounds]
 }
 
 /// What ranks will have and do that have as many threads each as take this many seconds for a `step` of all particles, with

@@ -178,7 +178,7 @@ impl Worker {
         }
     }
 
-    /// Looks at the state. For rank 0: whether any rank has something to say of it, and whether any is asked to stop.
+    /// Looks at the state: whether any rank has something to say of it, and whether any is asked to stop.
     fn inspect(&mut self) -> Result<[bool; 2], RankError> {
         let start = Instant::now();
         self.health = self.scheme.inspect(&self.state, &mut self.limits);
@@ -187,9 +187,9 @@ impl Worker {
             return Err(lost);
         }
         let stops = self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed));
-        let own = [self.scheme.warning().is_some(), stops].map(|said| f64::from(u8::from(said)));
-        let told = self.ranks.gather(&own)?;
-        Ok([0, 1].map(|what| told.iter().any(|said| said.get(what).is_some_and(|it| *it > 0.0))))
+        let mut told = [self.scheme.warning().is_some(), stops].map(i64::from);
+        self.ranks.add(&mut told)?;
+        Ok(told.map(|ranks| ranks > 0))
     }
 }
 

@@ -193,6 +193,7 @@ fn build_upwind<const D: usize>(
     let neighbors = support.list.statistics();
     let mut warnings = stencil_warning::<D>(settings, &bodies, kernel, &neighbors);
     warnings.extend(printed::warning(settings));
+    warnings.extend(overlap::touching(case, &domain, &particles, &particles.body));
 
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);

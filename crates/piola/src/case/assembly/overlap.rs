@@ -1,14 +1,19 @@
-//! Bodies that are partly in the same place.
+//! Bodies that are partly in the same place, or touch.
+
+use std::collections::BTreeSet;
 
 use super::bodies::shape;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{Body, Case};
 use crate::geometry::Particles;
-use crate::neighbors::Domain;
+use crate::neighbors::{Domain, search};
 
 /// The largest depth in spacings at which a particle may lie in another body. Where two bodies touch it is half a spacing
 /// outside, or on the common face.
 const DEPTH: f64 = 0.5;
+
+/// The largest distance in spacings of particles of two bodies that touch: a spacing, and the rounding of a lattice.
+const TOUCH: f64 = 1.02;
 
 /// What to do about bodies that overlap.
 pub(super) const REMEDY: &str =
@@ -80,4 +85,39 @@ fn problem<const D: usize>(
     );
     let label = format!("body `{}`", *body.name);
     case.problem_at(body.shape.place, message, label, Some(remedy.to_owned()))
+}
+
+/// The pairs of bodies of a solid that touch at the start although none of their particles see those of the other, which
+/// are those of another `group`: a warning each, as they move through each other.
+pub(super) fn touching<const D: usize>(
+    case: &Case,
+    domain: &Domain<D>,
+    particles: &Particles<D>,
+    group: &[u32],
+) -> Vec<String> {
+    if group.iter().all(|of| *of == group[0]) {
+        return Vec::new();
+    }
+    let reach: Vec<f64> = particles.spacing.iter().map(|spacing| TOUCH * spacing).collect();
+    // What cannot be searched is refused with its supports.
+    let Ok(list) = search(&particles.position, &reach, domain) else { return Vec::new() };
+    let mut found = BTreeSet::new();
+    for a in 0..particles.len() {
+        let others = list.row(a).iter().map(|&b| b as usize).filter(|&b| group[b] != group[a]);
+        found.extend(others.map(|b| {
+            let (one, other) = (particles.body[a], particles.body[b]);
+            (one.min(other), one.max(other))
+        }));
+    }
+    let name = |body: u32| &*case.bodies[body as usize].name;
+    let warn = |(one, other)| {
+        format!(
+            "the bodies `{}` and `{}` touch at the start and will move through each other, as bodies of one system do not \
+             see each other: join them, with `joined = true` and particles at the same positions or as one body of the \
+             shape `union`, or give each a `[[system]]` in a fluid",
+            name(one),
+            name(other)
+        )
+    };
+    found.into_iter().map(warn).collect()
 }

@@ -6,6 +6,7 @@ use super::bodies::{self, BodyReport};
 use super::joined::Joined;
 use super::loads::{self, LoadedSurface};
 use super::mirrors::{holes, mirrors, whole_weights};
+use super::overlap::touching;
 use super::selections::Held;
 use super::{Built, at_start, integrator_kind, kernel, probes, row_statistics, selections};
 use crate::Vector;
@@ -104,7 +105,8 @@ pub(super) fn build<const D: usize>(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let (gradients, warnings) = gradients;
+    let (gradients, mut warnings) = gradients;
+    warnings.extend(touching(case, &domain, &particles, &group));
     if settings.weights == model::Weights::Volume {
         whole_weights(&mut particles, &mirrors);
     }

@@ -63,7 +63,7 @@ pub(super) static PROBE: TaggedSpec = TaggedSpec {
                     Kind::Numbers(Length::Dimension, Interval::ANY),
                     "m",
                     Optional,
-                    "lower corner of a box: only particles that are currently in it count; if there                      are none there is no value",
+                    "lower corner of a box: only particles that are currently in it count; if there are none there is no value",
                 ),
                 key(
                     "max",

@@ -136,7 +136,7 @@ const TOLERANCE: KeySpec = key(
     Kind::Number(Interval::between(1e-13, 1e-2)),
     "1",
     Derived("1e-8 with `static`, `arc_length` or an implicit integrator, 1e-10 with `upwind`"),
-    "largest residual force of Newton's method, relative to loads and reactions; with `upwind` the residual      momentum of a step, relative to the momentum and its change by the forces",
+    "largest residual force of Newton's method, relative to loads and reactions; with `upwind` the residual momentum of a step, relative to the momentum and its change by the forces",
 );
 
 const LINEAR_SOLVER: KeySpec = key(
@@ -149,13 +149,13 @@ const LINEAR_SOLVER: KeySpec = key(
 /// How a system beside the main one goes on in time.
 static METHOD: TableSpec = TableSpec {
     title: "[system.time]",
-    meaning: "How the system takes its own steps: as many within one of the fluid as its stable step requires,               one for several of the fluid if it is slow and heavy, or one with an implicit integrator.",
+    meaning: "How the system takes its own steps: as many within one of the fluid as its stable step requires, one for several of the fluid if it is slow and heavy, or one with an implicit integrator.",
     keys: &[INTEGRATOR, CFL, BETA, GAMMA, ALPHA, SPECTRAL_RADIUS, THETA, TOLERANCE, LINEAR_SOLVER],
 };
 
 pub(super) static SYSTEM: TableSpec = TableSpec {
     title: "[[system]]",
-    meaning: "A solid in a fluid: any formulation but `interpolation`, for the bodies that name it with `system`. The bodies               without that key are those of `[scheme]`, the fluid, which sees the solids as walls that bend.",
+    meaning: "A solid in a fluid: any formulation but `interpolation`, for the bodies that name it with `system`. The bodies without that key are those of `[scheme]`, the fluid, which sees the solids as walls that bend.",
     keys: &[
         key("name", Kind::Text, "", Required, "unique name, to which bodies refer"),
         key("scheme", Kind::Tagged(&SCHEME), "", Required, "the formulation and its settings"),

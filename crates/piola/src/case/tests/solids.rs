@@ -302,6 +302,41 @@ fn bodies_may_touch_and_not_overlap() {
     assert!(second(0.43).is_err_and(|said| said.contains("overlap")));
 }
 
+/// Bodies of one solid that touch, and are not joined, would pass through each other without a word.
+#[test]
+fn bodies_that_touch_and_are_not_joined_are_warned_of() {
+    let warned = |keys: &str, lattice: &str, y: f64| {
+        let text = GOOD.replace("kind = \"dual_support\"", keys);
+        let law = if keys.contains("upwind") { "linear" } else { "neo_hookean" };
+        let text = text.replace("neo_hookean", law);
+        let text = text.replace(
+            "spacing = 0.1",
+            &format!("spacing = 0.1\nlattice = {{ on = \"{lattice}\" }}"),
+        );
+        let body =
+            &text[text.find("[[body]]").expect("a body")..text.find("[scheme]").expect("a scheme")];
+        let top = format!("min = [0.0, {y}], max = [1.0, {}]", y + 1.0);
+        let other =
+            body.replace("block", "top").replace("min = [0.0, 0.0], max = [1.0, 1.0]", &top);
+        let case = read_with(&text.replace("[scheme]", &format!("{other}[scheme]")), &[]);
+        let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+        let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+        let warnings = session.plan().warnings;
+        warnings
+            .iter()
+            .any(|text| text.starts_with("the bodies `block` and `top` touch at the start"))
+    };
+    let upwind = "kind = \"upwind\"\nsmoothing_length = 0.7";
+    let joined = "kind = \"total_lagrangian\"";
+    let separate = "kind = \"total_lagrangian\"\njoined = false";
+    for lattice in ["cells", "boundary"] {
+        assert!(warned(upwind, lattice, 1.0) && warned(separate, lattice, 1.0), "{lattice}");
+        assert!(!warned(upwind, lattice, 1.2) && !warned(separate, lattice, 1.2), "{lattice}");
+    }
+    assert!(!warned(joined, "boundary", 1.0), "they share particles");
+    assert!(warned(joined, "cells", 1.0), "they share none");
+}
+
 /// A load on a plane is the product of traction and area, wherever the particles lie in their cells,
 /// and what holds the body carries it.
 #[test]
