@@ -7,6 +7,9 @@ use super::{Domain, NeighborError, shorter_way, spatial_order};
 use crate::parallel::Team;
 use crate::{Vector, parallel};
 
+/// Positions in m and numbers of particles.
+type Points<'a, const D: usize> = (Cow<'a, [Vector<D>]>, Cow<'a, [u32]>);
+
 /// Candidates for the neighbours of moving particles: all that were closer than the support
 /// radius and a skin when the list was made. It holds as long as no particle has moved by more
 /// than half of the skin.
@@ -236,7 +239,7 @@ impl<const D: usize> SkinList<D> {
 
     /// Positions in m and numbers of own particles and of all others in a box around them that is wider by `reach` m: no
     /// one else can be their neighbour.
-    fn around(&self, reach: f64) -> Result<(Cow<'_, [Vector<D>]>, Cow<'_, [u32]>), NeighborError> {
+    fn around(&self, reach: f64) -> Result<Points<'_, D>, NeighborError> {
         if self.team.is_alone() {
             return Ok((Cow::Borrowed(&self.positions), Cow::Borrowed(&self.numbers)));
         }
@@ -251,13 +254,17 @@ impl<const D: usize> SkinList<D> {
         }
         check_points(&all)?;
         let (center, periods) = ((corners[0] + corners[1]) / 2.0, self.domain.periods());
-        // More than rounding takes.
-        let half = (corners[1] - corners[0]).add_scalar(2.002 * reach) / 2.0;
+        // With more than rounding takes.
+        let rounding = (corners[0].abs() + corners[1].abs()) * (4.0 * f64::EPSILON);
+        let half = (corners[1] - corners[0]).add_scalar(2.0 * reach) / 2.0 + rounding;
         let is_near = |point: &Vector<D>| {
             let way = |axis: usize| shorter_way(point[axis] - center[axis], periods[axis]);
             (0..D).all(|axis| way(axis).abs() <= half[axis])
         };
-        let near = (0..).zip(&all).filter(|(_, point)| is_near(point));
+        // Own ones are there, however far apart they are.
+        let owned = self.owned();
+        let is_own = |number: u32| self.team.own(number as usize, owned).is_some();
+        let near = (0..).zip(&all).filter(|(number, point)| is_own(*number) || is_near(point));
         let (numbers, positions): (Vec<u32>, Vec<_>) = near.unzip();
         Ok((Cow::Owned(positions), Cow::Owned(numbers)))
     }

@@ -7,21 +7,30 @@ use super::pages::{below, page, root};
 use super::validation::results;
 
 /// Units that a table may have in place of those of the results: %, mm, us, kPa and so on.
-const FACTORS: [f64; 7] = [1.0, 1e2, 1e3, 1e6, 1e-2, 1e-3, 1e-6];
+const FACTORS: [f64; 8] = [1.0, 1e2, 1e3, 1e6, 1e-2, 1e-3, 1e-6, 1e-9];
 
-/// The numbers of `text`, each as it is written: digits with a point, and perhaps an exponent.
-fn written(text: &str) -> Vec<String> {
+/// The numbers of `text`, each as it is written: digits, and perhaps a point and an exponent.
+fn tokens(text: &str) -> impl Iterator<Item = &str> {
     let is_part = |c: char| c.is_ascii_digit() || ".-+e".contains(c);
-    let words =
-        text.split(|c: char| !is_part(c)).map(|word| word.trim_matches(['.', '-', '+', 'e']));
-    words
-        .filter(|word| word.contains('.') && word.parse::<f64>().is_ok())
-        .map(str::to_owned)
-        .collect()
+    let words = text.split(move |c: char| !is_part(c));
+    // A sign ends a number, but in an exponent.
+    let parts = words.flat_map(|word| {
+        let is_end = |at: &usize| !word[..*at].ends_with('e');
+        let ends = word.match_indices(['-', '+']).map(|(at, _)| at).filter(is_end);
+        let ends: Vec<usize> = ends.chain([word.len()]).collect();
+        let starts = [0].into_iter().chain(ends.clone().into_iter().map(|end| end + 1));
+        starts.zip(ends).map(|(start, end)| &word[start..end]).collect::<Vec<_>>()
+    });
+    parts.map(|word| word.trim_matches(['.', 'e'])).filter(|word| word.parse::<f64>().is_ok())
+}
+
+/// Those with a point.
+fn written(text: &str) -> Vec<String> {
+    tokens(text).filter(|word| word.contains('.')).map(str::to_owned).collect()
 }
 
 /// All numbers that a case has results of, or files.
-fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, String) {
+fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, Vec<f64>) {
     let cells = |text: &str| {
         let words = text.split([' ', ',', ';', '(', ')', '=']).map(str::to_owned);
         words.filter_map(|word| word.trim_end_matches('%').parse().ok()).collect::<Vec<f64>>()
@@ -33,7 +42,11 @@ fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, String) {
         texts.flat_map(|text| cells(text)).collect::<Vec<_>>()
     });
     let files = below(folder, &["case.toml", ".csv", ".py"]);
-    (numbers.collect(), files.into_iter().map(|file| file.text).collect())
+    let texts = files
+        .iter()
+        .flat_map(|file| tokens(&file.text))
+        .map(|word| word.parse().expect("a number"));
+    (numbers.collect(), texts.collect())
 }
 
 /// Whether a number is `written` with fewer digits.
@@ -51,7 +64,10 @@ fn unheld(table: &str, case: &CaseResults, folder: &str) -> Vec<String> {
     let (values, files) = known(case, folder);
     let held = |number: &String| {
         let rounded = |value: &f64| FACTORS.iter().any(|factor| is_rounded(number, value * factor));
-        files.contains(number.as_str()) || values.iter().any(rounded)
+        let own: f64 = number.parse().expect("a number");
+        let is_same =
+            |value: &f64| FACTORS.iter().any(|factor| (value * factor / own - 1.0).abs() < 1e-9);
+        files.iter().any(is_same) || values.iter().any(rounded)
     };
     written(table).into_iter().filter(|number| !held(number)).collect()
 }
@@ -131,6 +147,7 @@ fn numbers_are_compared_with_the_digits_they_have() {
     assert_eq!(written(&claims(text)), ["0.5", "0.8"]);
     let text = "from (3.38), (3.41); it is (0.5): ![at 0.6 s](at-0.7.png) [a 1.5](b-1.6.png).";
     assert_eq!(written(&claims(text)), ["0.5", "0.6", "1.5"]);
+    assert_eq!(written("0.3-0.5, 1.5e-3 and -2.5"), ["0.3", "0.5", "1.5e-3", "2.5"]);
     assert!(is_rounded("0.008", 0.00799) && !is_rounded("0.008", 0.0086));
     assert!(is_rounded("1.5e-3", 0.00149) && is_rounded("0.77", 0.7699));
 }

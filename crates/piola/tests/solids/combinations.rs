@@ -283,14 +283,23 @@ impl Table {
         let rest = lost(&finished);
         if IMPLICIT.contains(&integrator) {
             // Of a load that grows from nothing in N steps a sum of the second order has an error of some tenths of 1/N^2.
-            // What is more falls with the order of the method.
+            // With `upwind`, what is more falls with the order of the method.
             let most = 0.5 / f64::from(STEPS[1] * STEPS[1]);
-            if rest.iter().any(|rest| *rest > most) {
+            let is_little = |rest: f64| rest <= most;
+            if scheme.contains("upwind") && !rest.iter().all(|rest| is_little(*rest)) {
                 let finer = lost(&self.finished([law, scheme, words, integrator], 2)?);
                 let order =
                     if ["backward_euler", "theta"].contains(&integrator) { 1.0 } else { 2.0 };
-                let falls = |k: usize| rest[k] < most || (rest[k] / finer[k]).log2() > order - 0.25;
-                assert!(falls(0) && falls(1), "{what}: {rest:?} and {finer:?} with half the step");
+                // A method of the first order is off by some 1/N.
+                let cap = 1.0 / f64::from(STEPS[1]);
+                let falls = |k: usize| (rest[k] / finer[k]).log2() > order - 0.25 && finer[k] < cap;
+                let is_right = (0..2).all(|k| is_little(rest[k]) || falls(k));
+                assert!(is_right, "{what}: {rest:?} and {finer:?} with half the step");
+            } else {
+                assert!(
+                    rest.iter().all(|rest| is_little(*rest)),
+                    "{what}: {rest:?} is not accounted for"
+                );
             }
         } else {
             // The share of the work beyond which a run warns.
@@ -379,7 +388,7 @@ fn every_combination_runs_and_balances_or_is_refused_with_a_reason_in_3d() {
     .is_on_the_page();
 }
 
-/// In all dimensions alike, of which those boundaries that 1D has.
+/// In all dimensions alike, with the boundaries that there are in all.
 #[test]
 fn every_setting_of_upwind_runs_and_balances_or_is_refused_with_a_reason() {
     for dimension in 1..=3 {

@@ -82,6 +82,12 @@ impl Joined {
         Ok(joined)
     }
 
+    /// Whether two bodies share a particle.
+    pub fn share(&self, one: u32, other: u32) -> bool {
+        let has = |parts: &[(u32, f64)], body| parts.iter().any(|(own, _)| *own == body);
+        self.parts.values().any(|parts| has(parts, one) && has(parts, other))
+    }
+
     /// Whether a particle that stays, by its id, has a part of a body.
     pub fn has_part_of(&self, id: u32, body: u32) -> bool {
         self.parts.get(&id).is_some_and(|parts| parts.iter().any(|(own, _)| *own == body))

@@ -193,7 +193,9 @@ fn build_upwind<const D: usize>(
     let neighbors = support.list.statistics();
     let mut warnings = stencil_warning::<D>(settings, &bodies, kernel, &neighbors);
     warnings.extend(printed::warning(settings));
-    warnings.extend(overlap::touching(case, &domain, &particles, &particles.body));
+    let (share, remedy) = (|_, _| false, "make one body of them with the shape `union`");
+    let group = &particles.body;
+    warnings.extend(overlap::touching(case, &domain, &particles, group, (share, remedy)));
 
     let mut problems = Vec::new();
     let probes = probes::probes(case, &particles, &mut problems);

@@ -106,7 +106,9 @@ pub(super) fn build<const D: usize>(
         return Err(problems);
     }
     let (gradients, mut warnings) = gradients;
-    warnings.extend(touching(case, &domain, &particles, &group));
+    let remedy = "join them with `joined = true` and particles at the same positions, or by the shape `union`";
+    let share = |one, other| joined.share(one, other);
+    warnings.extend(touching(case, &domain, &particles, &group, (share, remedy)));
     if settings.weights == model::Weights::Volume {
         whole_weights(&mut particles, &mirrors);
     }

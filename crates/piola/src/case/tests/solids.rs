@@ -305,36 +305,58 @@ fn bodies_may_touch_and_not_overlap() {
 /// Bodies of one solid that touch, and are not joined, would pass through each other without a word.
 #[test]
 fn bodies_that_touch_and_are_not_joined_are_warned_of() {
-    let warned = |keys: &str, lattice: &str, y: f64| {
-        let text = GOOD.replace("kind = \"dual_support\"", keys);
+    let warned = |keys: &str, lattice: &str, [x, y]: [f64; 2], top: &str| {
         let law = if keys.contains("upwind") { "linear" } else { "neo_hookean" };
-        let text = text.replace("neo_hookean", law);
-        let text = text.replace(
-            "spacing = 0.1",
-            &format!("spacing = 0.1\nlattice = {{ on = \"{lattice}\" }}"),
-        );
-        let body =
-            &text[text.find("[[body]]").expect("a body")..text.find("[scheme]").expect("a scheme")];
-        let top = format!("min = [0.0, {y}], max = [1.0, {}]", y + 1.0);
+        let lattice = format!("spacing = 0.1\nlattice = {{ on = \"{lattice}\" }}");
+        let text = GOOD.replace("kind = \"dual_support\"", keys).replace("neo_hookean", law);
+        let text = text.replace("spacing = 0.1", &lattice);
+        let (body, rest) = text.split_once("[scheme]").expect("a scheme");
+        let (_, block) = body.split_once("[[body]]").expect("a body");
+        let place = format!("min = [{x}, {y}], max = [{}, {}]", x + 1.0, y + 1.0);
         let other =
-            body.replace("block", "top").replace("min = [0.0, 0.0], max = [1.0, 1.0]", &top);
-        let case = read_with(&text.replace("[scheme]", &format!("{other}[scheme]")), &[]);
+            block.replace("block", "top").replace("min = [0.0, 0.0], max = [1.0, 1.0]", &place);
+        let (head, _) = other.split_once("material").expect("a material");
+        let other = if top.is_empty() { other.clone() } else { format!("{head}{top}\n") };
+        let case = read_with(&format!("{body}[[body]]{other}[scheme]{rest}"), &[]);
         let case = case.unwrap_or_else(|problems| panic!("{problems}"));
         let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
         let warnings = session.plan().warnings;
-        warnings
-            .iter()
-            .any(|text| text.starts_with("the bodies `block` and `top` touch at the start"))
+        let start = "the bodies `block` and `top` touch at the start";
+        let found = warnings.iter().find(|text| text.starts_with(start));
+        assert!(found.is_none_or(|text| !(text.contains("joined") && law == "linear")));
+        found.is_some()
     };
     let upwind = "kind = \"upwind\"\nsmoothing_length = 0.7";
     let joined = "kind = \"total_lagrangian\"";
     let separate = "kind = \"total_lagrangian\"\njoined = false";
-    for lattice in ["cells", "boundary"] {
-        assert!(warned(upwind, lattice, 1.0) && warned(separate, lattice, 1.0), "{lattice}");
-        assert!(!warned(upwind, lattice, 1.2) && !warned(separate, lattice, 1.2), "{lattice}");
+    for keys in [upwind, separate] {
+        for lattice in ["cells", "boundary"] {
+            for shift in [0.0, 0.03, 0.05] {
+                assert!(warned(keys, lattice, [shift, 1.0], ""), "{keys} {lattice} {shift}");
+            }
+            assert!(!warned(keys, lattice, [0.0, 1.2], ""), "{keys} {lattice}");
+        }
     }
-    assert!(!warned(joined, "boundary", 1.0), "they share particles");
-    assert!(warned(joined, "cells", 1.0), "they share none");
+    assert!(!warned(joined, "boundary", [0.0, 1.0], ""), "they share particles");
+    assert!(warned(joined, "cells", [0.0, 1.0], ""), "they share none");
+    let plain = "kind = \"total_lagrangian\"\ngradients = \"plain\"";
+    let rigid = "material = { kind = \"rigid\", density = 1e3 }";
+    assert!(!warned(plain, "boundary", [0.0, 1.0], rigid), "the block is clamped to it");
+    // A tenth is half a spacing along y.
+    let wide = "kind = \"total_lagrangian\"\njoined = false";
+    let text = GOOD
+        .replace("kind = \"dual_support\"", wide)
+        .replace("spacing = 0.1", "spacing = [0.1, 0.2]");
+    let (body, rest) = text.split_once("[scheme]").expect("a scheme");
+    let (head, block) = body.split_once("[[body]]").expect("a body");
+    let other = block
+        .replace("block", "right")
+        .replace("min = [0.0, 0.0], max = [1.0, 1.0]", "min = [1.1, 0.0], max = [2.1, 1.0]");
+    let case = read_with(&format!("{head}[[body]]{block}[[body]]{other}[scheme]{rest}"), &[]);
+    let case = case.unwrap_or_else(|problems| panic!("{problems}"));
+    let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+    let warnings = session.plan().warnings;
+    assert!(!warnings.iter().any(|text| text.contains("touch")), "{warnings:?}");
 }
 
 /// A load on a plane is the product of traction and area, wherever the particles lie in their cells,
