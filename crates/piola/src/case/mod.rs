@@ -135,9 +135,37 @@ fn assemble(
         if !is_changed {
             others(&tree, &sources, options, wanted, &case)?;
         }
-        Ok(Case { as_run: document::write(&changed), ..case })
+        let as_run = document::write(&changed);
+        let mut remarks = case.remarks;
+        remarks.extend(unused_parameters(&tree, &as_run, &options.overrides));
+        Ok(Case { as_run, remarks, ..case })
     });
     case.map_err(|problems| Problems::new(sources, problems))
+}
+
+/// What to say of parameters that the command line sets, that the case does not have, and that nothing in the case `as_run`
+/// mentions: most probably another was meant.
+fn unused_parameters(tree: &Table, as_run: &str, overrides: &[String]) -> Vec<String> {
+    let known: Vec<&str> = match tree.get("parameters") {
+        Some(Node { value: Value::Table(table), .. }) => {
+            table.entries.iter().map(|entry| entry.key.as_str()).collect()
+        }
+        _ => Vec::new(),
+    };
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let paths =
+        overrides.iter().filter_map(|text| text.split_once('=')).map(|(path, _)| path.trim());
+    let names = paths.filter_map(|path| path.strip_prefix("parameters."));
+    let new = names.filter(|name| name.chars().all(is_word) && !known.contains(name));
+    // Its own line mentions it once.
+    let unused =
+        new.filter(|name| as_run.split(|c| !is_word(c)).filter(|word| word == name).count() < 2);
+    let remark = |name: &str| {
+        let near = suggest::nearest(name, known.iter().copied());
+        let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        format!("the case has no parameter `{name}`, and nothing depends on it{near}")
+    };
+    unused.map(remark).collect()
 }
 
 /// Reads one setting of the case, and returns it with the tree after all overrides.

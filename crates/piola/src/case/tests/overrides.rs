@@ -319,3 +319,16 @@ fn a_shorter_run_leaves_out_what_is_later_and_says_so() {
     let again = crate::case::recorded(&read_with(FULL, &["time.end=0.2"]).unwrap().as_run, None);
     assert!(again.is_ok());
 }
+
+/// A misspelt parameter would change nothing without a word.
+#[test]
+fn a_new_parameter_that_nothing_depends_on_is_told() {
+    let remarks = |overrides: &[&str]| {
+        let case = read_with(FULL, overrides).unwrap_or_else(|problems| panic!("{problems}"));
+        case.remarks
+    };
+    let said = "the case has no parameter `sped`, and nothing depends on it; did you mean `speed`?";
+    assert_eq!(remarks(&["parameters.sped=3"]), [said]);
+    assert!(remarks(&["parameters.speed=3"]).is_empty());
+    assert!(remarks(&["parameters.last=2.5", "time.end='last'"]).is_empty());
+}
