@@ -84,12 +84,15 @@ fn is_equation(word: &str) -> bool {
     parts.is_some_and(|(chapter, equation)| counts(chapter) && counts(equation))
 }
 
-/// What `text` claims: its tables and its paragraphs and items, but for blocks of code, those that say how to get their
-/// numbers, places in papers, and what links lead to.
+/// What `text` claims: its tables, and its paragraphs and items but for those that say how to get their numbers; no blocks
+/// of code, places in papers, and what links lead to.
 fn claims(text: &str) -> String {
     let outside = text.split("```").step_by(2);
     let blocks = outside.flat_map(|part| part.split("\n\n")).flat_map(|block| block.split("\n- "));
-    let is_open = |block: &&str| !COMMANDS.iter().any(|command| block.contains(command));
+    let is_open = |block: &&str| {
+        let is_table = block.lines().any(|line| line.starts_with('|'));
+        is_table || !COMMANDS.iter().any(|command| block.contains(command))
+    };
     let words = blocks.filter(is_open).flat_map(|block| {
         let (mut is_place, mut was_place) = (false, false);
         block.split_whitespace().filter(move |word| {
@@ -145,6 +148,7 @@ fn numbers_are_compared_with_the_digits_they_have() {
     assert_eq!(written("| 0.008 | -1.5e-3 m, 25 | v1.2.3 |"), ["0.008", "1.5e-3"]);
     let text = "In figures 4.1, 4.2 and 4.3 it is 0.5.\n- `--set a=1` gives 0.7\n- and 0.8\n```\n0.9\n```\n";
     assert_eq!(written(&claims(text)), ["0.5", "0.8"]);
+    assert_eq!(written(&claims("| `--set a=1` | 0.7 |\n| 2 | 0.8 |")), ["0.7", "0.8"]);
     let text = "from (3.38), (3.41); it is (0.5): ![at 0.6 s](at-0.7.png) [a 1.5](b-1.6.png).";
     assert_eq!(written(&claims(text)), ["0.5", "0.6", "1.5"]);
     assert_eq!(written("0.3-0.5, 1.5e-3 and -2.5"), ["0.3", "0.5", "1.5e-3", "2.5"]);
