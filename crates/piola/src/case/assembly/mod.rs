@@ -16,6 +16,7 @@ mod probes;
 mod selections;
 mod solids;
 mod tanks;
+mod walls;
 mod world;
 
 use std::time::Duration;

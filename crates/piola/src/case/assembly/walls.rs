@@ -1,0 +1,162 @@
+//! Walls of fluids: where they are, how they move, and the faces that hold the fluid.
+
+use super::{bodies, selections};
+use crate::Vector;
+use crate::boundaries::PrescribedVelocity;
+use crate::case::diagnostics::Problem;
+use crate::case::model::{self, Case};
+use crate::geometry::{Faces, Particles, Shape};
+use crate::schemes::transport_velocity::Wall;
+
+/// The bodies that are walls.
+pub(super) fn walls(case: &Case) -> Vec<Wall> {
+    let bodies = (0u32..).zip(&case.bodies);
+    let wall = |(number, body): (u32, &model::Body)| {
+        body.wall.as_ref().map(|wall| Wall { body: number, slip: wall.slip })
+    };
+    bodies.filter_map(wall).collect()
+}
+
+/// How deep behind a face in spacings particles are its first layer: where that is on the face, the next is a spacing behind it.
+const FIRST: f64 = 0.99;
+
+/// The shape of all walls together, and the faces that their particles are behind: the shortest ways
+/// out of all walls together, inside the box around all bodies, so that the outer faces of a tank do
+/// not count. In a periodic box the box itself is no wall either. Bodies of other systems come away from the walls:
+/// their faces are their own, and where they are thin those of one side, by the number of the first
+/// particle that stands for a second side and the support of the kernel in m.
+pub(super) fn faces<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+    (first_twin, support): (u32, f64),
+) -> Result<(Vec<Faces<D>>, Option<Shape<D>>), Vec<Problem>> {
+    let mut faces = vec![Faces::default(); particles.len()];
+    let is_wall: Vec<bool> = case.bodies.iter().map(|body| body.wall.is_some()).collect();
+    if !is_wall.contains(&true) {
+        return Ok((faces, None));
+    }
+    let (mut shapes, moving) = (Vec::new(), moving(case)?);
+    let mut bounds = None::<(Vector<D>, Vector<D>)>;
+    for (number, (body, is_wall)) in case.bodies.iter().zip(&is_wall).enumerate() {
+        let (low, high) = match (&body.shape.value, is_wall) {
+            (shape, false) if shape.is_from_file() => box_around(particles, number),
+            (shape, true) if shape.is_from_file() => {
+                let message = match body.system {
+                    Some(_) => "points from a file have no faces, which a solid in a fluid needs",
+                    None => "points from a file have no faces, which a wall needs",
+                };
+                let help = Some("describe it by shapes".to_owned());
+                return Err(vec![case.problem_at(body.shape.place, message, "of a wall", help)]);
+            }
+            _ => {
+                let shape: Shape<D> =
+                    bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
+                let ends = shape.bounding_box();
+                if *is_wall && body.system.is_none() {
+                    shapes.push(shape);
+                }
+                ends
+            }
+        };
+        let (least, most) = bounds.unwrap_or((low, high));
+        bounds = Some((least.inf(&low), most.sup(&high)));
+    }
+    let Some(bounds) = bounds else { return Ok((faces, None)) };
+    let walls = Shape::union(shapes).ok();
+    crate::parallel::for_each_chunk(&mut faces, |first, rows| {
+        for (offset, row) in rows.iter_mut().enumerate() {
+            let (x, body) = (&particles.position[first + offset], particles.body[first + offset]);
+            let layer = FIRST * particles.spacing[first + offset];
+            if let Some((_, shape)) = moving.iter().find(|(number, _)| *number == body) {
+                let bounds = everywhere(case, shape);
+                let is_first = particles.id[first + offset] < first_twin;
+                *row = match shape.sides(x, [support, layer], &bounds) {
+                    Some([front, back]) => {
+                        if is_first {
+                            front
+                        } else {
+                            back
+                        }
+                    }
+                    None => shape.ways_out(x, layer, &bounds),
+                };
+            } else if let (Some(walls), true) = (&walls, is_wall[body as usize]) {
+                *row = walls.ways_out(x, layer, &bounds);
+            }
+        }
+    });
+    Ok((faces, walls))
+}
+
+/// Doubles the wall particles of thin bodies of other systems, so that each side has its own: fluid on one
+/// side, within the support of the kernel in m, would be seen from the other. Returns the number in the order of
+/// creation of the first that was added.
+pub(super) fn double_thin<const D: usize>(
+    case: &Case,
+    particles: &mut Particles<D>,
+    support: f64,
+) -> Result<u32, Vec<Problem>> {
+    let first = particles.len();
+    for (number, shape) in moving(case)? {
+        let bounds = everywhere(case, &shape);
+        let own = (0..first).filter(|&a| particles.body[a] == number);
+        let reach = |a: usize| [support, FIRST * particles.spacing[a]];
+        let is_thin =
+            |a: &usize| shape.sides(&particles.position[*a], reach(*a), &bounds).is_some();
+        let thin: Vec<usize> = own.filter(is_thin).collect();
+        thin.into_iter().for_each(|a| particles.repeat(a, number));
+    }
+    Ok(first as u32)
+}
+
+/// The shapes of bodies of other systems, by the number of the body.
+fn moving<const D: usize>(case: &Case) -> Result<Vec<(u32, Shape<D>)>, Vec<Problem>> {
+    let bodies = (0u32..).zip(&case.bodies).filter(|(_, body)| body.system.is_some());
+    let shapes = bodies.filter(|(_, body)| !body.shape.value.is_from_file());
+    let shape = |(number, body): (u32, &model::Body)| {
+        let shape = bodies::shape(case, body, &body.shape).map_err(|problem| vec![problem])?;
+        Ok((number, shape))
+    };
+    shapes.map(shape).collect()
+}
+
+/// A box that all ways out of a shape end inside of; a bound of a periodic axis is no way out.
+fn everywhere<const D: usize>(case: &Case, shape: &Shape<D>) -> (Vector<D>, Vector<D>) {
+    let (low, high) = shape.bounding_box();
+    let margin = (high - low).norm();
+    let ends = |axis: usize| case.domain.periodic[axis].as_ref().map(|ends| ends.value);
+    (
+        Vector::from_fn(|axis, _| ends(axis).map_or(low[axis] - margin, |[low, _]| low)),
+        Vector::from_fn(|axis, _| ends(axis).map_or(high[axis] + margin, |[_, high]| high)),
+    )
+}
+
+/// The corners of the box around the particles of a body.
+fn box_around<const D: usize>(particles: &Particles<D>, body: usize) -> (Vector<D>, Vector<D>) {
+    let ends = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+    let own = particles.position.iter().zip(&particles.body);
+    own.filter(|(_, number)| **number as usize == body)
+        .fold(ends, |(least, most), (x, _)| (least.inf(x), most.sup(x)))
+}
+
+/// The velocities of surfaces that slide.
+pub(super) fn sliding<const D: usize>(
+    case: &Case,
+    particles: &Particles<D>,
+) -> Vec<PrescribedVelocity> {
+    let mut conditions = Vec::new();
+    for (number, body) in case.bodies.iter().enumerate() {
+        let Some(wall) = &body.wall else { continue };
+        for (component, value) in wall.sliding.iter().enumerate() {
+            let Some(value) = value else { continue };
+            let of_body = |&a: &u32| particles.body[a as usize] as usize == number;
+            conditions.push(PrescribedVelocity {
+                name: body.name.value.clone(),
+                particles: (0..particles.len() as u32).filter(of_body).collect(),
+                component,
+                value: selections::function(value),
+            });
+        }
+    }
+    conditions
+}
