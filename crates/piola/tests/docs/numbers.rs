@@ -1,5 +1,5 @@
-//! No number in a README of a case or in the gallery that neither the results nor the files of the case hold, and that has
-//! no command beside it.
+//! No number in a README of a case or in the gallery, whole ones in tables and others anywhere, that neither the results nor
+//! the files of the case hold, and that has no command beside it.
 
 use piola::case::page::CaseResults;
 
@@ -29,6 +29,28 @@ fn written(text: &str) -> Vec<String> {
     tokens(text).filter(|word| word.contains('.')).map(str::to_owned).collect()
 }
 
+/// The whole numbers of the tables of `text` that are worth a comparison: from 20 on, for smaller ones are the rounded
+/// values of too much, and with or without blanks between thousands.
+fn whole(text: &str) -> Vec<String> {
+    let rows = text.lines().filter(|line| line.starts_with('|'));
+    let cells = rows.flat_map(|row| row.split(['|', ',', ';', '(', ')']));
+    let numbers = cells.flat_map(|cell| {
+        let mut numbers: Vec<String> = Vec::new();
+        let mut is_open = false;
+        for word in cell.split(' ') {
+            let is_digits = !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit());
+            match numbers.last_mut() {
+                Some(last) if is_open && is_digits && word.len() == 3 => last.push_str(word),
+                _ if is_digits => numbers.push(word.to_owned()),
+                _ => {}
+            }
+            is_open = is_digits && word.len() <= 3;
+        }
+        numbers
+    });
+    numbers.filter(|number| number.parse::<u64>().is_ok_and(|number| number >= 20)).collect()
+}
+
 /// All numbers that a case has results of, or files.
 fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, Vec<f64>) {
     let cells = |text: &str| {
@@ -46,7 +68,8 @@ fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, Vec<f64>) {
         .iter()
         .flat_map(|file| tokens(&file.text))
         .map(|word| word.parse().expect("a number"));
-    (numbers.collect(), texts.collect())
+    let particles = case.particles.map(|count| count as f64);
+    (numbers.chain(particles).collect(), texts.collect())
 }
 
 /// Whether a number is `written` with fewer digits.
@@ -60,7 +83,7 @@ fn is_rounded(written: &str, value: f64) -> bool {
     (value.abs() - number.abs()).abs() <= 0.5001 * unit
 }
 
-fn unheld(table: &str, case: &CaseResults, folder: &str) -> Vec<String> {
+fn unheld(text: &str, case: &CaseResults, folder: &str) -> Vec<String> {
     let (values, files) = known(case, folder);
     let held = |number: &String| {
         let rounded = |value: &f64| FACTORS.iter().any(|factor| is_rounded(number, value * factor));
@@ -69,7 +92,8 @@ fn unheld(table: &str, case: &CaseResults, folder: &str) -> Vec<String> {
             |value: &f64| FACTORS.iter().any(|factor| (value * factor / own - 1.0).abs() < 1e-9);
         files.iter().any(is_same) || values.iter().any(rounded)
     };
-    written(table).into_iter().filter(|number| !held(number)).collect()
+    let numbers = written(&claims(text)).into_iter().chain(whole(text));
+    numbers.filter(|number| !held(number)).collect()
 }
 
 /// Text that says by which command its numbers came about.
@@ -122,7 +146,7 @@ fn numbers_of_cases_are_those_of_the_results() {
         let base = root().canonicalize().expect("it is there");
         let folder = folder.strip_prefix(base).expect("it is below the root").display().to_string();
         let readme = page(&format!("{folder}/README.md"));
-        let numbers = unheld(&claims(&readme.text), case, &folder);
+        let numbers = unheld(&readme.text, case, &folder);
         if !numbers.is_empty() {
             wrong.push(format!("{}: {}", readme.name, numbers.join(", ")));
         }
@@ -152,6 +176,8 @@ fn numbers_are_compared_with_the_digits_they_have() {
     let text = "from (3.38), (3.41); it is (0.5): ![at 0.6 s](at-0.7.png) [a 1.5](b-1.6.png).";
     assert_eq!(written(&claims(text)), ["0.5", "0.6", "1.5"]);
     assert_eq!(written("0.3-0.5, 1.5e-3 and -2.5"), ["0.3", "0.5", "1.5e-3", "2.5"]);
+    let table = "| 25 mm, 34 352 | 1875 and (7500) J | T10 | 7.5, 12 |\n| a 1000 100 |\nNot 99.";
+    assert_eq!(whole(table), ["25", "34352", "1875", "7500", "1000", "100"]);
     assert!(is_rounded("0.008", 0.00799) && !is_rounded("0.008", 0.0086));
     assert!(is_rounded("1.5e-3", 0.00149) && is_rounded("0.77", 0.7699));
 }
