@@ -133,6 +133,15 @@ impl<const D: usize> Particles<D> {
         self.body.push(body);
     }
 
+    /// Appends `count` particles like one of these (index), as part of a body, that wait to be born: until then their number
+    /// is that of the other, so that numbers do not depend on how many wait.
+    pub fn reserve(&mut self, index: usize, body: u32, count: usize) {
+        let first = self.len();
+        (0..count).for_each(|_| self.repeat(index, body));
+        let own = self.id[index];
+        self.id[first..].fill(own);
+    }
+
     /// Appends the particles of another body as body `body`. Their ids continue where those here
     /// end, as if all had been created one after the other.
     ///

@@ -121,6 +121,25 @@ pub trait Scheme: Send + Sync {
         Vec::new()
     }
 
+    /// The systems that it is made of, one after another, and where each stands in a state; none if it is one by itself.
+    fn parts(&self) -> Vec<(&dyn Scheme, Range<usize>)> {
+        Vec::new()
+    }
+
+    /// How many particles could not be born on the way to `state`, as none was left in reserve.
+    fn missing(&self, state: &[f64]) -> u64 {
+        self.parts().into_iter().map(|(part, own)| part.missing(&state[own])).sum()
+    }
+
+    /// A state of the same formulation with `fewer` particles in reserve as one of this.
+    fn taken_over(&self, fewer: &dyn Scheme, state: &[f64]) -> Vec<f64> {
+        let (parts, before) = (self.parts(), fewer.parts());
+        let behind = before.last().map_or(0, |(_, own)| own.end);
+        let both = parts.into_iter().zip(before);
+        let parts = both.flat_map(|((part, _), (fewer, own))| part.taken_over(fewer, &state[own]));
+        parts.chain(state[behind..].iter().copied()).collect()
+    }
+
     /// Number of the body of each particle.
     fn bodies(&self) -> &[u32];
 
@@ -333,10 +352,6 @@ pub enum Behind {
     Surface,
     /// Those that were its neighbours at the start, of a solid in a fluid.
     Neighbors,
-    /// The plane of the open boundary of this name, where no particle is left to follow it.
-    Reserve(String),
-    /// The band of a finer level of resolution, where no particle is left to be born.
-    Level,
 }
 
 /// Figures that tell whether a state is sound.

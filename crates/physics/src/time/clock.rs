@@ -20,6 +20,8 @@ pub(super) struct Clock {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Tally {
     pub worst: Health,
+    /// Evaluations of the rates times particles.
+    pub evaluations: u64,
     pub first_step: f64,
     pub step_range: [f64; 2],
     /// Largest speed and largest wave speed at the start in m/s.
@@ -58,6 +60,7 @@ impl Tally {
     /// Of a run that has not begun.
     pub const START: Self = Self {
         worst: Health::NEUTRAL,
+        evaluations: 0,
         first_step: f64::NAN,
         step_range: [f64::INFINITY, 0.0],
         start_speeds: [0.0, 0.0],

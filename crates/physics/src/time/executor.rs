@@ -17,7 +17,7 @@ use super::observer::{Moment, ObserveError, Observer};
 use super::run::Run;
 use super::step::StepControl;
 use super::summary::{Outcome, Progress, Summary};
-use crate::schemes::{DeviceSteps, Observation, Scheme, StepLimit};
+use crate::schemes::{DeviceSteps, Observation, Phase, Scheme, StepLimit};
 
 /// Owns a run: the clock, the state, the observers, and the reasons to stop.
 pub struct Executor {
@@ -44,10 +44,12 @@ pub struct Executor {
     run: Run,
     /// Evaluations of the rates times particles a step.
     evaluations: u64,
+    /// What the parts of steps took before there were more particles.
+    phases: Vec<Phase>,
     /// Where the next state is made.
     next: Arc<Vec<f64>>,
-    /// The state before the last step, which a run that fails ends with.
-    previous: (Clock, Arc<Vec<f64>>),
+    /// The run before the last step, which one that fails ends with.
+    previous: Previous,
     limits: Vec<StepLimit>,
     /// Whether the state has been judged, shown and saved where that was due.
     is_seen: bool,
@@ -58,6 +60,15 @@ pub struct Executor {
     device: Option<Box<dyn DeviceSteps>>,
     /// Whether the state is that of the moment: a device may be ahead.
     is_here: bool,
+}
+
+/// A run before its last step: what of it is not in the history, and not added up.
+struct Previous {
+    clock: Clock,
+    state: Arc<Vec<f64>>,
+    /// The last step as it was chosen in s, and what every step was multiplied by.
+    wanted: f64,
+    factor: f64,
 }
 
 /// Brings accelerations that a state holds, and what a formulation knows of neighbours, into line with the rest of it.
@@ -108,7 +119,13 @@ impl Executor {
             checkpoints: None,
             evaluations,
             next: Arc::new(state.clone()),
-            previous: (Clock::START, Arc::new(state.clone())),
+            phases: Vec::new(),
+            previous: Previous {
+                clock: Clock::START,
+                state: Arc::new(state.clone()),
+                wanted: Tally::START.wanted,
+                factor: Tally::START.factor,
+            },
             limits: Vec::with_capacity(8),
             is_seen: false,
             outcome: None,
@@ -153,7 +170,7 @@ impl Executor {
             step: clock.step,
             step_size: clock.chosen.step,
             limiter: clock.chosen.limiter,
-            evaluations: self.evaluations * clock.step,
+            evaluations: tally.evaluations,
             retries: tally.retries.len(),
         }
     }
@@ -220,6 +237,13 @@ impl Executor {
         Ok(self.outcome.is_none())
     }
 
+    /// Whether there is another step to take: not at the end, after a failure, or where `stop` or a device asks to end.
+    pub fn goes_on(&self, stop: &AtomicBool) -> bool {
+        !stop.load(Ordering::Relaxed)
+            && !self.device.as_ref().is_some_and(|device| device.stops())
+            && self.outcome.is_none()
+    }
+
     /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` after each step.
     ///
     /// # Errors
@@ -229,10 +253,7 @@ impl Executor {
         stop: &AtomicBool,
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Summary, ObserveError> {
-        while !stop.load(Ordering::Relaxed)
-            && !self.device.as_ref().is_some_and(|device| device.stops())
-            && self.outcome.is_none()
-        {
+        while self.goes_on(stop) {
             let before = self.run.clock.step;
             self.step()?;
             if self.run.clock.step != before {
@@ -266,7 +287,7 @@ impl Executor {
             _ => None,
         };
         if self.is_broken
-            && self.run.clock.step > self.previous.0.step
+            && self.run.clock.step > self.previous.clock.step
             && let Some(failure) = self.step_back()
         {
             outcome = Outcome::Failed(failure);
@@ -281,11 +302,11 @@ impl Executor {
             first_step: tally.first_step,
             step_range: tally.step_range,
             worst: tally.worst,
-            evaluations: self.evaluations * clock.step,
+            evaluations: tally.evaluations,
             timings: tally.watches.timings(),
             phases: match &self.device {
                 Some(device) => device.phases().into_iter().cloned().collect(),
-                None => self.scheme.phases().into_iter().cloned().collect(),
+                None => self.phases(),
             },
             ranks: self.device.as_ref().and_then(|it| it.costs().ok()).unwrap_or_default(),
             retries: tally.retries.clone(),
@@ -319,7 +340,11 @@ impl Executor {
                     self.is_seen = true;
                 }
                 Some(failure) if failure.is_loss() => self.lose(failure),
-                Some(failure) if self.run.clock.step > 0 && self.may_retry() => {
+                Some(failure)
+                    if self.run.clock.step > 0
+                        && self.may_retry()
+                        && !matches!(failure, Failure::NoneInReserve { .. }) =>
+                {
                     self.go_back(&failure)?;
                 }
                 Some(failure) => {
@@ -333,6 +358,11 @@ impl Executor {
 
     /// Looks for what is wrong with the state, and how far the next step may go.
     fn judge(&mut self) -> Option<Failure> {
+        let Run { clock: Clock { step, time, .. }, state, .. } = &self.run;
+        let missing = if self.is_here { self.scheme.missing(state) } else { 0 };
+        if missing > 0 {
+            return Some(Failure::NoneInReserve { missing, step: *step, time: *time });
+        }
         let health = match self.inspect() {
             Ok(health) => health,
             Err(failure) => return Some(failure),
@@ -407,14 +437,17 @@ impl Executor {
             }
             return false;
         }
-        self.previous.0 = run.clock;
+        let Tally { wanted, factor, .. } = run.tally;
+        (self.previous.wanted, self.previous.factor) = (wanted, factor);
+        self.previous.clock = run.clock;
         if device.is_some() {
             self.is_here = false;
         } else {
-            std::mem::swap(&mut self.previous.1, &mut run.state);
+            std::mem::swap(&mut self.previous.state, &mut run.state);
             std::mem::swap(&mut run.state, next);
         }
         run.tally.wanted = chosen.step / run.tally.factor;
+        run.tally.evaluations += self.evaluations;
         run.advance(self.control, met, soonest);
         run.lengthen(integrator.as_ref(), scheme.as_ref(), chosen, met);
         self.is_seen = false;

@@ -64,12 +64,6 @@ pub enum Failure {
                 format!("has come over the end of the wall `{wall}`, which has no face there, and is")
             }
             Behind::Box => "has left the bounding box of the case, and is".into(),
-            Behind::Reserve(name) => format!(
-                "cannot come in through the open boundary `{name}`, as no particle is left in the reserve to follow it, \
-                 and is"
-            ),
-            Behind::Level => "stands for a finer region whose reserve is used up, so that no particle can be born there, and is"
-                .into(),
             Behind::Surface => "has passed through the surface that it touches, and is".into(),
             Behind::Neighbors => {
                 "is twice as far from an initial neighbour as at the start, or inverted together \
@@ -88,6 +82,19 @@ pub enum Failure {
         particle: Particle,
         /// Where it is, how fast, and what it has left behind.
         escape: Box<Escape>,
+        /// Steps taken.
+        step: u64,
+        /// Simulated time in s.
+        time: f64,
+    },
+    /// Particles were to be born, and too few were in reserve. A run of a case makes more and takes the step again.
+    #[error(
+        "no particles are left in reserve for {missing} that were to be born in step {step}, t = {time:.6} s; raise \
+         `scheme.reserve`"
+    )]
+    NoneInReserve {
+        /// How many could not be born.
+        missing: u64,
         /// Steps taken.
         step: u64,
         /// Simulated time in s.
@@ -224,6 +231,7 @@ impl Failure {
             Self::NotFinite { .. } => "not_finite",
             Self::Inverted { .. } => "inverted",
             Self::Escaped { .. } => "escaped",
+            Self::NoneInReserve { .. } => "none_in_reserve",
             Self::TooFast { .. } => "too_fast",
             Self::FixedStepTooLarge { .. } => "fixed_step_too_large",
             Self::StepBelowFloor { .. } => "step_below_floor",
@@ -256,6 +264,7 @@ impl Failure {
             | Self::StepBelowFloor { index, .. } => Some(*index),
             // What led there is in its message; to take the steps once more would take long.
             Self::NoSolution(_)
+            | Self::NoneInReserve { .. }
             | Self::Unserved(_)
             | Self::Inaccurate { .. }
             | Self::Device(_)

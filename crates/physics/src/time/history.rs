@@ -97,6 +97,16 @@ impl History {
         self.steps.push((time, size));
     }
 
+    /// Forgets the last step.
+    pub fn take_back(&mut self) {
+        self.steps.pop();
+    }
+
+    /// All states in it.
+    pub fn states(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        [&mut self.older, &mut self.newer].into_iter().map(|mark| &mut mark.state)
+    }
+
     /// The mark to go back to, which becomes the only one.
     pub fn go_back(&mut self) -> &Mark {
         self.steps.clear();

@@ -197,6 +197,7 @@ pub(super) fn case(
         variants: variants.into_iter().collect::<Option<_>>()?,
         sweeps: sweeps?,
         checks: checks.into_iter().collect::<Option<_>>()?,
+        more_in_reserve: 0,
         variant: setting.variant.map(str::to_owned),
         level: setting.level,
         is_changed: setting.is_changed,

@@ -96,6 +96,8 @@ pub struct Case {
     pub level: Level,
     /// Whether overrides of the command line are applied.
     pub is_changed: bool,
+    /// How many more particles wait to be born than the scheme asks for: a run has needed them.
+    pub more_in_reserve: usize,
     /// Remarks on the parts of the case that are left out of this run.
     pub remarks: Vec<String>,
     /// The case after all overrides, as TOML without comments, for the record of the run.

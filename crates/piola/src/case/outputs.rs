@@ -67,7 +67,8 @@ impl Outputs {
     /// Where the checkpoints of the run `identity` go.
     pub fn store(&self, case: &Case, identity: Identity) -> Store {
         let (folder, written) = self.for_tables();
-        Store { folder, identity, written, keep: case.checkpoint.keep }
+        let (more_in_reserve, keep) = (case.more_in_reserve, case.checkpoint.keep);
+        Store { folder, identity, written, more_in_reserve, keep }
     }
 
     fn record(case: &Case, built: &Built, device: Option<&String>) -> RunRecord {
@@ -169,6 +170,7 @@ impl Outputs {
         let mut files = self.written.list();
         let summary = &finished.summary;
         let record = &mut self.record;
+        record.notes.clone_from(&finished.notes);
         record.finished = Some(timestamp(SystemTime::now()));
         record.outcome = summary.outcome.summary();
         if let Outcome::Failed(failure) = &summary.outcome {

@@ -20,6 +20,8 @@ use crate::time::{Checkpoint, CheckpointStore};
 struct Payload<C> {
     /// Files written before, relative to the folder of the results.
     files: Vec<String>,
+    /// How many more particles were in reserve than the case asks for.
+    more_in_reserve: usize,
     checkpoint: C,
 }
 
@@ -29,6 +31,8 @@ pub(super) struct Resumed {
     pub time: f64,
     /// Files written before it, relative to the folder of the results.
     pub files: Vec<String>,
+    /// How many more particles were in reserve than the case asks for.
+    pub more_in_reserve: usize,
     /// Newer ones that had to be passed over.
     pub warnings: Vec<String>,
 }
@@ -121,12 +125,15 @@ pub(super) fn find(
     for path in folder.checkpoints()? {
         match checkpoint::read(&path, identity, most) {
             Ok(bytes) => match postcard::take_from_bytes::<Payload<Checkpoint>>(&bytes) {
-                Ok((Payload { files, checkpoint }, []))
+                Ok((Payload { files, more_in_reserve, checkpoint }, []))
                     if files.iter().all(|file| ResultsFolder::may_hold(file)) =>
                 {
                     let warnings = refused.iter().map(|error| format!("skipped: {error}"));
                     let (time, warnings) = (checkpoint.time(), warnings.collect());
-                    return Ok(Some((checkpoint, Resumed { time, files, warnings })));
+                    return Ok(Some((
+                        checkpoint,
+                        Resumed { time, files, more_in_reserve, warnings },
+                    )));
                 }
                 _ => {
                     let what = "what it holds cannot be read".into();
@@ -147,13 +154,15 @@ pub(super) struct Store {
     pub folder: ResultsFolder,
     pub identity: Identity,
     pub written: WrittenFiles,
+    pub more_in_reserve: usize,
     pub keep: u64,
 }
 
 impl CheckpointStore for Store {
     fn store(&mut self, checkpoint: &Checkpoint) -> Result<(), Box<dyn Error + Send + Sync>> {
         let files = self.written.list().iter().map(|file| self.folder.relative(file)).collect();
-        let payload = postcard::to_stdvec(&Payload { files, checkpoint })?;
+        let more_in_reserve = self.more_in_reserve;
+        let payload = postcard::to_stdvec(&Payload { files, more_in_reserve, checkpoint })?;
         let path = self.folder.checkpoint(checkpoint.step())?;
         checkpoint::write(&path, &self.identity, &payload)?;
         // The new one is on the disk before an old one goes.

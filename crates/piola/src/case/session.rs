@@ -20,11 +20,18 @@ use super::source::Located;
 use super::views::Rows;
 use super::{Problems, report};
 use crate::observe::{Line, ProfileRecorder, Recorder, SharedTables};
+use crate::output::checkpoint::Identity;
 use crate::output::{CheckpointError, OutputError, ResultsFolder};
 use crate::schemes::{DeviceRefusal, DeviceStage, Scheme};
 use crate::time::{
     Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
 };
+
+/// How many times as many particles a checkpoint of a run may have in which some are born as there were places for.
+const MOST_GROWTH: usize = 64;
+
+/// One of how many particles is added to the reserve where it was too small.
+const GROWTH: usize = 4;
 
 /// A run of a case, from its particles at the start to its results: as a whole, in parts or step by step, with
 /// results identical to the bit.
@@ -61,6 +68,8 @@ pub struct Session {
     build_seconds: f64,
     tables: SharedTables,
     outputs: Option<Outputs>,
+    /// Whose checkpoints are those of this run.
+    identity: Identity,
     /// Observers that the case asks for, who come first.
     own: usize,
     resumed: Option<Resumed>,
@@ -89,6 +98,9 @@ pub enum RunError {
     /// A checkpoint belongs to a run with other outputs.
     #[error("{0}; nothing was changed; start again without `--resume`")]
     Misfit(#[from] Misfit),
+    /// More particles are to be born than were in reserve, and the case cannot be built with more.
+    #[error("more particles are to be born than were in reserve, and there cannot be more:\n{0}")]
+    Reserve(Problems),
     /// A folder was given for a run that had begun without it.
     #[error("the run has begun: name the folder of its results before the first step")]
     Begun,
@@ -140,6 +152,7 @@ impl Session {
             build_seconds: start.elapsed().as_secs_f64(),
             tables,
             outputs: None,
+            identity: Identity::default(),
             own,
             resumed: None,
             has_begun: false,
@@ -195,18 +208,41 @@ impl Session {
         if self.has_begun {
             return Err(RunError::Begun);
         }
-        let outputs = Outputs::new(&self.case, &self.built, self.device.as_ref(), folder);
-        let scheme = self.executor.scheme.as_ref();
-        let store = outputs.store(&self.case, resume::identity(&self.case, scheme));
-        let (tables, mut all) = observers(&self.case, &self.built, scheme, Some(&outputs));
+        self.identity = resume::identity(&self.case, self.executor.scheme.as_ref());
+        self.outputs = Some(Outputs::new(&self.case, &self.built, self.device.as_ref(), folder));
         let outside = self.executor.take_observers().split_off(self.own);
-        self.own = all.len();
-        all.extend(outside);
-        all.into_iter().for_each(|observer| self.executor.observe(observer));
-        let policy = assembly::checkpoint_policy(&self.case);
-        self.executor.keep(Checkpoints::new(policy, Box::new(store)));
-        (self.tables, self.outputs) = (tables, Some(outputs));
+        self.equip(outside);
         Ok(())
+    }
+
+    /// Lets the observers that the case asks for look, with the files that there are, and then those from `outside`; and
+    /// checkpoints be taken.
+    fn equip(&mut self, outside: Vec<Box<dyn Observer>>) {
+        let Self { case, built, executor, outputs, .. } = self;
+        let (tables, mut all) = observers(case, built, executor.scheme.as_ref(), outputs.as_ref());
+        (self.tables, self.own) = (tables, all.len());
+        all.extend(outside);
+        all.into_iter().for_each(|observer| executor.observe(observer));
+        if let Some(outputs) = outputs {
+            let store = outputs.store(case, self.identity);
+            let policy = assembly::checkpoint_policy(case);
+            executor.keep(Checkpoints::new(policy, Box::new(store)));
+        }
+    }
+
+    /// Builds the case anew with this many more particles in reserve than it asks for, and lets that go on where the run
+    /// is: results do not depend on how many there were before.
+    fn enlarge(&mut self, reserve: usize) -> Result<(), RunError> {
+        self.case.more_in_reserve = reserve;
+        let (mut next, mut built) = executor(&self.case).map_err(RunError::Reserve)?;
+        let checkpoint = self.executor.handed_over(next.scheme.as_ref());
+        let outside = self.executor.take_observers().split_off(self.own);
+        std::mem::swap(&mut self.executor, &mut next);
+        built.warnings = std::mem::take(&mut self.built.warnings);
+        self.built = built;
+        self.rows_of_bodies.clear();
+        self.equip(outside);
+        Ok(self.executor.take_over(&next, checkpoint)?)
     }
 
     /// Continues the run in `folder` from its newest sound checkpoint, and starts from the beginning if there is
@@ -220,9 +256,9 @@ impl Session {
         self.write_to(folder)?;
         let case = &self.case;
         let scheme = self.executor.scheme.as_ref();
+        let is_closed = scheme.is_closed();
         // Without a record there is nothing to go on from.
         let old = ResultsFolder::of_run(folder).ok();
-        let identity = resume::identity(case, scheme);
         let columns = Recorder::columns(scheme, &self.built.probes);
         let profiles = |line: &Line| match &line.schedule {
             Schedule::At(times) => times.len() + 1,
@@ -231,10 +267,14 @@ impl Session {
         };
         let lines = &self.built.lines;
         let lines = lines.iter().map(|line| line.numbers(case.dimension, profiles(line))).sum();
-        let most = resume::most_bytes(case, &columns, lines, self.executor.state().len());
-        let found = old.map(|(folder, _)| resume::find(&folder, &identity, most));
+        let state = self.executor.state().len() * if is_closed { 1 } else { MOST_GROWTH };
+        let most = resume::most_bytes(case, &columns, lines, state);
+        let found = old.map(|(folder, _)| resume::find(&folder, &self.identity, most));
         match found.transpose()?.flatten() {
             Some((checkpoint, resumed)) => {
+                if resumed.more_in_reserve > 0 {
+                    self.enlarge(resumed.more_in_reserve)?;
+                }
                 self.executor.resume(checkpoint)?;
                 self.built.warnings.extend(resumed.warnings.iter().cloned());
                 self.resumed = Some(resumed);
@@ -268,7 +308,13 @@ impl Session {
     /// [`RunError`] for faults of files. A run that fails is an outcome in the summary.
     pub fn step(&mut self) -> Result<bool, RunError> {
         self.begin()?;
-        Ok(self.executor.step()?)
+        let mut goes_on = self.executor.step()?;
+        while self.executor.has_none_in_reserve() {
+            let count = self.executor.scheme.particle_count();
+            self.enlarge(self.case.more_in_reserve + count.div_ceil(GROWTH))?;
+            goes_on = self.executor.step()?;
+        }
+        Ok(goes_on)
     }
 
     /// Takes steps until the time is `time` or later. No step is shortened to meet it, so results do not depend on
@@ -295,8 +341,14 @@ impl Session {
         progress: &mut dyn FnMut(&Progress),
     ) -> Result<Finished, RunError> {
         self.begin()?;
-        let summary = self.executor.run(stop, progress)?;
-        self.conclude(summary)
+        while self.executor.goes_on(stop) {
+            let before = self.progress().step;
+            self.step()?;
+            if self.progress().step != before {
+                progress(&self.progress());
+            }
+        }
+        self.finish()
     }
 
     /// Ends the run where it is, and shows this moment to all observers as the last. No more steps can be taken, but
@@ -335,7 +387,13 @@ impl Session {
                  when"
             ));
         }
-        let notes = built.notes.clone();
+        let mut notes = built.notes.clone();
+        if case.more_in_reserve > 0 {
+            notes.push(format!(
+                "{} more particles were put in reserve than there were at the start, as all of those had been born",
+                case.more_in_reserve
+            ));
+        }
         let linear = executor.scheme.linear_costs();
         let own_steps = executor.own_steps();
         let files: Vec<PathBuf> = Vec::new();

@@ -250,21 +250,6 @@ fn a_flow_rate_is_shared_by_all_that_comes_in() {
     assert!(worst < 1e-9, "{worst}");
 }
 
-/// A closed end, against which fluid is pressed: when no particle is left to come in the run ends, and tells what to do.
-#[test]
-fn a_reserve_that_is_used_up_is_named() {
-    let set = [
-        "scheme.reserve=4",
-        "body.inlet.opening.relaxation=0.01",
-        "body.outlet.opening={ normal = [-1.0, 0.0], velocity = ['0', '0'] }",
-    ];
-    let finished = run(&stream(2), &set);
-    let Outcome::Failed(failure) = &finished.summary.outcome else { panic!("it goes on") };
-    let told = failure.to_string();
-    assert!(told.contains("through the open boundary `inlet`"), "{told}");
-    assert!(told.contains("raise `scheme.reserve`"), "{told}");
-}
-
 /// A river half a metre deep over a smooth bed, let in with 1 m/s and out at the pressure of its depth, is a uniform stream of
 /// that depth, of a Froude number of 0.45. Its level is known to half a spacing, and what goes out in two ways through it is what
 /// comes in, to a layer of particles.

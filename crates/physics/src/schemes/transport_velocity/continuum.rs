@@ -127,10 +127,13 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
         0.0
     }
 
-    /// The first particle that could not enter, with the name of its boundary if there is one.
-    fn starved(&self, _common: &Common<D>, _state: &[f64]) -> Option<(usize, Option<&str>)> {
-        None
+    /// How many particles could not be born on the way to a state, as none was left in reserve.
+    fn missing(&self, _common: &Common<D>, _state: &[f64]) -> u64 {
+        0
     }
+
+    /// Takes note that as many `more` particles wait in a state.
+    fn add_waiting(&self, _common: &Common<D>, _more: usize, _state: &mut [f64]) {}
 
     /// Fills what neighbours see besides their sides, which have been loaded.
     fn load(&mut self, _common: &Common<D>, _state: &[f64]) {}

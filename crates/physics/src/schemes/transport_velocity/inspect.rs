@@ -47,8 +47,6 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         {
             health.first_escaped = common.team().least(common.escaped(state).first().copied());
         }
-        health.first_escaped =
-            health.first_escaped.or(self.matter.starved(common, state).map(|(number, _)| number));
         health
     }
 

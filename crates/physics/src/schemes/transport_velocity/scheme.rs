@@ -6,13 +6,13 @@ use piola_device::{Device, Language};
 
 use super::fields::Made;
 use super::{Continuum, TransportVelocity};
-use crate::fields::FieldDescription;
+use crate::fields::{FieldDescription, column};
 use crate::parallel::Team;
 use crate::schemes::ledger::Totals;
 use crate::schemes::momentum::of_particles;
 use crate::schemes::{
-    Behind, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Part, Particle,
-    Passage, Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme, StepLimit,
+    DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Escape, Health, Part, Particle, Passage,
+    Phase, RankRefusal, RankShare, Scheme, SchemeDescription, SplitScheme, StepLimit,
 };
 
 impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
@@ -60,18 +60,27 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
 
     #[inline(never)]
     fn escape(&self, index: usize, state: &[f64]) -> Option<Escape> {
-        match self.matter.starved(&self.common, state) {
-            Some((number, name)) if number == index => {
-                let at = self.common.columns(state);
-                Some(Escape {
-                    position: at.position[number].iter().copied().collect(),
-                    speed: at.velocity[number].norm(),
-                    behind: name.map_or(Behind::Level, |name| Behind::Reserve(name.into())),
-                    advice: "raise `scheme.reserve`",
-                })
-            }
-            _ => self.common.escape_of(index, state),
+        self.common.escape_of(index, state)
+    }
+
+    fn missing(&self, state: &[f64]) -> u64 {
+        self.matter.missing(&self.common, state)
+    }
+
+    #[inline(never)]
+    fn taken_over(&self, fewer: &dyn Scheme, state: &[f64]) -> Vec<f64> {
+        let (before, now) = (fewer.particle_count(), self.particle_count());
+        let fields = M::DESCRIPTION.fields;
+        let mut taken = self.start.clone();
+        for field in fields {
+            let own = column(fields, D, before, field);
+            let first = column(fields, D, now, field).start;
+            taken[first..first + own.len()].copy_from_slice(&state[own]);
         }
+        let width = self.width();
+        taken[now * width..].copy_from_slice(&state[before * width..]);
+        self.matter.add_waiting(&self.common, now - before, &mut taken);
+        taken
     }
 
     #[inline(never)]

@@ -1,5 +1,7 @@
 //! A world as clock, observers and output see it: one formulation with the particles of all.
 
+use std::ops::Range;
+
 use piola_device::{Device, Language};
 
 use super::description::CONTACT;
@@ -95,16 +97,12 @@ impl<const D: usize> Scheme for World<D> {
         0
     }
 
-    fn column(&self, _field: &FieldDescription) -> std::ops::Range<usize> {
+    fn column(&self, _field: &FieldDescription) -> Range<usize> {
         0..0
     }
 
     /// One of a system, unless the field is of what others do to it.
-    fn stretch(
-        &self,
-        field: &FieldDescription,
-        particles: &std::ops::Range<usize>,
-    ) -> Option<std::ops::Range<usize>> {
+    fn stretch(&self, field: &FieldDescription, particles: &Range<usize>) -> Option<Range<usize>> {
         let (k, particles) = self.parts.run_of(particles)?;
         if k > 0 && BORNE.contains(&field.name) {
             return None;
@@ -298,6 +296,11 @@ impl<const D: usize> Scheme for World<D> {
 
     fn phases(&self) -> Vec<&Phase> {
         (0..self.parts.all.len()).flat_map(|k| self.system(k).phases()).collect()
+    }
+
+    fn parts(&self) -> Vec<(&dyn Scheme, Range<usize>)> {
+        let all = self.parts.all.iter().enumerate();
+        all.map(|(k, part)| (self.system(k), part.state.clone())).collect()
     }
 
     fn bodies(&self) -> &[u32] {

@@ -106,11 +106,11 @@ impl Executor {
         let fetched = match &self.device {
             Some(device) => device.fetch_before(Arc::make_mut(&mut self.run.state).as_mut_slice()),
             None => {
-                self.run.state = Arc::clone(&self.previous.1);
+                self.run.state = Arc::clone(&self.previous.state);
                 Ok(())
             }
         };
-        self.run.clock = self.previous.0;
+        self.run.clock = self.previous.clock;
         let failure = Failure::from(fetched.err()?);
         self.lose(failure.clone());
         Some(failure)

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use super::Executor;
+use super::{Executor, Previous};
+use crate::schemes::{Phase, Scheme};
 use crate::time::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use crate::time::failure::Failure;
+use crate::time::history::History;
 use crate::time::observer::ObserveError;
 use crate::time::run::Run;
 use crate::time::summary::{Outcome, Retry};
@@ -46,7 +48,7 @@ impl Executor {
         if let Some(history) = history {
             self.run.history = history;
         }
-        self.previous.0 = clock;
+        self.previous.clock = clock;
         if let Some(checkpoints) = &mut self.checkpoints {
             checkpoints.start(&clock);
         }
@@ -54,6 +56,55 @@ impl Executor {
         self.is_here = true;
         self.hand_over();
         Ok(())
+    }
+
+    /// Whether the run cannot go on because particles were to be born and too few were in reserve: then another one of the
+    /// same case that has more of them can [take over](Self::take_over).
+    pub fn has_none_in_reserve(&self) -> bool {
+        matches!(self.outcome, Some(Outcome::Failed(Failure::NoneInReserve { .. })))
+    }
+
+    /// The run before its last step, for another one of the same case whose `scheme` has more particles in reserve.
+    pub fn handed_over(&mut self, scheme: &dyn Scheme) -> Checkpoint {
+        self.bring();
+        let Previous { clock, state, wanted, factor } = &self.previous;
+        if self.has_none_in_reserve() && self.run.clock.step > clock.step {
+            self.run.clock = *clock;
+            self.run.state = Arc::clone(state);
+            let tally = &mut self.run.tally;
+            (tally.wanted, tally.factor) = (*wanted, *factor);
+            tally.evaluations -= self.evaluations;
+            self.run.history.take_back();
+        }
+        let mut checkpoint = self.checkpoint();
+        let history = checkpoint.history.iter_mut().flat_map(History::states);
+        for state in history.chain([&mut checkpoint.state]) {
+            *state = scheme.taken_over(self.scheme.as_ref(), state);
+        }
+        checkpoint
+    }
+
+    /// Goes on with what [`Self::handed_over`] gave, as if this had been the run all the time.
+    ///
+    /// # Errors
+    /// As [`Self::resume`].
+    pub fn take_over(&mut self, before: &Self, checkpoint: Checkpoint) -> Result<(), Misfit> {
+        self.resume(checkpoint)?;
+        self.run.resumed = before.run.resumed;
+        self.phases = before.phases();
+        Ok(())
+    }
+
+    /// The parts of steps with what they have taken in this run and in those that it has taken over from.
+    pub(super) fn phases(&self) -> Vec<Phase> {
+        let mut phases: Vec<Phase> = self.scheme.phases().into_iter().cloned().collect();
+        let stages = phases.iter_mut().flat_map(|phase| &mut phase.stages);
+        let before = self.phases.iter().flat_map(|phase| &phase.stages);
+        for ((_, watch), (_, before)) in stages.zip(before) {
+            watch.total += before.total;
+            watch.calls += before.calls;
+        }
+        phases
     }
 
     /// Goes back to the older mark, with half the step from there on.

@@ -173,7 +173,7 @@ fn nest<const D: usize>(
     };
     if let Some(model) = (0..particles.len()).find(is_fluid) {
         let (first, body) = (particles.len(), particles.body[model]);
-        (0..more).for_each(|_| particles.repeat(model, body));
+        particles.reserve(model, body, more);
         let whole = particles.weight[model];
         particles.volume[first..].fill(whole);
         open.reserve += more;

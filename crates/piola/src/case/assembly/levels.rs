@@ -336,7 +336,7 @@ fn of_region<const D: usize>(
     let room = (0..particles.len() as u32).filter(|a| is_fluid(&a) && has_room(a)).count();
     particles.keep(&kept);
     let usual = room + (RESERVE * particles.len() as f64).ceil() as usize;
-    let reserve = settings.reserve.map_or(usual, |reserve| reserve as usize);
+    let reserve = settings.reserve.map_or(usual, |reserve| reserve as usize) + case.more_in_reserve;
     Ok((particles, reports, reserve))
 }
 

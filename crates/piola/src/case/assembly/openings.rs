@@ -99,12 +99,11 @@ pub(super) fn open<const D: usize>(
     let all = particles.body.iter().filter(|body| **body == fluid).count();
     let most = (RESERVE * all as f64).ceil() as usize;
     open.reserve = settings.reserve.map_or(most.max(2 * in_buffers), |reserve| reserve as usize);
+    open.reserve += case.more_in_reserve;
     let model = open.buffers.iter().position(|buffer| *buffer > 0);
     let Some(model) = model else { return Ok((open, warnings)) };
-    for _ in 0..open.reserve {
-        particles.repeat(model, fluid);
-        open.buffers.push(0);
-    }
+    particles.reserve(model, fluid, open.reserve);
+    open.buffers.resize(particles.len(), 0);
     Ok((open, warnings))
 }
 

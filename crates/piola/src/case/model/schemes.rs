@@ -114,7 +114,7 @@ pub struct TransportVelocity {
     pub damping: Option<Located<Expression>>,
     /// Whether particles that escape are removed; otherwise the run ends.
     pub removes_escaped: bool,
-    /// How many more particles may enter than leave.
+    /// How many more particles may enter than leave before memory is asked for.
     pub reserve: Option<u32>,
     /// The regions of a fluid in each of which the spacing is half of the previous one.
     pub refine: Vec<Located<Shape>>,

@@ -161,7 +161,7 @@ pub(super) const TRANSPORT_VELOCITY: KindSpec = KindSpec {
             Derived(
                 "a twentieth of the particles of the fluid and its buffers, at least two buffers",
             ),
-            "maximum number of particles in addition to the initial ones, with open boundaries and in each finer region of `refine`; its default there is the number that fits into the band of the region plus a tenth of its own",
+            "number of particles that memory is reserved for at the start in addition to the initial ones, with open boundaries and in each finer region of `refine`; its default there is the number that fits into the band of the region plus a tenth of its own. A run that needs more extends the reserve",
         ),
         key(
             "refine",

@@ -264,8 +264,12 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         Self::waiting(self, common, state)
     }
 
-    fn starved(&self, common: &Common<D>, state: &[f64]) -> Option<(usize, Option<&str>)> {
-        Self::starved(self, common, state)
+    fn missing(&self, common: &Common<D>, state: &[f64]) -> u64 {
+        Self::missing(self, common, state)
+    }
+
+    fn add_waiting(&self, common: &Common<D>, more: usize, state: &mut [f64]) {
+        Self::add_waiting(self, common, more, state);
     }
 
     fn passes(&self, common: &Common<D>) -> [Vec<Pass<Ends>>; 2] {

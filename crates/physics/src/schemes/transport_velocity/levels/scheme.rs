@@ -1,5 +1,7 @@
 //! A fluid at several resolutions as integrators, clock and output see it.
 
+use std::ops::Range;
+
 use piola_device::{Device, Language};
 
 use super::{Levels, refined};
@@ -41,7 +43,7 @@ impl<const D: usize> Scheme for Levels<D> {
         0
     }
 
-    fn column(&self, _field: &FieldDescription) -> std::ops::Range<usize> {
+    fn column(&self, _field: &FieldDescription) -> Range<usize> {
         0..0
     }
 
@@ -175,6 +177,11 @@ impl<const D: usize> Scheme for Levels<D> {
 
     fn phases(&self) -> Vec<&Phase> {
         self.levels.iter().flat_map(|level| level.phases()).collect()
+    }
+
+    fn parts(&self) -> Vec<(&dyn Scheme, Range<usize>)> {
+        let levels = self.levels.iter().map(|level| level as &dyn Scheme);
+        levels.zip(self.parts.all.iter().map(|part| part.state.clone())).collect()
     }
 
     fn bodies(&self) -> &[u32] {

@@ -1,6 +1,6 @@
 //! What keeps buffers as full as they were at the start.
 
-use super::{Common, OpenBoundary, Stored, WeaklyCompressible};
+use super::{Common, Kept, OpenBoundary, Stored, WeaklyCompressible};
 use crate::Vector;
 use crate::neighbors::search;
 
@@ -60,7 +60,10 @@ impl<const D: usize> WeaklyCompressible<D> {
                 let far = |&a: &usize| domain.separation(&points[site], &points[a]).norm_squared();
                 let present = (0..first).filter(|&a| is_own[a] && is_there[a]);
                 let Some(like) = present.min_by(|a, b| far(a).total_cmp(&far(b))) else { break };
-                let Some(next) = free.pop() else { return };
+                let Some(next) = free.pop() else {
+                    Kept::of(common, state).1.counts[1] += 1.0;
+                    return;
+                };
                 is_there[site] = true;
                 let place = (role, points[site]);
                 self.let_in(common, numbers[like] as usize, next as usize, place, state);

@@ -46,7 +46,6 @@ impl<const D: usize> WeaklyCompressible<D> {
             free.push(number as u32);
         }
         free.sort_unstable_by(|a, b| b.cmp(a));
-        Kept::of(common, state).1.counts[1] = 0.0;
         for &(number, change) in &changes {
             match change {
                 Change::Leave => {}

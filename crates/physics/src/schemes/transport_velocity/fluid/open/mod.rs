@@ -146,7 +146,7 @@ struct Seen<const D: usize> {
 }
 
 /// Numbers that a state keeps of all open boundaries: how many particles wait in the reserve, how many could
-/// not be born in the last exchange, and how many ever were.
+/// not be born, and how many ever were.
 const COUNTS: usize = 3;
 /// Numbers that it keeps of each: the slow pressure, the mass in kg that has entered and left, the slow velocity
 /// along the normal in m/s, and the energy in J and the momentum that particles have brought in, less what they took out.
@@ -395,24 +395,15 @@ impl<const D: usize> WeaklyCompressible<D> {
         Some(Passage { entered: each[1], left: each[2], energy: each[4], momentum })
     }
 
-    /// The first particle that could not enter for lack of others to follow it, and the name of its boundary; of a
-    /// finer level, in which those of the coarser one could not be split, the first of its band.
-    pub(super) fn starved(
-        &self,
-        common: &Common<D>,
-        state: &[f64],
-    ) -> Option<(usize, Option<&str>)> {
-        if !(self.counts(common, state)?[1] > 0.0) {
-            return None;
+    /// How many particles could not be born on the way to a state, as none was left in reserve.
+    pub(super) fn missing(&self, common: &Common<D>, state: &[f64]) -> u64 {
+        self.counts(common, state).map_or(0, |counts| counts[1] as u64)
+    }
+
+    /// Takes note that as many `more` particles wait in a state.
+    pub(super) fn add_waiting(&self, common: &Common<D>, more: usize, state: &mut [f64]) {
+        if !self.open.is_empty() {
+            Kept::of(common, state).1.counts[0] += more as f64;
         }
-        if self.nesting().is_some_and(|nesting| nesting.own.is_some()) {
-            return Some((*self.open.followers.first()? as usize, None));
-        }
-        let at = common.columns(state);
-        self.open.members.iter().find_map(|&number| {
-            let (_, boundary) = self.open.boundary_of(number as usize)?;
-            let depth = boundary.plane - at.position[number as usize].dot(&boundary.normal);
-            (depth < 0.0).then_some((number as usize, Some(boundary.name.as_str())))
-        })
     }
 }

@@ -176,7 +176,6 @@ impl<const D: usize> WeaklyCompressible<D> {
             let mut free = self.vacant(common, state);
             let reach = 0.5 * common.particles.spacing[0];
             let domain = *common.support.list().domain();
-            Kept::of(common, state).1.counts[1] = 0.0;
             for parent in parents {
                 for corner in 0..1_usize << D {
                     let side = |axis: usize| if corner >> axis & 1 == 0 { -reach } else { reach };
