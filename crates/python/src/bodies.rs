@@ -191,10 +191,7 @@ impl Body {
     #[getter]
     fn ids<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let number = self.number;
-        let ids: Vec<u32> = self.with(py, |session| {
-            let particles = session.particles_of(number);
-            particles.iter().map(|&particle| session.ids()[particle]).collect()
-        })?;
+        let ids: Vec<u32> = self.with(py, |session| session.ids_of(number))?;
         Ok(PyArray1::from_vec(py, ids).into_any())
     }
 

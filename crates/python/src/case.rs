@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use piola::case::{self, Level, LoadOptions, Problems, Session, load, parse_in};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -111,11 +111,17 @@ impl Case {
     #[new]
     #[pyo3(signature = (table, *, folder=None, variant=None, level="case"))]
     fn new(
-        table: &Bound<'_, PyDict>,
+        table: &Bound<'_, PyAny>,
         folder: Option<PathBuf>,
         variant: Option<String>,
         level: &str,
     ) -> PyResult<Self> {
+        let table = table.cast::<PyDict>().map_err(|_| {
+            let kind = table.get_type();
+            PyTypeError::new_err(format!(
+                "a case is a dict, not {kind}: piola.Case.load(path) reads a case file"
+            ))
+        })?;
         let mut registry = Registry::default();
         let text = ::toml::to_string(&toml::table(table, &mut registry)?)
             .map_err(|error| PyValueError::new_err(format!("this is not TOML: {error}")))?;

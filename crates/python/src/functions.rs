@@ -185,7 +185,14 @@ impl Function {
             let given = takes.iter().map(|variable| variables[*variable]);
             let value = PyTuple::new(py, given)
                 .and_then(|given| function.bind(py).call1(given))
-                .and_then(|value| value.extract::<f64>());
+                .and_then(|value| {
+                    value.extract::<f64>().map_err(|_| {
+                        let shown = value.repr().map(|shown| shown.to_string()).unwrap_or_default();
+                        PyTypeError::new_err(format!(
+                            "the function `{name}` returned {shown}, where a number is needed"
+                        ))
+                    })
+                });
             IS_CALLING.set(outer);
             let value = value?;
             if !value.is_finite() {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use piola::case::{RunError, Session};
 use piola::time::{Outcome, Progress};
 use piola_cli::Pace;
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
 use crate::errors::{Failed, file_error, guard, panic_error, run_error};
@@ -134,8 +134,9 @@ impl Simulation {
             Ok(Pause::Raised) => {
                 // The state has what came of it: the last good one is looked for.
                 let raised = simulation.functions.take();
-                let run = simulation.close(py)?;
-                let text = "a function has raised";
+                let text = "a function of the case has raised";
+                let told = raised.as_ref().map(|raised| format!("{text}: {raised}"));
+                let run = simulation.close(py, told.map(|cause| (cause, true)))?;
                 let failed =
                     Failed { kind: "function", run: Some(run.into_any()), ..Failed::default() };
                 Err(raised.unwrap_or_else(|| run_error(py, text.to_owned(), failed)))
@@ -192,8 +193,11 @@ impl Simulation {
     /// Ends a run whose results go to a folder because of `error`, so that its last state is on disk, and gives
     /// the error back.
     fn stop(&self, slf: &Bound<'_, Self>, error: PyErr) -> PyErr {
+        let py = slf.py();
+        let cause = (!error.is_instance_of::<PyKeyboardInterrupt>(py))
+            .then(|| (format!("an observer has raised: {error}"), false));
         if self.folder.is_some()
-            && let Err(other) = self.close(slf.py())
+            && let Err(other) = self.close(py, cause)
         {
             other.set_cause(slf.py(), Some(error));
             return other;
@@ -208,7 +212,7 @@ impl Simulation {
             return Ok(run.clone_ref(py));
         }
         let _claim = Claim::new(simulation)?;
-        let run = simulation.close(py)?;
+        let run = simulation.close(py, None)?;
         let finished = &run.get().finished;
         if let Outcome::Failed(failure) = &finished.summary.outcome {
             let particle = failure.particle();
@@ -226,9 +230,13 @@ impl Simulation {
         Ok(run)
     }
 
-    /// Writes what is left of a run.
-    fn close(&self, py: Python<'_>) -> PyResult<Py<Run>> {
+    /// Writes what is left of a run, which ends because of something outside of it if there is a cause; with it whether the
+    /// state has suffered.
+    fn close(&self, py: Python<'_>, cause: Option<(String, bool)>) -> PyResult<Py<Run>> {
         let finished = self.with(py, |session| {
+            if let Some((cause, has_suffered)) = cause {
+                session.give_up(cause, has_suffered);
+            }
             let finished = session.finish();
             self.note(session);
             finished

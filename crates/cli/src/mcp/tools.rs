@@ -88,7 +88,7 @@ pub fn list() -> Value {
         tool(
             "report",
             "Recreate the report of an earlier run (a page for a browser), and return its record: outcome, \
-             failure, steps, wall time, energies, checks.",
+             failure, steps, wall time, notes, warnings and files.",
             json!({ "results": { "type": "string", "description": "folder of the results, for example results/tank" } }),
             &["results"],
             false,
@@ -117,8 +117,12 @@ impl Tools {
         let known = list();
         let tool = known.as_array().into_iter().flatten().find(|tool| tool["name"] == name);
         let Some(tool) = tool else {
+            let told = match name {
+                "" => "`name` is missing: which tool".to_owned(),
+                name => format!("there is no tool `{name}`"),
+            };
             return Answer::BadArguments(format!(
-                "there is no tool `{name}`; there are `schema`, `check`, `run` and `report`"
+                "{told}; there are `schema`, `check`, `run` and `report`"
             ));
         };
         if let Err(text) = fits(arguments, &tool["inputSchema"]) {

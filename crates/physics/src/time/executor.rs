@@ -244,6 +244,15 @@ impl Executor {
             && self.outcome.is_none()
     }
 
+    /// Ends the run because of a `cause` outside of it: at this state, or, where that has already suffered from it, at the
+    /// one before the last step.
+    pub fn give_up(&mut self, cause: String, has_suffered: bool) {
+        self.is_broken = has_suffered;
+        let clock = if has_suffered { self.previous.clock } else { self.run.clock };
+        let Clock { step, time, .. } = clock;
+        self.outcome = Some(Outcome::Failed(Failure::Outside { cause, step, time }));
+    }
+
     /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` after each step.
     ///
     /// # Errors

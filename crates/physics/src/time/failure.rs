@@ -100,6 +100,16 @@ pub enum Failure {
         /// Simulated time in s.
         time: f64,
     },
+    /// What the run depends on outside of it has failed.
+    #[error("{cause}; the run ended at t = {time:.6} s, step {step}")]
+    Outside {
+        /// What failed, in a sentence without its stop.
+        cause: String,
+        /// Steps taken.
+        step: u64,
+        /// Simulated time in s.
+        time: f64,
+    },
     /// A particle is much faster than anything was at the start.
     #[error(
         "particle {} (reference position {:?} m) moves at {speed:.4e} m/s after step {step}, \
@@ -232,6 +242,7 @@ impl Failure {
             Self::Inverted { .. } => "inverted",
             Self::Escaped { .. } => "escaped",
             Self::NoneInReserve { .. } => "none_in_reserve",
+            Self::Outside { .. } => "outside",
             Self::TooFast { .. } => "too_fast",
             Self::FixedStepTooLarge { .. } => "fixed_step_too_large",
             Self::StepBelowFloor { .. } => "step_below_floor",
@@ -265,6 +276,7 @@ impl Failure {
             // What led there is in its message; to take the steps once more would take long.
             Self::NoSolution(_)
             | Self::NoneInReserve { .. }
+            | Self::Outside { .. }
             | Self::Unserved(_)
             | Self::Inaccurate { .. }
             | Self::Device(_)

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::session::Session;
 use super::suggest::one_of;
-use crate::fields::{FieldDescription, FieldValues};
+use crate::fields::{FieldDescription, FieldValues, component_name};
 
 /// A column that cannot be read or set.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -43,12 +43,17 @@ pub enum ColumnError {
         got: usize,
     },
     /// A value that is not finite.
-    #[error("value {index} for the column `{name}` is {value}")]
+    #[error(
+        "the column `{name}` cannot have {value}, which is meant for particle {particle}{}",
+        if component.is_empty() { String::new() } else { format!(", component {component}") }
+    )]
     NotFinite {
         /// The name.
         name: &'static str,
-        /// Which of the values.
-        index: usize,
+        /// Which of the particles, counted from 0 in the order of the column.
+        particle: usize,
+        /// Which of its components; empty for scalars.
+        component: String,
         /// The value.
         value: f64,
     },
@@ -58,6 +63,12 @@ impl Session {
     /// Number of each particle in the order of creation, in the order of all columns.
     pub fn ids(&self) -> &[u32] {
         self.executor.scheme.ids()
+    }
+
+    /// The current numbers in the order of creation of the particles that [`Session::particles_of`] has: those of files.
+    pub fn ids_of(&mut self, body: Option<usize>) -> Vec<u32> {
+        let particles = self.rows(body).list();
+        self.executor.now().ids_of(&particles)
     }
 
     /// The columns that [`Session::column`] knows.
@@ -117,7 +128,11 @@ impl Session {
             return Err(ColumnError::Length { name, expected, got });
         }
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(ColumnError::NotFinite { name, index, value: values[index] });
+            let dimension = self.case.dimension;
+            let components = field.kind.components(dimension);
+            let component = component_name(field.kind, index % components, dimension);
+            let particle = index / components;
+            return Err(ColumnError::NotFinite { name, particle, component, value: values[index] });
         }
         if self.executor.state()[column.clone()] != *values {
             self.executor.change(|state| state[column].copy_from_slice(values));

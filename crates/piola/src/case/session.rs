@@ -362,6 +362,13 @@ impl Session {
         self.conclude(summary)
     }
 
+    /// Ends the run because of a `cause` outside of it, for example a function that has none of its values: at this moment,
+    /// or, where that has already suffered from it, at the one before the last step. It can be resumed from there.
+    /// [`Self::finish`] tells of it.
+    pub fn give_up(&mut self, cause: String, has_suffered: bool) {
+        self.executor.give_up(cause, has_suffered);
+    }
+
     /// Makes the folder of the results this run's. What could be refused has been.
     fn begin(&mut self) -> Result<(), RunError> {
         if !std::mem::replace(&mut self.has_begun, true)

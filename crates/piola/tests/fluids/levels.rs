@@ -1,7 +1,5 @@
 //! Fluids at several resolutions.
 
-use piola::time::Outcome;
-
 use super::support::{run, session, values};
 
 /// A fluid in a periodic box with regions of finer spacing.

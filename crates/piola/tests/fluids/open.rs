@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
 use piola::case::{self, LoadOptions, Session};
-use piola::time::Outcome;
 
 use super::support::{run, session, values};
 

@@ -230,7 +230,7 @@ fn what_cannot_be_is_refused_with_its_reason() {
     let mut values = vec![0.0; 2 * count];
     values[3] = f64::NAN;
     let error = piston.set("velocity", &values).unwrap_err();
-    assert!(matches!(error, ColumnError::NotFinite { index: 3, .. }));
+    assert!(matches!(error, ColumnError::NotFinite { particle: 1, .. }));
     let mut beam = session(&load("dual-support/tension", &[]));
     let error = beam.set("displacement", &[]).unwrap_err();
     assert!(error.to_string().contains("those that can: none"), "{error}");

@@ -83,11 +83,21 @@ fn stl(mut bytes: Vec<u8>) -> Result<Vec<(Triangle, u32)>, String> {
     } else if let Some(text) = plain(&bytes) {
         bytes = text?.into_bytes();
     } else {
-        let facets = bytes.len().saturating_sub(STL_HEAD) as f64 / STL_FACET as f64;
-        return Err(format!(
-            "it is not text that begins with `solid` and a facet, and has room for {facets} facets \
-             where a binary file would have {count}"
-        ));
+        let length = bytes.len();
+        return Err(match length.checked_sub(STL_HEAD) {
+            None if length == 0 => "it is empty".into(),
+            None => format!(
+                "it has {length} bytes, fewer than the header of a binary STL, and is no text of one"
+            ),
+            Some(rest) if rest < STL_FACET * count => format!(
+                "its header announces {count} facets, and it ends after {} of them",
+                rest / STL_FACET
+            ),
+            Some(rest) => format!(
+                "its header announces {count} facets, and it has {} bytes more than these",
+                rest - STL_FACET * count
+            ),
+        });
     }
     let mut source = Cursor::new(bytes);
     let facets = stl_io::create_stl_reader(&mut source).map_err(|error| error.to_string())?;

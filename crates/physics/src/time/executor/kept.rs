@@ -134,6 +134,7 @@ impl Executor {
         let take = match outcome {
             Outcome::Completed => wanted(true),
             Outcome::Interrupted => wanted(false),
+            Outcome::Failed(Failure::Outside { .. }) => wanted(false),
             Outcome::Failed(failure) if failure.is_loss() => wanted(false),
             Outcome::Failed(_) => false,
         };

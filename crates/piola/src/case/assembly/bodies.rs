@@ -330,7 +330,9 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         let pairs = match facets.crossings(MOST_CROSSINGS) {
             0 => continue,
             1 => "1 pair of facets crosses",
-            MOST_CROSSINGS => &format!("{MOST_CROSSINGS} pairs of facets or more cross each other"),
+            MOST_CROSSINGS => {
+                &format!("at least {MOST_CROSSINGS} pairs of facets cross each other")
+            }
             count => &format!("{count} pairs of facets cross each other"),
         };
         let first = facets.first_crossing();
@@ -344,10 +346,17 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
         if let Some((thickness, spot)) = facets.thinner_than(THIN * spacing) {
             let layers = thickness / spacing;
+            let thin = match layers < 0.05 {
+                true => "has no thickness".to_owned(),
+                false => format!("is {layers:.1} spacings thick"),
+            };
+            let other = match case.bodies.iter().any(|other| other.wall.is_some()) {
+                true => ", or expect fluid on one side to interact with that on the other",
+                false => "",
+            };
             told.push(format!(
-                "the body `{}` is {layers:.1} spacings thick where it is thinnest, behind {spot}, less than \
-                 {THIN}: make the spacing smaller, or expect fluid on one side to interact with \
-                 that on the other",
+                "the body `{}` {thin} where it is thinnest, behind {spot}, less than {THIN}: make the spacing \
+                 smaller{other}",
                 *body.name
             ));
         }

@@ -87,7 +87,7 @@ pub(super) fn build<const D: usize>(
     let mirrors = mirrors(case, *settings.form, &particles, &mut problems);
     let known = || {
         areas.clone().ok_or_else(|| {
-            "a load on a surface needs the areas of the particles, which are known of lattices and meshes alone"
+            "a load on a surface needs the areas of the particles, which are known for lattices and meshes only"
                 .to_owned()
         })
     };
@@ -340,7 +340,7 @@ fn gradients<const D: usize>(
         (None, _) if is_plain => (Gradients::Plain, Vec::new()),
         (_, Some(areas)) => (Gradients::PatchConsistent { areas }, Vec::new()),
         (None, None) => {
-            let warning = "gradients are plain, as boundary areas are known of lattices and meshes alone: a constant stress is not in equilibrium there";
+            let warning = "gradients are plain, as boundary areas are known for lattices and meshes only: a constant stress is not in equilibrium there";
             (Gradients::Plain, vec![warning.to_owned()])
         }
         (Some(GradientKind::PatchConsistent), None) => {

@@ -109,6 +109,7 @@ fn unexpected(found: char, offset: usize) -> ExpressionError {
         '[' | '{' => error.help("write `(`"),
         ']' | '}' => error.help("write `)`"),
         '%' => error.help("write `mod(a, b)`"),
+        '@' => error.help("a function of a program cannot stand here, where a number is needed"),
         _ => error,
     }
 }
