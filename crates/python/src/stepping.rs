@@ -195,7 +195,7 @@ impl Simulation {
     fn stop(&self, slf: &Bound<'_, Self>, error: PyErr) -> PyErr {
         let py = slf.py();
         let cause = (!error.is_instance_of::<PyKeyboardInterrupt>(py))
-            .then(|| (format!("an observer has raised: {error}"), false));
+            .then(|| (format!("an exception stopped the run: {error}"), false));
         if self.folder.is_some()
             && let Err(other) = self.close(py, cause)
         {
@@ -231,11 +231,11 @@ impl Simulation {
     }
 
     /// Writes what is left of a run, which ends because of something outside of it if there is a cause; with it whether the
-    /// state has suffered.
+    /// state is affected.
     fn close(&self, py: Python<'_>, cause: Option<(String, bool)>) -> PyResult<Py<Run>> {
         let finished = self.with(py, |session| {
-            if let Some((cause, has_suffered)) = cause {
-                session.give_up(cause, has_suffered);
+            if let Some((cause, is_affected)) = cause {
+                session.give_up(cause, is_affected);
             }
             let finished = session.finish();
             self.note(session);

@@ -101,6 +101,7 @@ def test_a_function_that_raises_stops_the_run(table, tmp_path, with_folder):
     if with_folder:
         assert f'timestep="{simulation.time}"' in (folder / "particles.pvd").read_text()
         assert (folder / "report.html").exists()
+        assert "a function of the case has raised" in (folder / "run.json").read_text()
     assert not simulation.step()
 
 
@@ -109,8 +110,8 @@ def test_a_function_that_raises_stops_the_run(table, tmp_path, with_folder):
     [
         (lambda t: float("nan"), ValueError, "the function `lambda_0` returned NaN for t = 0.0"),
         (lambda x: float("inf"), ValueError, "the function `lambda_0` returned inf for x = "),
-        (lambda x, t: "much", TypeError, "must be real number, not str"),
-        (lambda t: np.array([1.0, 2.0]), TypeError, "only"),
+        (lambda x, t: "much", TypeError, "the function `lambda_0` returned 'much', where a number is needed"),
+        (lambda t: np.array([1.0, 2.0]), TypeError, "where a number is needed"),
         (lambda t: 1 / 0, ZeroDivisionError, "division by zero"),
     ],
 )

@@ -223,7 +223,8 @@ def test_a_callback_that_raises_stops_the_run(case, tmp_path, with_folder):
     assert 0.1 < simulation.time == raised[0] < 0.2
     if with_folder:
         # Its last state is on disk, and the run goes on from there.
-        assert simulation.result.outcome == "interrupted"
+        assert simulation.result.outcome == "failed: outside"
+        assert "an exception stopped the run" in (folder / "run.json").read_text()
         assert f'timestep="{simulation.time}"' in (folder / "particles.pvd").read_text()
         simulation = case.start(folder, resume=True)
         assert simulation.time == raised[0]

@@ -118,7 +118,7 @@ impl Tools {
         let tool = known.as_array().into_iter().flatten().find(|tool| tool["name"] == name);
         let Some(tool) = tool else {
             let told = match name {
-                "" => "`name` is missing: which tool".to_owned(),
+                "" => "`name`, the tool to call, is missing".to_owned(),
                 name => format!("there is no tool `{name}`"),
             };
             return Answer::BadArguments(format!(

@@ -134,7 +134,7 @@ impl<const D: usize> Particles<D> {
     }
 
     /// Appends `count` particles like one of these (index), as part of a body, that wait to be born: until then their number
-    /// is that of the other, so that numbers do not depend on how many wait.
+    /// is that of the other, so that no other number depends on how many wait.
     pub fn reserve(&mut self, index: usize, body: u32, count: usize) {
         let first = self.len();
         (0..count).for_each(|_| self.repeat(index, body));

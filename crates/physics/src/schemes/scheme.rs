@@ -121,17 +121,17 @@ pub trait Scheme: Send + Sync {
         Vec::new()
     }
 
-    /// The systems that it is made of, one after another, and where each stands in a state; none if it is one by itself.
+    /// The systems that it is made of, one after another, each with its range in a state; none if it is one by itself.
     fn parts(&self) -> Vec<(&dyn Scheme, Range<usize>)> {
         Vec::new()
     }
 
     /// How many particles could not be born on the way to `state`, as none was left in reserve.
-    fn missing(&self, state: &[f64]) -> u64 {
-        self.parts().into_iter().map(|(part, own)| part.missing(&state[own])).sum()
+    fn missing(&self, _state: &[f64]) -> u64 {
+        0
     }
 
-    /// A state of the same formulation with `fewer` particles in reserve as one of this.
+    /// Translates a state of `fewer`, the same formulation with a smaller reserve, into one of this.
     fn taken_over(&self, fewer: &dyn Scheme, state: &[f64]) -> Vec<f64> {
         let (parts, before) = (self.parts(), fewer.parts());
         let behind = before.last().map_or(0, |(_, own)| own.end);
@@ -160,6 +160,15 @@ pub trait Scheme: Send + Sync {
     /// the start.
     fn birth_of(&self, _state: &[f64], _index: usize) -> u32 {
         0
+    }
+
+    /// The number of a particle (index in memory) of `state` in the order of creation: those that were born have numbers
+    /// behind all that there were at the start.
+    fn id_of(&self, state: &[f64], index: usize) -> u32 {
+        match self.birth_of(state, index) {
+            0 => self.ids()[index],
+            birth => self.ids().iter().copied().max().unwrap_or_default().saturating_add(birth),
+        }
     }
 
     /// Mass in kg of a particle (index in memory), for 1 m in missing dimensions.

@@ -41,7 +41,7 @@ pub struct Executor {
     pub retries: usize,
     observers: Vec<Box<dyn Observer>>,
     checkpoints: Option<Checkpoints>,
-    run: Run,
+    pub(super) run: Run,
     /// Evaluations of the rates times particles a step.
     evaluations: u64,
     /// What the parts of steps took before there were more particles.
@@ -244,13 +244,16 @@ impl Executor {
             && self.outcome.is_none()
     }
 
-    /// Ends the run because of a `cause` outside of it: at this state, or, where that has already suffered from it, at the
-    /// one before the last step.
-    pub fn give_up(&mut self, cause: String, has_suffered: bool) {
-        self.is_broken = has_suffered;
-        let clock = if has_suffered { self.previous.clock } else { self.run.clock };
-        let Clock { step, time, .. } = clock;
-        self.outcome = Some(Outcome::Failed(Failure::Outside { cause, step, time }));
+    /// Ends the run because of a `cause` outside of it: at this state, or, where that is already affected, at the last
+    /// mark.
+    pub fn give_up(&mut self, cause: String, is_affected: bool) {
+        let clock = if is_affected { self.run.history.last().clock } else { self.run.clock };
+        let failure = Failure::Outside { cause, step: clock.step, time: clock.time };
+        self.is_broken = false;
+        match is_affected {
+            true => self.lose(failure),
+            false => self.outcome = Some(Outcome::Failed(failure)),
+        }
     }
 
     /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` after each step.

@@ -218,7 +218,7 @@ impl Trace {
         };
         let fields: Vec<(usize, Vec<f64>)> = shown.map(&mut read).collect();
         for (row, &particle) in self.particles.iter().enumerate() {
-            let id = scheme.particle(particle as usize).id;
+            let id = scheme.id_of(state, particle as usize);
             let is_bad = f64::from(u8::from(particle == self.bad));
             self.numbers.extend([step as f64, time, size, f64::from(id), is_bad]);
             for (components, values) in &fields {

@@ -4,7 +4,7 @@ use super::clock::{Clock, Tally};
 use super::executor::Executor;
 use super::failure::Failure;
 use super::step::{ChosenStep, StepControl};
-use crate::schemes::{Health, StepLimit};
+use crate::schemes::{Health, Particle, StepLimit};
 
 impl Executor {
     /// A volume ratio below this is a particle that is collapsing.
@@ -20,6 +20,11 @@ impl Executor {
         self.max_speed.unwrap_or(limit)
     }
 
+    /// Reference position and number of a particle in a state.
+    fn particle(&self, index: usize, state: &[f64]) -> Particle {
+        Particle { id: self.scheme.id_of(state, index), ..self.scheme.particle(index) }
+    }
+
     /// The failure that a state's health shows, if any.
     pub(super) fn broken(
         &self,
@@ -32,14 +37,14 @@ impl Executor {
         let speed_limit = self.speed_limit(start_speeds);
         let advice = self.scheme.stability_advice();
         if let Some(index) = health.first_not_finite {
-            let particle = self.scheme.particle(index);
+            let particle = self.particle(index, state);
             return Some(Failure::NotFinite { index, particle, step, time, advice });
         }
         if !(health.smallest_ratio > 0.0) {
             let index = health.smallest_ratio_particle;
             return Some(Failure::Inverted {
                 index,
-                particle: self.scheme.particle(index),
+                particle: self.particle(index, state),
                 ratio: health.smallest_ratio,
                 step,
                 time,
@@ -54,7 +59,7 @@ impl Executor {
         if let Some(index) = health.first_escaped
             && let Some(escape) = self.scheme.escape(index, state)
         {
-            let particle = self.scheme.particle(index);
+            let particle = self.particle(index, state);
             let escape = Box::new(escape);
             return Some(Failure::Escaped { index, particle, escape, step, time });
         }
@@ -62,7 +67,7 @@ impl Executor {
             let index = health.largest_speed_particle;
             return Some(Failure::TooFast {
                 index,
-                particle: self.scheme.particle(index),
+                particle: self.particle(index, state),
                 speed: health.largest_speed,
                 limit: speed_limit,
                 step,
@@ -88,7 +93,7 @@ impl Executor {
             let index = too_large.bound.particle;
             Failure::FixedStepTooLarge {
                 index,
-                particle: self.scheme.particle(index),
+                particle: self.particle(index, &self.run.state),
                 step: too_large.step,
                 stable: too_large.bound.step,
                 limiter: too_large.bound.limiter,
@@ -124,7 +129,7 @@ impl Executor {
             };
             return Err(Failure::StepBelowFloor {
                 index,
-                particle: self.scheme.particle(index),
+                particle: self.particle(index, &self.run.state),
                 size,
                 floor,
                 limiter,

@@ -44,8 +44,8 @@ pub enum ColumnError {
     },
     /// A value that is not finite.
     #[error(
-        "the column `{name}` cannot have {value}, which is meant for particle {particle}{}",
-        if component.is_empty() { String::new() } else { format!(", component {component}") }
+        "the value for particle {particle}{} of the column `{name}` is {value}",
+        if component.is_empty() { String::new() } else { format!(", component {component},") }
     )]
     NotFinite {
         /// The name.
@@ -60,12 +60,13 @@ pub enum ColumnError {
 }
 
 impl Session {
-    /// Number of each particle in the order of creation, in the order of all columns.
+    /// Number of each particle in the order of creation, in the order of all columns. Particles that wait in a reserve, and
+    /// those that were born from it, have the number of another one: see [`Session::ids_of`].
     pub fn ids(&self) -> &[u32] {
         self.executor.scheme.ids()
     }
 
-    /// The current numbers in the order of creation of the particles that [`Session::particles_of`] has: those of files.
+    /// The ids, as in files, of the particles of [`Session::particles_of`].
     pub fn ids_of(&mut self, body: Option<usize>) -> Vec<u32> {
         let particles = self.rows(body).list();
         self.executor.now().ids_of(&particles)

@@ -27,11 +27,14 @@ use crate::time::{
     Checkpoint, Checkpoints, Executor, Misfit, ObserveError, Observer, Progress, Schedule, Summary,
 };
 
-/// How many times as many particles a checkpoint of a run may have in which some are born as there were places for.
+/// A checkpoint of a run with openings or finer regions may be this many times as large as the state at the start.
 const MOST_GROWTH: usize = 64;
 
-/// One of how many particles is added to the reserve where it was too small.
+/// A reserve that was too small grows by one of so many particles of the run.
 const GROWTH: usize = 4;
+
+/// With more particles than these a reserve does not grow.
+const MOST_PARTICLES: usize = 100_000_000;
 
 /// A run of a case, from its particles at the start to its results: as a whole, in parts or step by step, with
 /// results identical to the bit.
@@ -98,8 +101,8 @@ pub enum RunError {
     /// A checkpoint belongs to a run with other outputs.
     #[error("{0}; nothing was changed; start again without `--resume`")]
     Misfit(#[from] Misfit),
-    /// More particles are to be born than were in reserve, and the case cannot be built with more.
-    #[error("more particles are to be born than were in reserve, and there cannot be more:\n{0}")]
+    /// The reserve of particles ran out, and the case cannot be built with more.
+    #[error("the reserve of particles ran out and could not be extended:\n{0}")]
     Reserve(Problems),
     /// A folder was given for a run that had begun without it.
     #[error("the run has begun: name the folder of its results before the first step")]
@@ -230,8 +233,8 @@ impl Session {
         }
     }
 
-    /// Builds the case anew with this many more particles in reserve than it asks for, and lets that go on where the run
-    /// is: results do not depend on how many there were before.
+    /// Builds the case anew with this many more particles in each reserve than it asks for, and lets that go on where the
+    /// run is. Particles do not depend on how many there were before; sums over rows may differ by rounding.
     fn enlarge(&mut self, reserve: usize) -> Result<(), RunError> {
         self.case.more_in_reserve = reserve;
         let (mut next, mut built) = executor(&self.case).map_err(RunError::Reserve)?;
@@ -292,7 +295,8 @@ impl Session {
         self.executor.checkpoint()
     }
 
-    /// Continues from a checkpoint of a session of the same case with the same observers.
+    /// Continues from a checkpoint of a session of the same case with the same observers, whose reserve has been extended as
+    /// often.
     ///
     /// # Errors
     /// It cannot be one; the session cannot be used then.
@@ -311,6 +315,9 @@ impl Session {
         let mut goes_on = self.executor.step()?;
         while self.executor.has_none_in_reserve() {
             let count = self.executor.scheme.particle_count();
+            if count > MOST_PARTICLES {
+                return Ok(false);
+            }
             self.enlarge(self.case.more_in_reserve + count.div_ceil(GROWTH))?;
             goes_on = self.executor.step()?;
         }
@@ -362,11 +369,10 @@ impl Session {
         self.conclude(summary)
     }
 
-    /// Ends the run because of a `cause` outside of it, for example a function that has none of its values: at this moment,
-    /// or, where that has already suffered from it, at the one before the last step. It can be resumed from there.
-    /// [`Self::finish`] tells of it.
-    pub fn give_up(&mut self, cause: String, has_suffered: bool) {
-        self.executor.give_up(cause, has_suffered);
+    /// Ends the run because of a `cause` outside of it, for example a function that has raised: at this moment, or, where the
+    /// state is already affected, some steps before. It can be resumed from there. [`Self::finish`] reports it.
+    pub fn give_up(&mut self, cause: String, is_affected: bool) {
+        self.executor.give_up(cause, is_affected);
     }
 
     /// Makes the folder of the results this run's. What could be refused has been.
@@ -397,7 +403,7 @@ impl Session {
         let mut notes = built.notes.clone();
         if case.more_in_reserve > 0 {
             notes.push(format!(
-                "{} more particles were put in reserve than there were at the start, as all of those had been born",
+                "the reserve ran out and was extended: by {} particles, or as many in each region",
                 case.more_in_reserve
             ));
         }

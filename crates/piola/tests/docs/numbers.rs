@@ -32,7 +32,8 @@ fn written(text: &str) -> Vec<String> {
 /// The whole numbers of the tables of `text` that are worth a comparison: from 20 on, for smaller ones are the rounded
 /// values of too much, and with or without blanks between thousands.
 fn whole(text: &str) -> Vec<String> {
-    let rows = text.lines().filter(|line| line.starts_with('|'));
+    let outside = text.split("```").step_by(2);
+    let rows = outside.flat_map(str::lines).filter(|line| line.starts_with('|'));
     let cells = rows.flat_map(|row| row.split(['|', ',', ';', '(', ')']));
     let numbers = cells.flat_map(|cell| {
         let mut numbers: Vec<String> = Vec::new();

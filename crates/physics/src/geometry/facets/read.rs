@@ -87,14 +87,14 @@ fn stl(mut bytes: Vec<u8>) -> Result<Vec<(Triangle, u32)>, String> {
         return Err(match length.checked_sub(STL_HEAD) {
             None if length == 0 => "it is empty".into(),
             None => format!(
-                "it has {length} bytes, fewer than the header of a binary STL, and is no text of one"
+                "it has {length} bytes, fewer than the header of a binary STL, and it is not an ASCII STL either"
             ),
             Some(rest) if rest < STL_FACET * count => format!(
                 "its header announces {count} facets, and it ends after {} of them",
                 rest / STL_FACET
             ),
             Some(rest) => format!(
-                "its header announces {count} facets, and it has {} bytes more than these",
+                "its header announces {count} facets, and it has {} bytes after the last",
                 rest - STL_FACET * count
             ),
         });

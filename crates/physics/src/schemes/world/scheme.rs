@@ -303,6 +303,11 @@ impl<const D: usize> Scheme for World<D> {
         all.map(|(k, part)| (self.system(k), part.state.clone())).collect()
     }
 
+    fn missing(&self, state: &[f64]) -> u64 {
+        let all = self.parts.all.iter().enumerate();
+        all.map(|(k, part)| self.system(k).missing(&state[part.state.clone()])).sum()
+    }
+
     fn bodies(&self) -> &[u32] {
         &self.parts.bodies
     }

@@ -109,7 +109,7 @@ fn unexpected(found: char, offset: usize) -> ExpressionError {
         '[' | '{' => error.help("write `(`"),
         ']' | '}' => error.help("write `)`"),
         '%' => error.help("write `mod(a, b)`"),
-        '@' => error.help("a function of a program cannot stand here, where a number is needed"),
+        '@' => error.help("a Python function cannot be used here: write a number"),
         _ => error,
     }
 }

@@ -184,6 +184,10 @@ impl<const D: usize> Scheme for Levels<D> {
         levels.zip(self.parts.all.iter().map(|part| part.state.clone())).collect()
     }
 
+    fn missing(&self, state: &[f64]) -> u64 {
+        self.each(state).map(|(level, own)| level.missing(own)).sum()
+    }
+
     fn bodies(&self) -> &[u32] {
         &self.parts.bodies
     }

@@ -13,7 +13,7 @@ const CROWDED: f64 = 0.5;
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// Takes particles out of buffers that are too near to others, and lets some in where places are empty at which
-    /// the buffer had particles at the start, as long as any wait. A stream that slows down pulls apart what went out
+    /// the buffer had particles at the start. A stream that slows down pulls apart what went out
     /// before, which would come back with gaps, and one that grows faster piles it up. The fluid and its balances
     /// do not change: what is in buffers is no part of it. Where a surface can fall, nothing is let in.
     pub(super) fn even_out(&self, common: &Common<D>, state: &mut [f64], free: &mut Vec<u32>) {

@@ -403,7 +403,9 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// Takes note that as many `more` particles wait in a state.
     pub(super) fn add_waiting(&self, common: &Common<D>, more: usize, state: &mut [f64]) {
         if !self.open.is_empty() {
-            Kept::of(common, state).1.counts[0] += more as f64;
+            let counts = Kept::of(common, state).1.counts;
+            counts[0] += more as f64;
+            counts[1] = 0.0;
         }
     }
 }
