@@ -224,8 +224,8 @@ def test_any_memory_order_and_exact_type(case):
         (np.full((45, 2), "1"), TypeError, "takes 64-bit floats, not <U1"),
         (np.zeros((45, 2), object), TypeError, "takes 64-bit floats, not object"),
         (None, TypeError, "takes 64-bit floats, not object (of a `NoneType`)"),
-        (np.full((45, 2), np.nan), ValueError, "for the column `velocity` is NaN"),
-        (np.full((45, 2), np.inf), ValueError, "for the column `velocity` is inf"),
+        (np.full((45, 2), np.nan), ValueError, "the value for particle 0, component x, of the column `velocity` is NaN"),
+        (np.full((45, 2), np.inf), ValueError, "the value for particle 0, component x, of the column `velocity` is inf"),
     ],
 )
 def test_bad_arrays_are_refused_and_change_nothing(case, values, error, text):
