@@ -334,14 +334,14 @@ fn broken_files_are_told() {
     bits.extend([0.0, 1.0, 2.0, 3.0, f32::NAN, 4.0].into_iter().flat_map(f32::to_le_bytes));
     let faults: [(&str, Vec<u8>, &str); 17] = [
         ("a.ply", bits, "the vertex 1 (from 0) is at (3, NaN, 4), expected finite coordinates"),
-        ("a.stl", long, "room for 12.2 facets where a binary file would have 12"),
+        ("a.stl", long, "its header announces 12 facets, and it has 10 bytes after the last"),
         (
             "a.ply",
             b"ply\nformat binary_little_endian 1.0\nelement x 18446744073709551615\nend_header\n"
                 .to_vec(),
             "is broken: ",
         ),
-        ("a.stl", short, "room for 8.32 facets where a binary file would have 12"),
+        ("a.stl", short, "its header announces 12 facets, and it ends after 8 of them"),
         (
             "a.stl",
             b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n".to_vec(),
