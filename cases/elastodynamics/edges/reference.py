@@ -7,25 +7,16 @@ Shares nothing with the program but the equations: the modified mollifier, Elast
 """
 
 import math
+import sys
 from fractions import Fraction
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "reference"))
+from mollifier import weights  # noqa: E402
 
 LENGTH, CELLS, MIDDLE = 1.0, 100, 0.505
 DX = LENGTH / CELLS
 POINTS = [k * DX for k in range(CELLS + 1)]
-
-
-def bell(q):
-    """(2.19) without its factor."""
-    return math.exp(-1 / (1 - q * q)) * (1 - q * q) ** 8 if abs(q) < 1 else 0.0
-
-
-def slope(q):
-    s = 1 - q * q
-    return -2 * q * math.exp(-1 / s) * (s**6 + 8 * s**7) if s > 0 else 0.0
-
-
-# The trapezoidal rule converges faster than any power: the function is flat at its ends.
-INTEGRAL = sum(bell(k / 1000 - 1) for k in range(2001)) / 1000
 
 
 def edge(x, width):
@@ -34,9 +25,8 @@ def edge(x, width):
 
 def gradients(width, cover):
     """(2.25) at every particle, with V = DX and the neighbour at a distance of m spacings to the left."""
-    reach = range(-int(cover), int(cover) + 1)
-    weights = {m: slope(m / cover) / (INTEGRAL * cover**2) for m in reach}
-    return [sum(w * edge(x - m * DX, width) for m, w in weights.items()) / DX for x in POINTS]
+    slopes = weights(cover)[1]
+    return [sum(w * edge(x - m * DX, width) for m, w in slopes.items()) / DX for x in POINTS]
 
 
 def error(found, height, width):

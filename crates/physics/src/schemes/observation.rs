@@ -82,18 +82,6 @@ impl<'a> Observation<'a> {
         values
     }
 
-    /// Numbers of some particles (indices in memory) in the order of creation: those that were born have numbers behind all
-    /// that there were at the start.
-    pub fn ids_of(&self, particles: &[u32]) -> Vec<u32> {
-        let (scheme, state) = (&*self.scheme, self.state);
-        let last = scheme.ids().iter().copied().max().unwrap_or_default();
-        let id = |&a: &u32| match scheme.birth_of(state, a as usize) {
-            0 => scheme.ids()[a as usize],
-            birth => last.saturating_add(birth),
-        };
-        particles.iter().map(id).collect()
-    }
-
     /// Positions and the named fields of all particles, after `step` steps; names that the
     /// formulation does not have are left out.
     pub fn snapshot(&mut self, step: u64, names: &[&str]) -> Snapshot {
@@ -102,7 +90,7 @@ impl<'a> Observation<'a> {
         let body = |a: &u32| scheme.body_of(state, *a as usize);
         let particles: Vec<u32> = all.filter(|a| body(a).is_some()).collect();
         let bodies = particles.iter().filter_map(body).collect();
-        let ids = self.ids_of(&particles);
+        let ids = scheme.ids_of(state, &particles);
         let widths = particles.iter().map(|&a| scheme.width_of(a as usize)).collect();
         let fields = self.scheme.description().fields.iter();
         let fields = fields.filter(|field| names.contains(&field.name)).map(|field| {

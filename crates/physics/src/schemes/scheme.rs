@@ -162,13 +162,16 @@ pub trait Scheme: Send + Sync {
         0
     }
 
-    /// The number of a particle (index in memory) of `state` in the order of creation: those that were born have numbers
+    /// Numbers of some particles (indices in memory) of `state` in the order of creation: those that were born have numbers
     /// behind all that there were at the start.
-    fn id_of(&self, state: &[f64], index: usize) -> u32 {
-        match self.birth_of(state, index) {
-            0 => self.ids()[index],
-            birth => self.ids().iter().copied().max().unwrap_or_default().saturating_add(birth),
-        }
+    fn ids_of(&self, state: &[f64], particles: &[u32]) -> Vec<u32> {
+        let ids = self.ids();
+        let last = ids.iter().copied().max().unwrap_or_default();
+        let id = |&a: &u32| match self.birth_of(state, a as usize) {
+            0 => ids[a as usize],
+            birth => last.saturating_add(birth),
+        };
+        particles.iter().map(id).collect()
     }
 
     /// Mass in kg of a particle (index in memory), for 1 m in missing dimensions.

@@ -244,18 +244,6 @@ impl Executor {
             && self.outcome.is_none()
     }
 
-    /// Ends the run because of a `cause` outside of it: at this state, or, where that is already affected, at the last
-    /// mark.
-    pub fn give_up(&mut self, cause: String, is_affected: bool) {
-        let clock = if is_affected { self.run.history.last().clock } else { self.run.clock };
-        let failure = Failure::Outside { cause, step: clock.step, time: clock.time };
-        self.is_broken = false;
-        match is_affected {
-            true => self.lose(failure),
-            false => self.outcome = Some(Outcome::Failed(failure)),
-        }
-    }
-
     /// Runs to the end, to a failure, or until `stop` is set, and calls `progress` after each step.
     ///
     /// # Errors

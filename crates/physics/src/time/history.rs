@@ -217,8 +217,8 @@ impl Trace {
             (field.kind.components(dimension), values)
         };
         let fields: Vec<(usize, Vec<f64>)> = shown.map(&mut read).collect();
-        for (row, &particle) in self.particles.iter().enumerate() {
-            let id = scheme.id_of(state, particle as usize);
+        let ids = scheme.ids_of(state, &self.particles);
+        for (row, (&particle, id)) in self.particles.iter().zip(ids).enumerate() {
             let is_bad = f64::from(u8::from(particle == self.bad));
             self.numbers.extend([step as f64, time, size, f64::from(id), is_bad]);
             for (components, values) in &fields {

@@ -22,7 +22,9 @@ impl Executor {
 
     /// Reference position and number of a particle in a state.
     fn particle(&self, index: usize, state: &[f64]) -> Particle {
-        Particle { id: self.scheme.id_of(state, index), ..self.scheme.particle(index) }
+        let ids = self.scheme.ids_of(state, &[index as u32]);
+        let particle = self.scheme.particle(index);
+        Particle { id: ids.first().copied().unwrap_or(particle.id), ..particle }
     }
 
     /// The failure that a state's health shows, if any.

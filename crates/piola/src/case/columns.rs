@@ -69,7 +69,8 @@ impl Session {
     /// The ids, as in files, of the particles of [`Session::particles_of`].
     pub fn ids_of(&mut self, body: Option<usize>) -> Vec<u32> {
         let particles = self.rows(body).list();
-        self.executor.now().ids_of(&particles)
+        let now = self.executor.now();
+        now.scheme().ids_of(now.state(), &particles)
     }
 
     /// The columns that [`Session::column`] knows.

@@ -9,6 +9,8 @@ use piola::case::{self, Case, Finished, LoadOptions, Session};
 use piola::observe::Series;
 use piola::time::{Failure, Outcome, Progress};
 
+use super::resume;
+
 fn load(name: &str, set: &[&str]) -> Case {
     load_of("upwind", name, set)
 }
@@ -367,4 +369,31 @@ fn a_load_step_over_a_limit_is_told() {
     assert!(told(&over), "{over:?}");
     let under = warnings("0.5");
     assert!(!told(&under), "{under:?}");
+}
+
+/// A run that something outside of it ends, at its state or because that is already affected, says so, and goes on as one
+/// that was never ended.
+#[test]
+fn a_run_that_is_given_up_goes_on() {
+    let case = load("piston", &["parameters.n=10", "time.end=0.5", "picture=", "plot="]);
+    let folder = tempfile::tempdir().unwrap();
+    let whole = folder.path().join("whole");
+    let steps = resume::run(&case, &whole, false, 1, u64::MAX).summary.steps;
+    assert!(steps > 60, "{steps}");
+    for is_affected in [false, true] {
+        let broken = folder.path().join(format!("affected-{is_affected}"));
+        let mut session = Session::new(&case).unwrap_or_else(|problems| panic!("{problems}"));
+        session.write_to(&broken).unwrap();
+        (0..40).for_each(|_| assert!(session.step().unwrap()));
+        session.give_up("the sky has fallen".into(), is_affected);
+        let summary = session.finish().unwrap().summary;
+        assert_eq!(summary.outcome.summary(), "failed: outside");
+        let Outcome::Failed(failure) = &summary.outcome else { panic!("it goes on") };
+        assert!(failure.to_string().starts_with("the sky has fallen; "), "{failure}");
+        // The last mark is at a multiple of 16 steps.
+        assert_eq!(summary.steps, if is_affected { 32 } else { 40 });
+        let last = resume::run(&case, &broken, true, 1, u64::MAX);
+        assert_eq!(last.summary.resumed.map(|(_, step)| step), Some(summary.steps));
+        resume::assert_same(&whole, &broken, "a run that was given up");
+    }
 }

@@ -28,6 +28,7 @@ mod profiles;
 mod ranks;
 mod ranks_coupled;
 mod ranks_fluids;
+mod reserve;
 mod resume;
 mod sensitivity;
 mod session;

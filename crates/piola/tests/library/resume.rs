@@ -12,7 +12,7 @@ use piola::time::{Outcome, Progress};
 
 use super::ranks_coupled::TANK;
 
-fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
+pub fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
     let options = LoadOptions {
         overrides,
@@ -24,7 +24,7 @@ fn load(path: &Path, variant: Option<&str>, set: &[&str]) -> Case {
 }
 
 /// A run on `threads` threads that is stopped after `last` steps, or never.
-fn run(case: &Case, folder: &Path, resume: bool, threads: usize, last: u64) -> Finished {
+pub fn run(case: &Case, folder: &Path, resume: bool, threads: usize, last: u64) -> Finished {
     try_run(case, folder, resume, threads, last).unwrap()
 }
 
@@ -73,7 +73,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     all
 }
 
-fn assert_same(whole: &Path, broken: &Path, what: &str) {
+pub fn assert_same(whole: &Path, broken: &Path, what: &str) {
     let (whole, broken) = (files(whole), files(broken));
     let names = |files: &BTreeMap<PathBuf, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(&whole), names(&broken), "{what}");
@@ -163,104 +163,6 @@ fn solids_of_each_kind_in_a_fluid_resume_to_the_bit() {
     let variants = ["upwind", "upwind-damped", "upwind-implicit", "hypoelastic-fine"];
     side_by_side(&variants, |variant| resumes_to_the_bit(slab, Some(variant)));
 }
-
-/// A tank that is filled from an opening, with few particles in reserve and with enough from the start: no byte of any file
-/// differs. Nor does it where that run was broken off before
-/// and after.
-#[test]
-fn a_run_that_needs_more_particles_is_one_that_had_them() {
-    let with = |reserve: usize| {
-        let overrides = vec![format!("scheme.reserve={reserve}")];
-        let options = LoadOptions { overrides, ..LoadOptions::default() };
-        case::parse(FILLING, "filling.toml", &options)
-            .unwrap_or_else(|problems| panic!("{problems}"))
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let [few, many, broken] = ["few", "many", "broken"].map(|name| folder.path().join(name));
-    let whole = run(&with(400), &many, false, 1, u64::MAX);
-    let made = run(&with(3), &few, false, 2, u64::MAX);
-    assert_same(&many, &few, "a tank with few in reserve");
-    assert!(
-        whole.notes.is_empty() && made.notes[0].contains("the reserve ran out"),
-        "{:?}",
-        made.notes
-    );
-    let steps = whole.summary.steps;
-    assert_eq!(made.summary.steps, steps);
-    run(&with(3), &broken, false, 2, 20);
-    run(&with(3), &broken, true, 1, steps / 2);
-    run(&with(3), &broken, true, 2, u64::MAX);
-    assert_same(&many, &broken, "a tank that was broken off");
-}
-
-/// Nor where a solid is in the fluid, whose particles come after those of the reserve.
-#[test]
-fn a_fluid_with_a_solid_that_needs_more_particles_is_one_that_had_them() {
-    let all = cases();
-    let beam = all.iter().find(|path| path.ends_with("turek-hron/case.toml")).unwrap();
-    let closed = "body.outlet.opening={ normal = [-1.0, 0.0], velocity = ['0', '0'] }";
-    let folder = tempfile::tempdir().unwrap();
-    let [few, many] = [1, 3000].map(|reserve| {
-        let case = load(beam, None, &[closed, &format!("scheme.reserve={reserve}")]);
-        let results = folder.path().join(reserve.to_string());
-        let finished = run(&case, &results, false, 2, u64::MAX);
-        let is_made = finished.notes.iter().any(|note| note.contains("the reserve ran out"));
-        assert_eq!(is_made, reserve == 1, "{:?}", finished.notes);
-        results
-    });
-    assert_same(&many, &few, "a beam");
-}
-
-/// A tank with an opening through which fluid comes in all the time.
-const FILLING: &str = r#"
-version = 1
-title = "A tank is filled"
-dimension = 2
-[[body]]
-name = "water"
-shape = { kind = "box", min = [0.0, 0.0], max = [0.8, 0.2] }
-spacing = 0.05
-lattice = { on = "cells" }
-material = { kind = "weakly_compressible", density = 2.0, wave_speed = 40.0 }
-initial = { pressure = "2 * 9.81 * (0.2 - y)" }
-[[body]]
-name = "source"
-shape = { kind = "box", min = [-0.2, 0.0], max = [0.0, 0.2] }
-spacing = 0.05
-lattice = { on = "cells" }
-material = { kind = "weakly_compressible", density = 2.0, wave_speed = 40.0 }
-opening = { normal = [1.0, 0.0], velocity = ["1", "0"] }
-[[body]]
-name = "tank"
-shape = { kind = "union", of = [
-  { kind = "box", min = [-0.2, -0.2], max = [1.0, 0.0] },
-  { kind = "box", min = [0.8, 0.0], max = [1.0, 1.0] },
-  { kind = "box", min = [-0.2, 0.2], max = [0.0, 1.0] },
-] }
-spacing = 0.05
-lattice = { on = "cells" }
-material = { kind = "weakly_compressible", density = 2.0, wave_speed = 40.0 }
-wall = { slip = "free" }
-[[load]]
-kind = "body_force"
-acceleration = ["0", "-9.81"]
-[scheme]
-kind = "transport_velocity"
-free_surface = true
-[time]
-end = 1.0
-on_failure = "retry"
-retries = 2
-[output]
-every = 0.25
-table_every = 0.05
-[[probe]]
-name = "level"
-kind = "gauge"
-body = "water"
-from = [0.4, 0.0]
-to = [0.4, 1.0]
-"#;
 
 /// A fluid with solids that touch what moves, broken off on two ranks, continued on three and ended on one; the same with
 /// a thin plate that moves on without turning.

@@ -58,6 +58,18 @@ impl Executor {
         Ok(())
     }
 
+    /// Ends the run because of a `cause` outside of it: at this state, or, where that is already affected, at the last
+    /// mark.
+    pub fn give_up(&mut self, cause: String, is_affected: bool) {
+        let clock = if is_affected { self.run.history.last().clock } else { self.run.clock };
+        let failure = Failure::Outside { cause, step: clock.step, time: clock.time };
+        self.is_broken = false;
+        match is_affected {
+            true => self.lose(failure),
+            false => self.outcome = Some(Outcome::Failed(failure)),
+        }
+    }
+
     /// Whether the run cannot go on because particles were to be born and too few were in reserve: then another one of the
     /// same case that has more of them can [take over](Self::take_over).
     pub fn has_none_in_reserve(&self) -> bool {
