@@ -290,6 +290,10 @@ pub struct VerifyArguments {
     /// Only the case with this id, or in a folder of this name
     #[arg(long, value_name = "ID")]
     pub only: Option<String>,
+    /// Number of cases that run at the same time and share the threads
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: u16,
     /// Number of threads [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

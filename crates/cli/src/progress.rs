@@ -1,9 +1,10 @@
 //! Progress: a bar on a terminal, a line now and then elsewhere, JSON for programs.
 
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use console::Term;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use piola::time::Progress;
 
 use crate::text::{count, duration, large, significant};
@@ -17,6 +18,9 @@ const LINE_INTERVAL: Duration = Duration::from_secs(5);
 const JSON_INTERVAL: Duration = Duration::from_millis(250);
 /// Positions of the bar.
 const BAR_LENGTH: u64 = 1000;
+
+/// The bars of all runs, one below the other.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// Who is to read the progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +95,7 @@ impl Display {
         let now = Instant::now();
         let on_terminal = Term::stderr().is_term();
         let bar = (audience == Audience::Person && on_terminal).then(|| {
-            let bar = ProgressBar::with_draw_target(Some(BAR_LENGTH), ProgressDrawTarget::stderr());
+            let bar = BARS.add(ProgressBar::new(BAR_LENGTH));
             let template = "{prefix}[{bar:20}] {wide_msg}";
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style.progress_chars("=> "));

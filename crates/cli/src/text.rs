@@ -1,6 +1,6 @@
 //! Numbers and durations for people.
 
-pub use piola::case::verify::significant;
+pub use piola::output::significant;
 
 /// A duration in words: `0.8 s`, `42 s`, `3 min 20 s`, `2 h 05 min`.
 pub fn duration(seconds: f64) -> String {

@@ -32,6 +32,7 @@ pub mod pvd;
 mod record;
 pub mod report;
 mod table;
+mod text;
 pub mod vtp;
 pub mod vtp_reader;
 
@@ -47,4 +48,5 @@ pub use record::{
     RunRecord, StageRecord, SystemRecord, timestamp,
 };
 pub use table::{Column, Table};
+pub use text::significant;
 pub use vtp::Compression;

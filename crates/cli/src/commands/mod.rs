@@ -1,6 +1,7 @@
 //! The commands of the program, one file each, and the steps that they share.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use piola::case::{Case, LoadOptions, Problems, Session, load};
 
@@ -26,6 +27,34 @@ fn use_threads(threads: Option<u16>) {
     if let Err(error) = pool.build_global() {
         terminal::report(&format!("warning: cannot use {threads} threads: {error}\n"));
     }
+}
+
+/// Calls `work(i)` for each i below `count`, for so many `jobs` at the same time, which share the `threads`. None is
+/// begun once `stop` is set.
+fn side_by_side(
+    count: usize,
+    jobs: u16,
+    threads: Option<u16>,
+    stop: &AtomicBool,
+    work: impl Fn(usize) + Sync,
+) {
+    let jobs = usize::from(jobs).min(count).max(1);
+    let threads = threads.map_or_else(rayon::current_num_threads, usize::from);
+    let next = AtomicUsize::new(0);
+    let one_after_another = || {
+        while !stop.load(Ordering::Relaxed) {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return;
+            }
+            // Results do not depend on the number of threads, so another will do.
+            match rayon::ThreadPoolBuilder::new().num_threads((threads / jobs).max(1)).build() {
+                Ok(pool) => pool.install(|| work(index)),
+                Err(_) => work(index),
+            }
+        }
+    };
+    std::thread::scope(|scope| (0..jobs).for_each(|_| drop(scope.spawn(one_after_another))));
 }
 
 /// Changes of the case by its flags: those of `--set`, and who computes.

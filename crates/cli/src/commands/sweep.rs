@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use piola::case::sweep::{Comparison, MemberResult};
@@ -13,6 +13,7 @@ use piola::time::Outcome;
 use self::members::{Member, members};
 use self::progress::Overall;
 use super::run::default_folder;
+use super::side_by_side;
 use crate::arguments::SweepArguments;
 use crate::exit::{Exit, Fault};
 use crate::text::{count, duration, significant};
@@ -44,16 +45,11 @@ pub fn sweep(arguments: &SweepArguments) -> Result<Exit, Fault> {
         folder,
         members,
         comparison: Mutex::new((comparison, Vec::new())),
-        next: AtomicUsize::new(0),
         progress: Overall::new(arguments.quiet),
     };
     sweep.save()?;
-    let jobs = usize::from(arguments.jobs).min(sweep.members.len());
-    let threads = arguments.case.threads.map_or_else(rayon::current_num_threads, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..jobs {
-            scope.spawn(|| sweep.work((threads / jobs).max(1), &stop));
-        }
+    side_by_side(sweep.members.len(), arguments.jobs, arguments.case.threads, &stop, |index| {
+        sweep.work(index, &stop);
     });
     sweep.finish(arguments.quiet, stop.load(Ordering::Relaxed))
 }
@@ -91,7 +87,6 @@ struct Sweep {
     folder: PathBuf,
     members: Vec<Member>,
     comparison: Mutex<(Comparison, Vec<Trouble>)>,
-    next: AtomicUsize,
     progress: Overall,
 }
 
@@ -103,24 +98,12 @@ struct Trouble {
 }
 
 impl Sweep {
-    /// Runs members until none is left or the user stops the sweep.
-    fn work(&self, threads: usize, stop: &AtomicBool) {
-        loop {
-            let index = self.next.fetch_add(1, Ordering::Relaxed);
-            let Some(member) = self.members.get(index) else { return };
-            if stop.load(Ordering::Relaxed) {
-                return;
-            }
-            let start = Instant::now();
-            let run = || self.run(index, member, stop);
-            // Results do not depend on the number of threads, so another will do.
-            let result = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-                Ok(pool) => pool.install(run),
-                Err(_) => run(),
-            };
-            let seconds = Some(start.elapsed().as_secs_f64());
-            self.note(index, MemberResult { seconds, ..result });
-        }
+    /// Runs a member and notes how it ended.
+    fn work(&self, index: usize, stop: &AtomicBool) {
+        let start = Instant::now();
+        let result = self.run(index, &self.members[index], stop);
+        let seconds = Some(start.elapsed().as_secs_f64());
+        self.note(index, MemberResult { seconds, ..result });
     }
 
     fn run(&self, index: usize, member: &Member, stop: &AtomicBool) -> MemberResult {

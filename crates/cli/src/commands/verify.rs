@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use piola::case::page::{PageCase, Row, SettingRuns};
 use piola::case::verify::{VariantRun, needed_variants, verify as evaluate};
 use piola::case::{Case, Finished, Level, LoadOptions, Session, load};
 
-use super::{refusal, use_threads};
+use super::{refusal, side_by_side};
 use crate::arguments::VerifyArguments;
 use crate::exit::{Exit, Fault};
 use crate::progress::{Audience, Display};
@@ -23,36 +24,26 @@ type Rows = (String, Vec<Row>);
 
 /// Runs the cases and prints the table.
 pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
-    use_threads(arguments.threads);
     let start = Instant::now();
     let stop = interrupt::listen();
     let today = page::today();
-    let mut rows: Vec<Rows> = Vec::new();
-    let mut page = match &arguments.page {
-        Some(file) => Some(page::Writer::new(file, &arguments.paths)?),
+    let page = match &arguments.page {
+        Some(file) => Some(Mutex::new(page::Writer::new(file, &arguments.paths)?)),
         None => None,
     };
     let paths = discover(&arguments.paths)?;
-    for path in &paths {
-        if stop.load(Ordering::Relaxed) {
-            break;
+    let found: Vec<Mutex<Option<Result<Rows, Fault>>>> =
+        paths.iter().map(|_| Mutex::new(None)).collect();
+    side_by_side(paths.len(), arguments.jobs, arguments.threads, &stop, |index| {
+        let rows = one(&paths[index], arguments, &stop).rows(&paths[index], page.as_ref(), &today);
+        // A page that cannot be written has no use for other cases.
+        if matches!(rows, Some(Err(_))) {
+            stop.store(true, Ordering::Relaxed);
         }
-        match one(path, arguments, &stop) {
-            Found::Nothing => {}
-            Found::Unreadable(row) => {
-                if let Some(page) = &mut page {
-                    page.add_unreadable(&row, path)?;
-                }
-                rows.push(*row);
-            }
-            Found::Case(case) => {
-                rows.push((case.id(), case.rows(&today)));
-                if let Some(page) = &mut page {
-                    page.add(*case, path, &today)?;
-                }
-            }
-        }
-    }
+        *locked(&found[index]) = rows;
+    });
+    let found = found.into_iter().filter_map(|rows| locked(&rows).take());
+    let rows: Vec<Rows> = found.collect::<Result<_, _>>()?;
     let seconds = start.elapsed().as_secs_f64();
     let all = || rows.iter().flat_map(|(_, rows)| rows);
     let skipped = all().filter(|row| !row.was_run()).count();
@@ -71,7 +62,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
         duration(seconds)
     );
     if skipped > 0 {
-        text += &format!("{} more with `--long`\n", count(skipped as u64, "check"));
+        text += &format!("{} with `--long`\n", count(skipped as u64, "more check"));
     }
     terminal::print(&format!("{}\n{text}", render(&rows)))?;
     if stop.load(Ordering::Relaxed) {
@@ -79,7 +70,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
         return Ok(Exit::Interrupted);
     }
     if let Some(page) = page.filter(|_| !rows.is_empty()) {
-        page.report()?;
+        locked(&page).report()?;
     }
     match (total + skipped, failed) {
         (0, _) => Err(Fault::new(Exit::FailedCheck, nothing_found(arguments))),
@@ -135,6 +126,35 @@ enum Found {
     Unreadable(Box<Rows>),
     /// A case with its runs.
     Case(Box<PageCase>),
+}
+
+impl Found {
+    /// Its rows for the table, which are written to the page, too.
+    fn rows(
+        self,
+        path: &Path,
+        page: Option<&Mutex<page::Writer>>,
+        today: &str,
+    ) -> Option<Result<Rows, Fault>> {
+        let page = page.map(locked);
+        let (rows, written) = match self {
+            Self::Nothing => return None,
+            Self::Unreadable(rows) => {
+                let written = page.map(|mut page| page.add_unreadable(&rows, path));
+                (*rows, written)
+            }
+            Self::Case(case) => {
+                let rows = (case.id(), case.rows(today));
+                (rows, page.map(|mut page| page.add(*case, path, today)))
+            }
+        };
+        Some(written.unwrap_or(Ok(())).map(|()| rows))
+    }
+}
+
+/// What a job that panicked while it held the lock left is whole.
+fn locked<T>(it: &Mutex<T>) -> MutexGuard<'_, T> {
+    it.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The settings that are run. `--paper` also runs what has the publication's numbers as it stands.

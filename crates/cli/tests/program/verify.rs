@@ -140,3 +140,40 @@ fn paths_may_be_files_and_may_repeat() {
     let (stdout, _) = place.run("verify bar/case.toml bar bar", 0);
     assert_contains(&stdout, &["1 check of 1 case"]);
 }
+
+#[test]
+fn cases_side_by_side_give_the_same_table_and_page() {
+    let place = Place::new();
+    let wrong = BAR.replace("version = 1", "version = 2");
+    let names = ["a", "b", "c", "d"];
+    for (name, text) in names.into_iter().zip([BAR, &wrong, BAR, BAR]) {
+        let text = text.replace("\"T1\"", &format!("\"{name}\""));
+        place.write(&format!("cases/{name}/case.toml"), text);
+    }
+    let run = |jobs: usize| {
+        let page = format!("page-{jobs}.md");
+        let (stdout, _) = place.run(&format!("verify --jobs {jobs} --page {page}"), 1);
+        // What follows tells how long it took.
+        let table = stdout.split(" (").next().unwrap().to_owned();
+        let results = place.read(&page.replace(".md", ".json"));
+        (table, results, place.read(&page).replace(&format!("page-{jobs}"), "page"))
+    };
+    let one = run(1);
+    assert_contains(&one.0, &["4 checks of 4 cases: 3 passed, 1 failed"]);
+    names.iter().for_each(|name| assert_contains(&one.2, &[&format!("| {name} |")]));
+    assert_eq!(run(4), one);
+    assert_eq!(run(9), one);
+}
+
+#[test]
+fn a_case_that_takes_long_runs_only_if_asked() {
+    let place = Place::new();
+    place.write("bar/case.toml", BAR.replace("version = 1", "version = 1\nlong = true"));
+    // The coarse setting never does.
+    let (stdout, _) = place.run("verify bar", 0);
+    assert_contains(&stdout, &["1 check of 1 case: 1 passed, 0 failed"]);
+    let (stdout, _) = place.run("verify bar --full", 0);
+    assert_contains(&stdout, &["1 check of 1 case", "1 more check with `--long`"]);
+    let (stdout, _) = place.run("verify bar --full --long=base", 0);
+    assert_contains(&stdout, &["2 checks of 1 case: 2 passed"]);
+}

@@ -17,6 +17,7 @@ use super::model::{
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
 use super::suggest::suggestion;
+use crate::output::significant;
 use crate::time::IntegratorKind;
 
 mod bodies;
@@ -171,6 +172,7 @@ pub(super) fn case(
     Some(Case {
         id: record.text("id").map(|id| id.value),
         title: record.text("title")?.value,
+        is_long: record.boolean("long")?,
         dimension,
         parameters: parameters
             .map(|(name, value)| Some(Parameter { name: name.clone(), value: (*value)? }))
@@ -328,6 +330,7 @@ impl Reader<'_, '_> {
     /// Remarks on what lies after the end of the run.
     fn say_what_is_late(&mut self, end: f64) {
         let Late { pictures, checks } = std::mem::take(&mut self.late);
+        let shown = |time: &f64| significant(*time, 6);
         for (what, consequence, mut times) in [
             ("pictures", "they are left out", pictures),
             ("checks", "they cannot be evaluated", checks),
@@ -336,9 +339,10 @@ impl Reader<'_, '_> {
             times.dedup();
             let Some(first) = times.first() else { continue };
             let times = match times.last().filter(|last| *last > first) {
-                Some(last) => format!("from {first} to {last} s"),
-                None => format!("at {first} s"),
+                Some(last) => format!("from {} to {} s", shown(first), shown(last)),
+                None => format!("at {} s", shown(first)),
             };
+            let end = shown(&end);
             self.context
                 .remarks
                 .push(format!("the run ends at {end} s, before the {what} {times}: {consequence}"));

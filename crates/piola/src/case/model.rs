@@ -46,6 +46,8 @@ pub struct Case {
     pub id: Option<String>,
     /// What the case shows, in one line.
     pub title: String,
+    /// Whether the case as it stands, without a variant, runs with `--long` only.
+    pub is_long: bool,
     /// 1, 2 or 3.
     pub dimension: usize,
     /// Named numbers in the order of the file.
@@ -235,7 +237,7 @@ impl Case {
         let own = match name {
             None => {
                 let is_paper = self.paper.as_ref().is_some_and(|paper| paper.set.is_empty());
-                RunTraits { is_paper, is_long: false }
+                RunTraits { is_paper, is_long: self.is_long }
             }
             Some(name) => match self.member(name) {
                 Some((sweep, _)) => sweep.traits,

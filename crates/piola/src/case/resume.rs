@@ -38,8 +38,8 @@ pub(super) struct Resumed {
 }
 
 /// Tables and keys that the course of a run does not depend on before it ends.
-const FREE: [&str; 9] =
-    ["id", "title", "checkpoint", "plot", "coarse", "paper", "variant", "sweep", "check"];
+const FREE: [&str; 10] =
+    ["id", "title", "long", "checkpoint", "plot", "coarse", "paper", "variant", "sweep", "check"];
 /// Those of `[time]`, and of `[compute]`.
 const FREE_TIME: [&str; 2] = ["end", "max_steps"];
 const FREE_COMPUTE: [&str; 2] = ["device", "ranks"];

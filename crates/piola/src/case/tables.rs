@@ -33,6 +33,7 @@ pub static CASE: TableSpec = TableSpec {
         ),
         key("id", Kind::Text, "", Optional, "row of the reproduction list, for example `U10`"),
         key("title", Kind::Text, "", Required, "what the case shows, in one line"),
+        checks::LONG,
         key(
             "dimension",
             Kind::Integer(Interval::between(1.0, 3.0)),

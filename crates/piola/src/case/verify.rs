@@ -10,7 +10,6 @@ use super::finished::Finished;
 use super::model::{Against, Case, Check, Level};
 use crate::observe::Series;
 use crate::time::Outcome;
-pub use format::significant;
 use runs::Runs;
 
 mod format;

@@ -8,7 +8,7 @@
 
 use thiserror::Error;
 
-use crate::output::Curve;
+use crate::output::{Curve, significant};
 use history::History;
 
 mod history;
@@ -16,6 +16,9 @@ mod oscillation;
 mod reference;
 #[cfg(test)]
 mod tests;
+
+/// Digits of times and widths in labels.
+const DIGITS: usize = 6;
 
 /// Variations below this fraction of a history's range are wiggles, neither extrema nor crossings.
 pub const WIGGLE: f64 = 0.05;
@@ -186,11 +189,13 @@ impl<Reference> Reduction<Reference> {
     /// The name with its argument, for tables: `at 0.5 s`, `extremum 2`.
     pub fn label(&self) -> String {
         match self {
-            Self::At(time) => format!("{} {time} s", self.name()),
-            Self::Within([first, last], inner) => {
+            Self::At(time) => format!("{} {} s", self.name(), significant(*time, DIGITS)),
+            Self::Within(ends, inner) => {
+                let [first, last] = ends.map(|end| significant(end, DIGITS));
                 format!("{} from {first} to {last} s", inner.label())
             }
             Self::Smoothed(width, inner) => {
+                let width = significant(*width, DIGITS);
                 format!("{} of the moving mean over {width} s", inner.label())
             }
             Self::Extremum(number)

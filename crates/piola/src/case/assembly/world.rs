@@ -161,7 +161,7 @@ impl Beat {
         let [viscosity, most] = (part.bodies.iter().map(of))
             .fold([0.0, f64::INFINITY], |[takes, bears], of| [of[0].max(takes), of[1].min(bears)]);
         let is_stiff = viscosity > 0.0 && viscosity < f64::INFINITY;
-        let shown = crate::case::verify::significant(viscosity, 3);
+        let shown = crate::output::significant(viscosity, 3);
         is_stiff.then(|| {
             if viscosity > most {
                 return format!(

@@ -4,7 +4,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::model::{Against, Level};
-use super::super::verify::{CheckRow, Got, significant};
+use super::super::verify::{CheckRow, Got};
+use crate::output::significant;
 
 /// All of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,31 +1,10 @@
 //! Numbers and expectations as text for people.
 
 use crate::case::model::{Expectation, Trend};
+use crate::output::significant;
 
 /// Digits of a result that are shown.
 const DIGITS: usize = 6;
-
-/// `value` rounded to `digits` significant digits: `0.374166`, `1.2e-9`, `250`.
-pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let digits = digits.clamp(1, 17);
-    // The exponent after rounding: 9.9999996 becomes 10.
-    let scientific = format!("{value:.*e}", digits - 1);
-    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text.to_owned(),
-    };
-    match exponent.parse::<i32>() {
-        Ok(exponent) if (-4..digits as i32).contains(&exponent) => {
-            let decimals = (digits as i32 - 1 - exponent) as usize;
-            trimmed(&format!("{value:.decimals$}"))
-        }
-        _ => format!("{}e{exponent}", trimmed(mantissa)),
-    }
-}
 
 /// `value` with `unit`, which is left out for pure numbers.
 pub(super) fn with_unit(value: f64, unit: &str) -> String {

@@ -1,8 +1,9 @@
 //! Trends along a key of a sweep: order of convergence, monotonicity, ratios.
 
-use super::format::{list, significant};
+use super::format::list;
 use super::{Got, TrendData};
 use crate::case::model::Trend;
+use crate::output::significant;
 
 /// Orders beyond this are not looked for.
 const STEEPEST: f64 = 20.0;
