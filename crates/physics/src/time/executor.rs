@@ -359,7 +359,10 @@ impl Executor {
     /// Looks for what is wrong with the state, and how far the next step may go.
     fn judge(&mut self) -> Option<Failure> {
         let Run { clock: Clock { step, time, .. }, state, .. } = &self.run;
-        let missing = if self.is_here { self.scheme.missing(state) } else { 0 };
+        let missing = match &self.device {
+            Some(device) => device.missing(),
+            None => self.scheme.missing(state),
+        };
         if missing > 0 {
             return Some(Failure::NoneInReserve { missing, step: *step, time: *time });
         }

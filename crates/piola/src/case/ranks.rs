@@ -160,6 +160,14 @@ fn no_device(case: &Case, place: Place) -> Result<(), Problem> {
     }
 }
 
+/// Why a run of several processes does not go on from one with this many more particles in reserve than the case asks for.
+pub(super) fn no_growth(case: &Case, more: usize) -> Problem {
+    let message = format!(
+        "processes of MPI cannot extend a reserve while they run: raise `scheme.reserve` by {more}, and start again, or          continue with `--ranks`"
+    );
+    Problem::new(case.scheme.place, message, "a reserve that was too small")
+}
+
 /// Why a case does not run on several ranks.
 fn refused(place: Place, refusal: &RankRefusal) -> Problem {
     let label = match refusal {

@@ -78,6 +78,8 @@ pub struct Session {
     resumed: Option<Resumed>,
     /// Whether the folder of the results is this run's.
     has_begun: bool,
+    /// Whether other processes compute a part of it.
+    is_among_processes: bool,
     /// The particles of each body, where they are the same at all times and have been asked for.
     pub(super) rows_of_bodies: Vec<Rows>,
 }
@@ -135,7 +137,8 @@ impl Session {
         let start = Instant::now();
         let (mut executor, built) = ranks::begin(case, ranks.as_ref())?;
         ranks::lead(&mut executor, case, ranks)?;
-        Ok(Self::of(case, (executor, built), None, start))
+        let is_among_processes = true;
+        Ok(Self { is_among_processes, ..Self::of(case, (executor, built), None, start) })
     }
 
     fn of(
@@ -159,6 +162,7 @@ impl Session {
             own,
             resumed: None,
             has_begun: false,
+            is_among_processes: false,
             rows_of_bodies: Vec::new(),
         }
     }
@@ -236,8 +240,14 @@ impl Session {
     /// Builds the case anew with this many more particles in each reserve than it asks for, and lets that go on where the
     /// run is. Particles do not depend on how many there were before; sums over rows may differ by rounding.
     fn enlarge(&mut self, reserve: usize) -> Result<(), RunError> {
+        let refused = |case: &Case, problem| RunError::Reserve(case.refuse(vec![problem]));
+        if self.is_among_processes {
+            return Err(refused(&self.case, ranks::no_growth(&self.case, reserve)));
+        }
         self.case.more_in_reserve = reserve;
         let (mut next, mut built) = executor(&self.case).map_err(RunError::Reserve)?;
+        ranks::use_threads(&mut next, &self.case)
+            .map_err(|problem| refused(&self.case, problem))?;
         let checkpoint = self.executor.handed_over(next.scheme.as_ref());
         let outside = self.executor.take_observers().split_off(self.own);
         std::mem::swap(&mut self.executor, &mut next);
@@ -313,7 +323,7 @@ impl Session {
     pub fn step(&mut self) -> Result<bool, RunError> {
         self.begin()?;
         let mut goes_on = self.executor.step()?;
-        while self.executor.has_none_in_reserve() {
+        while self.executor.has_none_in_reserve() && !self.is_among_processes {
             let count = self.executor.scheme.particle_count();
             if count > MOST_PARTICLES {
                 return Ok(false);

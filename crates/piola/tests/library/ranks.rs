@@ -356,10 +356,6 @@ fn what_does_not_run_on_several_ranks_is_named() {
         "2 ranks are too many for 12 particles, of which each rank needs at least a chunk of 16: \
          leave out `--ranks`",
     );
-    let channel = include_str!("../../../../cases/open/channel/case.toml");
-    let open =
-        "open boundaries do not run on several ranks yet: leave them out, or leave out `--ranks`";
-    refused(channel, &[], open);
     let refined = include_str!("../../../../cases/open/resolution/case.toml");
     let finer =
         "regions of finer spacing do not run on several ranks yet: leave out `scheme.refine`";
@@ -382,7 +378,7 @@ fn explicit_steps_are_shared() {
 }
 
 /// The cases of which several ranks have a part each.
-const SHARED: [&str; 56] = [
+const SHARED: [&str; 61] = [
     "dam-break-box",
     "dam-break-plate",
     "dam-break-plate-3d",
@@ -424,8 +420,13 @@ const SHARED: [&str; 56] = [
     "reflection-3d",
     "wave-2d",
     "wave-3d",
+    "channel",
+    "cylinder",
     "solitary",
     "standing-wave",
+    "step",
+    "turek-hron",
+    "turek-hron-flow",
     "wave-tank",
     "waves",
     "presets",

@@ -161,6 +161,24 @@ fn solids_on_a_floor_that_stands_are_the_same_on_any_number_of_ranks() {
     same_on_any_number(TANK, &sets);
 }
 
+/// A beam behind a cylinder, in a stream that enters and leaves.
+#[test]
+fn a_beam_in_a_stream_is_the_same_on_any_number_of_ranks() {
+    let beam = include_str!("../../../../cases/open/turek-hron/case.toml");
+    let sets = [
+        "parameters.length=0.8",
+        "body.inlet.opening={ normal = [1.0, 0.0], velocity = ['0.8', '0'] }",
+        "time.end=0.03",
+        "output.every=0.015",
+        "output.table_every=0.005",
+    ];
+    let left = same_on_any_number(beam, &sets);
+    let Some(Series::Curve { values, .. }) = left.finished.quantity("step.entered") else {
+        panic!("the mass is a curve");
+    };
+    assert!(values.iter().any(|mass| *mass > 0.0), "particles enter");
+}
+
 /// A gate that opens, and a plate under the weight of water.
 #[test]
 fn gates_and_plates_are_the_same_on_any_number_of_ranks() {

@@ -3,7 +3,10 @@
 //! Runs are so long that the lists of neighbours are renewed several times, and with them the plan of copies.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
 
+use piola::observe::Series;
+
 use super::ranks::{failure, same_on_any_number};
+use super::reserve::FILLING;
 
 const VORTICES: &str = include_str!("../../../../cases/ctvf/taylor-green/case.toml");
 
@@ -85,4 +88,30 @@ fn a_rod_that_is_pulled_is_the_same_on_any_number_of_ranks() {
     let rod = include_str!("../../../../cases/ctvf/johnson-cook/case.toml");
     let pull = "boundary.all.velocity={ x = 'rate * x * (1 + 1e5 * t)' }";
     same_on_any_number(rod, &["parameters.dx=0.0001", "parameters.end=1e-6", pull]);
+}
+
+/// Particles enter and leave, and of both openings some ranks have a part of the buffer and others none.
+#[test]
+fn a_channel_is_the_same_on_any_number_of_ranks() {
+    let channel = include_str!("../../../../cases/open/channel/case.toml");
+    let short = ["parameters.across=10", "time.end=0.5", "output.every=0.25"];
+    let left = same_on_any_number(channel, &short);
+    for name in ["step.entered", "step.left"] {
+        let Some(Series::Curve { values, .. }) = left.finished.quantity(name) else {
+            panic!("{name}")
+        };
+        // Several rows of particles.
+        assert!(*values.last().unwrap() > 0.2, "{name}: {values:?}");
+    }
+    let shifted = [&short[..], &["scheme.shifting='ipst'", "time.end=0.2"]].concat();
+    same_on_any_number(channel, &shifted);
+}
+
+/// Fluid falls into a tank, with enough particles in reserve and with so few that the run is built anew.
+#[test]
+fn a_tank_that_is_filled_is_the_same_on_any_number_of_ranks() {
+    let enough = same_on_any_number(FILLING, &["scheme.reserve=400", "time.end=0.4"]);
+    let grown = same_on_any_number(FILLING, &["scheme.reserve=3", "time.end=0.4"]);
+    assert_eq!(enough.finished.notes.len(), 0);
+    assert!(grown.finished.notes[0].contains("the reserve ran out"));
 }

@@ -53,7 +53,7 @@ fn a_fluid_with_a_solid_that_needs_more_particles_is_one_that_had_them() {
 }
 
 /// A tank with an opening through which fluid comes in all the time.
-const FILLING: &str = r#"
+pub const FILLING: &str = r#"
 version = 1
 title = "A tank is filled"
 dimension = 2

@@ -70,6 +70,11 @@ pub trait DeviceSteps: Send {
         false
     }
 
+    /// How many particles could not be born, as [`Scheme::missing`](super::Scheme::missing).
+    fn missing(&self) -> u64 {
+        0
+    }
+
     /// Whether a rank was asked to end the run.
     fn stops(&self) -> bool {
         false

@@ -145,6 +145,16 @@ impl<const D: usize> Common<D> {
         ColumnsMut::of(state, self.count())
     }
 
+    /// The columns of a state of the particles of all ranks.
+    pub(super) fn all_columns<'a>(&self, whole: &'a [f64]) -> Columns<'a, D> {
+        Columns::of(whole, self.particles.len())
+    }
+
+    /// The same, to be changed.
+    pub(super) fn all_parts<'a>(&self, whole: &'a mut [f64]) -> (ColumnsMut<'a, D>, &'a mut [f64]) {
+        ColumnsMut::of(whole, self.particles.len())
+    }
+
     /// Who computes together.
     pub(super) fn team(&self) -> &Team {
         self.support.list().team()

@@ -51,11 +51,6 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// Parts that do not fit together.
     fn bind(input: Self::Input, common: &mut Common<D>) -> Result<Self, TransportVelocityError>;
 
-    /// What of it cannot be shared among ranks yet, with what a case has to be like instead.
-    fn unshared(&self) -> Option<[&'static str; 2]> {
-        None
-    }
-
     /// That of a rank with these particles.
     fn part(&self, common: &Common<D>) -> Self;
 

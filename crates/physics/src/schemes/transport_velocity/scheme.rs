@@ -235,7 +235,7 @@ impl<const D: usize, M: Continuum<D>> Scheme for TransportVelocity<D, M> {
     }
 
     fn shares(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
-        self.planned(bounds)
+        Ok(self.planned(bounds))
     }
 
     fn team(&self) -> Option<&Team> {

@@ -40,23 +40,13 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         D + passes.map(|pass| shows(pass) + M::shows(*pass)).sum::<usize>()
     }
 
-    /// Refuses what cannot be shared.
-    fn check_shared(&self) -> Result<(), RankRefusal> {
-        match self.matter.unshared() {
-            Some([what, instead]) => Err(RankRefusal::Feature { what, instead }),
-            None => Ok(()),
-        }
-    }
-
     /// What ranks would have at the start whose particles begin and end where `bounds` has it.
-    pub(crate) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
-        self.check_shared()?;
-        Ok(Part::planned(self, bounds, self.told(), |own| self.slots(own, bounds)))
+    pub(crate) fn planned(&self, bounds: &[usize]) -> Vec<RankShare> {
+        Part::planned(self, bounds, self.told(), |own| self.slots(own, bounds))
     }
 
     /// The particles of a rank. What does not change of particles it knows of all.
     pub(crate) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
-        self.check_shared()?;
         let team = part.team(&Slots::default())?;
         let common = self.common.part(team, part.own().len());
         Ok(Self {

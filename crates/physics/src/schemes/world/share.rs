@@ -58,7 +58,7 @@ impl<const D: usize> World<D> {
         for solid in &self.solids {
             solid.scheme.shares(&Part::whole(solid.scheme.particle_count()).bounds)?;
         }
-        let shares = self.fluid.planned(bounds)?;
+        let shares = self.fluid.planned(bounds);
         let of_solids = self.cost_of_solids();
         let count = self.fluid_steps_of(&self.limits) as usize;
         let of_fluid = self.fluid.cost(0..self.fluid.particle_count());

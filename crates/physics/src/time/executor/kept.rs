@@ -79,14 +79,15 @@ impl Executor {
     /// The run before its last step, for another one of the same case whose `scheme` has more particles in reserve.
     pub fn handed_over(&mut self, scheme: &dyn Scheme) -> Checkpoint {
         self.bring();
-        let Previous { clock, state, wanted, factor } = &self.previous;
+        let Previous { clock, wanted, factor, .. } = self.previous;
         if self.has_none_in_reserve() && self.run.clock.step > clock.step {
-            self.run.clock = *clock;
-            self.run.state = Arc::clone(state);
-            let tally = &mut self.run.tally;
-            (tally.wanted, tally.factor) = (*wanted, *factor);
-            tally.evaluations -= self.evaluations;
-            self.run.history.take_back();
+            // Where a rank is lost, the run is at the last mark, and ends there.
+            if self.step_back().is_none() {
+                let tally = &mut self.run.tally;
+                (tally.wanted, tally.factor) = (wanted, factor);
+                tally.evaluations -= self.evaluations;
+                self.run.history.take_back();
+            }
         }
         let mut checkpoint = self.checkpoint();
         let history = checkpoint.history.iter_mut().flat_map(History::states);

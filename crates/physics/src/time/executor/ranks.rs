@@ -265,6 +265,11 @@ impl DeviceSteps for RankSteps {
         self.told[0]
     }
 
+    /// What stands behind all columns is the same on all ranks.
+    fn missing(&self) -> u64 {
+        self.worker.scheme.missing(&self.worker.state)
+    }
+
     fn stops(&self) -> bool {
         self.told[1]
     }

@@ -82,11 +82,9 @@ impl<const D: usize> WeaklyCompressible<D> {
         gather(&common.support, &(fluid, walls), forces, |place| common.active(place), close);
     }
 
-    /// What pressure and viscosity of the fluid do to a wall particle (number), over its mass; nothing to others.
-    pub(super) fn wall_forces(&self, common: &Common<D>, number: usize) -> [Vector<D>; 2] {
-        if !common.is_wall[number] {
-            return [Vector::zeros(); 2];
-        }
+    /// What pressure and viscosity of the fluid do to a particle (number), over its mass, if it is one of a wall.
+    pub(super) fn wall_forces(&self, common: &Common<D>, number: usize) -> Option<[Vector<D>; 2]> {
+        common.wall_of(number as u32)?;
         let place = common.support.list().places()[number] as usize;
         let wall = Wall::<D>::of(&self.force_law(common).0);
         let of = |viscosity: f64| {
@@ -97,7 +95,7 @@ impl<const D: usize> WeaklyCompressible<D> {
             sum
         };
         let pressure = of(0.0);
-        [pressure, of(wall.viscosity) - pressure]
+        Some([pressure, of(wall.viscosity) - pressure])
     }
 
     /// The forces of the fluid on wall particles, over their mass: what they do to the fluid, turned

@@ -10,6 +10,8 @@ mod rates;
 use std::sync::Arc;
 
 use piola_device::{Device, Language};
+use piola_formulas::pairs::Record as _;
+use piola_formulas::pairs::fluid::FluidSide;
 use piola_formulas::pairs::sums::Density;
 
 use super::fields::Made;
@@ -195,16 +197,25 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         Ok(Self::new(fluid, common))
     }
 
-    fn unshared(&self) -> Option<[&'static str; 2]> {
-        (!self.open.is_empty()).then_some(["open boundaries do not run", "leave them out"])
-    }
-
     fn part(&self, common: &Common<D>) -> Self {
-        Self { damping: self.damping.part(common.count()), ..Self::new(self.fluid, common) }
+        let new = Self::new(self.fluid, common);
+        Self {
+            damping: self.damping.part(common.count()),
+            open: self.open.part(common),
+            shear: match self.open.is_empty() {
+                true => new.shear,
+                false => vec![Vector::zeros(); common.count()],
+            },
+            ..new
+        }
     }
 
     fn shows(pass: Pass<Ends>) -> usize {
-        if pass == Pass::Walls { D } else { 0 }
+        match pass {
+            Pass::Walls => D,
+            Pass::Own(Ends::Buffers) => FluidSide::<D>::NUMBERS + D,
+            _ => 0,
+        }
     }
 
     fn begin(&self, common: &Common<D>, state: &mut [f64]) {
@@ -410,12 +421,13 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         let mass = common.mass[number];
         // Of a wall, those of pressure, of viscosity, and the rest.
         let mut push_force = |part: usize| {
-            let [pressure, viscosity] = self.wall_forces(common, number).map(|force| force * mass);
-            let force = match part {
-                _ if !common.is_wall[number] => Vector::zeros(),
-                0 => pressure,
-                1 => viscosity,
-                _ => at.kick[number] * mass - pressure - viscosity,
+            let force = match (self.wall_forces(common, number), part) {
+                (None, _) => Vector::zeros(),
+                (Some([pressure, _]), 0) => pressure * mass,
+                (Some([_, viscosity]), 1) => viscosity * mass,
+                (Some([pressure, viscosity]), _) => {
+                    at.kick[number] * mass - pressure * mass - viscosity * mass
+                }
             };
             values.extend_from_slice(force.as_slice());
         };

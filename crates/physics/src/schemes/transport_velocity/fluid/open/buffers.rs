@@ -7,37 +7,44 @@ use piola_formulas::pairs::fluid::Wall;
 use super::{Common, Flow, Fluid, KEPT, Kept, Open, OpenBoundary, Seen, Side, WeaklyCompressible};
 use crate::operators::{Among, NeighborBlock, visit};
 use crate::schemes::ledger::Total;
+use crate::schemes::transport_velocity::Continuum as _;
 use crate::{Vector, parallel};
 
 impl<const D: usize> WeaklyCompressible<D> {
     /// Completes the sides of buffers from those of the fluid around them, at a time in s, theory (86) to (88).
     pub(in super::super) fn fill_buffers(&mut self, common: &mut Common<D>, time: f64) {
-        let Open { boundaries, roles, members, seen, means, .. } = &mut self.open;
+        let Open { boundaries, roles, members, seen, terms, means, .. } = &mut self.open;
         let shear = &mut self.shear;
+        let begin = common.first();
         seen.clear();
         seen.resize(members.len(), Seen { pressure: None, inwards: 0.0, entering: None });
         let all = &boundaries.all;
         let boundary_of = |number: u32| &all[roles[number as usize] as usize - 1];
         let places = common.support.list().places();
+        let place_of = |number: u32| places[number as usize - begin] as usize;
         parallel::for_each_chunk(seen, |first, rows| {
             let mut block = NeighborBlock::default();
             for (offset, row) in rows.iter_mut().enumerate() {
                 let number = members[first + offset];
-                let place = places[number as usize] as usize;
+                let place = place_of(number);
                 *row = look_in(common, boundary_of(number), (number, place), time, &mut block);
             }
         });
         let Fluid { density, wave_speed, .. } = self.fluid;
         let impedance = density * wave_speed;
         let positions = common.support.list().positions();
-        for (role, (mean, boundary)) in means.iter_mut().zip(all).enumerate() {
+        terms.clear();
+        terms.extend(members.iter().zip(&*seen).filter_map(|(&number, seen)| {
+            let reference = boundary_of(number).reference(&positions[place_of(number)], time);
+            Some([f64::from(roles[number as usize]), seen.pressure? - reference, seen.inwards])
+        }));
+        // In the order of numbers, whoever has them.
+        *terms = common.team().rows_of_all(std::mem::take(terms));
+        for (role, mean) in (1_u32..).zip(means.iter_mut()) {
             let (mut sum, mut inwards, mut count) = (0.0, 0.0, 0.0);
-            for (&number, seen) in members.iter().zip(&*seen) {
-                let is_own = roles[number as usize] as usize == role + 1;
-                let Some(pressure) = seen.pressure.filter(|_| is_own) else { continue };
-                let place = places[number as usize] as usize;
-                sum += pressure - boundary.reference(&positions[place], time);
-                inwards += seen.inwards;
+            for [_, above, velocity] in terms.iter().filter(|term| term[0] == f64::from(role)) {
+                sum += above;
+                inwards += velocity;
                 count += 1.0;
             }
             mean.inwards = if count > 0.0 { inwards / count } else { mean.stream };
@@ -52,7 +59,7 @@ impl<const D: usize> WeaklyCompressible<D> {
             }
         }
         for (&number, seen) in members.iter().zip(seen) {
-            let place = places[number as usize] as usize;
+            let place = place_of(number);
             let (boundary, mean) =
                 (boundary_of(number), &means[roles[number as usize] as usize - 1]);
             let pressure = match (&boundary.flow, seen.pressure) {
@@ -75,6 +82,8 @@ impl<const D: usize> WeaklyCompressible<D> {
             side.set(mass, fluid::density(pressure, density, wave_speed), pressure);
             shear[place] = side.velocity;
         }
+        common.show_sides();
+        self.show_walls(common);
     }
 
     /// Moves buffers along their normals for a `step` in s with the velocities half way, and lets the slow pressures
@@ -96,13 +105,14 @@ impl<const D: usize> WeaklyCompressible<D> {
         for (&number, seen) in open.members.iter().zip(&open.seen) {
             let number = number as usize;
             let Some((role, boundary)) = open.boundary_of(number) else { continue };
+            let Some(row) = common.row(number) else { continue };
             let mean = &open.means[role];
-            let velocity = boundary.velocity(&own.position[number], middle);
-            let velocity = velocity.or(seen.entering).unwrap_or(own.velocity[number]);
+            let velocity = boundary.velocity(&own.position[row], middle);
+            let velocity = velocity.or(seen.entering).unwrap_or(own.velocity[row]);
             let along = velocity.dot(&boundary.normal) - mean.sound() / impedance;
-            own.position[number] += boundary.normal * (step * along);
+            own.position[row] += boundary.normal * (step * along);
             if matches!(boundary.flow, Flow::Pressure(_)) {
-                own.velocity[number] += boundary.normal * (mean.gain() * follows(step, boundary));
+                own.velocity[row] += boundary.normal * (mean.gain() * follows(step, boundary));
             }
         }
         let (_, kept) = Kept::of(common, state);
@@ -150,18 +160,21 @@ impl<const D: usize> WeaklyCompressible<D> {
         self.keep_followers(common, state);
         let (own, _) = common.parts(state);
         for (&number, seen) in open.members.iter().zip(&open.seen) {
-            if let Some(velocity) = seen.entering {
-                own.velocity[number as usize] = velocity;
+            if let (Some(velocity), Some(row)) = (seen.entering, common.row(number as usize)) {
+                own.velocity[row] = velocity;
             }
         }
         let at = common.columns(state);
-        let places = common.support.list().places();
+        let (places, begin) = (common.support.list().places(), common.first());
         [&open.forces, &open.pulls].map(|forces| {
-            parallel::sums(forces.len(), |number, sum: &mut Total| {
-                let place = places[number] as usize;
-                let (force, mass) = (forces[place], common.mass[number]);
+            if forces.is_empty() {
+                return Total::default();
+            }
+            common.team().sums(forces.len(), |row, sum: &mut Total| {
+                let place = places[row] as usize;
+                let (force, mass) = (forces[place], common.mass[begin + row]);
                 if force != Vector::<D>::zeros() {
-                    sum.push(&at.position[number], &at.velocity[number], &(force * mass));
+                    sum.push(&at.position[row], &at.velocity[row], &(force * mass));
                     sum.growth += mass * force.dot(&common.forces[place].total());
                 }
             })

@@ -16,13 +16,13 @@ impl<const D: usize> WeaklyCompressible<D> {
     /// the buffer had particles at the start. A stream that slows down pulls apart what went out
     /// before, which would come back with gaps, and one that grows faster piles it up. The fluid and its balances
     /// do not change: what is in buffers is no part of it. Where a surface can fall, nothing is let in.
-    pub(super) fn even_out(&self, common: &Common<D>, state: &mut [f64], free: &mut Vec<u32>) {
+    pub(super) fn even_out(&self, common: &Common<D>, whole: &mut [f64], free: &mut Vec<u32>) {
         let spacing = common.particles.spacing[0];
         let domain = common.support.list().domain();
         for (role, boundary) in self.open.boundaries.all.iter().enumerate() {
             let sites = &self.open.sites[role];
-            let (numbers, is_own) = self.occupants(common, (role, boundary), state);
-            let at = common.columns(state);
+            let (numbers, is_own) = self.occupants(common, (role, boundary), whole);
+            let at = common.all_columns(whole);
             let places = numbers.iter().map(|&number| at.position[number as usize]);
             let points: Vec<Vector<D>> = places.chain(sites.iter().copied()).collect();
             // Points that cannot be searched are found where forces are.
@@ -45,7 +45,7 @@ impl<const D: usize> WeaklyCompressible<D> {
             for a in own {
                 is_there[a] = !is_crowded(a, &is_there);
                 if !is_there[a] {
-                    self.take_out(common, numbers[a] as usize, state);
+                    self.take_out(common, numbers[a] as usize, whole);
                     free.push(numbers[a]);
                 }
             }
@@ -61,12 +61,12 @@ impl<const D: usize> WeaklyCompressible<D> {
                 let present = (0..first).filter(|&a| is_own[a] && is_there[a]);
                 let Some(like) = present.min_by(|a, b| far(a).total_cmp(&far(b))) else { break };
                 let Some(next) = free.pop() else {
-                    Kept::of(common, state).1.counts[1] += 1.0;
+                    Kept::of_all(common, whole).1.counts[1] += 1.0;
                     return;
                 };
                 is_there[site] = true;
                 let place = (role, points[site]);
-                self.let_in(common, numbers[like] as usize, next as usize, place, state);
+                self.let_in(common, numbers[like] as usize, next as usize, place, whole);
             }
         }
     }
@@ -76,10 +76,10 @@ impl<const D: usize> WeaklyCompressible<D> {
         &self,
         common: &Common<D>,
         (role, boundary): (usize, &OpenBoundary<D>),
-        state: &[f64],
+        whole: &[f64],
     ) -> (Vec<u32>, Vec<bool>) {
-        let at = common.columns(state);
-        let opening = Stored::<D>::of(at.tail, common.count()).opening;
+        let at = common.all_columns(whole);
+        let opening = Stored::<D>::of(at.tail, common.particles.len()).opening;
         let spacing = common.particles.spacing[0];
         let counted = |number: usize| {
             if opening[number] as usize == role + 1 {

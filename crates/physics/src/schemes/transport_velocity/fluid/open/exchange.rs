@@ -30,19 +30,28 @@ impl<const D: usize> WeaklyCompressible<D> {
         time: f64,
         state: &mut [f64],
     ) -> Total {
-        let mut total = Total::default();
         self.follow_roles(common, state);
         self.prescribe(common, time, state);
         let spacing = common.particles.spacing[0];
-        if self.overshoot(common, state) < OVERSHOOT * spacing {
-            return total;
+        let [overshoot] = common.team().largest([self.overshoot(common, state)]);
+        if overshoot < OVERSHOOT * spacing {
+            return Total::default();
         }
+        let total = self.on_whole(common, state, Self::change_sides);
+        self.follow_roles(common, state);
+        self.prescribe(common, time, state);
+        total
+    }
+
+    /// Lets particles of a state of all ranks change sides, and keeps buffers as full as they were.
+    fn change_sides(&mut self, common: &Common<D>, whole: &mut [f64]) -> Total {
+        let mut total = Total::default();
         let mut changes = std::mem::take(&mut self.open.changes);
-        self.find_changes(common, state, &mut changes);
-        let mut free = self.vacant(common, state);
+        self.find_changes(common, whole, &mut changes);
+        let mut free = self.vacant(common, whole);
         // Those that leave make room for those that come in.
         for &(number, _) in changes.iter().filter(|(_, change)| *change == Change::Leave) {
-            self.take_out(common, number, state);
+            self.take_out(common, number, whole);
             free.push(number as u32);
         }
         free.sort_unstable_by(|a, b| b.cmp(a));
@@ -50,45 +59,43 @@ impl<const D: usize> WeaklyCompressible<D> {
             match change {
                 Change::Leave => {}
                 Change::GoOut(role) => {
-                    let carried = self.carry_over(common, number, -1.0, state);
+                    let carried = self.carry_over(common, number, -1.0, whole);
                     total.add(&carried);
-                    let (own, _) = common.parts(state);
+                    let (own, _) = common.all_parts(whole);
                     (own.deviation[number], own.kick[number]) = (Vector::zeros(), Vector::zeros());
-                    let (stored, mut kept) = Kept::of(common, state);
+                    let (stored, mut kept) = Kept::of_all(common, whole);
                     stored.opening[number] = (role + 1) as f64;
                     kept.each[KEPT * role + 2] += common.mass[number];
                     kept.carry(role, &carried);
                 }
                 Change::ComeIn(role) => {
                     let Some(next) = free.pop() else {
-                        Kept::of(common, state).1.counts[1] += 1.0;
+                        Kept::of_all(common, whole).1.counts[1] += 1.0;
                         continue;
                     };
-                    let carried = self.carry_over(common, number, 1.0, state);
+                    let carried = self.carry_over(common, number, 1.0, whole);
                     total.add(&carried);
                     let boundary = &self.open.boundaries.all[role];
-                    let (own, _) = common.parts(state);
+                    let (own, _) = common.all_parts(whole);
                     let end = own.position[number] - boundary.normal * boundary.length;
-                    self.let_in(common, number, next as usize, (role, end), state);
-                    let (stored, mut kept) = Kept::of(common, state);
+                    self.let_in(common, number, next as usize, (role, end), whole);
+                    let (stored, mut kept) = Kept::of_all(common, whole);
                     stored.opening[number] = 0.0;
                     kept.each[KEPT * role + 1] += common.mass[number];
                     kept.carry(role, &carried);
                 }
             }
         }
-        self.even_out(common, state, &mut free);
-        self.follow_roles(common, state);
-        self.prescribe(common, time, state);
+        self.even_out(common, whole, &mut free);
         (self.open.free, self.open.changes) = (free, changes);
         total
     }
 
     /// The particles that wait, the last numbers first.
-    pub(super) fn vacant(&mut self, common: &Common<D>, state: &[f64]) -> Vec<u32> {
+    pub(super) fn vacant(&mut self, common: &Common<D>, whole: &[f64]) -> Vec<u32> {
         let mut free = std::mem::take(&mut self.open.free);
         free.clear();
-        let density = common.columns(state).density.iter().enumerate().rev();
+        let density = common.all_columns(whole).density.iter().enumerate().rev();
         let vacant = density.filter(|(_, rho)| Common::<D>::is_removed(**rho));
         free.extend(vacant.map(|(number, _)| number as u32));
         free
@@ -100,19 +107,20 @@ impl<const D: usize> WeaklyCompressible<D> {
         for &number in &self.open.members {
             let number = number as usize;
             if let Some((_, boundary)) = self.open.boundary_of(number)
-                && let Some(velocity) = boundary.velocity(&own.position[number], time)
+                && let Some(row) = common.row(number)
+                && let Some(velocity) = boundary.velocity(&own.position[row], time)
             {
-                own.velocity[number] = velocity;
+                own.velocity[row] = velocity;
             }
         }
     }
 
-    /// How far beyond a plane the furthest particle is that has not changed sides, in m.
+    /// How far beyond a plane the furthest particle of this rank is that has not changed sides, in m.
     fn overshoot(&self, common: &Common<D>, state: &[f64]) -> f64 {
         let (open, at) = (&self.open, common.columns(state));
-        let spacing = common.particles.spacing[0];
-        parallel::maximum(open.roles.len(), 0.0, |number| {
-            let place = &at.position[number];
+        let (spacing, begin) = (common.particles.spacing[0], common.first());
+        parallel::maximum(common.count(), 0.0, |row| {
+            let (place, number) = (&at.position[row], begin + row);
             match open.boundary_of(number) {
                 Some((_, boundary)) => {
                     let depth = boundary.plane - place.dot(&boundary.normal);
@@ -129,8 +137,8 @@ impl<const D: usize> WeaklyCompressible<D> {
     }
 
     /// What changes in an exchange, in the order of numbers.
-    fn find_changes(&self, common: &Common<D>, state: &[f64], changes: &mut Vec<(usize, Change)>) {
-        let (open, at) = (&self.open, common.columns(state));
+    fn find_changes(&self, common: &Common<D>, whole: &[f64], changes: &mut Vec<(usize, Change)>) {
+        let (open, at) = (&self.open, common.all_columns(whole));
         let spacing = common.particles.spacing[0];
         let change = |number: usize| {
             let place = &at.position[number];
@@ -162,9 +170,9 @@ impl<const D: usize> WeaklyCompressible<D> {
         common: &Common<D>,
         number: usize,
         sign: f64,
-        state: &[f64],
+        whole: &[f64],
     ) -> Total {
-        let (at, mass) = (common.columns(state), sign * common.mass[number]);
+        let (at, mass) = (common.all_columns(whole), sign * common.mass[number]);
         let (velocity, pressure) = (&at.velocity[number], at.pressure[number]);
         let mut total = Total::of(
             0.5 * mass * (velocity.norm_squared() + self.compliance() * pressure * pressure),
@@ -174,11 +182,11 @@ impl<const D: usize> WeaklyCompressible<D> {
     }
 
     /// Takes a particle of a buffer out: it waits.
-    pub(super) fn take_out(&self, common: &Common<D>, number: usize, state: &mut [f64]) {
-        let (own, _) = common.parts(state);
+    pub(super) fn take_out(&self, common: &Common<D>, number: usize, whole: &mut [f64]) {
+        let (own, _) = common.all_parts(whole);
         (own.velocity[number], own.kick[number]) = (Vector::zeros(), Vector::zeros());
         (own.pressure[number], own.density[number]) = (0.0, 0.0);
-        let (stored, kept) = Kept::of(common, state);
+        let (stored, kept) = Kept::of_all(common, whole);
         stored.opening[number] = 0.0;
         kept.counts[0] += 1.0;
     }
@@ -190,14 +198,14 @@ impl<const D: usize> WeaklyCompressible<D> {
         like: usize,
         next: usize,
         (role, place): (usize, Vector<D>),
-        state: &mut [f64],
+        whole: &mut [f64],
     ) {
-        let (own, _) = common.parts(state);
+        let (own, _) = common.all_parts(whole);
         own.position[next] = place;
         own.velocity[next] = own.velocity[like];
         (own.deviation[next], own.kick[next]) = (Vector::zeros(), Vector::zeros());
         (own.density[next], own.pressure[next]) = (own.density[like], own.pressure[like]);
-        let (stored, kept) = Kept::of(common, state);
+        let (stored, kept) = Kept::of_all(common, whole);
         kept.counts[0] -= 1.0;
         kept.counts[2] += 1.0;
         stored.opening[next] = (role + 1) as f64;

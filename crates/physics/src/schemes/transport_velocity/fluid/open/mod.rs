@@ -4,6 +4,7 @@ mod buffers;
 mod even;
 mod exchange;
 mod nested;
+mod whole;
 
 use std::sync::Arc;
 
@@ -159,9 +160,12 @@ pub(super) struct Open<const D: usize> {
     roles: Vec<u32>,
     /// Where the particles of each buffer are at the start.
     sites: Vec<Vec<Vector<D>>>,
-    /// The particles of all buffers, by number.
+    /// The particles of this rank in buffers, by number.
     members: Vec<u32>,
     seen: Vec<Seen<D>>,
+    /// Of those of all ranks that see fluid, the boundary, by how much the pressure is above the reference in Pa, and the
+    /// velocity along the normal in m/s.
+    terms: Vec<[f64; 3]>,
     means: Vec<Mean>,
     /// What the buffers do to the fluid in m/s^2, by place, and the pressure of those that follow other levels.
     forces: Vec<Vector<D>>,
@@ -197,6 +201,7 @@ impl<const D: usize> Open<D> {
             roles: vec![0; count],
             members: Vec::with_capacity(count),
             seen: Vec::with_capacity(count),
+            terms: Vec::with_capacity(count),
             means: vec![Mean::default(); all],
             forces: vec![Vector::zeros(); count],
             pulls: vec![Vector::zeros(); pulls],
@@ -210,6 +215,27 @@ impl<const D: usize> Open<D> {
 
     pub fn is_empty(&self) -> bool {
         self.boundaries.is_empty()
+    }
+
+    /// Those of a rank with these particles. Which are in buffers, and which are not there, it knows of all.
+    pub fn part(&self, common: &Common<D>) -> Self {
+        let own = |number: &u32| common.row(*number as usize).is_some();
+        Self {
+            sites: self.sites.clone(),
+            boundaries: self.boundaries.clone(),
+            roles: self.roles.clone(),
+            members: self.members.iter().copied().filter(own).collect(),
+            seen: Vec::new(),
+            terms: Vec::new(),
+            means: self.means.clone(),
+            forces: vec![Vector::zeros(); if self.is_empty() { 0 } else { common.count() }],
+            pulls: Vec::new(),
+            nested: self.nested.clone(),
+            followers: Vec::new(),
+            passive: self.passive.clone(),
+            free: Vec::new(),
+            changes: Vec::new(),
+        }
     }
 
     /// Numbers that a state keeps behind those of all matter.
@@ -243,8 +269,20 @@ pub(super) struct Kept<'a> {
 
 impl<'a> Kept<'a> {
     fn of<const D: usize>(common: &Common<D>, state: &'a mut [f64]) -> (StoredMut<'a, D>, Self) {
-        let count = common.count();
-        let (stored, tail) = StoredMut::of(common.parts(state).1, count);
+        Self::behind(common.parts(state).1, common.count())
+    }
+
+    /// Those of a state of the particles of all ranks.
+    fn of_all<const D: usize>(
+        common: &Common<D>,
+        whole: &'a mut [f64],
+    ) -> (StoredMut<'a, D>, Self) {
+        Self::behind(common.all_parts(whole).1, common.particles.len())
+    }
+
+    /// Those behind the columns of all matter.
+    fn behind<const D: usize>(rest: &'a mut [f64], count: usize) -> (StoredMut<'a, D>, Self) {
+        let (stored, tail) = StoredMut::of(rest, count);
         let (counts, each) = LEDGER.behind_mut(D, tail)[1..].split_at_mut(COUNTS);
         (stored, Self { counts, each })
     }
@@ -307,42 +345,54 @@ impl<const D: usize> WeaklyCompressible<D> {
         if open.is_empty() {
             return;
         }
-        let at = common.columns(state);
-        let stored = Stored::<D>::of(at.tail, open.roles.len());
+        let (at, count) = (common.columns(state), common.count());
+        let (team, begin) = (common.team().clone(), common.first());
+        let stored = Stored::<D>::of(at.tail, count);
         let each = LEDGER.behind(D, stored.tail)[1 + COUNTS..].chunks_exact(KEPT);
         let both = open.means.iter_mut().zip(each);
         both.for_each(|(mean, kept)| (mean.slow, mean.stream) = (kept[0], kept[3]));
         let (roles, nested, removed) = (&open.roles, &open.nested, &common.removed);
-        let differs = parallel::maximum(roles.len(), 0.0, |number| {
-            let is_removed = Common::<D>::is_removed(at.density[number]);
-            let is_same = stored.opening[number] == f64::from(roles[number])
-                && stored.nesting[number] == nested[number]
-                && is_removed == removed[number];
-            f64::from(u8::from(!is_same))
+        let now = |row: usize| {
+            let is_removed = Common::<D>::is_removed(at.density[row]);
+            [stored.opening[row], stored.nesting[row], f64::from(u8::from(is_removed))]
+        };
+        let differs = parallel::maximum(count, 0.0, |row| {
+            let number = begin + row;
+            let was_removed = f64::from(u8::from(removed[number]));
+            let was = [f64::from(roles[number]), nested[number], was_removed];
+            f64::from(u8::from(now(row) != was))
         });
-        if differs == 0.0 {
+        if team.largest([differs]) == [0.0] {
             return;
         }
+        // Every rank knows of all particles.
+        let told = match team.is_alone() {
+            true => Vec::new(),
+            false => team.rows_of_all((0..count).map(now).collect()),
+        };
         open.members.clear();
         open.followers.clear();
         let mut is_relisted = open.passive.is_empty();
         open.passive.clear();
-        for (number, &role) in stored.opening.iter().enumerate() {
-            let is_removed = Common::<D>::is_removed(at.density[number]);
+        for number in 0..open.roles.len() {
+            let row = team.own(number, count);
+            let known = told.get(number).copied().or_else(|| row.map(now));
+            let [role, nesting, is_removed] = known.unwrap_or_default();
+            let is_removed = is_removed > 0.0;
             let was_removed = common.removed[number];
             let takes_no_part = open.roles[number] > 0 || open.nested[number] == FOLLOWS;
             let was_wall = common.is_wall[number] && !takes_no_part && !was_removed;
             let is_passive = was_wall || is_removed || role > 0.0;
             is_relisted |= was_removed != is_removed || (open.roles[number] > 0) != (role > 0.0);
-            let follows = stored.nesting[number] == FOLLOWS;
+            let follows = nesting == FOLLOWS;
             (open.roles[number], common.removed[number]) = (role as u32, is_removed);
-            open.nested[number] = stored.nesting[number];
+            open.nested[number] = nesting;
             common.is_wall[number] = is_passive || follows;
             open.passive.push(is_passive);
-            if role > 0.0 {
+            if role > 0.0 && row.is_some() {
                 open.members.push(number as u32);
             }
-            if follows {
+            if follows && row.is_some() {
                 open.followers.push(number as u32);
             }
         }
