@@ -66,13 +66,15 @@ const LONG: &str = "--set time.end=2.0 --set output.every=0.2 --set output.table
                     checkpoint.every_steps=100";
 
 /// Cases of the repository that run on several ranks, made shorter: energies of hourglass modes, mirrors, neighbours that
-/// move, new ones in a fluid between walls, and a solid in a fluid.
-const CASES: [(&str, &str); 5] = [
+/// move, new ones in a fluid between walls, a solid in a fluid, and particles that enter and leave, of which the reserve has
+/// too few.
+const CASES: [(&str, &str); 6] = [
     ("dual-support/free-vibration", "--set parameters.dx=0.5 --set time.end=0.05"),
     ("elastodynamics/wave-2d", ""),
     ("upwind/column-impact", "--set time.end=0.5"),
     ("ctvf/dam-break", "--set parameters.dx=0.1 --set time.end=0.2"),
     ("coupled/gate", "--set time.end=0.003"),
+    ("open/channel", "--set parameters.across=10 --set time.end=0.2 --set scheme.reserve=1"),
 ];
 
 /// A folder with a case in `plate.toml`.

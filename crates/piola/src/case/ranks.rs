@@ -32,11 +32,19 @@ pub enum Unserved {
 /// # Errors
 /// The run cannot begin, or a rank is lost.
 pub fn serve(case: &Case, ranks: Arc<dyn Ranks>, stop: Arc<AtomicBool>) -> Result<(), Unserved> {
-    let (executor, _) = begin(case, ranks.as_ref()).map_err(|_| Unserved::Refused)?;
-    executor.serve(ranks, stop).map_err(|refusal| match refusal {
-        RankRefusal::Ranks(lost) => Unserved::Lost(lost),
-        _ => Unserved::Refused,
-    })
+    let mut case = case.clone();
+    loop {
+        let (executor, _) = begin(&case, ranks.as_ref()).map_err(|_| Unserved::Refused)?;
+        let served = executor.serve(ranks.clone(), stop.clone());
+        let more = served.map_err(|refusal| match refusal {
+            RankRefusal::Ranks(lost) => Unserved::Lost(lost),
+            _ => Unserved::Refused,
+        })?;
+        match more {
+            None => return Ok(()),
+            Some(more) => case.more_in_reserve = more,
+        }
+    }
 }
 
 /// Tells the other ranks that this one cannot begin, and why. It takes the place of [`serve`], or of
@@ -158,14 +166,6 @@ fn no_device(case: &Case, place: Place) -> Result<(), Problem> {
         Some(_) => Err(Problem::new(place, message.to_owned(), "beside a device")),
         None => Ok(()),
     }
-}
-
-/// Why a run of several processes does not go on from one with this many more particles in reserve than the case asks for.
-pub(super) fn no_growth(case: &Case, more: usize) -> Problem {
-    let message = format!(
-        "processes of MPI cannot extend a reserve while they run: raise `scheme.reserve` by {more}, and start again, or          continue with `--ranks`"
-    );
-    Problem::new(case.scheme.place, message, "a reserve that was too small")
 }
 
 /// Why a case does not run on several ranks.

@@ -78,8 +78,8 @@ pub struct Session {
     resumed: Option<Resumed>,
     /// Whether the folder of the results is this run's.
     has_begun: bool,
-    /// Whether other processes compute a part of it.
-    is_among_processes: bool,
+    /// The processes that take the steps together, if there are several.
+    processes: Option<Arc<dyn Ranks>>,
     /// The particles of each body, where they are the same at all times and have been asked for.
     pub(super) rows_of_bodies: Vec<Rows>,
 }
@@ -136,9 +136,9 @@ impl Session {
     pub fn on_ranks(case: &Case, ranks: Arc<dyn Ranks>) -> Result<Self, Problems> {
         let start = Instant::now();
         let (mut executor, built) = ranks::begin(case, ranks.as_ref())?;
-        ranks::lead(&mut executor, case, ranks)?;
-        let is_among_processes = true;
-        Ok(Self { is_among_processes, ..Self::of(case, (executor, built), None, start) })
+        ranks::lead(&mut executor, case, ranks.clone())?;
+        let processes = Some(ranks);
+        Ok(Self { processes, ..Self::of(case, (executor, built), None, start) })
     }
 
     fn of(
@@ -162,7 +162,7 @@ impl Session {
             own,
             resumed: None,
             has_begun: false,
-            is_among_processes: false,
+            processes: None,
             rows_of_bodies: Vec::new(),
         }
     }
@@ -240,14 +240,21 @@ impl Session {
     /// Builds the case anew with this many more particles in each reserve than it asks for, and lets that go on where the
     /// run is. Particles do not depend on how many there were before; sums over rows may differ by rounding.
     fn enlarge(&mut self, reserve: usize) -> Result<(), RunError> {
-        let refused = |case: &Case, problem| RunError::Reserve(case.refuse(vec![problem]));
-        if self.is_among_processes {
-            return Err(refused(&self.case, ranks::no_growth(&self.case, reserve)));
-        }
         self.case.more_in_reserve = reserve;
-        let (mut next, mut built) = executor(&self.case).map_err(RunError::Reserve)?;
-        ranks::use_threads(&mut next, &self.case)
-            .map_err(|problem| refused(&self.case, problem))?;
+        self.executor.leave(reserve);
+        let case = &self.case;
+        let (mut next, mut built) = match &self.processes {
+            Some(ranks) => ranks::begin(case, ranks.as_ref()),
+            None => executor(case),
+        }
+        .map_err(RunError::Reserve)?;
+        match &self.processes {
+            Some(ranks) => ranks::lead(&mut next, case, ranks.clone()),
+            None => {
+                ranks::use_threads(&mut next, case).map_err(|problem| case.refuse(vec![problem]))
+            }
+        }
+        .map_err(RunError::Reserve)?;
         let checkpoint = self.executor.handed_over(next.scheme.as_ref());
         let outside = self.executor.take_observers().split_off(self.own);
         std::mem::swap(&mut self.executor, &mut next);
@@ -323,7 +330,7 @@ impl Session {
     pub fn step(&mut self) -> Result<bool, RunError> {
         self.begin()?;
         let mut goes_on = self.executor.step()?;
-        while self.executor.has_none_in_reserve() && !self.is_among_processes {
+        while self.executor.has_none_in_reserve() {
             let count = self.executor.scheme.particle_count();
             if count > MOST_PARTICLES {
                 return Ok(false);

@@ -70,6 +70,9 @@ pub trait DeviceSteps: Send {
         false
     }
 
+    /// Notes that another run of the case goes on, with this many more particles in reserve than the case asks for.
+    fn end_for(&mut self, _more: usize) {}
+
     /// How many particles could not be born, as [`Scheme::missing`](super::Scheme::missing).
     fn missing(&self) -> u64 {
         0

@@ -76,19 +76,30 @@ impl Executor {
         matches!(self.outcome, Some(Outcome::Failed(Failure::NoneInReserve { .. })))
     }
 
-    /// The run before its last step, for another one of the same case whose `scheme` has more particles in reserve.
-    pub fn handed_over(&mut self, scheme: &dyn Scheme) -> Checkpoint {
+    /// Ends the steps of several ranks, as another run of the same case goes on from the state before the last step, with
+    /// this many `more` particles in reserve than the case asks for; [`Self::serve`] tells the other ranks.
+    pub fn leave(&mut self, more: usize) {
         self.bring();
         let Previous { clock, wanted, factor, .. } = self.previous;
-        if self.has_none_in_reserve() && self.run.clock.step > clock.step {
-            // Where a rank is lost, the run is at the last mark, and ends there.
-            if self.step_back().is_none() {
-                let tally = &mut self.run.tally;
-                (tally.wanted, tally.factor) = (wanted, factor);
-                tally.evaluations -= self.evaluations;
-                self.run.history.take_back();
-            }
+        // Where a rank is lost, the run is at the last mark, and ends there.
+        if self.has_none_in_reserve()
+            && self.run.clock.step > clock.step
+            && self.step_back().is_none()
+        {
+            let tally = &mut self.run.tally;
+            (tally.wanted, tally.factor) = (wanted, factor);
+            tally.evaluations -= self.evaluations;
+            self.run.history.take_back();
         }
+        if let Some(device) = &mut self.device {
+            device.end_for(more);
+        }
+        self.device = None;
+    }
+
+    /// What another run of the same case goes on from, whose `scheme` has more particles in reserve, after this one has been
+    /// [left](Self::leave).
+    pub fn handed_over(&mut self, scheme: &dyn Scheme) -> Checkpoint {
         let mut checkpoint = self.checkpoint();
         let history = checkpoint.history.iter_mut().flat_map(History::states);
         for state in history.chain([&mut checkpoint.state]) {

@@ -33,6 +33,8 @@ enum Order {
     FetchBefore,
     /// Tell what has taken time.
     Costs,
+    /// Nothing more of this run: another one of the same case with so many more particles in reserve goes on.
+    Again(usize),
     /// Nothing more.
     End,
 }
@@ -47,6 +49,7 @@ impl Order {
             Self::FetchBefore => vec![4.0],
             Self::Costs => vec![5.0],
             Self::End => vec![6.0],
+            Self::Again(more) => vec![7.0, more as f64],
         }
     }
 
@@ -59,6 +62,7 @@ impl Order {
             [4.0] => Self::FetchBefore,
             [5.0] => Self::Costs,
             [6.0] => Self::End,
+            [7.0, more] => Self::Again(more as usize),
             _ => return None,
         })
     }
@@ -117,13 +121,14 @@ impl Worker {
         }
     }
 
-    /// Does what rank 0 says, until it says no more.
-    fn serve(&mut self) -> Result<(), RankError> {
+    /// Does what rank 0 says, until it says no more; how many more particles another run has in reserve that goes on.
+    fn serve(&mut self) -> Result<Option<usize>, RankError> {
         loop {
             match Order::unpack(&self.ranks.broadcast(Vec::new())?) {
                 // What is no order comes from a rank that has failed.
                 None => return Err(RankError::Lost(0)),
-                Some(Order::End) => return Ok(()),
+                Some(Order::End) => return Ok(None),
+                Some(Order::Again(more)) => return Ok(Some(more)),
                 Some(order) => self.obey(order)?,
             }
         }
@@ -146,7 +151,7 @@ impl Worker {
                 self.integrator.shorten(factor);
                 self.step(time, step)?;
             }
-            Order::End => {}
+            Order::Again(_) | Order::End => {}
         }
         Ok(())
     }
@@ -205,6 +210,8 @@ struct RankSteps {
     /// The threads that rank 0 computes with, if the ranks are threads.
     pool: Option<ThreadPool>,
     others: Vec<JoinHandle<()>>,
+    /// How the run ends for the others.
+    last: Order,
 }
 
 impl RankSteps {
@@ -245,6 +252,10 @@ impl DeviceSteps for RankSteps {
 
     fn shorten(&mut self, factor: f64) {
         self.factor = factor;
+    }
+
+    fn end_for(&mut self, more: usize) {
+        self.last = Order::Again(more);
     }
 
     fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
@@ -303,7 +314,7 @@ impl Drop for RankSteps {
             return;
         }
         // Those that are lost do not hear it, and have ended.
-        drop(self.worker.ranks.broadcast(Order::End.pack()));
+        drop(self.worker.ranks.broadcast(self.last.pack()));
         self.others.drain(..).for_each(|other| drop(other.join()));
     }
 }
@@ -368,11 +379,16 @@ impl Executor {
     }
 
     /// Takes part in a run of several ranks, of which this process is not number 0, until that ends it, which it does soon
-    /// after `stop` is set.
+    /// after `stop` is set. Returns with how many more particles in reserve than the case asks for another run of it goes on,
+    /// see [`Self::leave`].
     ///
     /// # Errors
     /// As [`Self::use_ranks`], and where a rank is lost.
-    pub fn serve(self, ranks: Arc<dyn Ranks>, stop: Arc<AtomicBool>) -> Result<(), RankRefusal> {
+    pub fn serve(
+        self,
+        ranks: Arc<dyn Ranks>,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Option<usize>, RankRefusal> {
         let part = part(self.scheme.as_ref(), ranks)?;
         let mut worker = Worker::new(self.scheme.as_ref(), &part, self.integrator.as_ref())?;
         worker.stop = Some(stop);
@@ -387,7 +403,8 @@ impl Executor {
         (pool, others): (Option<ThreadPool>, Vec<JoinHandle<()>>),
     ) -> Result<(), RankRefusal> {
         let rows = RankRows::of(self.scheme.as_ref(), &part.bounds);
-        let steps = RankSteps { worker, rows, told: [false; 2], factor: 1.0, pool, others };
+        let (told, last) = ([false; 2], Order::End);
+        let steps = RankSteps { worker, rows, told, factor: 1.0, pool, others, last };
         self.use_steps(Box::new(steps)).map_err(|error| match error {
             StepsError::Ranks(error) => error.into(),
             StepsError::Device(_) => RankRefusal::Formulation(self.scheme.description().name),
