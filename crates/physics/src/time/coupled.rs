@@ -35,6 +35,22 @@ impl Integrator for Coupled {
         1
     }
 
+    fn evaluations_by_system(&self, scheme: &mut dyn Scheme) -> Vec<u64> {
+        let mut all = vec![scheme.divided().map_or(0, |fluid| fluid.particle_count() as u64)];
+        if let Some(world) = scheme.coupled() {
+            let solids = self.solids.iter().enumerate();
+            all.extend(solids.map(|(number, solid)| {
+                let (scheme, _) = world.solid(number);
+                solid.evaluations(scheme) * scheme.particle_count() as u64
+            }));
+        }
+        all
+    }
+
+    fn own_steps(&self) -> &[u64] {
+        &self.counts
+    }
+
     fn shorten(&mut self, factor: f64) {
         self.factor = factor;
     }

@@ -42,8 +42,8 @@ pub struct Executor {
     observers: Vec<Box<dyn Observer>>,
     checkpoints: Option<Checkpoints>,
     pub(super) run: Run,
-    /// Evaluations of the rates times particles a step.
-    evaluations: u64,
+    /// Evaluations of single particles in a step of each system.
+    evaluations: Vec<u64>,
     /// What the parts of steps took before there were more particles.
     phases: Vec<Phase>,
     /// Where the next state is made.
@@ -69,6 +69,14 @@ struct Previous {
     /// The last step as it was chosen in s, and what every step was multiplied by.
     wanted: f64,
     factor: f64,
+    /// Evaluations of single particles up to then.
+    evaluations: u64,
+}
+
+/// Evaluations of single particles in a step in which each system takes some of its own.
+fn evaluated(by_system: &[u64], own_steps: &[u64]) -> u64 {
+    let steps = |system: usize| own_steps.get(system).copied().unwrap_or(1);
+    by_system.iter().enumerate().map(|(system, of_one)| of_one * steps(system)).sum()
 }
 
 /// Brings accelerations that a state holds, and what a formulation knows of neighbours, into line with the rest of it.
@@ -107,7 +115,7 @@ impl Executor {
     ) -> Self {
         let mut state = scheme.initial_state();
         scheme.constrain(0.0, &mut state);
-        let evaluations = integrator.evaluations(scheme.as_mut()) * scheme.particle_count() as u64;
+        let evaluations = integrator.evaluations_by_system(scheme.as_mut());
         Self {
             control,
             end,
@@ -125,6 +133,7 @@ impl Executor {
                 state: Arc::new(state.clone()),
                 wanted: Tally::START.wanted,
                 factor: Tally::START.factor,
+                evaluations: 0,
             },
             limits: Vec::with_capacity(8),
             is_seen: false,
@@ -153,6 +162,11 @@ impl Executor {
     pub fn shared_state(&mut self) -> Arc<Vec<f64>> {
         self.bring();
         Arc::clone(&self.run.state)
+    }
+
+    /// Evaluations of single particles in a step like the last one of the integrator.
+    pub fn evaluations_in_step(&self) -> u64 {
+        evaluated(&self.evaluations, self.integrator.own_steps())
     }
 
     /// How many steps of its own each system of the run has taken, by name; nothing where there is one system.
@@ -440,8 +454,9 @@ impl Executor {
             }
             return false;
         }
-        let Tally { wanted, factor, .. } = run.tally;
+        let Tally { wanted, factor, evaluations, .. } = run.tally;
         (self.previous.wanted, self.previous.factor) = (wanted, factor);
+        self.previous.evaluations = evaluations;
         self.previous.clock = run.clock;
         if device.is_some() {
             self.is_here = false;
@@ -450,7 +465,8 @@ impl Executor {
             std::mem::swap(&mut run.state, next);
         }
         run.tally.wanted = chosen.step / run.tally.factor;
-        run.tally.evaluations += self.evaluations;
+        let own_steps = device.as_ref().map_or(integrator.own_steps(), |device| device.own_steps());
+        run.tally.evaluations += evaluated(&self.evaluations, own_steps);
         run.advance(self.control, met, soonest);
         run.lengthen(integrator.as_ref(), scheme.as_ref(), chosen, met);
         self.is_seen = false;

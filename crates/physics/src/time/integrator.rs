@@ -19,6 +19,16 @@ pub trait Integrator: Send + Sync {
     /// Evaluations of the rates of `scheme` a step.
     fn evaluations(&self, scheme: &mut dyn Scheme) -> u64;
 
+    /// Evaluations of single particles in a step, by system: in one of its own steps, where systems take several.
+    fn evaluations_by_system(&self, scheme: &mut dyn Scheme) -> Vec<u64> {
+        vec![self.evaluations(scheme) * scheme.particle_count() as u64]
+    }
+
+    /// How many steps of its own each system took in the last step; one each where there is nothing.
+    fn own_steps(&self) -> &[u64] {
+        &[]
+    }
+
     /// Whether one step is quick enough to be taken for an estimate of the run. Where it solves equations for all
     /// particles, the estimate is by [`Self::evaluations`].
     fn is_timed_by_steps(&self) -> bool {

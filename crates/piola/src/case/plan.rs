@@ -205,7 +205,6 @@ impl Session {
         };
         let [mut second, mut third] = [vec![0.0; state.len()], vec![0.0; state.len()]];
         let integrator = self.executor.integrator.as_mut();
-        let count = scheme.particle_count();
         let evaluations = integrator.evaluations(scheme);
         let is_taken = integrator.is_timed_by_steps();
         let mut evaluate = |time: f64, old: &[f64], new: &mut [f64]| match is_taken {
@@ -244,6 +243,7 @@ impl Session {
         });
         warnings.extend(undamped.and_then(|it| it.warning(integrator.name())));
         self.executor.look_anew();
+        let in_step = self.executor.evaluations_in_step();
         let scheme = &self.executor.scheme;
         let ranks = self.case.ranks.as_ref().and_then(|ranks| {
             let bounds = Part::bounds(scheme.as_ref(), usize::try_from(**ranks).ok()?).ok()?;
@@ -272,7 +272,7 @@ impl Session {
             steps,
             own_steps,
             undamped,
-            evaluations_per_second: count as f64 / evaluation,
+            evaluations_per_second: in_step as f64 / (evaluations as f64 * evaluation),
             seconds: steps as f64 * evaluations as f64 * evaluation,
             memory: scheme.memory() + STATES * size_of_val(state.as_slice()),
             outputs: self.planned_outputs(),

@@ -60,8 +60,12 @@ fn several() -> [Finished; 3] {
     [1.0, 0.5, 0.25].map(|share| {
         let water = format!("time.cfl={}", water * share);
         let solid = format!("system.slab.time={{ cfl = {} }}", solid * share);
-        let finished = finish(slab(&[&water, &solid]));
+        let mut session = slab(&[&water, &solid]);
+        let systems = session.scheme().parts().into_iter();
+        let counts: Vec<u64> = systems.map(|(it, _)| it.particle_count() as u64).collect();
+        let finished = finish(session);
         let steps = (16.0 / share) as u64;
+        assert_eq!(finished.summary.evaluations, steps * (4 * counts[0] + counts[1]));
         let expected = [("fluid".to_owned(), 4 * steps), ("slab".to_owned(), steps)];
         assert_eq!((finished.summary.steps, finished.own_steps.as_slice()), (steps, &expected[..]));
         finished

@@ -73,6 +73,12 @@ pub trait DeviceSteps: Send {
     /// Notes that another run of the case goes on, with this many more particles in reserve than the case asks for.
     fn end_for(&mut self, _more: usize) {}
 
+    /// How many steps of its own each system took in the last step, as
+    /// [`Integrator::own_steps`](crate::time::Integrator::own_steps).
+    fn own_steps(&self) -> &[u64] {
+        &[]
+    }
+
     /// How many particles could not be born, as [`Scheme::missing`](super::Scheme::missing).
     fn missing(&self) -> u64 {
         0

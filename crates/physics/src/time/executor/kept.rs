@@ -80,7 +80,7 @@ impl Executor {
     /// this many `more` particles in reserve than the case asks for; [`Self::serve`] tells the other ranks.
     pub fn leave(&mut self, more: usize) {
         self.bring();
-        let Previous { clock, wanted, factor, .. } = self.previous;
+        let Previous { clock, wanted, factor, evaluations, .. } = self.previous;
         // Where a rank is lost, the run is at the last mark, and ends there.
         if self.has_none_in_reserve()
             && self.run.clock.step > clock.step
@@ -88,7 +88,7 @@ impl Executor {
         {
             let tally = &mut self.run.tally;
             (tally.wanted, tally.factor) = (wanted, factor);
-            tally.evaluations -= self.evaluations;
+            tally.evaluations = evaluations;
             self.run.history.take_back();
         }
         if let Some(device) = &mut self.device {

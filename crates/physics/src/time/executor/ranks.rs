@@ -276,6 +276,10 @@ impl DeviceSteps for RankSteps {
         self.told[0]
     }
 
+    fn own_steps(&self) -> &[u64] {
+        self.worker.integrator.own_steps()
+    }
+
     /// What stands behind all columns is the same on all ranks.
     fn missing(&self) -> u64 {
         self.worker.scheme.missing(&self.worker.state)
