@@ -73,8 +73,7 @@ pub trait DeviceSteps: Send {
     /// Notes that another run of the case goes on, with this many more particles in reserve than the case asks for.
     fn end_for(&mut self, _more: usize) {}
 
-    /// How many steps of its own each system took in the last step, as
-    /// [`Integrator::own_steps`](crate::time::Integrator::own_steps).
+    /// How many steps of its own each system took in the last step; one each where there is nothing.
     fn own_steps(&self) -> &[u64] {
         &[]
     }
