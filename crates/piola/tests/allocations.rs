@@ -78,11 +78,16 @@ const SOME: usize = piola::parallel::CHUNK + 1;
 /// A slab that is heavy and soft, for which one step is several of the water.
 const SOFT: &str = "body.slab.material={ kind='linear_elastic', density='10 * rho', young_modulus='2.5 * rho * c^2', poisson_ratio=0 }";
 
-/// A case at its start, which writes nothing before its end.
+/// A case at its start, which records nothing before its end.
 fn session(name: &str, variant: Option<&str>, overrides: &[&str]) -> Session {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
     let never = ["output.every=1e9", "output.table_every=1e9"];
-    let overrides = overrides.iter().chain(&never).map(|text| (*text).to_owned()).collect();
+    recording(name, variant, &[overrides, &never].concat())
+}
+
+/// A case at its start, which records what it asks for.
+fn recording(name: &str, variant: Option<&str>, overrides: &[&str]) -> Session {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
+    let overrides = overrides.iter().map(|text| (*text).to_owned()).collect();
     let variant = variant.map(str::to_owned);
     let options = LoadOptions { overrides, variant, ..LoadOptions::default() };
     let case = case::load(&path.join("case.toml"), &options);
@@ -229,19 +234,20 @@ fn steps_that_solve_equations_allocate_nothing_a_particle() {
     each(&cases, SOME, [3, 3], |particles, counts| counts.iter().all(|count| *count < particles));
 }
 
+/// Takes steps, and returns by how many bytes more is held after them.
+fn grown(session: &mut Session, steps: u32) -> i64 {
+    let mut run = || (0..steps).for_each(|_| assert!(session.step().expect("it goes on")));
+    allocation_counter::measure(&mut run).bytes_current
+}
+
 /// What a run holds between its outputs does not grow with its steps: the four cases whose energy is checked over a
 /// million steps, each for a tenth of that. The arrays of the neighbours of water are as long as they happen to be.
 #[test]
 fn over_many_steps_memory_does_not_grow() {
     let held = |(name, most): (&str, i64)| {
         let mut session = session(name, Some("million"), &[]);
-        let mut run = |steps: u32| {
-            for _ in 0..steps {
-                assert!(session.step().expect("nothing is written"), "{name} goes on");
-            }
-        };
-        run(1000);
-        let grown = allocation_counter::measure(|| run(100_000)).bytes_current;
+        grown(&mut session, 1000);
+        let grown = grown(&mut session, 100_000);
         assert!(grown <= most, "{name}: {grown} bytes more");
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
@@ -252,4 +258,21 @@ fn over_many_steps_memory_does_not_grow() {
         ("ctvf/still-water", 10_000),
     ];
     pool.install(|| cases.into_iter().for_each(held));
+}
+
+/// With its probes and tables, the memory of a run grows by their rows alone, for which there is room for twice as many at
+/// most.
+#[test]
+fn over_many_steps_memory_grows_by_tables_alone() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    pool.install(|| {
+        let mut session = recording("upwind/piston", Some("million"), &[]);
+        grown(&mut session, 1000);
+        let grown = grown(&mut session, 100_000);
+        let tables = session.tables().lock().clone();
+        assert!(tables.probes.len() > 200 && tables.probes.columns().len() > 1);
+        let numbers: usize = tables.all().iter().map(|table| table.numbers().len()).sum();
+        let room = (2 * numbers * size_of::<f64>()) as i64;
+        assert!((1..=room).contains(&grown), "{grown} bytes more, {room} for rows");
+    });
 }
