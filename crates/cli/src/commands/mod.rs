@@ -29,8 +29,8 @@ fn use_threads(threads: Option<u16>) {
     }
 }
 
-/// Calls `work(i)` for each i below `count`, for so many `jobs` at the same time, which share the `threads`. None is
-/// begun once `stop` is set.
+/// Calls `work(i)` for each i below `count`, `jobs` of them at a time, each with an even share of the `threads`: no more
+/// than there are threads. None is begun once `stop` is set.
 fn side_by_side(
     count: usize,
     jobs: u16,
@@ -38,8 +38,8 @@ fn side_by_side(
     stop: &AtomicBool,
     work: impl Fn(usize) + Sync,
 ) {
-    let jobs = usize::from(jobs).min(count).max(1);
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);
+    let jobs = usize::from(jobs).min(count).min(threads).max(1);
     let next = AtomicUsize::new(0);
     let one_after_another = || {
         while !stop.load(Ordering::Relaxed) {

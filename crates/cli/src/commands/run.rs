@@ -108,6 +108,7 @@ fn serve(arguments: &RunArguments, ranks: &Arc<dyn Ranks>) -> Result<Exit, Fault
     let stop = interrupt::listen_quietly();
     case::serve(&case, ranks.clone(), stop).map_err(|unserved| match unserved {
         Unserved::Refused => Fault { exit: Exit::BadCase, report: String::new() },
+        Unserved::Ended => Fault { exit: Exit::FailedRun, report: String::new() },
         Unserved::Lost(lost) => {
             Fault::new(Exit::FailedRun, format_args!("rank {}: {lost}", ranks.rank()))
         }

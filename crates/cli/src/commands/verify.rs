@@ -31,7 +31,10 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
         Some(file) => Some(Mutex::new(page::Writer::new(file, &arguments.paths)?)),
         None => None,
     };
-    let paths = discover(&arguments.paths)?;
+    let mut paths = discover(&arguments.paths)?;
+    if let Some(only) = &arguments.only {
+        paths.retain(|path| is_called(path, only));
+    }
     let found: Vec<Mutex<Option<Result<Rows, Fault>>>> =
         paths.iter().map(|_| Mutex::new(None)).collect();
     side_by_side(paths.len(), arguments.jobs, arguments.threads, &stop, |index| {
@@ -118,9 +121,16 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Whether the case at `path` has this id, or is in a folder of this name.
+fn is_called(path: &Path, only: &str) -> bool {
+    folder_name(path) == only
+        || load(path, &LoadOptions::default())
+            .is_ok_and(|case| case.id.is_some_and(|id| id.eq_ignore_ascii_case(only)))
+}
+
 /// What is found at a path.
 enum Found {
-    /// Nothing that is wanted, or no check.
+    /// No check, or no time for all of them before an interruption.
     Nothing,
     /// A case that cannot be read, which is one failed row.
     Unreadable(Box<Rows>),
@@ -152,7 +162,8 @@ impl Found {
     }
 }
 
-/// What a job that panicked while it held the lock left is whole.
+/// What a job that panicked while it held the lock left is whole: rows are put in at once, and files of the page are
+/// whole or not there.
 fn locked<T>(it: &Mutex<T>) -> MutexGuard<'_, T> {
     it.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -174,10 +185,6 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
         load(path, &options).map_err(|problems| refusal(path, &problems))
     };
     let folder = folder_name(path);
-    let is_wanted = |id: Option<&str>| match &arguments.only {
-        None => true,
-        Some(only) => id.is_some_and(|id| id.eq_ignore_ascii_case(only)) || folder == *only,
-    };
     let mut found = PageCase {
         name: folder.clone(),
         link: path.display().to_string(),
@@ -189,15 +196,11 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
     for level in levels(arguments) {
         let base = match read(None, *level) {
             Ok(base) => base,
-            Err(_) if !is_wanted(None) => return Found::Nothing,
             Err(fault) => {
                 terminal::report(&terminal::coloured(&fault.report));
                 return Found::Unreadable(Box::new((folder, vec![unreadable()])));
             }
         };
-        if !is_wanted(base.id.as_deref()) {
-            return Found::Nothing;
-        }
         let name = base.id.clone().unwrap_or_else(|| folder.clone());
         let all = needed_variants(&base).len();
         let only_paper = arguments.paper && !arguments.full && *level == Level::Case;

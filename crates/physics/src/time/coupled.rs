@@ -36,6 +36,7 @@ impl Integrator for Coupled {
     }
 
     fn evaluations_by_system(&self, scheme: &mut dyn Scheme) -> Vec<u64> {
+        // One of the fluid is a kick, a drift and a kick.
         let mut all = vec![scheme.divided().map_or(0, |fluid| fluid.particle_count() as u64)];
         if let Some(world) = scheme.coupled() {
             let solids = self.solids.iter().enumerate();
@@ -47,7 +48,7 @@ impl Integrator for Coupled {
         all
     }
 
-    fn own_steps(&self) -> &[u64] {
+    fn steps_in_last(&self) -> &[u64] {
         &self.counts
     }
 

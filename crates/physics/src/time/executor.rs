@@ -17,7 +17,7 @@ use super::observer::{Moment, ObserveError, Observer};
 use super::run::Run;
 use super::step::StepControl;
 use super::summary::{Outcome, Progress, Summary};
-use crate::schemes::{DeviceSteps, Observation, Phase, Scheme, StepLimit};
+use crate::schemes::{DeviceSteps, Observation, Phase, RankCosts, Scheme, StepLimit};
 
 /// Owns a run: the clock, the state, the observers, and the reasons to stop.
 pub struct Executor {
@@ -42,10 +42,12 @@ pub struct Executor {
     observers: Vec<Box<dyn Observer>>,
     checkpoints: Option<Checkpoints>,
     pub(super) run: Run,
-    /// Evaluations of single particles in a step of each system.
+    /// Evaluations of single particles in one of the steps of each system.
     evaluations: Vec<u64>,
     /// What the parts of steps took before there were more particles.
     phases: Vec<Phase>,
+    /// The same of ranks.
+    costs: Vec<RankCosts>,
     /// Where the next state is made.
     next: Arc<Vec<f64>>,
     /// The run before the last step, which one that fails ends with.
@@ -73,9 +75,10 @@ struct Previous {
     evaluations: u64,
 }
 
-/// Evaluations of single particles in a step in which each system takes some of its own.
-fn evaluated(by_system: &[u64], own_steps: &[u64]) -> u64 {
-    let steps = |system: usize| own_steps.get(system).copied().unwrap_or(1);
+/// Evaluations of single particles in a step of the run: those in one of the steps of each system, and how many of these
+/// it takes.
+fn evaluated(by_system: &[u64], steps: &[u64]) -> u64 {
+    let steps = |system: usize| steps.get(system).copied().unwrap_or(1);
     by_system.iter().enumerate().map(|(system, of_one)| of_one * steps(system)).sum()
 }
 
@@ -128,6 +131,7 @@ impl Executor {
             evaluations,
             next: Arc::new(state.clone()),
             phases: Vec::new(),
+            costs: Vec::new(),
             previous: Previous {
                 clock: Clock::START,
                 state: Arc::new(state.clone()),
@@ -166,7 +170,7 @@ impl Executor {
 
     /// Evaluations of single particles in a step like the last one of the integrator.
     pub fn evaluations_in_step(&self) -> u64 {
-        evaluated(&self.evaluations, self.integrator.own_steps())
+        evaluated(&self.evaluations, self.integrator.steps_in_last())
     }
 
     /// How many steps of its own each system of the run has taken, by name; nothing where there is one system.
@@ -318,11 +322,8 @@ impl Executor {
             worst: tally.worst,
             evaluations: tally.evaluations,
             timings: tally.watches.timings(),
-            phases: match &self.device {
-                Some(device) => device.phases().into_iter().cloned().collect(),
-                None => self.phases(),
-            },
-            ranks: self.device.as_ref().and_then(|it| it.costs().ok()).unwrap_or_default(),
+            phases: self.phases(),
+            ranks: self.costs(),
             retries: tally.retries.clone(),
             trace,
             resumed: *resumed,
@@ -465,8 +466,8 @@ impl Executor {
             std::mem::swap(&mut run.state, next);
         }
         run.tally.wanted = chosen.step / run.tally.factor;
-        let own_steps = device.as_ref().map_or(integrator.own_steps(), |device| device.own_steps());
-        run.tally.evaluations += evaluated(&self.evaluations, own_steps);
+        let steps = device.as_ref().map_or(integrator.steps_in_last(), |it| it.steps_in_last());
+        run.tally.evaluations += evaluated(&self.evaluations, steps);
         run.advance(self.control, met, soonest);
         run.lengthen(integrator.as_ref(), scheme.as_ref(), chosen, met);
         self.is_seen = false;

@@ -19,13 +19,13 @@ pub trait Integrator: Send + Sync {
     /// Evaluations of the rates of `scheme` a step.
     fn evaluations(&self, scheme: &mut dyn Scheme) -> u64;
 
-    /// Evaluations of single particles in a step, by system: in one of its own steps, where systems take several.
+    /// Evaluations of single particles in one of the steps of each system, of which a step of the run may be several.
     fn evaluations_by_system(&self, scheme: &mut dyn Scheme) -> Vec<u64> {
         vec![self.evaluations(scheme) * scheme.particle_count() as u64]
     }
 
-    /// How many steps of its own each system took in the last step; one each where there is nothing.
-    fn own_steps(&self) -> &[u64] {
+    /// How many steps each system took in the last one of the run; one each where there is nothing.
+    fn steps_in_last(&self) -> &[u64] {
         &[]
     }
 

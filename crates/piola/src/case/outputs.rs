@@ -14,9 +14,9 @@ use crate::observe::{
 };
 use crate::output::checkpoint::Identity;
 use crate::output::{
-    self, BodyRecord, Column, Compression, Curve, FigureRecord, LinearRecord, Map, RankRecord,
-    ReferenceRecord, ResultsFolder, RetryRecord, RunRecord, StageRecord, SystemRecord, Table,
-    atomic, report, timestamp,
+    self, BodyRecord, Bounds, Column, Compression, Curve, FigureRecord, LinearRecord, Map,
+    RankRecord, ReferenceRecord, ResultsFolder, RetryRecord, RunRecord, StageRecord, SystemRecord,
+    Table, atomic, report, timestamp,
 };
 use crate::time::{Observer, Outcome, Schedule, Trace};
 
@@ -133,6 +133,7 @@ impl Outputs {
                     title: case.title.clone(),
                     field: picture.field.value,
                     range: picture.range,
+                    part: picture.part.as_ref().map(corners),
                     spacing,
                     hidden: hidden.clone(),
                 },
@@ -286,4 +287,11 @@ fn chart(case: &Case, plot: &model::Plot, tables: &Tables) -> output::Plot {
         reference.points = reference.points.iter().copied().step_by(every).collect();
     }
     output::Plot { title: case.title.clone(), abscissa: across, series }
+}
+
+/// A part of space from one corner to the other.
+fn corners([from, to]: &[Vec<f64>; 2]) -> Bounds {
+    let padded =
+        |corner: &[f64]| std::array::from_fn(|axis| corner.get(axis).copied().unwrap_or(0.0));
+    Bounds { min: padded(from), max: padded(to) }
 }

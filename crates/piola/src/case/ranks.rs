@@ -21,6 +21,11 @@ pub enum Unserved {
     /// The run does not begin. Rank 0 has the reason, of whichever rank it is.
     #[error("the run does not begin; the message of rank 0 says why")]
     Refused,
+    /// It ends where a reserve of particles was to be extended.
+    #[error(
+        "the run ends, as its reserve of particles cannot be extended; the message of rank 0 says why"
+    )]
+    Ended,
     /// A rank is lost.
     #[error(transparent)]
     Lost(#[from] RankError),
@@ -32,9 +37,13 @@ pub enum Unserved {
 /// # Errors
 /// The run cannot begin, or a rank is lost.
 pub fn serve(case: &Case, ranks: Arc<dyn Ranks>, stop: Arc<AtomicBool>) -> Result<(), Unserved> {
-    let mut case = case.clone();
+    let (mut case, mut has_begun) = (case.clone(), false);
     loop {
-        let (executor, _) = begin(&case, ranks.as_ref()).map_err(|_| Unserved::Refused)?;
+        let (executor, _) = begin(&case, ranks.as_ref()).map_err(|_| match has_begun {
+            true => Unserved::Ended,
+            false => Unserved::Refused,
+        })?;
+        has_begun = true;
         let served = executor.serve(ranks.clone(), stop.clone());
         let more = served.map_err(|refusal| match refusal {
             RankRefusal::Ranks(lost) => Unserved::Lost(lost),

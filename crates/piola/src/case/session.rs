@@ -103,9 +103,6 @@ pub enum RunError {
     /// A checkpoint belongs to a run with other outputs.
     #[error("{0}; nothing was changed; start again without `--resume`")]
     Misfit(#[from] Misfit),
-    /// The reserve of particles ran out, and the case cannot be built with more.
-    #[error("the reserve of particles ran out and could not be extended:\n{0}")]
-    Reserve(Problems),
     /// A folder was given for a run that had begun without it.
     #[error("the run has begun: name the folder of its results before the first step")]
     Begun,
@@ -238,23 +235,23 @@ impl Session {
     }
 
     /// Builds the case anew with this many more particles in each reserve than it asks for, and lets that go on where the
-    /// run is. Particles do not depend on how many there were before; sums over rows may differ by rounding.
+    /// run is. Particles do not depend on how many there were before; sums over rows may differ by rounding. Where that
+    /// cannot be done the run ends.
     fn enlarge(&mut self, reserve: usize) -> Result<(), RunError> {
         self.case.more_in_reserve = reserve;
-        self.executor.leave(reserve);
-        let case = &self.case;
-        let (mut next, mut built) = match &self.processes {
-            Some(ranks) => ranks::begin(case, ranks.as_ref()),
-            None => executor(case),
+        if !self.executor.leave(reserve) {
+            return Ok(());
         }
-        .map_err(RunError::Reserve)?;
-        match &self.processes {
-            Some(ranks) => ranks::lead(&mut next, case, ranks.clone()),
-            None => {
-                ranks::use_threads(&mut next, case).map_err(|problem| case.refuse(vec![problem]))
+        let (mut next, mut built) = match self.larger() {
+            Ok(larger) => larger,
+            Err(problems) => {
+                let why = problems.to_string();
+                let why = why.lines().next().unwrap_or_default().trim_start_matches("error: ");
+                let cause = format!("the reserve of particles cannot be extended: {why}");
+                self.executor.give_up(cause, false);
+                return Ok(());
             }
-        }
-        .map_err(RunError::Reserve)?;
+        };
         let checkpoint = self.executor.handed_over(next.scheme.as_ref());
         let outside = self.executor.take_observers().split_off(self.own);
         std::mem::swap(&mut self.executor, &mut next);
@@ -263,6 +260,24 @@ impl Session {
         self.rows_of_bodies.clear();
         self.equip(outside);
         Ok(self.executor.take_over(&next, checkpoint)?)
+    }
+
+    /// The run of the case at its start, on as many ranks.
+    fn larger(&self) -> Result<(Executor, Built), Problems> {
+        let case = &self.case;
+        match &self.processes {
+            Some(ranks) => {
+                let (mut next, built) = ranks::begin(case, ranks.as_ref())?;
+                ranks::lead(&mut next, case, ranks.clone())?;
+                Ok((next, built))
+            }
+            None => {
+                let (mut next, built) = executor(case)?;
+                ranks::use_threads(&mut next, case)
+                    .map_err(|problem| case.refuse(vec![problem]))?;
+                Ok((next, built))
+            }
+        }
     }
 
     /// Continues the run in `folder` from its newest sound checkpoint, and starts from the beginning if there is

@@ -3,7 +3,7 @@
 use super::files::WrittenFiles;
 use super::memory::{decode, encode, inside};
 use crate::fields::FieldSelector;
-use crate::output::{OutputError, Picture, ResultsFolder, When};
+use crate::output::{Bounds, OutputError, Picture, ResultsFolder, When};
 use crate::time::{Misfit, Moment, ObserveError, Observer, Schedule};
 
 /// What a picture shows.
@@ -15,6 +15,8 @@ pub struct PictureRequest {
     pub field: FieldSelector,
     /// Ends of the colour bar; those of the data if `None`.
     pub range: Option<[f64; 2]>,
+    /// The part of space that is shown; where the particles are if `None`.
+    pub part: Option<Bounds>,
     /// Spacing of the particles in the reference state in m.
     pub spacing: f64,
     /// Numbers of the bodies that are left out.
@@ -43,14 +45,15 @@ impl PictureWriter {
     }
 
     fn draw(&mut self, moment: &mut Moment) -> Result<(), OutputError> {
-        let PictureRequest { title, field, range, spacing, hidden } = &self.request;
+        let PictureRequest { title, field, range, part, spacing, hidden } = &self.request;
         let name = field.field.name;
         let shot = moment.now.snapshot(moment.step, &[name]);
         let Some(found) = shot.field(name) else { return Ok(()) };
         let components = field.field.kind.components(shot.dimension);
         let bodies = &shot.bodies;
-        let shown = || (0..bodies.len()).filter(|&a| !hidden.contains(&bodies[a]));
         let place = |a: usize| &shot.positions[a * shot.dimension..][..shot.dimension];
+        let is_in = |a: usize| part.is_none_or(|part| part.contains(place(a)));
+        let shown = || (0..bodies.len()).filter(|&a| !hidden.contains(&bodies[a]) && is_in(a));
         let value = |a: usize| field.value(&found.values[a * components..][..components]);
         let positions: Vec<f64> = shown().flat_map(place).copied().collect();
         let values: Vec<f64> = shown().map(value).collect();
@@ -72,7 +75,7 @@ impl PictureWriter {
             range: *range,
             spacing: *spacing,
             widths: &widths,
-            bounds: None,
+            bounds: *part,
         }
         .write_png(&path)?;
         self.drawn.push((self.folder.relative(&path), moment.now.time()));

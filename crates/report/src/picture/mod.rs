@@ -69,6 +69,12 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// Whether a place is in it.
+    pub fn contains(&self, place: &[f64]) -> bool {
+        let mut all = place.iter().zip(self.min.iter().zip(&self.max));
+        all.all(|(at, (min, max))| (min..=max).contains(&at))
+    }
+
     /// The bounds of the particles at `positions` (`particles * dimension` numbers), without those
     /// that are not finite or beyond any measure; `None` if there is no other.
     pub fn of(dimension: usize, positions: &[f64]) -> Option<Self> {

@@ -70,11 +70,12 @@ pub trait DeviceSteps: Send {
         false
     }
 
-    /// Notes that another run of the case goes on, with this many more particles in reserve than the case asks for.
-    fn end_for(&mut self, _more: usize) {}
+    /// Notes for the end that another run of the case goes on, with this many more particles in reserve than the case asks
+    /// for.
+    fn end_for_another(&mut self, _more: usize) {}
 
-    /// How many steps of its own each system took in the last step; one each where there is nothing.
-    fn own_steps(&self) -> &[u64] {
+    /// How many steps each system took in the last one of the run; one each where there is nothing.
+    fn steps_in_last(&self) -> &[u64] {
         &[]
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Executor, Previous};
-use crate::schemes::{Phase, Scheme};
+use crate::schemes::{Phase, RankCosts, Scheme};
 use crate::time::checkpoint::{Checkpoint, Checkpoints, Misfit};
 use crate::time::failure::Failure;
 use crate::time::history::History;
@@ -76,25 +76,31 @@ impl Executor {
         matches!(self.outcome, Some(Outcome::Failed(Failure::NoneInReserve { .. })))
     }
 
-    /// Ends the steps of several ranks, as another run of the same case goes on from the state before the last step, with
-    /// this many `more` particles in reserve than the case asks for; [`Self::serve`] tells the other ranks.
-    pub fn leave(&mut self, more: usize) {
-        self.bring();
+    /// Ends this run, as another one of the same case goes on with this many `more` particles in reserve than the case asks
+    /// for: from the state before the last step, if that lacked particles. [`Self::serve`] tells the other ranks. Returns
+    /// whether the other run can go on: not where a rank is lost.
+    pub fn leave(&mut self, more: usize) -> bool {
         let Previous { clock, wanted, factor, evaluations, .. } = self.previous;
-        // Where a rank is lost, the run is at the last mark, and ends there.
-        if self.has_none_in_reserve()
-            && self.run.clock.step > clock.step
-            && self.step_back().is_none()
-        {
-            let tally = &mut self.run.tally;
-            (tally.wanted, tally.factor) = (wanted, factor);
-            tally.evaluations = evaluations;
-            self.run.history.take_back();
+        if self.has_none_in_reserve() && self.run.clock.step > clock.step {
+            self.is_here = true;
+            if self.step_back().is_none() {
+                let tally = &mut self.run.tally;
+                (tally.wanted, tally.factor) = (wanted, factor);
+                tally.evaluations = evaluations;
+                self.run.history.take_back();
+            }
         }
+        self.bring();
+        let is_lost = matches!(&self.outcome, Some(Outcome::Failed(failure)) if failure.is_loss());
+        (self.phases, self.costs) = (self.phases(), self.costs());
+        // Should no other run go on, this one shows its last state.
+        self.scheme.find_neighbors(&self.run.state);
+        self.scheme.inspect(&self.run.state, &mut Vec::new());
         if let Some(device) = &mut self.device {
-            device.end_for(more);
+            device.end_for_another(more);
         }
         self.device = None;
+        !is_lost
     }
 
     /// What another run of the same case goes on from, whose `scheme` has more particles in reserve, after this one has been
@@ -115,13 +121,30 @@ impl Executor {
     pub fn take_over(&mut self, before: &Self, checkpoint: Checkpoint) -> Result<(), Misfit> {
         self.resume(checkpoint)?;
         self.run.resumed = before.run.resumed;
-        self.phases = before.phases();
+        (self.phases, self.costs) = (before.phases.clone(), before.costs.clone());
         Ok(())
+    }
+
+    /// What has taken the time of each rank in this run and in those that it has taken over from.
+    pub(super) fn costs(&self) -> Vec<RankCosts> {
+        let now = self.device.as_ref().and_then(|device| device.costs().ok());
+        let mut costs = now.unwrap_or_default();
+        for (costs, before) in costs.iter_mut().zip(&self.costs) {
+            costs.computed += before.computed;
+            costs.waited += before.waited;
+            costs.messages += before.messages;
+            costs.bytes += before.bytes;
+        }
+        costs
     }
 
     /// The parts of steps with what they have taken in this run and in those that it has taken over from.
     pub(super) fn phases(&self) -> Vec<Phase> {
-        let mut phases: Vec<Phase> = self.scheme.phases().into_iter().cloned().collect();
+        let phases = match &self.device {
+            Some(device) => device.phases(),
+            None => self.scheme.phases(),
+        };
+        let mut phases: Vec<Phase> = phases.into_iter().cloned().collect();
         let stages = phases.iter_mut().flat_map(|phase| &mut phase.stages);
         let before = self.phases.iter().flat_map(|phase| &phase.stages);
         for ((_, watch), (_, before)) in stages.zip(before) {

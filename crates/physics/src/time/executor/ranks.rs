@@ -254,7 +254,7 @@ impl DeviceSteps for RankSteps {
         self.factor = factor;
     }
 
-    fn end_for(&mut self, more: usize) {
+    fn end_for_another(&mut self, more: usize) {
         self.last = Order::Again(more);
     }
 
@@ -276,8 +276,8 @@ impl DeviceSteps for RankSteps {
         self.told[0]
     }
 
-    fn own_steps(&self) -> &[u64] {
-        self.worker.integrator.own_steps()
+    fn steps_in_last(&self) -> &[u64] {
+        self.worker.integrator.steps_in_last()
     }
 
     /// What stands behind all columns is the same on all ranks.

@@ -346,7 +346,25 @@ impl Reader<'_, '_> {
             times.push(Located::new(end, record.place));
         }
         let range = record.ends("range").map(|range| range.value);
-        Some(Picture { field: field?, times, range })
+        let part = self.part(record)?;
+        Some(Picture { field: field?, times, range, part })
+    }
+
+    /// The part of space that a picture shows, `None` inside for all.
+    fn part(&mut self, record: &Record) -> Option<Option<[Vec<f64>; 2]>> {
+        let (from, to) = match (record.numbers("from"), record.numbers("to")) {
+            (None, None) => return Some(None),
+            (Some(from), Some(to)) => (from, to),
+            (Some(only), None) | (None, Some(only)) => {
+                let message = "a part of space has two corners: `from` and `to`";
+                return self.refuse(Problem::new(only.place, message, "without the other"));
+            }
+        };
+        if from.value.iter().zip(&to.value).all(|(from, to)| from < to) {
+            return Some(Some([from.value, to.value]));
+        }
+        let message = "each coordinate of `to` must be larger than that of `from`";
+        self.refuse(Problem::new(to.place, message, "not beyond `from`"))
     }
 
     pub(super) fn plot(&mut self, record: &Record, probes: Option<&[Probe]>) -> Option<Plot> {

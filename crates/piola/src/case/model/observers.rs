@@ -183,6 +183,8 @@ pub struct Picture {
     pub times: Vec<Located<f64>>,
     /// Ends of the colour bar, `None` for those of the data.
     pub range: Option<[f64; 2]>,
+    /// Corners of the part that is shown in m, `None` for all.
+    pub part: Option<[Vec<f64>; 2]>,
 }
 
 /// Curves of columns of the tables.

@@ -429,6 +429,20 @@ pub(super) static PICTURE: TableSpec = TableSpec {
             Derived("the range of the data"),
             "limits of the colour bar, in the unit of the field",
         ),
+        key(
+            "from",
+            Kind::Numbers(Length::Dimension, Interval::ANY),
+            "m",
+            Derived("that of the particles"),
+            "the corner with the smallest coordinates of the part that is shown; with `to`",
+        ),
+        key(
+            "to",
+            Kind::Numbers(Length::Dimension, Interval::ANY),
+            "m",
+            Derived("that of the particles"),
+            "the corner with the largest coordinates",
+        ),
     ],
 };
 

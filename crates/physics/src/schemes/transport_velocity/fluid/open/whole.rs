@@ -16,21 +16,31 @@ impl<const D: usize> WeaklyCompressible<D> {
         if common.team().is_alone() {
             return change(self, common, state);
         }
+        // Where the numbers of a particle stand in the columns of `count` of them.
+        let numbers_of = |row: usize, count: usize| {
+            FIELDS.iter().flat_map(move |field| {
+                let column = column(&FIELDS, D, count, field);
+                let components = column.len() / count;
+                (0..components).map(move |k| column.start + row * components + k)
+            })
+        };
         let (count, all, wide) = (common.count(), common.particles.len(), width(&FIELDS, D));
-        let own = |field| column(&FIELDS, D, count, field);
-        let mut whole = Vec::with_capacity(all * wide + state.len() - count * wide);
-        for field in &FIELDS {
-            whole.extend(common.team().rows_of_all(state[own(field)].to_vec()));
-        }
+        // What a rank tells is its particles one after another, and a state has column after column.
+        let rows = |from: &[f64], count: usize| {
+            let numbers = (0..count).flat_map(|row| numbers_of(row, count));
+            numbers.map(|number| from[number]).collect::<Vec<f64>>()
+        };
+        let mut told = common.team().rows_of_all(rows(state, count));
         // Where a rank is lost, nothing that follows counts.
-        whole.resize(all * wide, 0.0);
+        told.resize(all * wide, 0.0);
+        let mut whole = vec![0.0; all * wide];
+        let numbers = (0..all).flat_map(|row| numbers_of(row, all));
+        numbers.zip(&told).for_each(|(number, told)| whole[number] = *told);
         whole.extend_from_slice(&state[count * wide..]);
         let result = change(self, common, &mut whole);
-        for field in &FIELDS {
-            let components = own(field).len() / count.max(1);
-            let first = column(&FIELDS, D, all, field).start + common.first() * components;
-            let length = own(field).len();
-            state[own(field)].copy_from_slice(&whole[first..first + length]);
+        for row in 0..count {
+            let of_all = numbers_of(common.first() + row, all);
+            numbers_of(row, count).zip(of_all).for_each(|(own, of_all)| state[own] = whole[of_all]);
         }
         state[count * wide..].copy_from_slice(&whole[all * wide..]);
         result
