@@ -67,14 +67,18 @@ const LONG: &str = "--set time.end=2.0 --set output.every=0.2 --set output.table
 
 /// Cases of the repository that run on several ranks, made shorter: energies of hourglass modes, mirrors, neighbours that
 /// move, new ones in a fluid between walls, a solid in a fluid, and particles that enter and leave, of which the reserve has
-/// too few.
-const CASES: [(&str, &str); 6] = [
-    ("dual-support/free-vibration", "--set parameters.dx=0.5 --set time.end=0.05"),
-    ("elastodynamics/wave-2d", ""),
-    ("upwind/column-impact", "--set time.end=0.5"),
-    ("ctvf/dam-break", "--set parameters.dx=0.1 --set time.end=0.2"),
-    ("coupled/gate", "--set time.end=0.003"),
-    ("open/channel", "--set parameters.across=10 --set time.end=0.2 --set scheme.reserve=1"),
+/// too few after some 150 steps. With each, after which steps it is broken off.
+const CASES: [(&str, &str, [u64; 2]); 6] = [
+    ("dual-support/free-vibration", "--set parameters.dx=0.5 --set time.end=0.05", [6, 13]),
+    ("elastodynamics/wave-2d", "", [6, 13]),
+    ("upwind/column-impact", "--set time.end=0.5", [6, 13]),
+    ("ctvf/dam-break", "--set parameters.dx=0.1 --set time.end=0.2", [6, 13]),
+    ("coupled/gate", "--set time.end=0.003", [6, 13]),
+    (
+        "open/channel",
+        "--set parameters.across=10 --set time.end=0.2 --set scheme.reserve=1",
+        [20, 180],
+    ),
 ];
 
 /// A folder with a case in `plate.toml`.
@@ -144,7 +148,7 @@ fn any_number_of_processes_writes_the_same() {
 #[test]
 fn cases_of_the_repository_write_the_same_on_any_number_of_processes() {
     let place = Place::new();
-    for (case, shorter) in CASES {
+    for (case, shorter, stops) in CASES {
         let path = format!("{}/../../cases/{case}/case.toml", env!("CARGO_MANIFEST_DIR"));
         let run = format!("run {path} {shorter} --quiet --out {case}");
         place.run(&format!("{run}/alone"), 0);
@@ -156,7 +160,7 @@ fn cases_of_the_repository_write_the_same_on_any_number_of_processes() {
         }
         // Broken off on four of them and on two, with one thread each and with two, and continued on another number.
         let split = format!("{run}/split --resume --set checkpoint.every_steps=4");
-        for (size, threads, steps) in [(4, 1, 6), (2, 2, 13)] {
+        for ((size, threads), steps) in [(4, 1), (2, 2)].into_iter().zip(stops) {
             let arguments = format!("{split} --threads {threads} --set time.max_steps={steps}");
             let (_, stderr) = ended(&mut processes(&place, size, &arguments), 3);
             assert_contains(&stderr, &[&format!("maximum number of steps, {steps},")]);
@@ -166,6 +170,8 @@ fn cases_of_the_repository_write_the_same_on_any_number_of_processes() {
             serde_json::from_str(&place.read(&format!("{case}/split/run.json"))).unwrap();
         assert_eq!(record["resumed_at"].as_array().unwrap().len(), 2, "{record}");
         assert_same(&place, &format!("{case}/split"), &format!("{case}/alone"));
+        let is_larger = record["notes"].to_string().contains("the reserve ran out");
+        assert_eq!(is_larger, shorter.contains("reserve"), "{record}");
     }
 }
 

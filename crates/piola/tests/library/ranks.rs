@@ -63,6 +63,7 @@ pub fn same_on_any_number(text: &str, set: &[&str]) -> Left {
 #[track_caller]
 fn same(alone: &Left, shared: &Left, what: &str) {
     assert!(alone.tables == shared.tables, "{what}: tables differ");
+    assert_eq!(alone.finished.notes, shared.finished.notes, "{what}");
     assert_eq!(alone.columns.len(), shared.columns.len(), "{what}");
     for (one, other) in alone.columns.iter().zip(&shared.columns) {
         assert!(one == other, "{what}: {} differs", one.0);

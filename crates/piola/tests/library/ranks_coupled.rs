@@ -177,6 +177,11 @@ fn a_beam_in_a_stream_is_the_same_on_any_number_of_ranks() {
         panic!("the mass is a curve");
     };
     assert!(values.iter().any(|mass| *mass > 0.0), "particles enter");
+    // Nothing leaves, and few wait.
+    let closed = "body.outlet.opening={ normal = [-1.0, 0.0], velocity = ['0', '0'] }";
+    let few = [&sets[..], &[closed, "scheme.reserve=1"]].concat();
+    let notes = same_on_any_number(beam, &few).finished.notes;
+    assert!(notes.iter().any(|note| note.contains("the reserve ran out")), "{notes:?}");
 }
 
 /// A gate that opens, and a plate under the weight of water.

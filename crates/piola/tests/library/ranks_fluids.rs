@@ -107,6 +107,83 @@ fn a_channel_is_the_same_on_any_number_of_ranks() {
     same_on_any_number(channel, &shifted);
 }
 
+/// Fluid goes through a duct in space, whose inlet pulsates, and out of its roof, too.
+#[test]
+fn a_duct_in_space_is_the_same_on_any_number_of_ranks() {
+    let left = same_on_any_number(DUCT, &[]);
+    let Some(Series::Curve { values, .. }) = left.finished.quantity("step.entered") else {
+        panic!("the mass is a curve")
+    };
+    assert!(values.windows(2).filter(|pair| pair[0] < pair[1]).count() > 2, "{values:?}");
+}
+
+const DUCT: &str = r#"
+version = 1
+title = "A duct"
+dimension = 3
+[parameters]
+dx = 0.1
+[domain]
+periodic = { y = [0.0, 0.8] }
+[[body]]
+name = "water"
+shape = { kind = "box", min = [0.0, 0.0, 0.0], max = [1.0, 0.8, 0.4] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 2.0, wave_speed = 20.0, viscosity = 0.02 }
+initial = { velocity = ["1", "0.1 * sin(9 * x)", "0"] }
+[[body]]
+name = "inlet"
+shape = { kind = "box", min = [-0.4, 0.0, 0.0], max = [0.0, 0.8, 0.4] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 2.0, wave_speed = 20.0, viscosity = 0.02 }
+opening = { normal = [1.0, 0.0, 0.0], velocity = ["1 + 0.5 * sin(20 * t)", "0", "0"] }
+[[body]]
+name = "outlet"
+shape = { kind = "box", min = [1.0, 0.0, 0.0], max = [1.4, 0.8, 0.4] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 2.0, wave_speed = 20.0, viscosity = 0.02 }
+opening = { normal = [-1.0, 0.0, 0.0], pressure = "0.1 * t" }
+[[body]]
+name = "vent"
+shape = { kind = "box", min = [0.4, 0.0, 0.4], max = [0.8, 0.8, 0.8] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 2.0, wave_speed = 20.0, viscosity = 0.02 }
+opening = { normal = [0.0, 0.0, -1.0], pressure = "0" }
+[[body]]
+name = "walls"
+shape = { kind = "union", of = [
+  { kind = "box", min = [-0.4, 0.0, -0.4], max = [1.4, 0.8, 0.0] },
+  { kind = "box", min = [-0.4, 0.0, 0.4], max = [0.4, 0.8, 0.8] },
+  { kind = "box", min = [0.8, 0.0, 0.4], max = [1.4, 0.8, 0.8] },
+] }
+spacing = "dx"
+lattice = { on = "cells" }
+material = { kind = "weakly_compressible", density = 2.0, wave_speed = 20.0, viscosity = 0.02 }
+wall = {}
+[scheme]
+kind = "transport_velocity"
+[time]
+end = 0.4
+[output]
+every = 0.2
+table_every = 0.05
+"#;
+
+/// A run that fails after particles have entered goes back before some of them did, and then ends in the same words.
+#[test]
+fn what_goes_wrong_in_a_tank_that_is_filled_is_the_same_on_any_number_of_ranks() {
+    let late = "load+={ kind = 'body_force', acceleration = ['0 * sqrt(0.2 - t)', '0'] }";
+    let sets = ["scheme.reserve=3", late];
+    let told = failure(FILLING, &sets, 1, 2);
+    assert!(told.contains("NotFinite"), "{told}");
+    assert_eq!(failure(FILLING, &sets, 3, 2), told);
+    assert_eq!(failure(FILLING, &sets, 2, 2), told);
+}
+
 /// Fluid falls into a tank, with enough particles in reserve and with so few that the run is built anew.
 #[test]
 fn a_tank_that_is_filled_is_the_same_on_any_number_of_ranks() {
