@@ -48,6 +48,8 @@ pub struct Executor {
     phases: Vec<Phase>,
     /// The same of ranks.
     costs: Vec<RankCosts>,
+    /// Whether another run goes on, and both are of all of this one.
+    has_left: bool,
     /// Where the next state is made.
     next: Arc<Vec<f64>>,
     /// The run before the last step, which one that fails ends with.
@@ -132,6 +134,7 @@ impl Executor {
             next: Arc::new(state.clone()),
             phases: Vec::new(),
             costs: Vec::new(),
+            has_left: false,
             previous: Previous {
                 clock: Clock::START,
                 state: Arc::new(state.clone()),

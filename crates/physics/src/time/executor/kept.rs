@@ -93,6 +93,7 @@ impl Executor {
         self.bring();
         let is_lost = matches!(&self.outcome, Some(Outcome::Failed(failure)) if failure.is_loss());
         (self.phases, self.costs) = (self.phases(), self.costs());
+        self.has_left = true;
         // Should no other run go on, this one shows its last state.
         self.scheme.find_neighbors(&self.run.state);
         self.scheme.inspect(&self.run.state, &mut Vec::new());
@@ -127,6 +128,9 @@ impl Executor {
 
     /// What has taken the time of each rank in this run and in those that it has taken over from.
     pub(super) fn costs(&self) -> Vec<RankCosts> {
+        if self.has_left {
+            return self.costs.clone();
+        }
         let now = self.device.as_ref().and_then(|device| device.costs().ok());
         let mut costs = now.unwrap_or_default();
         for (costs, before) in costs.iter_mut().zip(&self.costs) {
@@ -140,6 +144,9 @@ impl Executor {
 
     /// The parts of steps with what they have taken in this run and in those that it has taken over from.
     pub(super) fn phases(&self) -> Vec<Phase> {
+        if self.has_left {
+            return self.phases.clone();
+        }
         let phases = match &self.device {
             Some(device) => device.phases(),
             None => self.scheme.phases(),
