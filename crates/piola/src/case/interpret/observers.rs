@@ -352,14 +352,16 @@ impl Reader<'_, '_> {
 
     /// The part of space that a picture shows, `None` inside for all.
     fn part(&mut self, record: &Record) -> Option<Option<[Vec<f64>; 2]>> {
-        let (from, to) = match (record.numbers("from"), record.numbers("to")) {
-            (None, None) => return Some(None),
-            (Some(from), Some(to)) => (from, to),
-            (Some(only), None) | (None, Some(only)) => {
-                let message = "a part of space has two corners: `from` and `to`";
-                return self.refuse(Problem::new(only.place, message, "without the other"));
-            }
+        let only = match [record.has("from"), record.has("to")] {
+            [false, false] => return Some(None),
+            [true, true] => None,
+            [from, _] => record.key_place(if from { "from" } else { "to" }),
         };
+        if let Some(place) = only {
+            let message = "a part of space has two corners: `from` and `to`";
+            return self.refuse(Problem::new(place, message, "without the other"));
+        }
+        let (from, to) = (record.numbers("from")?, record.numbers("to")?);
         if from.value.iter().zip(&to.value).all(|(from, to)| from < to) {
             return Some(Some([from.value, to.value]));
         }
