@@ -48,5 +48,5 @@ pub use record::{
     RunRecord, StageRecord, SystemRecord, timestamp,
 };
 pub use table::{Column, Table};
-pub use text::significant;
+pub use text::{DIGITS, significant};
 pub use vtp::Compression;

@@ -1,5 +1,8 @@
 //! Numbers as text for people.
 
+/// Digits of numbers of a case and of results.
+pub const DIGITS: usize = 6;
+
 /// `value` rounded to `digits` significant digits: `0.374166`, `1.2e-9`, `250`.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {

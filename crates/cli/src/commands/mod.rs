@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use piola::case::{Case, LoadOptions, Problems, Session, load};
 
@@ -55,6 +56,12 @@ fn side_by_side(
         }
     };
     std::thread::scope(|scope| (0..jobs).for_each(|_| drop(scope.spawn(one_after_another))));
+}
+
+/// What a job that panicked while it held the lock left is whole: rows are put in at once, and files are whole or not
+/// there.
+fn locked<T>(it: &Mutex<T>) -> MutexGuard<'_, T> {
+    it.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Changes of the case by its flags: those of `--set`, and who computes.

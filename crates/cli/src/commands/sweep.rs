@@ -13,7 +13,7 @@ use piola::time::Outcome;
 use self::members::{Member, members};
 use self::progress::Overall;
 use super::run::default_folder;
-use super::side_by_side;
+use super::{locked, side_by_side};
 use crate::arguments::SweepArguments;
 use crate::exit::{Exit, Fault};
 use crate::text::{count, duration, significant};
@@ -140,12 +140,7 @@ impl Sweep {
     }
 
     fn trouble(&self, trouble: Trouble) {
-        self.locked().1.push(trouble);
-    }
-
-    /// A thread that panicked while it held the lock left whole rows.
-    fn locked(&self) -> std::sync::MutexGuard<'_, (Comparison, Vec<Trouble>)> {
-        self.comparison.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+        locked(&self.comparison).1.push(trouble);
     }
 
     fn note(&self, index: usize, result: MemberResult) {
@@ -155,7 +150,7 @@ impl Sweep {
             result.outcome,
             duration(result.seconds.unwrap_or_default())
         );
-        self.locked().0.members[index] = result;
+        locked(&self.comparison).0.members[index] = result;
         self.progress.ended(index, &line, self.members.len());
         // What cannot be written now cannot be written at the end, where it is reported.
         let _ = self.save();
@@ -163,7 +158,7 @@ impl Sweep {
 
     fn save(&self) -> Result<(), Fault> {
         let fault = |error: OutputError| Fault::new(Exit::Io, error);
-        self.locked().0.write_csv(&self.folder.join(TABLE)).map_err(fault)?;
+        locked(&self.comparison).0.write_csv(&self.folder.join(TABLE)).map_err(fault)?;
         Ok(())
     }
 

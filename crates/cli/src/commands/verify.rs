@@ -1,16 +1,17 @@
 //! `piola verify`: all cases below some folders, and one table of their checks.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use piola::case::page::{PageCase, Row, SettingRuns};
 use piola::case::verify::{VariantRun, needed_variants, verify as evaluate};
 use piola::case::{Case, Finished, Level, LoadOptions, Session, load};
 
-use super::{refusal, side_by_side};
+use super::{locked, refusal, side_by_side};
 use crate::arguments::VerifyArguments;
 use crate::exit::{Exit, Fault};
 use crate::progress::{Audience, Display};
@@ -35,18 +36,17 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     if let Some(only) = &arguments.only {
         paths.retain(|path| is_called(path, only));
     }
-    let found: Vec<Mutex<Option<Result<Rows, Fault>>>> =
-        paths.iter().map(|_| Mutex::new(None)).collect();
+    let found = Mutex::new(BTreeMap::new());
     side_by_side(paths.len(), arguments.jobs, arguments.threads, &stop, |index| {
         let rows = one(&paths[index], arguments, &stop).rows(&paths[index], page.as_ref(), &today);
         // A page that cannot be written has no use for other cases.
         if matches!(rows, Some(Err(_))) {
             stop.store(true, Ordering::Relaxed);
         }
-        *locked(&found[index]) = rows;
+        locked(&found).extend(rows.map(|rows| (index, rows)));
     });
-    let found = found.into_iter().filter_map(|rows| locked(&rows).take());
-    let rows: Vec<Rows> = found.collect::<Result<_, _>>()?;
+    let found = std::mem::take(&mut *locked(&found));
+    let rows: Vec<Rows> = found.into_values().collect::<Result<_, _>>()?;
     let seconds = start.elapsed().as_secs_f64();
     let all = || rows.iter().flat_map(|(_, rows)| rows);
     let skipped = all().filter(|row| !row.was_run()).count();
@@ -160,12 +160,6 @@ impl Found {
         };
         Some(written.unwrap_or(Ok(())).map(|()| rows))
     }
-}
-
-/// What a job that panicked while it held the lock left is whole: rows are put in at once, and files of the page are
-/// whole or not there.
-fn locked<T>(it: &Mutex<T>) -> MutexGuard<'_, T> {
-    it.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The settings that are run. `--paper` also runs what has the publication's numbers as it stands.

@@ -121,6 +121,11 @@ impl Team {
         }
     }
 
+    /// Which of the ranks this is.
+    pub fn rank(&self) -> usize {
+        self.shared.as_ref().map_or(0, |shared| shared.ranks.rank())
+    }
+
     /// The number of the first particle among those of all ranks.
     pub fn first(&self) -> usize {
         self.shared.as_ref().map_or(0, |shared| shared.bounds[shared.ranks.rank()])
@@ -194,11 +199,19 @@ impl Team {
 
     /// What all ranks have, in the order of ranks.
     pub fn rows_of_all<T: Pod>(&self, own: Vec<T>) -> Vec<T> {
-        let Some(shared) = &self.shared else { return own };
-        let others = shared.ranks.size() as u64 - 1;
-        shared.count([0, others, others * size_of_val(own.as_slice()) as u64]);
-        let told = shared.told(|| shared.ranks.gather_to_all(cast_slice(&own)));
+        if self.is_alone() {
+            return own;
+        }
+        let told = self.parts_of_all(cast_slice(&own));
         told.iter().flatten().flat_map(|part| cast_slice::<f64, T>(part)).copied().collect()
+    }
+
+    /// What each rank has, if none is lost.
+    pub fn parts_of_all(&self, own: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let Some(shared) = &self.shared else { return Some(vec![own.to_vec()]) };
+        let others = shared.ranks.size() as u64 - 1;
+        shared.count([0, others, others * size_of_val(own) as u64]);
+        shared.told(|| shared.ranks.gather_to_all(own))
     }
 
     /// The largest of what all ranks have, number by number.

@@ -120,6 +120,16 @@ impl RankRows {
         (0..self.stretches.len()).map(|rank| self.part(rank, state)).collect()
     }
 
+    /// The state of all that these parts are of, where it has nothing but them.
+    pub fn whole(&self, parts: &[Vec<f64>]) -> Vec<f64> {
+        let own: usize = self.stretches.iter().flatten().map(Range::len).sum();
+        let all: usize = parts.iter().map(Vec::len).sum();
+        let behind = (all - own) / parts.len().max(1);
+        let mut state = vec![0.0; self.tail + behind];
+        self.join(parts, &mut state);
+        state
+    }
+
     /// Puts a state together, of which rank 0 has what stands behind all columns.
     pub fn join(&self, parts: &[Vec<f64>], state: &mut [f64]) {
         for (own, part) in self.stretches.iter().zip(parts) {

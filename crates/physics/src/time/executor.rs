@@ -1,6 +1,8 @@
 //! A run, a step at a time.
 
+mod costs;
 mod device;
+mod growth;
 mod kept;
 mod ranks;
 
@@ -75,13 +77,6 @@ struct Previous {
     factor: f64,
     /// Evaluations of single particles up to then.
     evaluations: u64,
-}
-
-/// Evaluations of single particles in a step of the run: those in one of the steps of each system, and how many of these
-/// it takes.
-fn evaluated(by_system: &[u64], steps: &[u64]) -> u64 {
-    let steps = |system: usize| steps.get(system).copied().unwrap_or(1);
-    by_system.iter().enumerate().map(|(system, of_one)| of_one * steps(system)).sum()
 }
 
 /// Brings accelerations that a state holds, and what a formulation knows of neighbours, into line with the rest of it.
@@ -169,17 +164,6 @@ impl Executor {
     pub fn shared_state(&mut self) -> Arc<Vec<f64>> {
         self.bring();
         Arc::clone(&self.run.state)
-    }
-
-    /// Evaluations of single particles in a step like the last one of the integrator.
-    pub fn evaluations_in_step(&self) -> u64 {
-        evaluated(&self.evaluations, self.integrator.steps_in_last())
-    }
-
-    /// How many steps of its own each system of the run has taken, by name; nothing where there is one system.
-    pub fn own_steps(&mut self) -> Vec<(String, u64)> {
-        self.bring();
-        self.scheme.own_steps(&self.run.state)
     }
 
     /// Where the run stands.
@@ -470,7 +454,7 @@ impl Executor {
         }
         run.tally.wanted = chosen.step / run.tally.factor;
         let steps = device.as_ref().map_or(integrator.steps_in_last(), |it| it.steps_in_last());
-        run.tally.evaluations += evaluated(&self.evaluations, steps);
+        run.tally.evaluations += costs::evaluated(&self.evaluations, steps);
         run.advance(self.control, met, soonest);
         run.lengthen(integrator.as_ref(), scheme.as_ref(), chosen, met);
         self.is_seen = false;

@@ -17,7 +17,7 @@ use super::model::{
 use super::record::{Datum, Record};
 use super::source::{Located, Place};
 use super::suggest::suggestion;
-use crate::output::significant;
+use crate::output::{DIGITS, significant};
 use crate::time::IntegratorKind;
 
 mod bodies;
@@ -330,7 +330,7 @@ impl Reader<'_, '_> {
     /// Remarks on what lies after the end of the run.
     fn say_what_is_late(&mut self, end: f64) {
         let Late { pictures, checks } = std::mem::take(&mut self.late);
-        let shown = |time: &f64| significant(*time, 6);
+        let shown = |time: &f64| significant(*time, DIGITS);
         for (what, consequence, mut times) in [
             ("pictures", "they are left out", pictures),
             ("checks", "they cannot be evaluated", checks),

@@ -39,20 +39,15 @@ pub enum Unserved {
 pub fn serve(case: &Case, ranks: Arc<dyn Ranks>, stop: Arc<AtomicBool>) -> Result<(), Unserved> {
     let (mut case, mut has_begun) = (case.clone(), false);
     loop {
-        let (executor, _) = begin(&case, ranks.as_ref()).map_err(|_| match has_begun {
-            true => Unserved::Ended,
-            false => Unserved::Refused,
-        })?;
-        has_begun = true;
+        let refused = || if has_begun { Unserved::Ended } else { Unserved::Refused };
+        let (executor, _) = begin(&case, ranks.as_ref()).map_err(|_| refused())?;
         let served = executor.serve(ranks.clone(), stop.clone());
         let more = served.map_err(|refusal| match refusal {
             RankRefusal::Ranks(lost) => Unserved::Lost(lost),
-            _ => Unserved::Refused,
+            _ => refused(),
         })?;
-        match more {
-            None => return Ok(()),
-            Some(more) => case.more_in_reserve = more,
-        }
+        let Some(more) = more else { return Ok(()) };
+        (case.more_in_reserve, has_begun) = (more, true);
     }
 }
 

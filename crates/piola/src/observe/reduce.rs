@@ -8,7 +8,7 @@
 
 use thiserror::Error;
 
-use crate::output::{Curve, significant};
+use crate::output::{Curve, DIGITS, significant};
 use history::History;
 
 mod history;
@@ -16,9 +16,6 @@ mod oscillation;
 mod reference;
 #[cfg(test)]
 mod tests;
-
-/// Digits of times and widths in labels.
-const DIGITS: usize = 6;
 
 /// Variations below this fraction of a history's range are wiggles, neither extrema nor crossings.
 pub const WIGGLE: f64 = 0.05;

@@ -19,6 +19,7 @@ use crate::boundaries::prescribed::PrescribedComponents;
 use crate::geometry::Particles;
 use crate::operators::MovingSupport;
 use crate::parallel::Team;
+use crate::schemes::RankRows;
 
 /// The matter of a body where nothing presses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +35,8 @@ pub struct Common<const D: usize> {
     /// Reference state; the number of a particle is its index here.
     pub(super) particles: Particles<D>,
     pub(super) support: MovingSupport<D>,
+    /// Where the particles of each rank stand in a state of all, if there are several.
+    pub(super) rows: Option<RankRows>,
     pub(super) settings: Settings,
     /// By body.
     pub(super) at_rest: Vec<AtRest>,
@@ -107,6 +110,7 @@ impl<const D: usize> Common<D> {
             guard: None,
             removed: Vec::new(),
             lost: None,
+            rows: None,
             particles,
             support,
             settings,
@@ -117,7 +121,7 @@ impl<const D: usize> Common<D> {
     }
 
     /// Those of a rank which has `count` of them.
-    pub(super) fn part(&self, team: Team, count: usize) -> Self {
+    pub(super) fn part(&self, team: Team, count: usize, rows: RankRows) -> Self {
         let support = self.support.part(team, count);
         let walls = (self.is_wall.clone(), self.walls.clone());
         let matter = (self.at_rest.clone(), self.mass.clone());
@@ -131,6 +135,7 @@ impl<const D: usize> Common<D> {
             iteration: self.iteration.clone(),
             guard: self.guard.clone(),
             removed: self.removed.clone(),
+            rows: Some(rows).filter(|_| !support.list().team().is_alone()),
             ..Self::new(self.particles.clone(), support, self.settings, walls, matter)
         }
     }

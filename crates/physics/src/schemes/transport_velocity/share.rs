@@ -48,11 +48,13 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     /// The particles of a rank. What does not change of particles it knows of all.
     pub(crate) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
         let team = part.team(&Slots::default())?;
-        let common = self.common.part(team, part.own().len());
+        let rows = RankRows::of(self, &part.bounds);
+        let start = rows.part(part.ranks.rank(), &self.start);
+        let common = self.common.part(team, part.own().len(), rows);
         Ok(Self {
             matter: self.matter.part(&common),
             common,
-            start: RankRows::of(self, &part.bounds).part(part.ranks.rank(), &self.start),
+            start,
             drift: self.drift.clone(),
             accelerate: self.accelerate.clone(),
         })

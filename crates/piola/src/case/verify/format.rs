@@ -1,10 +1,7 @@
 //! Numbers and expectations as text for people.
 
 use crate::case::model::{Expectation, Trend};
-use crate::output::significant;
-
-/// Digits of a result that are shown.
-const DIGITS: usize = 6;
+use crate::output::{DIGITS, significant};
 
 /// `value` with `unit`, which is left out for pure numbers.
 pub(super) fn with_unit(value: f64, unit: &str) -> String {

@@ -198,15 +198,12 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
     }
 
     fn part(&self, common: &Common<D>) -> Self {
-        let new = Self::new(self.fluid, common);
+        let is_sheared = !self.shear.is_empty();
         Self {
             damping: self.damping.part(common.count()),
             open: self.open.part(common),
-            shear: match self.open.is_empty() {
-                true => new.shear,
-                false => vec![Vector::zeros(); common.count()],
-            },
-            ..new
+            shear: vec![Vector::zeros(); if is_sheared { common.count() } else { 0 }],
+            ..Self::new(self.fluid, common)
         }
     }
 
