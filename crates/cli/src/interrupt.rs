@@ -22,10 +22,12 @@ fn listen_and(tell: impl Fn() + Send + 'static) -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let handler = move || {
-        if flag.swap(true, Ordering::SeqCst) {
+        if flag.load(Ordering::SeqCst) {
             std::process::exit(i32::from(Exit::Interrupted.code()));
         }
+        // Whoever sees the flag may end the program, so that it is told first. One thread handles all signals.
         tell();
+        flag.store(true, Ordering::SeqCst);
     };
     if let Err(error) = ctrlc::set_handler(handler) {
         terminal::report(&format!("warning: Ctrl-C will not write the state: {error}\n"));
