@@ -337,7 +337,7 @@ fn what_several_processes_cannot_run_is_refused_once() {
 
     let place = place_with(PLATE);
     let implicit = "run plate.toml --set scheme.viscosity=0 --set time.integrator='newmark' --set time.step=0.001";
-    let parts = ["statics and implicit steps do not run on several ranks yet"];
+    let parts = ["the direct linear solver does not run on several ranks yet"];
     refused(&place, &mut processes(&place, 2, implicit), 2, &parts);
 
     let mut command = processes(&place, 2, "run plate.toml --ranks 2");

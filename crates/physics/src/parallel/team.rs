@@ -5,6 +5,7 @@
 //! not rounded, every number is the same to the bit for any number of ranks.
 
 use std::cell::{Cell, RefCell};
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
@@ -13,7 +14,9 @@ use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use piola_formulas::pairs::{Of, Record};
 use piola_ranks::{Exact, LIMBS, Message, RankError, Ranks};
 
-use super::{ExactSums, Parts, Reduce, Sums, add_sums, add_sums_over_parts, reduce};
+use super::{
+    ExactSums, Parts, Reduce, Sums, add_sums, add_sums_over_parts, for_each_chunk, reduce,
+};
 
 /// Those that compute a system together.
 #[derive(Clone, Default)]
@@ -145,6 +148,48 @@ impl Team {
     /// The particle with a number among those of all ranks, if it is one of `count` here.
     pub fn own(&self, number: usize, count: usize) -> Option<usize> {
         number.checked_sub(self.first()).filter(|&a| a < count)
+    }
+
+    /// Which of `count` particles in all this rank has.
+    pub fn share_of(&self, count: usize) -> Range<usize> {
+        self.shared.as_ref().map_or(0..count, |shared| shared.share(shared.ranks.rank()))
+    }
+
+    /// Which of `count` items this rank computes, where ranks have about as many each.
+    pub fn even_share(&self, count: usize) -> Range<usize> {
+        let Some(shared) = &self.shared else { return 0..count };
+        let (rank, size) = (shared.ranks.rank(), shared.ranks.size());
+        count * rank / size..count * (rank + 1) / size
+    }
+
+    /// Fills rows of all particles that every rank has, as [`for_each_chunk`]: each rank those of its own particles, which it
+    /// then tells the others.
+    pub fn fill<T: Pod + Send>(&self, rows: &mut [T], body: impl Fn(usize, &mut [T]) + Sync) {
+        if rows.is_empty() {
+            return;
+        }
+        let own = self.share_of(rows.len());
+        for_each_chunk(&mut rows[own.clone()], |first, rows| body(own.start + first, rows));
+        self.complete(rows, |a| a);
+    }
+
+    /// Takes from the others what they have filled of rows that every rank has: those of particle `a` begin at `place(a)`.
+    /// Where a rank is lost, they are not numbers.
+    pub fn complete<T: Pod>(&self, rows: &mut [T], place: impl Fn(usize) -> usize) {
+        let Some(shared) = &self.shared else { return };
+        let part = |rank: usize| {
+            let Range { start, end } = shared.share(rank);
+            place(start)..place(end)
+        };
+        let own = shared.ranks.rank();
+        let told = self.parts_of_all(cast_slice(&rows[part(own)]));
+        for rank in (0..shared.ranks.size()).filter(|rank| *rank != own) {
+            let rows: &mut [f64] = cast_slice_mut(&mut rows[part(rank)]);
+            match &told {
+                Some(told) => rows.copy_from_slice(&told[rank]),
+                None => rows.fill(f64::NAN),
+            }
+        }
     }
 
     /// Seconds of telling and waiting, messages and bytes that were sent.
@@ -325,6 +370,11 @@ impl Team {
 }
 
 impl Shared {
+    /// The particles of a rank.
+    fn share(&self, rank: usize) -> Range<usize> {
+        self.bounds[rank]..self.bounds[rank + 1]
+    }
+
     /// Tells other ranks what they have copies of, and takes what they tell: `length` numbers a particle, which `show`
     /// appends of an own one and `take` has of a copy.
     fn exchange(

@@ -31,7 +31,7 @@ pub mod world;
 pub use compiled::{Doors, compiled};
 pub use coupled::CoupledScheme;
 pub use description::{Capability, NEWTON_ITERATIONS, SchemeDescription};
-pub use device::{DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, StepsError};
+pub use device::{DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, Inaccurate, StepsError};
 pub use equilibrium::{Missed, NoSensitivity, NoSolution, Sensitivity, StaticScheme};
 pub use initial::Initial;
 pub use input::InputError;

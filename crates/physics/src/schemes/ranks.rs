@@ -99,8 +99,12 @@ pub struct RankRows {
 
 impl RankRows {
     /// Those of ranks whose particles begin and end where `bounds` has it. Of several systems, those that stand behind the
-    /// one that ranks [divide](Scheme::divided) are behind all columns.
+    /// one that ranks [divide](Scheme::divided) are behind all columns, and so is all that each rank
+    /// [has](Scheme::is_whole_on_ranks).
     pub fn of(scheme: &dyn Scheme, bounds: &[usize]) -> Self {
+        if scheme.is_whole_on_ranks() {
+            return Self { stretches: vec![Vec::new(); bounds.len() - 1], tail: 0 };
+        }
         let scheme = scheme.divided().unwrap_or(scheme);
         let of_rank = |ends: &[usize]| {
             let fields = scheme.description().fields.iter();
@@ -234,6 +238,14 @@ pub enum RankRefusal {
     /// The ranks.
     #[error(transparent)]
     Ranks(#[from] RankError),
+}
+
+impl RankRefusal {
+    /// Factors are made by one.
+    pub(crate) const DIRECT: Self = Self::Feature {
+        what: "the direct linear solver does not run",
+        instead: "set `time.linear_solver = \"krylov\"`",
+    };
 }
 
 /// What to do where there are more ranks than chunks.

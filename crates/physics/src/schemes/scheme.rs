@@ -274,6 +274,11 @@ pub trait Scheme: Send + Sync {
         None
     }
 
+    /// Whether each rank has the whole state, as where equations are solved for all particles: ranks share what that takes.
+    fn is_whole_on_ranks(&self) -> bool {
+        false
+    }
+
     /// What some particles cost in a step, in units of one's own.
     fn cost(&self, particles: Range<usize>) -> f64 {
         particles.len() as f64

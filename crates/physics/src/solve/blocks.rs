@@ -1,17 +1,19 @@
 //! Matrices of blocks, row by row.
 
 use super::linear::Tangent;
-use crate::{Tensor, Vector, parallel};
+use crate::parallel::{self, Team};
+use crate::{Tensor, Vector};
 
 /// A square matrix of blocks on a fixed pattern, which is the same on both sides of the diagonal;
-/// the blocks need not be.
-#[derive(Clone, Debug)]
+/// the blocks need not be. Each of several ranks has all of it, and makes the rows of its own particles.
+#[derive(Clone)]
 pub struct BlockMatrix<const D: usize> {
     /// Row a has the blocks from `offsets[a]` to `offsets[a + 1]`.
     offsets: Vec<usize>,
     /// Column of each block, ascending in a row.
     columns: Vec<u32>,
     values: Vec<Tensor<D>>,
+    team: Team,
 }
 
 impl<const D: usize> BlockMatrix<D> {
@@ -24,7 +26,12 @@ impl<const D: usize> BlockMatrix<D> {
             offsets.push(columns.len());
         }
         let values = vec![Tensor::zeros(); columns.len()];
-        Self { offsets, columns, values }
+        Self { offsets, columns, values, team: Team::default() }
+    }
+
+    /// Shares the work with a team.
+    pub(crate) fn share(&mut self, team: Team) {
+        self.team = team;
     }
 
     /// Number of rows of blocks.
@@ -47,21 +54,25 @@ impl<const D: usize> BlockMatrix<D> {
     /// Replaces all blocks: `fill(a, add)` calls `add(b, block)` for those of row a, which add up
     /// where b comes again. A block outside of the pattern is left out.
     pub fn fill(&mut self, fill: impl Fn(usize, &mut dyn FnMut(u32, &Tensor<D>)) + Sync) {
-        let (offsets, columns) = (&self.offsets, &self.columns);
-        let mut rows = vec![(); offsets.len() - 1];
-        let start = |row: usize| offsets[row];
-        parallel::for_each_span(&mut self.values, &mut rows, &start, |first, values, rows| {
+        let own = self.team.share_of(self.len());
+        let (offsets, columns) = (&self.offsets[own.start..], &self.columns);
+        let (begin, end) = (offsets[0], offsets[own.len()]);
+        let mut rows = vec![(); own.len()];
+        let start = |row: usize| offsets[row] - begin;
+        let values = &mut self.values[begin..end];
+        parallel::for_each_span(values, &mut rows, &start, |first, values, rows| {
             values.fill(Tensor::zeros());
-            for a in first..first + rows.len() {
-                let own = &columns[offsets[a]..offsets[a + 1]];
-                let values = &mut values[offsets[a] - offsets[first]..][..own.len()];
-                fill(a, &mut |b, block| {
-                    if let Ok(place) = own.binary_search(&b) {
+            for row in first..first + rows.len() {
+                let columns = &columns[offsets[row]..offsets[row + 1]];
+                let values = &mut values[offsets[row] - offsets[first]..][..columns.len()];
+                fill(own.start + row, &mut |b, block| {
+                    if let Ok(place) = columns.binary_search(&b) {
                         values[place] += block;
                     }
                 });
             }
         });
+        self.team.complete(&mut self.values, |a| self.offsets[a]);
     }
 
     /// The block of row a and column b, zero outside of the pattern.
@@ -93,7 +104,7 @@ impl<const D: usize> Tangent<D> for BlockMatrix<D> {
 
     fn apply(&mut self, direction: &[Vector<D>], product: &mut [Vector<D>]) {
         let matrix = &*self;
-        parallel::for_each_chunk(product, |first, product| {
+        self.team.fill(product, |first, product| {
             for (offset, product) in product.iter_mut().enumerate() {
                 let terms = matrix.row(first + offset);
                 *product = terms.map(|(b, block)| block * direction[b as usize]).sum();

@@ -8,6 +8,7 @@
 
 use super::linear::Tangent;
 use super::{Factor, FactorError, Local, Reduction, SparseMatrix, dissect};
+use crate::parallel::Team;
 use crate::{Tensor, Vector, parallel};
 
 /// Rows that a part has at least, in one, two and three dimensions.
@@ -19,6 +20,7 @@ const MOST_PARTS: [usize; 3] = [4000, 2500, 500];
 const SHIFT: f64 = 1e-10;
 
 /// The coarse space of a reduction, and the tangent there.
+#[derive(Clone)]
 pub(super) struct Coarse<const D: usize> {
     /// Motions of a part: shifts and turns.
     modes: usize,
@@ -39,6 +41,7 @@ pub(super) struct Coarse<const D: usize> {
 }
 
 /// The unknowns that a row has in a part.
+#[derive(Clone)]
 struct Share<const D: usize> {
     part: u32,
     /// What each motion of the part moves the row by.
@@ -139,15 +142,20 @@ impl<const D: usize> Coarse<D> {
         (&self.matrix, &self.factor)
     }
 
-    /// Gathers the values of a tangent.
-    pub fn assemble<T: Tangent<D>>(&mut self, tangent: &T) {
-        let mut columns: Vec<Vec<f64>> = vec![Vec::new(); self.rows.len()];
+    /// Gathers the values of a tangent, of which each of a team makes those of some parts.
+    pub fn assemble<T: Tangent<D>>(&mut self, tangent: &T, team: &Team) {
+        let own = team.even_share(self.rows.len());
+        let mut columns: Vec<Vec<f64>> = vec![Vec::new(); own.len()];
         let this = &*self;
-        parallel::for_each_item(&mut columns, |part, values| {
-            *values = this.gather(part, tangent);
+        parallel::for_each_item(&mut columns, |k, values| {
+            *values = this.gather(own.start + k, tangent);
         });
-        self.matrix.set_values(columns.concat());
-        self.matrix.regularise(SHIFT);
+        let values = team.rows_of_all(columns.concat());
+        // Where a rank is lost, so is what they compute.
+        if values.len() == self.matrix.entries() {
+            self.matrix.set_values(values);
+            self.matrix.regularise(SHIFT);
+        }
     }
 
     /// Factorises the tangent that was assembled, and returns how many directions of negative
@@ -383,7 +391,7 @@ mod tests {
         let coupled: Vec<Vec<u32>> = (0..reduction.rows()).map(|a| grid.coupled(a)).collect();
         let made = Coarse::new(&grid.points(), reduction, &coupled).expect("memory");
         let mut coarse = made.expect("there are parts");
-        coarse.assemble(grid);
+        coarse.assemble(grid, &Team::default());
         coarse
     }
 

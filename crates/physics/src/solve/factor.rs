@@ -1,6 +1,8 @@
 //! Direct solution by sparse `L D L^T`.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::ldlt::factor::{LdltParams, LdltRegularization};
 use faer::perm::PermRef;
 use faer::prelude::default;
@@ -19,9 +21,22 @@ use super::SparseMatrix;
 ///
 /// On one thread: the result is the same for any number of them, and small systems are faster.
 pub struct Factor {
-    symbolic: SymbolicCholesky<usize>,
+    symbolic: Arc<SymbolicCholesky<usize>>,
     values: Vec<f64>,
+    /// Scratch, and how much of it is needed.
     memory: MemBuffer,
+    request: StackReq,
+}
+
+impl Clone for Factor {
+    fn clone(&self) -> Self {
+        Self {
+            symbolic: Arc::clone(&self.symbolic),
+            values: self.values.clone(),
+            memory: MemBuffer::new(self.request),
+            request: self.request,
+        }
+    }
 }
 
 /// A matrix that cannot be taken apart.
@@ -89,7 +104,7 @@ impl Factor {
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| too_much(needed))?;
         values.resize(symbolic.len_val(), 0.0);
-        Ok(Self { symbolic, values, memory: buffer })
+        Ok(Self { symbolic: Arc::new(symbolic), values, memory: buffer, request })
     }
 
     /// Takes a matrix with the pattern apart and returns how many pivots are negative: as many as

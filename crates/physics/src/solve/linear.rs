@@ -8,7 +8,8 @@ use super::coarse::Coarse;
 use super::jacobi::BlockJacobi;
 use super::krylov::{Outcome, conjugate_gradients, gmres};
 use super::{Factor, FactorError, Reduction, SparseMatrix, dissect, irregular};
-use crate::{Tensor, Vector, parallel};
+use crate::parallel::{self, Team};
+use crate::{Tensor, Vector};
 
 /// The derivative of what a scheme's rows resist with, at the state it was made for.
 pub trait Tangent<const D: usize>: Sync {
@@ -149,6 +150,9 @@ impl Outcome {
 }
 
 /// A linear solver bound to the pattern of a tangent.
+///
+/// Each of several ranks has one with all unknowns. They share what a tangent shares, and the coarse space.
+#[derive(Clone)]
 pub struct LinearSolver<const D: usize> {
     reduction: Reduction<D>,
     /// None for a Krylov method.
@@ -162,6 +166,7 @@ pub struct LinearSolver<const D: usize> {
     /// Whether the coarse tangent is of another path of states.
     is_stale: bool,
     costs: Costs,
+    team: Team,
 }
 
 impl<const D: usize> LinearSolver<D> {
@@ -212,7 +217,13 @@ impl<const D: usize> LinearSolver<D> {
             negative: 0,
             is_stale: true,
             costs,
+            team: Team::default(),
         })
+    }
+
+    /// Shares the work with a team, all of whom have the same tangents.
+    pub(crate) fn share(&mut self, team: Team) {
+        self.team = team;
     }
 
     /// The unknowns it solves for.
@@ -253,7 +264,7 @@ impl<const D: usize> LinearSolver<D> {
             self.jacobi = BlockJacobi::new(&self.reduction, &tangent.diagonal());
             if let Some(coarse) = self.coarse.as_mut().filter(|_| self.is_stale || !definite) {
                 self.is_stale = false;
-                coarse.assemble(tangent);
+                coarse.assemble(tangent, &self.team);
                 self.costs.assembly += start.elapsed();
                 let start = Instant::now();
                 self.negative = coarse.factorise()?;

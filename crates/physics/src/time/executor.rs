@@ -20,6 +20,7 @@ use super::run::Run;
 use super::step::StepControl;
 use super::summary::{Outcome, Progress, Summary};
 use crate::schemes::{DeviceSteps, Observation, Phase, RankCosts, Scheme, StepLimit};
+use crate::solve::Costs;
 
 /// Owns a run: the clock, the state, the observers, and the reasons to stop.
 pub struct Executor {
@@ -152,6 +153,12 @@ impl Executor {
     /// Simulated time in s.
     pub fn time(&self) -> f64 {
         self.run.clock.time
+    }
+
+    /// What linear equations have taken so far, where there are any.
+    pub fn linear_costs(&self) -> Option<Costs> {
+        let elsewhere = self.device.as_ref().and_then(|device| device.linear_costs());
+        elsewhere.or_else(|| self.scheme.linear_costs())
     }
 
     /// The state as it is between two steps.
@@ -388,7 +395,10 @@ impl Executor {
             return self.broken(&health, &self.run.state, &self.run.clock, speeds).or(broken);
         }
         let Run { clock, tally, .. } = &mut self.run;
-        if let (false, Some(warning)) = (tally.warned, self.scheme.warning()) {
+        let elsewhere = || self.device.as_ref().and_then(|device| device.warning());
+        if let (false, Some(warning)) =
+            (tally.warned, elsewhere().or_else(|| self.scheme.warning()))
+        {
             let Clock { step, time, .. } = *clock;
             tally.warnings.push(format!("{warning}; first seen at t = {time:e} s, step {step}"));
             tally.warned = true;
@@ -429,11 +439,11 @@ impl Executor {
                 integrator.step(scheme.as_mut(), run.clock.time, met.step, &run.state, next)
             }
         });
-        let growth = integrator.growth();
+        let growth = device.as_ref().map_or(integrator.growth(), |device| device.growth());
         if let Err(failure) = taken {
             self.is_seen = false;
             match (&failure, growth) {
-                (Failure::Inaccurate { .. }, Some(growth)) if self.control.adapts() => {
+                (Failure::Inaccurate(_), Some(growth)) if self.control.adapts() => {
                     run.tally.factor *= growth * met.step / chosen.step;
                 }
                 (lost, _) if lost.is_loss() => self.lose(failure),
@@ -456,7 +466,13 @@ impl Executor {
         let steps = device.as_ref().map_or(integrator.steps_in_last(), |it| it.steps_in_last());
         run.tally.evaluations += costs::evaluated(&self.evaluations, steps);
         run.advance(self.control, met, soonest);
-        run.lengthen(integrator.as_ref(), scheme.as_ref(), chosen, met);
+        // The state may be elsewhere.
+        let was_quick = run.tally.factor < 1.0
+            && match device {
+                Some(device) => device.was_quick(),
+                None => integrator.was_quick(scheme.as_ref(), &run.state),
+            };
+        run.lengthen(growth, was_quick, chosen, met);
         self.is_seen = false;
         true
     }

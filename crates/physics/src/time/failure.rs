@@ -5,7 +5,7 @@ use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::integrator::Unserved;
-use crate::schemes::{Behind, Escape, Missed, NoSolution, Particle, StepsError};
+use crate::schemes::{Behind, Escape, Inaccurate, Missed, NoSolution, Particle, StepsError};
 
 /// What went wrong, where and when, with what to do about it.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -195,20 +195,8 @@ pub enum Failure {
     #[error(transparent)]
     Unserved(#[from] Unserved),
     /// A step is less accurate than was asked for. The run takes a shorter one.
-    #[error(
-        "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, where \
-         {largest:.1e} is allowed"
-    )]
-    Inaccurate {
-        /// What its error was estimated to be.
-        error: f64,
-        /// What it may be.
-        largest: f64,
-        /// Simulated time at its start in s.
-        time: f64,
-        /// Its length in s.
-        step: f64,
-    },
+    #[error(transparent)]
+    Inaccurate(#[from] Inaccurate),
     /// A device cannot go on.
     #[error(
         "the device failed: {0}; the run is back at the last saved state, and `--resume` \
@@ -252,7 +240,7 @@ impl Failure {
                 Missed::Unstable => "unstable",
             },
             Self::Unserved(_) => "unserved",
-            Self::Inaccurate { .. } => "inaccurate",
+            Self::Inaccurate(_) => "inaccurate",
             Self::Device(_) => "device",
             Self::Ranks(_) => "ranks",
             Self::TooManySteps { .. } => "too_many_steps",
@@ -278,7 +266,7 @@ impl Failure {
             | Self::NoneInReserve { .. }
             | Self::Outside { .. }
             | Self::Unserved(_)
-            | Self::Inaccurate { .. }
+            | Self::Inaccurate(_)
             | Self::Device(_)
             | Self::Ranks(_)
             | Self::TooManySteps { .. } => None,
@@ -291,6 +279,8 @@ impl From<StepsError> for Failure {
         match error {
             StepsError::Device(error) => error.into(),
             StepsError::Ranks(error) => error.into(),
+            StepsError::NoSolution(missed) => Self::NoSolution(missed),
+            StepsError::Inaccurate(missed) => missed.into(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::integrator::{Integrator, Unserved};
-use crate::schemes::{ImplicitRule, Scheme};
+use crate::schemes::{ImplicitRule, Inaccurate, Scheme};
 
 /// Goes from state to state by solving for the next one: Newmark's method and those that damp short
 /// periods, backward Euler, Crank-Nicolson, what is between them, and the implicit midpoint rule. No
@@ -104,6 +104,14 @@ impl Integrator for ImplicitStepping {
         false
     }
 
+    fn renewed(&self, scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
+        let plain = Self::new(self.name, self.rule);
+        Some(Box::new(match &self.estimate {
+            Some(estimate) => plain.with_error(estimate.largest, scheme.initial_state().len()),
+            None => plain,
+        }))
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,
@@ -126,9 +134,7 @@ impl Integrator for ImplicitStepping {
                     / (2_f64.powi(self.rule.order()) - 1.0);
                 match *last <= *largest {
                     true => Ok(()),
-                    false => {
-                        Err(Failure::Inaccurate { error: *last, largest: *largest, time, step })
-                    }
+                    false => Err(Inaccurate { error: *last, largest: *largest, time, step }.into()),
                 }
             });
         self.estimate = Some(estimate);

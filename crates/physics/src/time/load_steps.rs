@@ -26,6 +26,10 @@ impl Integrator for LoadStepping {
         false
     }
 
+    fn renewed(&self, _scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
+        Some(Box::new(*self))
+    }
+
     fn step(
         &mut self,
         scheme: &mut dyn Scheme,

@@ -6,10 +6,8 @@ use super::clock::{Clock, Tally};
 use super::executor::Executor;
 use super::failure::Failure;
 use super::history::{History, Mark};
-use super::integrator::Integrator;
 use super::step::{ChosenStep, StepControl};
 use super::summary::Retry;
-use crate::schemes::Scheme;
 
 /// A run between two steps.
 pub(super) struct Run {
@@ -41,24 +39,22 @@ impl Run {
     }
 
     /// Lets the next step be longer, or shorter, by what is known of the step `met`, which is
-    /// `chosen` or was shortened to meet a due time.
+    /// `chosen` or was shortened to meet a due time: by how much longer it could be, or whether it was found quickly.
     pub fn lengthen(
         &mut self,
-        integrator: &dyn Integrator,
-        scheme: &dyn Scheme,
+        growth: Option<f64>,
+        was_quick: bool,
         chosen: ChosenStep,
         met: ChosenStep,
     ) {
         let factor = self.tally.factor;
-        let next = match integrator.growth() {
+        let next = match growth {
             Some(growth) => {
                 let wanted = factor * growth * met.step / chosen.step;
                 // What is good enough for a short step says little of one that was to be longer.
                 if met.step < chosen.step && growth > 1.0 { wanted.max(factor) } else { wanted }
             }
-            None if factor < 1.0 && integrator.was_quick(scheme, &self.state) => {
-                factor * Executor::GROWTH_FACTOR
-            }
+            None if was_quick => factor * Executor::GROWTH_FACTOR,
             None => factor,
         };
         self.tally.factor = next.min(1.0);

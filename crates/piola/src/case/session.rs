@@ -384,7 +384,7 @@ impl Session {
                 case.more_in_reserve
             ));
         }
-        let linear = executor.scheme.linear_costs();
+        let linear = executor.linear_costs();
         let own_steps = executor.own_steps();
         let files: Vec<PathBuf> = Vec::new();
         let mut finished =

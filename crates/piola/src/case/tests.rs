@@ -18,6 +18,7 @@ mod overrides;
 mod solids;
 mod sweeps;
 mod systems;
+mod warnings;
 
 /// A case that uses every table and nearly every key.
 pub(super) const FULL: &str = include_str!("tests/full.toml");

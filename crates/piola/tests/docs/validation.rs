@@ -127,6 +127,58 @@ fn the_page_is_made_of_the_results() {
     assert!(results().page(&list, "validation") == page(PAGE).text, "{RENEW}");
 }
 
+/// How many digits numbers of the page have, and differences of them.
+const DIGITS: f64 = 1.1e-5;
+const DIGITS_OF_DIFFERENCE: f64 = 6e-3;
+
+/// Whether what a row says of its result is true of the numbers that it shows: how far it is off, and whether it passes.
+fn is_consistent(row: &Row) -> bool {
+    let (Some(got), None) = (value(&row.got), &row.reason) else { return true };
+    let about = |a: f64, b: f64, by: f64| (a - b).abs() <= by;
+    let numbers = (value(&row.expected), value(&row.tolerance), value(&row.off_by));
+    if let (Some(expected), Some(tolerance), Some(off)) = numbers {
+        let unit = if row.off_by.ends_with('%') { 100.0 / expected.abs() } else { 1.0 };
+        let rounding = DIGITS * got.abs().max(expected.abs()) * unit;
+        let is_off =
+            about((got - expected) * unit, off, rounding + DIGITS_OF_DIFFERENCE * off.abs());
+        let is_close = about(off.abs(), tolerance, rounding + DIGITS_OF_DIFFERENCE * tolerance);
+        return is_off && (is_close || row.pass == (off.abs() <= tolerance));
+    }
+    let words: Vec<&str> = row.expected.split([' ', ',']).collect();
+    let bounds = words.windows(2).filter_map(|pair| Some((pair[0], value(pair[1])?)));
+    let mut bounds = bounds.filter(|(word, _)| ["least", "most"].contains(word)).peekable();
+    if bounds.peek().is_none() {
+        return true;
+    }
+    let is_met =
+        |(word, bound): (&str, f64)| if word == "least" { got >= bound } else { got <= bound };
+    let bounds: Vec<(&str, f64)> = bounds.collect();
+    let is_close = bounds.iter().any(|(_, bound)| about(got, *bound, DIGITS * bound.abs()));
+    is_close || row.pass == bounds.into_iter().all(is_met)
+}
+
+#[test]
+fn rows_say_what_is_true_of_their_numbers() {
+    let results = results();
+    let rows = results.cases.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row)));
+    let wrong = rows.filter(|(_, row)| row.was_run() && !is_consistent(row));
+    let wrong: Vec<String> =
+        wrong.map(|(case, row)| format!("{} {}: {row:?}", case.name, row.read_at.name())).collect();
+    assert!(wrong.is_empty(), "{RENEW}\n{}", wrong.join("\n"));
+    let texts = |got: &str, expected: &str, tolerance: &str, off_by: &str, pass| {
+        let [got, expected, tolerance, off_by] =
+            [got, expected, tolerance, off_by].map(str::to_owned);
+        Row { got, expected, tolerance, off_by, pass, ..Row::default() }
+    };
+    assert!(is_consistent(&texts("1.01 m", "1 m", "2 %", "1 %", true)));
+    assert!(!is_consistent(&texts("1.02 m", "1 m", "2 %", "1 %", true)));
+    assert!(!is_consistent(&texts("1.01 m", "1 m", "0.5 %", "1 %", true)));
+    assert!(!is_consistent(&texts("7.2507 m", "4.11 m", "0.0758 m", "0.0807 m", true)));
+    assert!(is_consistent(&texts("3", "at least 2, at most 4", "", "", true)));
+    assert!(!is_consistent(&texts("5", "at least 2, at most 4", "", "", true)));
+    assert!(!is_consistent(&texts("3", "at most 4", "", "", false)));
+}
+
 /// A row of the list says that it is met only where every check of its cases from outside is.
 #[test]
 fn no_row_is_said_to_be_met_of_which_a_check_is_not() {

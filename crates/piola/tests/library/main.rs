@@ -28,6 +28,7 @@ mod profiles;
 mod ranks;
 mod ranks_coupled;
 mod ranks_fluids;
+mod ranks_implicit;
 mod reserve;
 mod resume;
 mod sensitivity;

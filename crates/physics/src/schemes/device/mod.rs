@@ -11,7 +11,8 @@ use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::split::KICK_DRIFT_KICK;
-use super::{Health, Phase, RankCosts, StepLimit};
+use super::{Health, NoSolution, Phase, RankCosts, StepLimit};
+use crate::solve::Costs;
 
 pub(crate) use listed::{Acting, Listed};
 pub(crate) use memory::{Room, fits};
@@ -27,6 +28,28 @@ pub enum StepsError {
     /// A rank is lost.
     #[error(transparent)]
     Ranks(#[from] RankError),
+    /// The equations of a step have no solution.
+    #[error("{0}")]
+    NoSolution(NoSolution),
+    /// A step is less accurate than was asked for.
+    #[error(transparent)]
+    Inaccurate(#[from] Inaccurate),
+}
+
+/// A step is less accurate than was asked for. The run takes a shorter one.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, where {largest:.1e} is allowed"
+)]
+pub struct Inaccurate {
+    /// What its error was estimated to be.
+    pub error: f64,
+    /// What it may be.
+    pub largest: f64,
+    /// Simulated time at its start in s.
+    pub time: f64,
+    /// Its length in s.
+    pub step: f64,
 }
 
 /// The steps of a formulation on a device, by the kick-drift-kick method, or on several ranks, with a state that stays
@@ -41,11 +64,33 @@ pub trait DeviceSteps: Send {
     /// Takes a step from a time, both in s. The state before it is kept.
     ///
     /// # Errors
-    /// When the device refuses, or a rank is lost.
+    /// When the device refuses, or a rank is lost; and where equations of the step have no solution, or it is less accurate
+    /// than was asked for: then the state is what it was.
     fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError>;
 
     /// Says what failures have multiplied steps by, which holds for steps within a step as well.
     fn shorten(&mut self, _factor: f64) {}
+
+    /// What the next step should be over the one that was tried last, for its error to be what is allowed; `None` where no
+    /// error is estimated.
+    fn growth(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether the last step was found quickly, so that the next may be longer where failures have made steps shorter.
+    fn was_quick(&self) -> bool {
+        false
+    }
+
+    /// What linear equations have taken so far, where the steps are taken.
+    fn linear_costs(&self) -> Option<Costs> {
+        None
+    }
+
+    /// What [`Scheme::warning`](super::Scheme::warning) says where the steps are taken, if nobody else knows it.
+    fn warning(&self) -> Option<String> {
+        None
+    }
 
     /// Looks once over the state, as [`Scheme::inspect`](super::Scheme::inspect).
     ///

@@ -115,8 +115,12 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
         self.planned(bounds)
     }
 
+    fn is_whole_on_ranks(&self) -> bool {
+        self.statics.is_some()
+    }
+
     fn team(&self) -> Option<&Team> {
-        Some(&self.team)
+        Some(self.statics.as_ref().map_or(&self.team, |statics| statics.team()))
     }
 
     fn linear_costs(&self) -> Option<Costs> {

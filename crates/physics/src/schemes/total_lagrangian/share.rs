@@ -14,27 +14,25 @@ impl<const D: usize> TotalLagrangian<D> {
     /// What this many ranks cannot share yet, with what a case has to be like instead.
     fn unshared(&self, ranks: usize) -> Option<[&'static str; 2]> {
         let is_divided = ranks > 1;
+        // Where states are solved for, each rank has the whole body.
+        let is_cut = is_divided && self.statics.is_none();
         let features = [
             (
                 self.matrices.edges().is_some(),
                 ["the strong form does not run", "choose `form = \"adjoint\"`"],
             ),
-            (
-                self.statics.is_some(),
-                ["statics and implicit steps do not run", "take explicit steps"],
-            ),
             (self.updated.is_some(), ["the updated configuration does not run", "leave it out"]),
-            (is_divided && !self.rigid.is_empty(), ["rigid bodies do not run", "leave them out"]),
-            (
-                is_divided && !self.loads.springs.is_empty(),
-                ["springs do not act", "leave them out"],
-            ),
+            (is_cut && !self.rigid.is_empty(), ["rigid bodies do not run", "leave them out"]),
+            (is_cut && !self.loads.springs.is_empty(), ["springs do not act", "leave them out"]),
         ];
         features.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what)
     }
 
     /// The gradients, if this many ranks can share all of it.
     fn whole(&self, ranks: usize) -> Result<&Discrete<D>, RankRefusal> {
+        if ranks > 1 && self.statics.as_ref().is_some_and(|statics| statics.is_direct()) {
+            return Err(RankRefusal::DIRECT);
+        }
         match (&self.matrices, self.unshared(ranks)) {
             (Matrices::Adjoint(whole), None) => Ok(whole),
             (_, Some([what, instead])) => Err(RankRefusal::Feature { what, instead }),
@@ -54,12 +52,31 @@ impl<const D: usize> TotalLagrangian<D> {
         // Where there are images, copies are fetched before and after these are made.
         let fields = 1 + usize::from(self.dissipation.is_viscous() || self.has_images);
         let vectors = fields * (1 + usize::from(self.has_images));
+        let is_solved = self.statics.is_some();
+        let vectors = if is_solved { 0 } else { vectors };
         let numbers = vectors * D + whole.operator.tensions() * D * D;
-        Ok(Part::planned(self, bounds, numbers, |own| Self::slots(whole, own, bounds)))
+        let mut shares =
+            Part::planned(self, bounds, numbers, |own| Self::slots(whole, own, bounds));
+        if is_solved {
+            // Each rank gets the forces on all particles of the others.
+            let told = |share: &RankShare| (self.solid.len() - share.particles) * D;
+            shares.iter_mut().for_each(|it| it.bytes += told(it) * size_of::<f64>());
+        }
+        Ok(shares)
+    }
+
+    /// What a rank computes: the body with its part of the equations, where states are solved for, or its particles.
+    pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
+        let Some(statics) = &self.statics else { return self.cut(part) };
+        self.whole(part.ranks.size())?;
+        let mut share = self.cut(&Part::whole(self.solid.len()))?;
+        share.statics = Some(Box::new(statics.share(part)?));
+        share.is_static = self.is_static;
+        Ok(share)
     }
 
     /// The particles of a rank, with the same coefficients.
-    pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
+    fn cut(&self, part: &Part) -> Result<Self, RankRefusal> {
         let whole = self.whole(part.ranks.size())?;
         let own = part.own();
         let slots = Self::slots(whole, own.clone(), &part.bounds);

@@ -110,8 +110,12 @@ impl<const D: usize> Scheme for Upwind<D> {
         self.planned(bounds)
     }
 
+    fn is_whole_on_ranks(&self) -> bool {
+        self.implicit.is_some()
+    }
+
     fn team(&self) -> Option<&Team> {
-        Some(&self.team)
+        Some(self.implicit.as_ref().map_or(&self.team, |implicit| implicit.team()))
     }
 
     fn linear_costs(&self) -> Option<Costs> {

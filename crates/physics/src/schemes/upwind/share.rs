@@ -21,18 +21,34 @@ impl<const D: usize> Upwind<D> {
 
     /// What ranks would have whose particles begin and end where `bounds` has it.
     pub(super) fn planned(&self, bounds: &[usize]) -> Result<Vec<RankShare>, RankRefusal> {
-        if self.implicit.is_some() {
-            let (what, instead) = ("implicit steps do not run", "take explicit steps");
-            return Err(RankRefusal::Feature { what, instead });
+        if let Some(implicit) = &self.implicit {
+            if bounds.len() > 2 && implicit.is_direct() {
+                return Err(RankRefusal::DIRECT);
+            }
+            // Each rank gets what the equations of all particles of the others have.
+            let none = |own| Slots::new(own, Vec::new(), Vec::new());
+            let mut shares = Part::planned(self, bounds, 0, none);
+            let told = |share: &RankShare| (self.particles.len() - share.particles) * D;
+            shares.iter_mut().for_each(|it| it.bytes += told(it) * size_of::<f64>());
+            return Ok(shares);
         }
         let slopes = usize::from(self.settings.reconstruction);
         let numbers = UpwindSide::<D>::NUMBERS + slopes * UpwindSlope::<D>::NUMBERS;
         Ok(Part::planned(self, bounds, numbers, |own| self.slots(own, bounds)))
     }
 
-    /// The particles of a rank, with the same coefficients.
+    /// What a rank computes: all with its part of the equations of implicit steps, or its particles.
     pub(super) fn shared(&self, part: &Part) -> Result<Self, RankRefusal> {
-        self.planned(&[0, self.particles.len()])?;
+        let Some(implicit) = &self.implicit else { return self.cut(part) };
+        self.planned(&part.bounds)?;
+        let mut share = self.cut(&Part::whole(self.particles.len()))?;
+        share.support = self.support.clone();
+        share.implicit = Some(Box::new(implicit.share(part)));
+        Ok(share)
+    }
+
+    /// The particles of a rank, with the same coefficients.
+    fn cut(&self, part: &Part) -> Result<Self, RankRefusal> {
         let own = part.own();
         let slots = self.slots(own.clone(), &part.bounds);
         let team = part.team(&slots)?;

@@ -16,6 +16,8 @@ use crate::schemes::{
     DeviceSteps, Health, Part, Phase, RankCosts, RankRefusal, RankRows, Scheme, StepLimit,
     StepsError,
 };
+use crate::solve::Costs;
+use crate::time::failure::Failure;
 use crate::time::integrator::Integrator;
 
 /// What all ranks are to do.
@@ -78,6 +80,8 @@ struct Worker {
     next: Vec<f64>,
     limits: Vec<StepLimit>,
     health: Health,
+    /// Its particles.
+    particles: usize,
     /// Seconds of steps and of looks at states.
     taken: f64,
     /// What asks this rank to end the run, if it is a process.
@@ -95,7 +99,12 @@ impl Worker {
         let own = integrator.renewed(scheme.as_mut());
         let integrator = own.ok_or_else(|| RankRefusal::Integrator(integrator.name()))?;
         let state = scheme.initial_state();
+        let particles = match scheme.is_whole_on_ranks() {
+            true => part.own().len(),
+            false => scheme.particle_count(),
+        };
         Ok(Self {
+            particles,
             ranks: part.ranks.clone(),
             before: state.clone(),
             next: state.clone(),
@@ -141,15 +150,16 @@ impl Worker {
                 let state = self.ranks.scatter(&[])?;
                 self.take(state);
             }
-            Order::Fetch => drop(self.ranks.gather(&self.state)?),
-            Order::FetchBefore => drop(self.ranks.gather(&self.before)?),
+            Order::Fetch => drop(self.ranks.gather(self.told(&self.state))?),
+            Order::FetchBefore => drop(self.ranks.gather(self.told(&self.before))?),
             Order::Costs => drop(self.ranks.gather(&self.costs())?),
             Order::Inspect => {
                 self.inspect()?;
             }
             Order::Step { time, step, factor } => {
                 self.integrator.shorten(factor);
-                self.step(time, step)?;
+                // A failure of it is that of all ranks, of which number 0 tells.
+                drop(self.step(time, step)?);
             }
             Order::Again(_) | Order::End => {}
         }
@@ -161,26 +171,32 @@ impl Worker {
         self.scheme.team().and_then(Team::fault).cloned()
     }
 
+    /// What it has of a state that others do not have.
+    fn told<'a>(&self, state: &'a [f64]) -> &'a [f64] {
+        if self.scheme.is_whole_on_ranks() { &[] } else { state }
+    }
+
     /// What has taken its time, as numbers.
     fn costs(&self) -> Vec<f64> {
         let (waited, sent) = self.scheme.team().map(Team::costs).unwrap_or_default();
-        let particles = self.scheme.particle_count() as f64;
+        let particles = self.particles as f64;
         let [messages, bytes] = sent.map(|count| count as f64);
         vec![particles, self.taken - waited, waited, messages, bytes]
     }
 
-    fn step(&mut self, time: f64, step: f64) -> Result<(), RankError> {
+    /// Takes a step, or stays where it is if there is none, which is then so on all ranks: they solve the same equations.
+    fn step(&mut self, time: f64, step: f64) -> Result<Result<(), Failure>, RankError> {
         let (start, scheme) = (Instant::now(), self.scheme.as_mut());
         let taken = self.integrator.step(scheme, time, step, &self.state, &mut self.next);
         self.taken += start.elapsed().as_secs_f64();
-        std::mem::swap(&mut self.before, &mut self.state);
-        std::mem::swap(&mut self.state, &mut self.next);
-        // Explicit methods always find a state.
-        match (self.lost(), taken) {
-            (Some(lost), _) => Err(lost),
-            (None, Ok(())) => Ok(()),
-            (None, Err(_)) => Err(RankError::Lost(self.ranks.rank())),
+        if let Some(lost) = self.lost() {
+            return Err(lost);
         }
+        if taken.is_ok() {
+            std::mem::swap(&mut self.before, &mut self.state);
+            std::mem::swap(&mut self.state, &mut self.next);
+        }
+        Ok(taken)
     }
 
     /// Looks at the state: whether any rank has something to say of it, and whether any is asked to stop.
@@ -246,8 +262,35 @@ impl DeviceSteps for RankSteps {
     }
 
     fn step(&mut self, time: f64, step: f64) -> Result<(), StepsError> {
-        let factor = self.factor;
-        Ok(self.order(Order::Step { time, step, factor })?)
+        let Self { worker, pool, factor, .. } = self;
+        worker.ranks.broadcast(Order::Step { time, step, factor: *factor }.pack())?;
+        worker.integrator.shorten(*factor);
+        match on(pool.as_ref(), || worker.step(time, step))? {
+            Err(Failure::NoSolution(missed)) => Err(StepsError::NoSolution(missed)),
+            Err(Failure::Inaccurate(missed)) => Err(missed.into()),
+            // No other failure is one of a step.
+            Err(_) => Err(RankError::Lost(worker.ranks.rank()).into()),
+            Ok(()) => Ok(()),
+        }
+    }
+
+    fn growth(&self) -> Option<f64> {
+        self.worker.integrator.growth()
+    }
+
+    fn was_quick(&self) -> bool {
+        let Worker { integrator, scheme, state, .. } = &self.worker;
+        integrator.was_quick(scheme.as_ref(), state)
+    }
+
+    fn linear_costs(&self) -> Option<Costs> {
+        self.worker.scheme.linear_costs()
+    }
+
+    /// Ranks that have the whole state know of it what nobody else does: by which way they have come to it.
+    fn warning(&self) -> Option<String> {
+        let scheme = &self.worker.scheme;
+        if scheme.is_whole_on_ranks() { scheme.warning() } else { None }
     }
 
     fn shorten(&mut self, factor: f64) {
@@ -411,7 +454,7 @@ impl Executor {
         let steps = RankSteps { worker, rows, told, factor: 1.0, pool, others, last };
         self.use_steps(Box::new(steps)).map_err(|error| match error {
             StepsError::Ranks(error) => error.into(),
-            StepsError::Device(_) => RankRefusal::Formulation(self.scheme.description().name),
+            _ => RankRefusal::Formulation(self.scheme.description().name),
         })
     }
 }

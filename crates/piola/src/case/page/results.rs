@@ -151,7 +151,10 @@ impl CaseResults {
     /// it is now.
     pub fn keep_long(&mut self, earlier: &Self) {
         for row in self.rows.iter_mut().filter(|row| !row.was_run()) {
-            let known = earlier.rows.iter().find(|known| known.was_run() && known.is_same(row));
+            let same = || earlier.rows.iter().filter(|known| known.was_run() && known.is_same(row));
+            // Two checks may ask for different bounds of one quantity.
+            let own = same().find(|known| known.check == row.check);
+            let known = own.or_else(|| same().next());
             if let Some(known) = known {
                 // What the check says today of the value and its worth stays; why it is not met is only told of values.
                 let (against, bound) = (row.against, row.bound.clone());
@@ -168,10 +171,10 @@ impl CaseResults {
     /// Checks that passed, and all that were run, with this worth. One that was evaluated at several settings of
     /// a case counts once, as at the last.
     pub fn count(&self, against: Option<Against>) -> [usize; 2] {
+        // Members of a sweep may be others at another setting.
         let is_repeated = |row: &Row| {
-            let later =
-                self.rows.iter().filter(|other| other.read_at > row.read_at && other.was_run());
-            later.into_iter().any(|other| (other.check, &other.run) == (row.check, &row.run))
+            let is_later = |other: &Row| other.read_at > row.read_at && other.was_run();
+            self.rows.iter().any(|other| other.check == row.check && is_later(other))
         };
         let own = self.rows.iter().filter(|row| row.against == against && row.was_run());
         let own = own.filter(|row| !is_repeated(row));

@@ -25,8 +25,13 @@ impl<const D: usize> Statics<D> {
 
     /// Internal forces at the displacements at hand, into `left`.
     fn fill_internal(&mut self) {
-        let Self { discrete, displacement, strained, internal, left, .. } = self;
-        discrete.internal_forces(displacement, strained, internal);
+        let Self { discrete, displacement, passes, internal, left, .. } = self;
+        let solid = &*discrete.solid;
+        let tension = |a: usize, gradient: &Tensor<D>| {
+            solid.mixture(a).stress(gradient) * solid.particles.volume[a]
+        };
+        passes.forces(&discrete.operator, displacement, tension, internal);
+        discrete.fold(internal);
         let count = left.len();
         left.copy_from_slice(&internal[..count]);
     }
@@ -125,12 +130,14 @@ impl<const D: usize> Equations for Statics<D> {
             let moving = self.inertia.as_ref();
             own + moving.map_or(0.0, |it| it.potential(discrete.solid.mass[a], a, &displacement[a]))
         };
-        let [potential, broken] = parallel::sums::<[f64; 2]>(discrete.len(), |a, sums| {
+        let rows = self.team.share_of(discrete.len());
+        let [potential, broken] = self.team.sums::<[f64; 2]>(rows.len(), |k, sums| {
+            let a = rows.start + k;
             let own = energy(a);
             sums[0] += own - dead[a].dot(&displacement[a]);
             sums[1] += f64::from(u8::from(is_broken(a, own)));
         });
-        let first = || (0..discrete.len()).find(|&a| is_broken(a, energy(a)));
+        let first = || self.team.least(rows.clone().find(|&a| is_broken(a, energy(a))));
         let potential = potential + self.faces.potential(displacement, factor);
         Trial {
             potential: self.loads.pressed.is_empty().then_some(potential),

@@ -29,6 +29,7 @@ pub(super) struct Spring<const D: usize> {
 
 /// A face with a component that is held: `n . u_f = value` by an augmented potential
 /// `mu gap + k gap^2/2`, in which the multiplier mu ends as the force.
+#[derive(Clone)]
 struct Held {
     /// mu in N.
     multiplier: f64,
@@ -37,6 +38,7 @@ struct Held {
 }
 
 /// All held faces.
+#[derive(Clone)]
 pub(super) struct Faces<const D: usize> {
     names: Vec<String>,
     springs: Arc<Vec<Spring<D>>>,

@@ -22,6 +22,7 @@ pub struct InertialStep<'a, const D: usize> {
 }
 
 /// What inertia adds to the equations of a step.
+#[derive(Clone)]
 pub(super) struct Inertia<const D: usize> {
     /// Acceleration per displacement in 1/s^2.
     stiffening: f64,

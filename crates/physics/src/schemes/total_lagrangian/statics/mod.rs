@@ -10,6 +10,7 @@ mod equations;
 mod error;
 mod faces;
 mod inertia;
+mod passes;
 mod rigid;
 mod sensitivity;
 mod stiffness;
@@ -23,12 +24,16 @@ pub use stiffness::Stiffness;
 
 use std::sync::Arc;
 
+use piola_ranks::RankError;
+
 use super::{Discrete, Loads};
 use crate::Vector;
 use crate::boundaries::{
     BodyForce, FollowerPressure, PrescribedDisplacement, PrescribedFaces, Tie, Traction,
 };
-use crate::operators::{Strained, Trace};
+use crate::operators::Trace;
+use crate::parallel::Team;
+use crate::schemes::Part;
 use crate::schemes::input::{check_pressure, check_traction};
 use crate::solve::{
     ArcLength, Costs, Increment, LinearMethod, LinearSolver, LoadSteps, Newton, Solved, follow,
@@ -36,6 +41,7 @@ use crate::solve::{
 };
 use faces::Faces;
 use inertia::Inertia;
+use passes::Passes;
 use rigid::free_motion;
 use supports::Supports;
 
@@ -79,6 +85,10 @@ impl<const D: usize> StaticsInput<D> {
 }
 
 /// A body with loads and supports.
+///
+/// Each of several ranks has all of it. They share what takes long: the products of Krylov methods, internal forces and
+/// energies, tangents, and the coarse space, each rank with the rows of its own particles.
+#[derive(Clone)]
 pub struct Statics<const D: usize> {
     discrete: Arc<Discrete<D>>,
     loads: Loads<D>,
@@ -89,7 +99,7 @@ pub struct Statics<const D: usize> {
     newton: Newton,
     /// Displacements in m, those of images behind.
     displacement: Vec<Vector<D>>,
-    strained: Strained<D>,
+    passes: Passes<D>,
     /// Internal forces in N, with places for those on images.
     internal: Vec<Vector<D>>,
     /// What loads and internal forces leave, held components included, N.
@@ -103,6 +113,8 @@ pub struct Statics<const D: usize> {
     is_linear: bool,
     /// Inertia of the tangent that the solver has, and whether it was to be definite.
     loaded: Option<(f64, bool)>,
+    /// Who computes together.
+    team: Team,
 }
 
 /// A state in equilibrium.
@@ -182,7 +194,7 @@ impl<const D: usize> Statics<D> {
         let places = &solid.particles.position;
         let solver =
             LinearSolver::new(input.method, places, &stiffness, |order| supports.reduction(order))?;
-        let strained = discrete.operator.strained();
+        let passes = Passes::new(&discrete.operator);
         let (is_linear, slots) = (solid.is_linear(), discrete.operator.positions().len());
         Ok(Self {
             discrete,
@@ -193,14 +205,37 @@ impl<const D: usize> Statics<D> {
             stiffness,
             newton: input.newton,
             displacement: vec![Vector::zeros(); slots],
-            strained,
+            passes,
             internal: vec![Vector::zeros(); slots],
             left: vec![Vector::zeros(); count],
             dead: None,
             inertia: None,
             is_linear,
             loaded: None,
+            team: Team::default(),
         })
+    }
+
+    /// The same for a rank. All ranks call this together.
+    ///
+    /// # Errors
+    /// A rank is lost.
+    pub(super) fn share(&self, part: &Part) -> Result<Self, RankError> {
+        let mut share = self.clone();
+        (share.passes, share.team) = Passes::of_rank(&self.discrete, part)?;
+        share.stiffness.share(&share.passes, &share.team);
+        share.solver.share(share.team.clone());
+        Ok(share)
+    }
+
+    /// Who computes together.
+    pub(super) fn team(&self) -> &Team {
+        &self.team
+    }
+
+    /// Whether linear equations are solved by factors.
+    pub(super) fn is_direct(&self) -> bool {
+        self.solver.is_direct()
     }
 
     /// Number of unknowns.
@@ -211,7 +246,7 @@ impl<const D: usize> Statics<D> {
     /// Bytes of its arrays, but for those of linear equations.
     pub fn memory(&self) -> usize {
         self.stiffness.memory()
-            + self.strained.memory()
+            + self.passes.memory()
             + size_of_val(self.displacement.as_slice())
             + size_of_val(self.internal.as_slice())
             + size_of_val(self.left.as_slice())

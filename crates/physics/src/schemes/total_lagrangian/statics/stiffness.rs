@@ -8,7 +8,9 @@ use piola_formulas::tensor;
 
 use super::super::Discrete;
 use super::faces::Spring;
-use crate::operators::{DirectedSupport, DualGradient, Strained, dual_row};
+use super::passes::Passes;
+use crate::operators::{DirectedSupport, DualGradient, dual_row};
+use crate::parallel::Team;
 use crate::solve::Tangent;
 use crate::{Tensor, Vector, parallel};
 
@@ -25,6 +27,7 @@ use crate::{Tensor, Vector, parallel};
 /// with `M = sum_b c_cb X_cb (x) X_cb`, `y_b = 2 c_cb X_cb`, `z_bb = 2 c_cb`, and for the owner
 /// what makes sums over p vanish. The displacement of an image is that of a particle with signs s, so that
 /// its rows and columns are those of the particle, times s.
+#[derive(Clone)]
 pub struct Stiffness<const D: usize> {
     discrete: Arc<Discrete<D>>,
     support: DirectedSupport<D>,
@@ -39,7 +42,9 @@ pub struct Stiffness<const D: usize> {
     springs_of: Vec<Vec<u32>>,
     /// Multiple of the mass on the diagonal in 1/s^2: 0 in statics.
     inertia: f64,
-    strained: Strained<D>,
+    passes: Passes<D>,
+    /// Who computes together.
+    team: Team,
     /// The owner of each support.
     owners: Vec<Member<D>>,
     /// The images of each particle, by slot.
@@ -50,6 +55,7 @@ pub struct Stiffness<const D: usize> {
 }
 
 /// A particle, or an image, as a member of a support.
+#[derive(Clone)]
 struct Member<const D: usize> {
     /// Its slot: behind those of particles are images.
     number: u32,
@@ -65,7 +71,7 @@ impl<const D: usize> Stiffness<D> {
     /// The stiffness of a body, for now at rest.
     pub fn new(discrete: Arc<Discrete<D>>) -> Self {
         let count = discrete.len();
-        let strained = discrete.operator.strained();
+        let passes = Passes::new(&discrete.operator);
         let (support, gradient) = discrete.operator.lists();
         let slots = discrete.operator.positions().len();
         let mut images = vec![Vec::new(); if slots > count { count } else { 0 }];
@@ -81,7 +87,8 @@ impl<const D: usize> Stiffness<D> {
             springs: Arc::default(),
             springs_of: vec![Vec::new(); count],
             inertia: 0.0,
-            strained,
+            passes,
+            team: Team::default(),
             owners: Vec::new(),
             images,
             field: vec![Vector::zeros(); slots],
@@ -90,6 +97,11 @@ impl<const D: usize> Stiffness<D> {
         stiffness.owners = (0..count).map(|c| stiffness.sum_of_members(c)).collect();
         stiffness.load(&vec![Vector::zeros(); slots], &[]);
         stiffness
+    }
+
+    /// Shares the work with a team, by these passes.
+    pub(super) fn share(&mut self, passes: &Passes<D>, team: &Team) {
+        (self.passes, self.team) = (passes.clone(), team.clone());
     }
 
     /// The number of the connected part that each particle belongs to.
@@ -102,7 +114,7 @@ impl<const D: usize> Stiffness<D> {
         let images: usize = self.images.iter().map(|own| size_of_val(own.as_slice())).sum();
         self.support.memory()
             + self.gradient.memory()
-            + self.strained.memory()
+            + self.passes.memory()
             + size_of_val(self.tangents.as_slice())
             + size_of_val(self.pressed.as_slice())
             + size_of_val(self.owners.as_slice())
@@ -161,7 +173,7 @@ impl<const D: usize> Stiffness<D> {
     /// per area ratio in N, empty without pressure.
     pub fn load(&mut self, displacement: &[Vector<D>], pressing: &[Vector<D>]) {
         let discrete = &*self.discrete;
-        parallel::for_each_chunk(&mut self.tangents, |first, tangents| {
+        self.team.fill(&mut self.tangents, |first, tangents| {
             for (offset, tangent) in tangents.iter_mut().enumerate() {
                 let a = first + offset;
                 let gradient = discrete.displacement_gradient(displacement, a);
@@ -169,7 +181,7 @@ impl<const D: usize> Stiffness<D> {
             }
         });
         self.pressed.resize(pressing.len(), [[Vector::zeros(); D]; D]);
-        parallel::for_each_chunk(&mut self.pressed, |first, pressed| {
+        self.team.fill(&mut self.pressed, |first, pressed| {
             for (offset, slopes) in pressed.iter_mut().enumerate() {
                 let a = first + offset;
                 let gradient = discrete.displacement_gradient(displacement, a);
@@ -328,7 +340,8 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
     /// The same two passes as the forces', with the linear stress `dP/dF : A`: the hourglass force
     /// is linear as it is.
     fn apply(&mut self, direction: &[Vector<D>], product: &mut [Vector<D>]) {
-        let (discrete, tangents) = (&*self.discrete, &self.tangents);
+        let Self { discrete, tangents, passes, .. } = self;
+        let (discrete, tangents) = (&**discrete, &*tangents);
         let tension = |a: usize, gradient: &Tensor<D>| {
             let mut stress = Tensor::zeros();
             for (k, row) in tangents[a].iter().enumerate() {
@@ -341,11 +354,11 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
         let count = direction.len();
         parallel::copy(&mut self.field[..count], direction);
         discrete.continue_field(&mut self.field);
-        discrete.operator.strain(&self.field, &mut self.strained, tension);
-        discrete.operator.forces(&self.field, &self.strained.tension, &mut self.product);
+        passes.forces(&discrete.operator, &self.field, tension, &mut self.product);
         discrete.fold(&mut self.product);
         parallel::copy(product, &self.product[..count]);
-        let (gradient, pressed, inertia) = (&self.strained.gradient, &self.pressed, self.inertia);
+        let (pressed, inertia) = (&self.pressed, self.inertia);
+        let gradient = if pressed.is_empty() { &[] } else { passes.gradients() };
         parallel::for_each_chunk(product, |first, product| {
             for (offset, product) in product.iter_mut().enumerate() {
                 let a = first + offset;
@@ -365,7 +378,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
 
     fn diagonal(&self) -> Vec<Tensor<D>> {
         let mut blocks = vec![Tensor::zeros(); self.discrete.len()];
-        parallel::for_each_chunk(&mut blocks, |first, blocks| {
+        self.team.fill(&mut blocks, |first, blocks| {
             for (offset, block) in blocks.iter_mut().enumerate() {
                 let a = first + offset;
                 if self.images.get(a).is_some_and(|images| !images.is_empty()) {

@@ -13,6 +13,7 @@ use crate::{Tensor, Vector};
 const SAME: f64 = 1e-9;
 
 /// What holds the particles of a body.
+#[derive(Clone)]
 pub(super) struct Supports<const D: usize> {
     conditions: Vec<PrescribedDisplacement<D>>,
     ties: Vec<Tie>,
@@ -22,6 +23,7 @@ pub(super) struct Supports<const D: usize> {
 }
 
 /// A held local component of a particle.
+#[derive(Clone)]
 pub(super) struct Held {
     pub particle: usize,
     /// Local component.

@@ -9,7 +9,7 @@ use super::super::Upwind;
 use super::Implicit;
 use super::stage::{Fields, Stage};
 use super::tangent::Response;
-use crate::parallel::larger;
+use crate::parallel::{Team, larger};
 use crate::solve::{
     Equations, LinearError, LinearReport, Reduction, Tangent, Trial, gmres, most_steps,
 };
@@ -47,7 +47,7 @@ impl<const D: usize> StepEquations<'_, D> {
     /// Fills all that follows from the unknowns x, unless that is what was done last.
     pub(super) fn evaluate(&mut self, x: &[f64]) {
         let scheme = self.scheme;
-        let Implicit { solver, held, fields, base, weight, settings, evaluated, .. } =
+        let Implicit { solver, held, fields, base, weight, settings, evaluated, team, .. } =
             &mut *self.parts;
         if evaluated.as_ref().is_some_and(|known| known == x) {
             return;
@@ -59,7 +59,8 @@ impl<const D: usize> StepEquations<'_, D> {
             fields.ratio[a] = scaled / scheme.reference[a].wave_speed;
         }
         let keeps_ratio = settings.keeps_ratio;
-        Stage { scheme, weight: *weight, base, keeps_ratio }.fill(fields);
+        let own = team.share_of(scheme.particles.len());
+        Stage { scheme, weight: *weight, base, keeps_ratio }.fill(fields, own);
         let known = evaluated.get_or_insert_default();
         known.clear();
         known.extend_from_slice(x);
@@ -89,7 +90,9 @@ impl<const D: usize> StepEquations<'_, D> {
     /// rounding: what residuals are measured against.
     pub(super) fn measure(&mut self) {
         let (scheme, parts) = (self.scheme, &*self.parts);
-        let [terms, rounding] = parallel::sums::<[f64; 2]>(scheme.particles.len(), |a, sums| {
+        let own = parts.team.share_of(scheme.particles.len());
+        let [terms, rounding] = parts.team.sums::<[f64; 2]>(own.len(), |row, sums| {
+            let a = own.start + row;
             let (mass, reference) = (scheme.mass(a), &scheme.reference[a]);
             let local = &parts.fields.locals[a];
             let force = parts.fields.exchanges[a].force + parts.outside[a];
@@ -108,11 +111,15 @@ impl<const D: usize> StepEquations<'_, D> {
     pub(super) fn worst(&self) -> usize {
         let (parts, stage) = (&*self.parts, self.parts.stage(self.scheme));
         let reduction = parts.solver.reduction();
-        let left = |a: usize| {
-            let (momentum, _) = stage.left(&parts.fields, a, &parts.outside[a]);
-            (momentum - reduction.held_part(a, &momentum)).norm_squared()
-        };
-        let sizes = (0..self.scheme.particles.len()).map(|a| (a, left(a)));
+        let mut left = vec![Vector::zeros(); self.scheme.particles.len()];
+        parts.team.fill(&mut left, |first, left| {
+            for (offset, left) in left.iter_mut().enumerate() {
+                let a = first + offset;
+                *left = stage.left(&parts.fields, a, &parts.outside[a]).0;
+            }
+        });
+        let size = |(a, left)| (a, (left - reduction.held_part(a, &left)).norm_squared());
+        let sizes = left.into_iter().enumerate().map(size);
         sizes.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most }).0
     }
 
@@ -122,7 +129,8 @@ impl<const D: usize> StepEquations<'_, D> {
         let mut dual = self.dual_fields();
         let (parts, stage) = (&*self.parts, self.parts.stage(self.scheme));
         let (fields, reduction) = (&parts.fields, parts.solver.reduction());
-        apply(&stage, (fields, &mut dual), reduction, &parts.outside, direction, product);
+        let (outside, team) = (&parts.outside, &parts.team);
+        apply(&stage, (fields, &mut dual), (reduction, team), outside, direction, product);
         self.parts.dual = Some(dual);
     }
 
@@ -158,11 +166,12 @@ impl<const D: usize> StepEquations<'_, D> {
     }
 }
 
-/// The tangent times a direction at the state of the first of the fields; the second are scratch.
+/// The tangent times a direction at the state of the first of the fields; the second are scratch. Each of a team makes the
+/// rows of its own particles.
 fn apply<const D: usize>(
     stage: &Stage<'_, D>,
     (fields, dual): (&Fields<f64, D>, &mut Fields<Dual64, D>),
-    reduction: &Reduction<D>,
+    (reduction, team): (&Reduction<D>, &Team),
     outside: &[Vector<D>],
     direction: &[f64],
     product: &mut [f64],
@@ -177,19 +186,22 @@ fn apply<const D: usize>(
             dual.ratio[a] = Dual64::new(fields.ratio[a], direction[split + a] / speed);
         }
     }
-    stage.fill(dual);
+    stage.fill(dual, team.share_of(count));
     let dual = &*dual;
-    parallel::for_each_chunk(&mut moved, |first, moved| {
+    team.fill(&mut moved, |first, moved| {
         for (offset, moved) in moved.iter_mut().enumerate() {
             let a = first + offset;
             *moved = stage.left(dual, a, &outside[a]).0.map(|entry| -entry.eps);
         }
     });
     reduction.restrict(&moved, &mut product[..split]);
-    for (a, product) in product[split..].iter_mut().enumerate() {
-        let (_, ratio) = stage.left(dual, a, &outside[a]);
-        *product = -ratio.eps * scale(stage, a);
-    }
+    team.fill(&mut product[split..], |first, product| {
+        for (offset, product) in product.iter_mut().enumerate() {
+            let a = first + offset;
+            let (_, ratio) = stage.left(dual, a, &outside[a]);
+            *product = -ratio.eps * scale(stage, a);
+        }
+    });
 }
 
 /// What makes the equation of a volume ratio one of momentum, kg m/s.
@@ -203,7 +215,7 @@ fn precondition<const D: usize>(
     stage: &Stage<'_, D>,
     fields: &Fields<f64, D>,
     responses: &[Response<D>],
-    reduction: &Reduction<D>,
+    (reduction, team): (&Reduction<D>, &Team),
     right: &[f64],
     solution: &mut [f64],
     solve: impl FnOnce(&[f64], &mut [f64]),
@@ -218,7 +230,7 @@ fn precondition<const D: usize>(
         })
         .collect();
     let mut momentum: Vec<Vector<D>> = vec![Vector::zeros(); count];
-    parallel::for_each_chunk(&mut momentum, |first, momentum| {
+    team.fill(&mut momentum, |first, momentum| {
         for (offset, momentum) in momentum.iter_mut().enumerate() {
             let a = first + offset;
             let own = stress[a] * scheme.areas.diagonal(a);
@@ -230,11 +242,14 @@ fn precondition<const D: usize>(
     corrected.iter_mut().zip(right).for_each(|(corrected, right)| *corrected += right);
     solve(&corrected, &mut solution[..split]);
     reduction.expand_free(&solution[..split], &mut momentum);
-    for (a, solution) in solution[split..].iter_mut().enumerate() {
-        let gradient = stage.velocity_gradient(&momentum, a);
-        let followed = responses[a].ratio.dot(&gradient) * scheme.reference[a].wave_speed;
-        *solution = right[split + a] / scheme.mass(a) + followed;
-    }
+    team.fill(&mut solution[split..], |first, solution| {
+        for (offset, solution) in solution.iter_mut().enumerate() {
+            let a = first + offset;
+            let gradient = stage.velocity_gradient(&momentum, a);
+            let followed = responses[a].ratio.dot(&gradient) * scheme.reference[a].wave_speed;
+            *solution = right[split + a] / scheme.mass(a) + followed;
+        }
+    });
 }
 
 impl<const D: usize> Equations for StepEquations<'_, D> {
@@ -259,20 +274,23 @@ impl<const D: usize> Equations for StepEquations<'_, D> {
     fn residual(&mut self, _time: f64, x: &[f64], residual: &mut [f64]) -> f64 {
         self.evaluate(x);
         let (scheme, split) = (self.scheme, self.velocities());
-        let Implicit { solver, fields, base, weight, settings, outside, left, size, .. } =
+        let Implicit { solver, fields, base, weight, settings, outside, left, size, team, .. } =
             &mut *self.parts;
         let keeps_ratio = settings.keeps_ratio;
         let stage = Stage { scheme, weight: *weight, base, keeps_ratio };
-        parallel::for_each_chunk(left, |first, left| {
+        team.fill(left, |first, left| {
             for (offset, left) in left.iter_mut().enumerate() {
                 let a = first + offset;
                 *left = stage.left(fields, a, &outside[a]).0;
             }
         });
         solver.reduction().restrict(left, &mut residual[..split]);
-        for (a, residual) in residual[split..].iter_mut().enumerate() {
-            *residual = stage.left(fields, a, &outside[a]).1 * scale(&stage, a);
-        }
+        team.fill(&mut residual[split..], |first, residual| {
+            for (offset, residual) in residual.iter_mut().enumerate() {
+                let a = first + offset;
+                *residual = stage.left(fields, a, &outside[a]).1 * scale(&stage, a);
+            }
+        });
         let norm = |part: &[f64]| parallel::sum(part.len(), |k| part[k] * part[k]).sqrt();
         let largest = larger(norm(&residual[..split]), norm(&residual[split..]));
         if largest == 0.0 { 0.0 } else { largest / *size }
@@ -323,14 +341,16 @@ impl<const D: usize> StepEquations<'_, D> {
     ) -> Result<LinearReport, LinearError> {
         let mut dual = self.dual_fields();
         let reduction = self.parts.solver.reduction().clone();
-        let Implicit { solver, base, weight, fields, responses, outside, .. } = &mut *self.parts;
+        let Implicit { solver, base, weight, fields, responses, outside, team, .. } =
+            &mut *self.parts;
+        let shared = (&reduction, &*team);
         let stage = Stage { scheme: self.scheme, weight: *weight, base, keeps_ratio: true };
         let outcome = gmres(
             |direction, product| {
-                apply(&stage, (fields, &mut dual), &reduction, outside, direction, product);
+                apply(&stage, (fields, &mut dual), shared, outside, direction, product);
             },
             |right, solution| {
-                precondition(&stage, fields, responses, &reduction, right, solution, |r, s| {
+                precondition(&stage, fields, responses, shared, right, solution, |r, s| {
                     solver.precondition(r, s);
                 });
             },

@@ -15,8 +15,9 @@ use super::fields::ColumnsMut;
 use super::local::Unknowns;
 use super::{KEPT, LEDGER, Upwind};
 use crate::boundaries::BodyForce;
+use crate::parallel::{Halo, Team};
 use crate::schemes::momentum::kinetic_distance;
-use crate::schemes::{Missed, NoSolution, Scheme, Theta, ThetaScheme};
+use crate::schemes::{Missed, NoSolution, Part, Scheme, Theta, ThetaScheme};
 use crate::solve::{
     BlockMatrix, Costs, Equations, Found, LinearError, LinearMethod, LinearSolver, Newton,
     NewtonError, Reduction,
@@ -51,6 +52,10 @@ impl Default for ImplicitSettings {
 }
 
 /// What implicit steps need besides the formulation itself.
+///
+/// Each of several ranks has all of it. They share what takes long: the rows of the matrix, products, and what particles do
+/// to each other.
+#[derive(Clone)]
 pub(super) struct Implicit<const D: usize> {
     settings: ImplicitSettings,
     solver: LinearSolver<D>,
@@ -80,6 +85,7 @@ pub(super) struct Implicit<const D: usize> {
     /// Steps of GMRES in the last solution with the factors of this step; none before the first.
     steps_with_factors: Option<usize>,
     linear_steps: usize,
+    team: Team,
 }
 
 impl<const D: usize> Implicit<D> {
@@ -127,6 +133,7 @@ impl<const D: usize> Implicit<D> {
             size: 0.0,
             steps_with_factors: None,
             linear_steps: 0,
+            team: Team::default(),
         };
         let area = |a: usize| {
             let mut area = 0.0;
@@ -135,6 +142,29 @@ impl<const D: usize> Implicit<D> {
         };
         new.area = (0..count).map(area).collect();
         Ok(new)
+    }
+
+    /// The same for a rank.
+    pub fn share(&self, part: &Part) -> Self {
+        let mut share = self.clone();
+        if !part.is_whole() {
+            // What a rank asks of others are rows of which it has all.
+            let team = Team::new(part.ranks.clone(), part.bounds.clone(), Halo::default());
+            share.matrix.share(team.clone());
+            share.solver.share(team.clone());
+            share.team = team;
+        }
+        share
+    }
+
+    /// Who computes together.
+    pub fn team(&self) -> &Team {
+        &self.team
+    }
+
+    /// Whether linear equations are solved by factors.
+    pub fn is_direct(&self) -> bool {
+        self.solver.is_direct()
     }
 
     /// What linear equations took so far.

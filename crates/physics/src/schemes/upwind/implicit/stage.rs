@@ -1,5 +1,7 @@
 //! The state that an implicit step asks for, as a function of its velocities.
 
+use std::ops::Range;
+
 use nalgebra::{SMatrix, SVector};
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::upwind::{
@@ -183,8 +185,9 @@ impl<const D: usize> Stage<'_, D> {
         Exchanged { force, volume_rate: sums.upwind_volume_rate * settings.tau_pressure }
     }
 
-    /// Fills all that follows from velocities, and volume ratios where they are unknowns.
-    pub fn fill<T: Scalar + Send + Sync>(&self, fields: &mut Fields<T, D>) {
+    /// Fills all that follows from velocities, and volume ratios where they are unknowns; what particles do to each other
+    /// only for these `rows`.
+    pub fn fill<T: Scalar + Send + Sync>(&self, fields: &mut Fields<T, D>, rows: Range<usize>) {
         let Fields { velocity, ratio, locals, slopes, exchanges } = fields;
         parallel::for_each_chunk(locals, |first, locals| {
             for (offset, local) in locals.iter_mut().enumerate() {
@@ -203,9 +206,10 @@ impl<const D: usize> Stage<'_, D> {
             });
         }
         let slopes = &*slopes;
-        parallel::for_each_chunk(exchanges, |first, exchanges| {
+        let begin = rows.start;
+        parallel::for_each_chunk(&mut exchanges[rows], |first, exchanges| {
             for (offset, exchange) in exchanges.iter_mut().enumerate() {
-                *exchange = self.exchange(locals, slopes, first + offset);
+                *exchange = self.exchange(locals, slopes, begin + first + offset);
             }
         });
     }
