@@ -304,6 +304,19 @@ pub fn for_each_span<V: Send, T: Send>(
     });
 }
 
+/// As [`for_each_span`], of rows each of which is worth a thread's while: `body(values, row)`.
+pub fn for_each_long_span<V: Send, T: Send>(
+    values: &mut [V],
+    rows: &mut [T],
+    start: &(impl Fn(usize) -> usize + Sync),
+    body: impl Fn(&mut [V], &mut T) + Sync,
+) {
+    let (count, first) = (rows.len(), 0);
+    hand_out(count, [1; 2], Spans { first, values, rows, start }, |_, spans| {
+        spans.rows.iter_mut().for_each(|row| body(spans.values, row));
+    });
+}
+
 /// Rows from `first` on, and the values that belong to them.
 struct Spans<'a, V, T, S> {
     first: usize,

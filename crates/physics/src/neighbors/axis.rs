@@ -13,7 +13,9 @@ const MARGIN: f64 = 1e-5;
 /// An axis cut into cells. Stretches of it that hold points are numbered one after the other with
 /// an empty cell between them, whatever their distance.
 pub(super) struct Axis {
-    stretches: Vec<Stretch>,
+    /// The first stretch, and all of them where there are several.
+    first: Stretch,
+    several: Vec<Stretch>,
     /// Cells a metre.
     inverse: f64,
     cells: u64,
@@ -30,8 +32,13 @@ struct Stretch {
 
 impl Axis {
     /// An axis without cells.
-    pub(super) const EMPTY: Self =
-        Self { stretches: Vec::new(), inverse: 1.0, cells: 1, periodic: false };
+    pub(super) const EMPTY: Self = Self {
+        first: Stretch { lower: 0.0, first: 0, last: 0 },
+        several: Vec::new(),
+        inverse: 1.0,
+        cells: 1,
+        periodic: false,
+    };
 
     /// Cells at least `width` m wide between the least and the largest coordinate `axis` of
     /// `points`, or between the bounds of a periodic axis.
@@ -51,9 +58,9 @@ impl Axis {
                 let axis = axis_name(axis);
                 return Err(NeighborError::PeriodicTooLong { axis, length, support: width });
             }
-            let stretch = Stretch { lower, first: 0, last: cells as u64 - 1 };
-            let (stretches, inverse) = (vec![stretch], cells / length);
-            return Ok(Self { stretches, inverse, cells: cells as u64, periodic: true });
+            let first = Stretch { lower, first: 0, last: cells as u64 - 1 };
+            let (several, inverse, cells) = (Vec::new(), cells / length, cells as u64);
+            return Ok(Self { first, several, inverse, cells, periodic: true });
         }
         let coordinates = || points.iter().map(|point| point[axis]);
         let lower = coordinates().fold(f64::INFINITY, f64::min);
@@ -76,16 +83,22 @@ impl Axis {
 
     fn from_stretches(ends: impl Iterator<Item = (f64, f64)>, width: f64) -> Self {
         let inverse = 1.0 / (width * (1.0 + MARGIN));
-        let mut stretches = Vec::new();
+        let (mut one, mut several) = (None, Vec::new());
         let mut cells = 0;
         for (lower, upper) in ends {
             // A conversion of a large or non-finite number ends at the bounds of the type; such
             // an axis has too many cells to be used and is replaced by one without gaps.
             let further = (((upper - lower) * inverse) as u64).min(MOST_CELLS as u64);
-            stretches.push(Stretch { lower, first: cells, last: cells + further });
+            let stretch = Stretch { lower, first: cells, last: cells + further };
+            match one {
+                None => one = Some(stretch),
+                Some(first) if several.is_empty() => several.extend([first, stretch]),
+                Some(_) => several.push(stretch),
+            }
             cells += further + 2;
         }
-        Self { stretches, inverse, cells: cells.max(1), periodic: false }
+        let first = one.unwrap_or(Self::EMPTY.first);
+        Self { first, several, inverse, cells: cells.max(1), periodic: false }
     }
 
     /// Number of cells.
@@ -97,8 +110,8 @@ impl Axis {
     /// The cell of a coordinate that the axis was made for.
     #[inline]
     pub(super) fn cell(&self, x: f64) -> u64 {
-        let stretch = match self.stretches.as_slice() {
-            [only] => only,
+        let stretch = match self.several.as_slice() {
+            [] => &self.first,
             all => &all[all.partition_point(|stretch| stretch.lower <= x).max(1) - 1],
         };
         (stretch.first + ((x - stretch.lower) * self.inverse) as u64).min(stretch.last)

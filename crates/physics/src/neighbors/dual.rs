@@ -32,7 +32,7 @@ impl NeighborList {
         }
         let dual = self.dual();
         let append = |_: &mut (), a, rows: &mut Vec<u32>| merge(self.row(a), dual.row(a), rows);
-        Self::from_rows(self.len(), usize::MAX, || (), append).expect("there is no limit")
+        Self::from_rows(self.len(), usize::MAX, append).expect("there is no limit")
     }
 
     /// For entry `k` of the list, neighbour `b` of `a`, the entry of `a` in the row of `b`.

@@ -21,6 +21,23 @@ pub(super) struct CellGrid<const D: usize> {
     starts: Vec<u32>,
     points: Vec<Vector<D>>,
     ids: Vec<u32>,
+    /// The key of each point, and its slot.
+    keys: Vec<u128>,
+    own: Vec<u32>,
+}
+
+impl<const D: usize> Default for CellGrid<D> {
+    fn default() -> Self {
+        Self {
+            axes: [const { Axis::EMPTY }; D],
+            slots: Slots::Dense(0),
+            starts: Vec::new(),
+            points: Vec::new(),
+            ids: Vec::new(),
+            keys: Vec::new(),
+            own: Vec::new(),
+        }
+    }
 }
 
 /// How keys of cells, their numbers row by row in the whole grid, become positions in an array.
@@ -59,29 +76,50 @@ impl<const D: usize> CellGrid<D> {
         width: f64,
         domain: &Domain<D>,
     ) -> Result<Self, NeighborError> {
-        let axes = Self::axes(points, width, domain)?;
-        let keys: Vec<u128> =
-            points.par_iter().map(|point| key(&axes, &cell(&axes, point))).collect();
-        let slots = Self::slots(&axes, &keys);
-        let slot_of = |point: usize| slots.at_or_after(keys[point]);
+        let mut grid = Self::default();
+        grid.sort(points, width, domain)?;
+        Ok(grid)
+    }
 
-        let mut starts = vec![0u32; slots.len() + 1];
-        let own: Vec<u32> = (0..points.len()).into_par_iter().map(|i| slot_of(i) as u32).collect();
+    /// The same with arrays that may be there already.
+    pub(super) fn sort(
+        &mut self,
+        points: &[Vector<D>],
+        width: f64,
+        domain: &Domain<D>,
+    ) -> Result<(), NeighborError> {
+        let axes = Self::axes(points, width, domain)?;
+        let Self { starts, ids, keys, own, .. } = self;
+        points.par_iter().map(|point| key(&axes, &cell(&axes, point))).collect_into_vec(keys);
+        let slots = Self::slots(&axes, keys);
+        keys.par_iter().map(|&key| slots.at_or_after(key) as u32).collect_into_vec(own);
+        starts.clear();
+        starts.resize(slots.len() + 1, 0);
         own.iter().for_each(|&slot| starts[slot as usize] += 1);
         // Sums from the front make each entry the end of its slot; filling from the back, in
         // descending order of points, moves it to the start and keeps points in order.
         let mut end = 0;
-        for start in &mut starts {
+        for start in &mut *starts {
             end += *start;
             *start = end;
         }
-        let mut ids = vec![0u32; points.len()];
+        ids.resize(points.len(), 0);
         for (point, &slot) in own.iter().enumerate().rev() {
             starts[slot as usize] -= 1;
             ids[starts[slot as usize] as usize] = point as u32;
         }
-        let points = ids.par_iter().map(|&id| points[id as usize]).collect();
-        Ok(Self { axes, slots, starts, points, ids })
+        ids.par_iter().map(|&id| points[id as usize]).collect_into_vec(&mut self.points);
+        (self.axes, self.slots) = (axes, slots);
+        Ok(())
+    }
+
+    /// Bytes of all arrays.
+    pub(super) fn memory(&self) -> usize {
+        size_of_val(self.starts.as_slice())
+            + size_of_val(self.points.as_slice())
+            + size_of_val(self.ids.as_slice())
+            + size_of_val(self.keys.as_slice())
+            + size_of_val(self.own.as_slice())
     }
 
     fn axes(

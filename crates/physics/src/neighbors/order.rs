@@ -24,6 +24,21 @@ pub fn spatial_order<const D: usize>(
     points: &[Vector<D>],
     cell: f64,
 ) -> Result<Vec<u32>, NeighborError> {
+    let mut keys = Vec::new();
+    order_along(points, cell, |_| 0, &mut keys)?;
+    Ok(keys.into_iter().map(|(.., particle)| particle).collect())
+}
+
+/// What particles are ordered by: their class, their place on the curve, and their number.
+pub(super) type Key = (u8, u64, u32);
+
+/// The same of each class of particles by itself, one class after the other, into keys that may be there already.
+pub(super) fn order_along<const D: usize>(
+    points: &[Vector<D>],
+    cell: f64,
+    class: impl Fn(usize) -> u8 + Sync,
+    keys: &mut Vec<Key>,
+) -> Result<(), NeighborError> {
     check_points(points)?;
     check_support(0, cell)?;
     let mut axes = [const { Axis::EMPTY }; D];
@@ -39,10 +54,10 @@ pub fn spatial_order<const D: usize>(
         let spread = |axis: usize| spread::<D>(axes[axis].cell(point[axis]) >> doublings) << axis;
         (0..D).map(spread).fold(0, |key, bits| key | bits)
     };
-    let mut keys: Vec<(u64, u32)> =
-        points.par_iter().enumerate().map(|(i, point)| (key(point), i as u32)).collect();
+    let keyed = |(i, point): (usize, &Vector<D>)| (class(i), key(point), i as u32);
+    points.par_iter().enumerate().map(keyed).collect_into_vec(keys);
     keys.par_sort_unstable();
-    Ok(keys.into_iter().map(|(_, particle)| particle).collect())
+    Ok(())
 }
 
 /// The lower bits of `cell`, moved apart to every `D`th place.

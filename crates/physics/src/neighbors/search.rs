@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::error::axis_name;
 use super::grid::CellGrid;
+use super::list::Rows;
 use super::near::{Near, ROOM};
 use super::{Domain, LEAST_SUPPORT, MOST_ENTRIES, MOST_SUPPORT, NeighborError, NeighborList};
 use crate::Vector;
@@ -31,60 +32,80 @@ pub fn search<const D: usize>(
     support: &[f64],
     domain: &Domain<D>,
 ) -> Result<NeighborList, NeighborError> {
-    rows(points, support, domain, points.len(), |found, a, rows| {
+    check(points, support, domain)?;
+    let points = &*wrap(points, domain);
+    let grids = Grids::new(points, support, domain)?;
+    let append = |state: &mut Candidates<D>, a: usize, rows: &mut Vec<u32>| {
+        let (group, grid) = grids.of(support[a]);
+        state.collect(group, grid, &points[a]);
+        let found = state.near(grid, &Near::new(points[a], support[a], domain));
         found.sort_unstable();
         let own = found.binary_search(&(a as u32)).expect("a particle is near to itself");
         rows.extend_from_slice(&found[..own]);
         rows.extend_from_slice(&found[own + 1..]);
-    })
-}
-
-/// The list of [`search`] for particles that all have the same support, with rows in ascending
-/// order of `ranks`, the rank of each particle, whose inverse is `ranked`. It has `count` rows, those of the first particles.
-/// A particle whose rank is at least `seen` sees only those with lower ones.
-pub(super) fn search_ranked<const D: usize>(
-    points: &[Vector<D>],
-    support: f64,
-    domain: &Domain<D>,
-    [ranks, ranked]: [&[u32]; 2],
-    [count, seen]: [usize; 2],
-) -> Result<NeighborList, NeighborError> {
-    let (supports, seen) = (vec![support; points.len()], seen as u32);
-    rows(points, &supports, domain, count, |found, a, rows| {
-        found.iter_mut().for_each(|b| *b = ranks[*b as usize]);
-        found.sort_unstable();
-        let own = ranks[a];
-        let count = match own < seen {
-            true => found.len(),
-            false => found.partition_point(|&rank| rank < seen),
-        };
-        let others = found[..count].iter().filter(|&&rank| rank != own);
-        rows.extend(others.map(|&rank| ranked[rank as usize]));
-    })
-}
-
-/// Finds all that are near to each of the first `count` particles, itself included, and has `append(found, a, rows)`
-/// append them to the rows.
-fn rows<const D: usize>(
-    points: &[Vector<D>],
-    support: &[f64],
-    domain: &Domain<D>,
-    count: usize,
-    append: impl Fn(&mut [u32], usize, &mut Vec<u32>) + Sync,
-) -> Result<NeighborList, NeighborError> {
-    check(points, support, domain)?;
-    let points = &*wrap(points, domain);
-    let grids = Grids::new(points, support, domain)?;
-    let row = |state: &mut Candidates<D>, a: usize, rows: &mut Vec<u32>| {
-        let (group, grid) = grids.of(support[a]);
-        let center = points[a];
-        state.collect(group, grid, &center);
-        let found = state.near(grid, &Near::new(center, support[a], domain));
-        append(found, a, rows);
     };
     let (particles, most) = (points.len(), MOST_ENTRIES);
-    NeighborList::from_rows(count, most, Candidates::default, row)
+    NeighborList::from_rows(particles, most, append)
         .ok_or(NeighborError::TooManyEntries { particles, most })
+}
+
+/// The list of [`search`] for particles that all have the same support, made again and again in the same arrays.
+#[derive(Default)]
+pub(super) struct RankedSearch<const D: usize> {
+    grid: CellGrid<D>,
+    rows: Rows<Candidates<D>>,
+}
+
+impl<const D: usize> RankedSearch<D> {
+    /// Makes rows in ascending order of `ranks`, the rank of each particle, whose inverse is `ranked`: `count`
+    /// of them, those of the first particles, which are all inside the bounds of the domain. A particle whose rank is
+    /// at least `seen` sees only those with lower ones.
+    ///
+    /// # Errors
+    /// Those of [`search`].
+    pub fn make(
+        &mut self,
+        points: &[Vector<D>],
+        (support, domain): (f64, &Domain<D>),
+        [ranks, ranked]: [&[u32]; 2],
+        [count, seen]: [usize; 2],
+    ) -> Result<(), NeighborError> {
+        check_points(points)?;
+        check_supports(points.len(), |_| support, domain)?;
+        let Self { grid, rows } = self;
+        grid.sort(points, support, domain)?;
+        // What the last search knows is of other cells.
+        rows.states().for_each(|state| state.cell = None);
+        let (grid, seen) = (&*grid, seen as u32);
+        let append = |state: &mut Candidates<D>, a: usize, rows: &mut Vec<u32>| {
+            state.collect(0, grid, &points[a]);
+            let found = state.near(grid, &Near::new(points[a], support, domain));
+            found.iter_mut().for_each(|b| *b = ranks[*b as usize]);
+            found.sort_unstable();
+            let own = ranks[a];
+            let count = match own < seen {
+                true => found.len(),
+                false => found.partition_point(|&rank| rank < seen),
+            };
+            let others = found[..count].iter().filter(|&&rank| rank != own);
+            rows.extend(others.map(|&rank| ranked[rank as usize]));
+        };
+        let (particles, most) = (points.len(), MOST_ENTRIES);
+        match rows.make([count, most], append) {
+            true => Ok(()),
+            false => Err(NeighborError::TooManyEntries { particles, most }),
+        }
+    }
+
+    /// Puts the rows that were made last together.
+    pub fn join(&mut self, list: &mut NeighborList) {
+        self.rows.join(list);
+    }
+
+    /// Bytes of all arrays.
+    pub fn memory(&self) -> usize {
+        self.grid.memory() + self.rows.memory()
+    }
 }
 
 /// Refuses particles closer to each other than `tolerance` m.
@@ -138,16 +159,24 @@ fn check<const D: usize>(
         return Err(NeighborError::SupportCount { points, supports });
     }
     check_points(points)?;
-    support.iter().enumerate().try_for_each(|(particle, &s)| check_support(particle, s))?;
-    let Some(particle) = (0..support.len()).max_by(|&a, &b| support[a].total_cmp(&support[b]))
-    else {
+    check_supports(support.len(), |particle| support[particle], domain)
+}
+
+/// Refuses supports that cannot be squared, or are too long for a periodic axis.
+fn check_supports<const D: usize>(
+    count: usize,
+    support: impl Fn(usize) -> f64,
+    domain: &Domain<D>,
+) -> Result<(), NeighborError> {
+    (0..count).try_for_each(|particle| check_support(particle, support(particle)))?;
+    let Some(particle) = (0..count).max_by(|&a, &b| support(a).total_cmp(&support(b))) else {
         return Ok(());
     };
     for (axis, bounds) in domain.periodic().iter().enumerate() {
         if let &Some([lower, upper]) = bounds
-            && upper - lower < 2.0 * support[particle]
+            && upper - lower < 2.0 * support(particle)
         {
-            let (axis, length, support) = (axis_name(axis), upper - lower, support[particle]);
+            let (axis, length, support) = (axis_name(axis), upper - lower, support(particle));
             return Err(NeighborError::PeriodicTooShort { axis, length, particle, support });
         }
     }

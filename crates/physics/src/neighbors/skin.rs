@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::search::{check_points, search_ranked};
-use super::{Domain, NeighborError, shorter_way, spatial_order};
+use super::order::{Key, order_along};
+use super::search::{RankedSearch, check_points};
+use super::{Domain, NeighborError, NeighborList, shorter_way};
 use crate::parallel::Team;
 use crate::{Vector, parallel};
 
@@ -42,11 +43,23 @@ pub struct SkinList<const D: usize> {
     /// Positions by place, inside the bounds of the domain: now, and when the list was made.
     positions: Vec<Vector<D>>,
     made_at: Vec<Vector<D>>,
-    /// Row `k` is `entries[offsets[k]..offsets[k + 1]]`, from `passive_from[k]` on passive.
-    offsets: Vec<usize>,
+    /// Rows of own particles, from the entry `passive_from[k]` on passive.
+    rows: NeighborList,
     passive_from: Vec<usize>,
-    entries: Vec<u32>,
     builds: u64,
+    scratch: Scratch<D>,
+}
+
+/// What the next list is made with.
+#[derive(Default)]
+struct Scratch<const D: usize> {
+    keys: Vec<Key>,
+    /// Positions in m, numbers and ranks of particles in the new order, and the place of each rank in it.
+    points: Vec<Vector<D>>,
+    numbers: Vec<u32>,
+    ranks: Vec<u32>,
+    ranked: Vec<u32>,
+    search: RankedSearch<D>,
 }
 
 impl<const D: usize> SkinList<D> {
@@ -78,10 +91,10 @@ impl<const D: usize> SkinList<D> {
             numbers,
             positions: vec![Vector::zeros(); positions.len()],
             made_at: Vec::new(),
-            offsets: Vec::new(),
+            rows: NeighborList::default(),
             passive_from: Vec::new(),
-            entries: Vec::new(),
             builds: 0,
+            scratch: Scratch::default(),
         };
         list.update(&mut vec![(); positions.len()], |number, ()| positions[number])?;
         Ok(list)
@@ -127,6 +140,8 @@ impl<const D: usize> SkinList<D> {
 
     /// The list of one of several ranks, which is made at the first update.
     pub(crate) fn part(&self, team: Team, count: usize) -> Self {
+        let mut rows = NeighborList::default();
+        rows.resize(count);
         let numbers = (0..count as u32).map(|row| row + team.first() as u32);
         Self {
             domain: self.domain,
@@ -141,11 +156,11 @@ impl<const D: usize> SkinList<D> {
             places: (0..count as u32).collect(),
             positions: vec![Vector::zeros(); count],
             made_at: Vec::new(),
-            offsets: vec![0; count + 1],
+            rows,
             passive_from: vec![0; count],
-            entries: Vec::new(),
             builds: 0,
             team,
+            scratch: Scratch::default(),
         }
     }
 
@@ -191,45 +206,61 @@ impl<const D: usize> SkinList<D> {
 
     /// Renews the places and lists the candidates of the current positions.
     fn build(&mut self) -> Result<(), NeighborError> {
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let built = self.build_with(&mut scratch);
+        self.scratch = scratch;
+        built
+    }
+
+    fn build_with(&mut self, scratch: &mut Scratch<D>) -> Result<(), NeighborError> {
         let (reach, owned, first) = (self.support + self.skin, self.owned(), self.team.first());
         let (own, (positions, all)) = (first..first + owned, self.around(reach)?);
-        let mut order = spatial_order(&positions, reach)?;
+        let Scratch { keys, points, numbers, ranks, ranked, search } = scratch;
         // Those that no others see come last and are not looked for: many may be in one place. Own ones come first.
-        let class = |&at: &u32| {
-            let number = all[at as usize] as usize;
+        let class = |at: usize| {
+            let number = all[at] as usize;
             let is_out = self.excluded.get(number).is_some_and(|is_out| *is_out);
-            (is_out, !own.contains(&number))
+            2 * u8::from(is_out) + u8::from(!own.contains(&number))
         };
-        order.sort_by_key(class);
-        let seen = order.partition_point(|at| !class(at).0);
-        let seeing = order.partition_point(|at| class(at) == (false, false));
-        let ordered: Vec<_> = order.iter().map(|&at| positions[at as usize]).collect();
-        let numbers: Vec<u32> = order.iter().map(|&at| all[at as usize]).collect();
-        let ranks: Vec<u32> = numbers.iter().map(|&number| self.ranks[number as usize]).collect();
-        let mut ranked = vec![0; self.ranks.len()];
+        order_along(&positions, reach, class, keys)?;
+        let seen = keys.partition_point(|key| key.0 < 2);
+        let seeing = keys.partition_point(|key| key.0 == 0);
+        let order = || keys.iter().map(|key| key.2 as usize);
+        points.clear();
+        points.extend(order().map(|at| positions[at]));
+        numbers.clear();
+        numbers.extend(order().map(|at| all[at]));
+        ranks.clear();
+        ranks.extend(numbers.iter().map(|&number| self.ranks[number as usize]));
+        ranked.clear();
+        ranked.resize(self.ranks.len(), 0);
         for (place, &rank) in ranks.iter().enumerate() {
             ranked[rank as usize] = place as u32;
         }
         let (both, rows) = ([ranks.as_slice(), ranked.as_slice()], [seeing, self.active as usize]);
-        let list = search_ranked(&ordered[..seen], reach, &self.domain, both, rows);
-        let is_found = self.team.all(list.is_ok());
-        let (mut offsets, mut entries) = list?.into_arrays();
+        let made = search.make(&points[..seen], (reach, &self.domain), both, rows);
+        let is_found = self.team.all(made.is_ok());
+        made?;
         if !is_found {
             return Err(NeighborError::OtherRank);
         }
-        offsets.resize(owned + 1, entries.len());
+        search.join(&mut self.rows);
+        self.rows.resize(owned);
         let is_active = |&at: &u32| ranks[at as usize] < self.active;
-        let passive_from = (offsets.windows(2))
-            .map(|ends| ends[0] + entries[ends[0]..ends[1]].partition_point(is_active));
-        self.passive_from = passive_from.collect();
-        let copies = self.copies(&numbers, &mut entries);
-        let in_front = numbers[..seeing].iter().chain(&numbers[seen..][..owned - seeing]);
-        let behind = copies.iter().map(|(_, at)| &numbers[*at]);
-        self.numbers = in_front.chain(behind).copied().collect();
+        self.passive_from.clear();
+        self.passive_from.extend(
+            (0..owned).map(|row| {
+                self.rows.range(row).start + self.rows.row(row).partition_point(is_active)
+            }),
+        );
+        let copies = Self::copies(&self.team, owned, numbers, self.rows.indices_mut());
+        self.numbers.clear();
+        self.numbers.extend_from_slice(&numbers[..seeing]);
+        self.numbers.extend_from_slice(&numbers[seen..][..owned - seeing]);
+        self.numbers.extend(copies.iter().map(|(_, at)| numbers[*at]));
         for (place, &number) in self.numbers[..owned].iter().enumerate() {
             self.places[number as usize - first] = place as u32;
         }
-        (self.offsets, self.entries) = (offsets, entries);
         self.positions.resize(self.numbers.len(), Vector::zeros());
         let wanted: Vec<(usize, usize)> =
             copies.iter().map(|&(rank, at)| (rank, numbers[at] as usize)).collect();
@@ -271,18 +302,22 @@ impl<const D: usize> SkinList<D> {
 
     /// What the rows of `entries`, which say where others stand in the order of `numbers`, name of other ranks: the rank
     /// and where it stands there, rank by rank. From then on rows name the places of the copies behind own particles.
-    fn copies(&self, numbers: &[u32], entries: &mut [u32]) -> Vec<(usize, usize)> {
-        if self.team.is_alone() {
+    fn copies(
+        team: &Team,
+        owned: usize,
+        numbers: &[u32],
+        entries: &mut [u32],
+    ) -> Vec<(usize, usize)> {
+        if team.is_alone() {
             return Vec::new();
         }
-        let owned = self.owned();
         let mut is_named = vec![false; numbers.len()];
         entries.iter().for_each(|&at| is_named[at as usize] = true);
         let others = numbers.iter().zip(is_named).enumerate().filter(|(_, (number, is_named))| {
-            *is_named && self.team.own(**number as usize, owned).is_none()
+            *is_named && team.own(**number as usize, owned).is_none()
         });
         let mut copies: Vec<(usize, usize)> =
-            others.map(|(at, (number, _))| (self.team.owner(*number as usize), at)).collect();
+            others.map(|(at, (number, _))| (team.owner(*number as usize), at)).collect();
         copies.sort_unstable();
         let mut places: Vec<u32> = (0..numbers.len() as u32).collect();
         for (place, (_, at)) in (owned as u32..).zip(&copies) {
@@ -340,30 +375,30 @@ impl<const D: usize> SkinList<D> {
 
     /// Number of candidates of all particles.
     pub fn entries(&self) -> usize {
-        self.entries.len()
+        self.rows.pairs()
     }
 
     /// Candidates of the particle at `place`.
     pub fn row(&self, place: usize) -> &[u32] {
-        &self.entries[self.offsets[place]..self.offsets[place + 1]]
+        self.rows.row(place)
     }
 
     /// Number of candidates of all particles before `place`.
     #[inline]
     pub fn offset(&self, place: usize) -> usize {
-        self.offsets[place]
+        self.rows.range(place).start
     }
 
     /// Candidates of the particle at `place` that are not passive.
     #[inline]
     pub fn active_row(&self, place: usize) -> &[u32] {
-        &self.entries[self.offsets[place]..self.passive_from[place]]
+        &self.rows.indices()[self.rows.range(place).start..self.passive_from[place]]
     }
 
     /// Candidates of the particle at `place` that are passive.
     #[inline]
     pub fn passive_row(&self, place: usize) -> &[u32] {
-        &self.entries[self.passive_from[place]..self.offsets[place + 1]]
+        &self.rows.indices()[self.passive_from[place]..self.rows.range(place).end]
     }
 
     /// How often the list was made.
@@ -383,8 +418,14 @@ impl<const D: usize> SkinList<D> {
 
     /// Bytes of all arrays.
     pub fn memory(&self) -> usize {
+        let Scratch { keys, points, numbers, ranks, ranked, search } = &self.scratch;
         let particle = 2 * size_of::<Vector<D>>() + 2 * size_of::<usize>() + 3 * size_of::<u32>();
-        self.len() * particle + self.entries.len() * size_of::<u32>()
+        self.len() * particle
+            + size_of_val(self.rows.indices())
+            + size_of_val(keys.as_slice())
+            + size_of_val(points.as_slice())
+            + [numbers, ranks, ranked].map(|it| size_of_val(it.as_slice())).iter().sum::<usize>()
+            + search.memory()
     }
 }
 

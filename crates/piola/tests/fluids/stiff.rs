@@ -61,20 +61,51 @@ const IMPLICIT: &str = "system.plate.time={ integrator = 'newmark' }";
 /// Vibrations stay as they are.
 const INVISCID: &str = "system.plate.scheme.viscosity=0";
 
-fn built(set: &[&str]) -> Result<Session, String> {
+/// The same in space: an endless row of dams.
+fn in_space() -> String {
+    let mut text = DAM.to_owned();
+    for (plane, space) in [
+        ("dimension = 2", "dimension = 3"),
+        ("[parameters]", "[domain]\nperiodic = { z = [0.0, 0.4] }\n[parameters]"),
+        ("min = [0.0, 0.0]", "min = [0.0, 0.0, 0.0]"),
+        ("min = [0.5, 0.0]", "min = [0.5, 0.0, 0.0]"),
+        ("min = [-0.2, -0.2]", "min = [-0.2, -0.2, 0.0]"),
+        ("max = [0.5, 0.5]", "max = [0.5, 0.5, 0.4]"),
+        ("max = [1.2, 1.0]", "max = [1.2, 1.0, 0.4]"),
+        ("max = [1.0, 1.2]", "max = [1.0, 1.2, 0.4]"),
+        ("+ thickness\", 0.8]", "+ thickness\", 0.8, 0.4]"),
+        ("[\"0\", \"-9.81\"]", "[\"0\", \"-9.81\", \"0\"]"),
+        (
+            "point = [0.0, 0.06], normal = [0.0, -1.0]",
+            "point = [0.0, 0.06, 0.0], normal = [0.0, -1.0, 0.0]",
+        ),
+        ("y = \"0\" }", "y = \"0\", z = \"0\" }"),
+    ] {
+        assert!(text.contains(plane), "{plane}");
+        text = text.replace(plane, space);
+    }
+    text
+}
+
+fn built(text: &str, set: &[&str]) -> Result<Session, String> {
     let overrides = set.iter().map(|text| (*text).to_owned()).collect();
     let options = LoadOptions { overrides, ..LoadOptions::default() };
-    let case = case::parse(DAM, "case.toml", &options);
+    let case = case::parse(text, "case.toml", &options);
     let case = case.unwrap_or_else(|problems| panic!("{problems}"));
     Session::new(&case).map_err(|problems| problems.to_string())
 }
 
 fn session(set: &[&str]) -> Session {
-    built(set).unwrap_or_else(|problems| panic!("{problems}"))
+    built(DAM, set).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn run(set: &[&str]) -> Finished {
-    let finished = session(set).run(&AtomicBool::new(false), &mut |_| {}).expect("it runs");
+    run_of(DAM, set)
+}
+
+fn run_of(text: &str, set: &[&str]) -> Finished {
+    let session = built(text, set).unwrap_or_else(|problems| panic!("{problems}"));
+    let finished = session.run(&AtomicBool::new(false), &mut |_| {}).expect("it runs");
     assert_eq!(finished.summary.outcome.summary(), "completed");
     finished
 }
@@ -105,16 +136,21 @@ fn water_at_rest_does_not_drive_a_plate() {
     let thin = ["parameters.thickness=0.1", "parameters.pd=0.05"];
     let aluminium = "body.plate.material={ kind = 'neo_hookean_logarithmic', density = 2700.0, young_modulus = 67e9, poisson_ratio = 0.33 }";
     let light = "body.plate.material={ kind = 'neo_hookean_logarithmic', density = 300.0, young_modulus = 2e8, poisson_ratio = 0.3 }";
-    let cases: [&[&str]; 6] = [
-        &[],
-        &["body.plate.material.young_modulus=3e8"],
-        &["time.cfl=0.2"],
-        &[thin[0], thin[1], "body.plate.material.young_modulus=2e8"],
-        &[aluminium, "parameters.pd=0.05", "time.end=0.05", "output.every=0.05"],
-        &[light],
+    let (short, soft) =
+        (["time.end=0.05", "output.every=0.05"], "body.plate.material.young_modulus=2e8");
+    let (space, thin_and_soft) = (in_space(), [thin[0], thin[1], soft]);
+    let cases: [(&str, &[&str]); 7] = [
+        (DAM, &[]),
+        (DAM, &["body.plate.material.young_modulus=3e8"]),
+        (DAM, &["time.cfl=0.2"]),
+        (DAM, &thin_and_soft),
+        (DAM, &[aluminium, "parameters.pd=0.05", short[0], short[1]]),
+        (DAM, &[light]),
+        (&space, &thin_and_soft),
     ];
-    for set in cases {
-        let [explicit, implicit] = [run(set), run(&[set, &[IMPLICIT]].concat())];
+    for (text, set) in cases {
+        let [explicit, implicit] =
+            [&[][..], &[IMPLICIT]].map(|more| run_of(text, &[set, more].concat()));
         assert!(own_steps(&explicit) > 4.0 && own_steps(&implicit) == 1.0, "{set:?}");
         let [own, reference] = [&explicit, &implicit].map(most);
         assert!(own < 1.1 * reference, "{set:?}: {own} {reference}");
@@ -219,7 +255,7 @@ fn what_is_wrong_with_the_size_of_a_plate_names_it() {
     };
     assert!(warned(&["parameters.thickness=0.1", "parameters.pd=0.05"]));
     assert!(!warned(&[]));
-    let refused = |set: &[&str]| built(set).err().expect("it is refused");
+    let refused = |set: &[&str]| built(DAM, set).err().expect("it is refused");
     let thin = refused(&["parameters.thickness=0.025", "parameters.pd=0.025"]);
     assert!(thin.contains("the solid `plate` is 0.50 spacings of the fluid thick"), "{thin}");
     let uneven = refused(&["parameters.thickness=0.17", "parameters.pd=0.01"]);

@@ -5,6 +5,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use piola::case::{self, Finished, LoadOptions, Session};
+use piola::observe::Series;
 use piola::time::{Moment, ObserveError, Observer, Schedule};
 use rayon::prelude::*;
 
@@ -130,6 +131,31 @@ fn a_pressure_that_follows_is_the_same_on_any_number_of_ranks() {
     let pressure = "load.pull={ kind = 'pressure', body = 'plate', where = { kind = 'plane', point = [2.0, 0.0], normal = [1.0, 0.0] }, \
                     pressure = '4e3 * (1 + y)' }";
     same_on_any_number(PLATE, &[pressure, "scheme.gradients='plain'", "scheme.hourglass=0.3"]);
+}
+
+/// A spring with a damper pulls on the centre of all particles of a body, and a rigid body turns: each rank has some of their
+/// particles.
+#[test]
+fn springs_and_rigid_bodies_are_the_same_on_any_number_of_ranks() {
+    let spring = "load.pull={ kind = 'spring', body = 'plate', to = [0.0, -1.0], stiffness = 3e4, damping = 200.0 }";
+    let rigid = [
+        "scheme.kind='total_lagrangian'",
+        "body.other.material={ kind = 'rigid', density = 500.0 }",
+        "body.other.spacing=0.03",
+        "body.other.initial={ velocity = ['1 - 5 * y', '5 * x'] }",
+    ];
+    let alone = same_on_any_number(PLATE, &[&[spring][..], &rigid].concat());
+    for name in ["spring", "boundary_motion"] {
+        let Some(Series::Curve { values, .. }) = alone.finished.quantity(&format!("energy.{name}"))
+        else {
+            panic!("{name} is a curve");
+        };
+        assert!(values.iter().any(|work| work.abs() > 1e-3), "{name}: {values:?}");
+    }
+    // It is turned as a clock says, and held at a point.
+    let turned = "boundary+={ name = 'axle', body = 'other', where = { kind = 'all' }, velocity = { x = '0', y = 't' }, \
+                  angular_velocity = { z = '3 * cos(40 * t)' } }";
+    same_on_any_number(PLATE, &[&rigid[..], &[turned]].concat());
 }
 
 #[test]
@@ -337,13 +363,6 @@ fn what_does_not_run_on_several_ranks_is_named() {
     let direct = "the direct linear solver does not run on several ranks yet: set `time.linear_solver = \"krylov\"`";
     refused(PLATE, &implicit, direct);
     refused(BLOCK, &["time.integrator='backward_euler'", "time.step=1e-3"], direct);
-    let spring = "load.pull={ kind = 'spring', body = 'plate', to = [0.0, 0.0], stiffness = 10.0 }";
-    refused(PLATE, &[spring], "springs do not act on several ranks yet: leave them out");
-    let rigid = [
-        "body.other.material={ kind = 'rigid', density = 500.0 }",
-        "scheme.kind='total_lagrangian'",
-    ];
-    refused(PLATE, &rigid, "rigid bodies do not run on several ranks yet: leave them out");
     let few = "body.block.spacing=0.3";
     refused(BLOCK, &[few, "compute.ranks=9"], "ranks are too many for");
     refused(BLOCK, &[few, "compute.ranks=9"], "a chunk of 16: take 3 ranks or fewer");
@@ -363,7 +382,7 @@ fn what_does_not_run_on_several_ranks_is_named() {
 
 /// Which cases run on several ranks.
 #[test]
-fn explicit_steps_are_shared() {
+fn cases_are_shared_but_for_factors_and_what_is_refused() {
     let cases = cases();
     let shared = cases.par_iter().filter(|path| on_ranks(path, None, &[]).is_some());
     let names = shared.filter_map(|path| path.parent()?.file_name()?.to_str());
@@ -371,7 +390,7 @@ fn explicit_steps_are_shared() {
 }
 
 /// The cases of which several ranks have a part each.
-const SHARED: [&str; 61] = [
+const SHARED: [&str; 62] = [
     "dam-break-box",
     "dam-break-plate",
     "dam-break-plate-3d",
@@ -406,6 +425,7 @@ const SHARED: [&str; 61] = [
     "taylor-bar",
     "taylor-green",
     "taylor-green-3d",
+    "cube",
     "free-vibration",
     "biaxial",
     "hole",

@@ -192,6 +192,7 @@ impl<const D: usize> TotalLagrangian<D> {
             team: Team::default(),
             prescribed,
             rigid: RigidBodies::new(input.rigid, &solid),
+            group: None,
             statics: statics.map(Box::new),
             is_static,
             stable: Bound::default(),

@@ -24,11 +24,18 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// What springs do to the centres of their particles.
-    fn pulls(&self, at: &Columns<'_, D>) -> impl Iterator<Item = (&Spring<D>, Vector<D>)> {
-        self.loads.springs.iter().map(move |spring| {
-            let place = spring.mean(&self.solid.mass, |a| self.position(a, at));
-            let velocity = spring.mean(&self.solid.mass, |a| at.velocity[a]);
-            (spring, spring.force(&place, &velocity))
+    fn pulls(&self, at: &Columns<'_, D>) -> Vec<(&Spring<D>, Vector<D>)> {
+        if self.loads.springs.is_empty() {
+            return Vec::new();
+        }
+        let read = [at.displacement, at.velocity];
+        self.with_group(read, [], |solid, [displacement, velocity], []| {
+            let pull = |spring: &Spring<D>| {
+                let position = |a: usize| solid.particles.position[a] + displacement[a];
+                let place = spring.mean(&solid.mass, position);
+                spring.force(&place, &spring.mean(&solid.mass, |a| velocity[a]))
+            };
+            self.loads.springs.iter().map(|spring| (spring, pull(spring))).collect()
         })
     }
 
@@ -84,9 +91,14 @@ impl<const D: usize> TotalLagrangian<D> {
             &mut pressure,
         );
         for (load, pull) in self.pulls(at) {
-            let whole: f64 = load.particles.iter().map(|&a| solid.mass[a as usize]).sum();
-            let share = |&a: &u32| (a as usize, pull * (solid.mass[a as usize] / whole));
-            push(load.particles.iter().map(share), particle, own.velocity, &mut spring);
+            let mass = self.masses();
+            let whole: f64 = load.particles.iter().map(|&a| mass[a as usize]).sum();
+            let share = |&a: &u32| {
+                let here = self.team.own(a as usize, count)?;
+                Some((here, pull * (mass[a as usize] / whole)))
+            };
+            let forces = load.particles.iter().filter_map(share);
+            push(forces, particle, own.velocity, &mut spring);
         }
         prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
         let acts = self.is_pulled() || damping > 0.0 || self.dissipation.is_viscous();
@@ -104,8 +116,12 @@ impl<const D: usize> TotalLagrangian<D> {
         totals.drive(DAMPING, &dragged);
         totals.drive(VISCOSITY, &viscous);
         totals.drive(SPRING, &spring);
-        let moved = [at.displacement, velocity];
-        self.rigid.accelerate(time, solid, moved, own.velocity, &mut boundary);
+        if !self.rigid.is_empty() {
+            let (read, written) = ([at.displacement, velocity], [own.velocity]);
+            self.with_group(read, written, |solid, moved, [acceleration]| {
+                self.rigid.accelerate(time, solid, moved, acceleration, &mut boundary);
+            });
+        }
         totals.drive(TRACTION, &traction);
         totals.drive(PRESSURE, &pressure);
         totals.drive(BOUNDARY_MOTION, &boundary);
@@ -125,7 +141,12 @@ impl<const D: usize> TotalLagrangian<D> {
         let (own, tail) = ColumnsMut::<D>::of(state, count);
         parallel::copy(own.kick, self.columns(rate).velocity);
         self.prescribed.iter().for_each(|entry| own.kick[entry.particle][entry.component] = 0.0);
-        self.rigid.project(solid, own.displacement, own.kick);
+        if !self.rigid.is_empty() {
+            let (read, written) = ([&*own.displacement], [&mut *own.kick]);
+            self.with_group(read, written, |solid, [displacement], [kick]| {
+                self.rigid.project(solid, displacement, kick);
+            });
+        }
         if self.matrices.edges().is_some() {
             let data = self.displacement[count..].iter();
             let known = &mut LEDGER.behind_mut(D, tail)[FIGURES..];
@@ -160,13 +181,19 @@ impl<const D: usize> TotalLagrangian<D> {
         totals.grow(BODY_FORCE, body);
         totals.grow(DAMPING, -damping * dragged);
         totals.grow(PRESSURE, pressure);
-        let springs = self.loads.springs.iter().map(|spring| {
-            let mean = |of: &[Vector<D>]| spring.mean(&solid.mass, |a| of[a]);
-            let (place, velocity) = (mean(own.displacement), mean(own.velocity));
-            let place = place + spring.mean(&solid.mass, |a| solid.particles.position[a]);
-            spring.force(&place, &velocity).dot(&mean(kick))
-        });
-        totals.grow(SPRING, springs.sum());
+        if !self.loads.springs.is_empty() {
+            let read = [&*own.displacement, &*own.velocity, kick];
+            let grown: f64 =
+                self.with_group(read, [], |solid, [displacement, velocity, kick], []| {
+                    let of = |spring: &Spring<D>| {
+                        let mean = |of: &[Vector<D>]| spring.mean(&solid.mass, |a| of[a]);
+                        let place = mean(displacement) + mean(&solid.particles.position);
+                        spring.force(&place, &mean(velocity)).dot(&mean(kick))
+                    };
+                    self.loads.springs.iter().map(of).sum()
+                });
+            totals.grow(SPRING, grown);
+        }
         if self.matrices.edges().is_some() {
             self.acceleration[..count].copy_from_slice(kick);
             traction += self.ghost_powers(&self.acceleration)[0];

@@ -34,10 +34,14 @@ impl<const D: usize> TotalLagrangian<D> {
             return Health { largest_speed: 0.0, ..health };
         }
         limits.push(self.stable.limit(stiffening, thickening, self.solid.is_linear()));
-        limits.extend(self.rigid.limit(&self.solid, [at.displacement, at.velocity, at.kick]));
+        if !self.rigid.is_empty() {
+            let read = [at.displacement, at.velocity, at.kick];
+            limits
+                .extend(self.with_group(read, [], |solid, read, []| self.rigid.limit(solid, read)));
+        }
         limits.extend(self.loads.springs.iter().map(|spring| {
             let first = spring.particles.first().map_or(0, |&a| a as usize);
-            StepLimit::scaled("spring", spring.stable_step(&self.solid.mass), first)
+            StepLimit::scaled("spring", spring.stable_step(self.masses()), first)
         }));
         health
     }

@@ -33,6 +33,7 @@ mod error;
 mod evaluate;
 mod external;
 mod fields;
+mod group;
 mod inspect;
 mod loads;
 mod material;
@@ -74,6 +75,7 @@ use crate::schemes::stages::Stages;
 use crate::schemes::{Accounts, SchemeDescription};
 use crate::{Tensor, Vector};
 
+use group::Group;
 use loads::Loads;
 use matrices::Matrices;
 
@@ -103,6 +105,8 @@ pub struct TotalLagrangian<const D: usize> {
     team: Team,
     prescribed: PrescribedComponents,
     rigid: rigid::RigidBodies<D>,
+    /// Particles that act on each other wherever they are, where other ranks have some.
+    group: Option<Arc<Group<D>>>,
     /// Whether gradients and forces are those of the displacements at hand.
     is_evaluated: bool,
     /// Whether there are matrices at the places of the moment.

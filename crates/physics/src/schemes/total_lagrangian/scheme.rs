@@ -66,7 +66,12 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     fn constrain(&self, time: f64, state: &mut [f64]) {
         let (own, _) = ColumnsMut::<D>::of(state, self.solid.len());
         self.prescribed.impose(time, own.velocity);
-        self.rigid.constrain(time, &self.solid, own.displacement, own.velocity);
+        if !self.rigid.is_empty() {
+            let (read, written) = ([&*own.displacement], [own.velocity]);
+            self.with_group(read, written, |solid, [displacement], [velocity]| {
+                self.rigid.constrain(time, solid, displacement, velocity);
+            });
+        }
     }
 
     #[inline(never)]

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::fields::Made;
+use super::group::Group;
 use super::{Discrete, Matrices, TotalLagrangian};
 use crate::fields::width;
 use crate::operators::Slots;
@@ -11,19 +12,14 @@ use crate::schemes::{Part, RankRefusal, RankRows, RankShare};
 use crate::{Tensor, Vector};
 
 impl<const D: usize> TotalLagrangian<D> {
-    /// What this many ranks cannot share yet, with what a case has to be like instead.
-    fn unshared(&self, ranks: usize) -> Option<[&'static str; 2]> {
-        let is_divided = ranks > 1;
-        // Where states are solved for, each rank has the whole body.
-        let is_cut = is_divided && self.statics.is_none();
+    /// What several ranks cannot share yet, with what a case has to be like instead.
+    fn unshared(&self) -> Option<[&'static str; 2]> {
         let features = [
             (
                 self.matrices.edges().is_some(),
                 ["the strong form does not run", "choose `form = \"adjoint\"`"],
             ),
             (self.updated.is_some(), ["the updated configuration does not run", "leave it out"]),
-            (is_cut && !self.rigid.is_empty(), ["rigid bodies do not run", "leave them out"]),
-            (is_cut && !self.loads.springs.is_empty(), ["springs do not act", "leave them out"]),
         ];
         features.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what)
     }
@@ -33,7 +29,7 @@ impl<const D: usize> TotalLagrangian<D> {
         if ranks > 1 && self.statics.as_ref().is_some_and(|statics| statics.is_direct()) {
             return Err(RankRefusal::DIRECT);
         }
-        match (&self.matrices, self.unshared(ranks)) {
+        match (&self.matrices, self.unshared()) {
             (Matrices::Adjoint(whole), None) => Ok(whole),
             (_, Some([what, instead])) => Err(RankRefusal::Feature { what, instead }),
             _ => Err(RankRefusal::Formulation(self.description.name)),
@@ -81,6 +77,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let own = part.own();
         let slots = Self::slots(whole, own.clone(), &part.bounds);
         let team = part.team(&slots)?;
+        let group = Group::of(self, part, &team);
         let operator = Arc::new(whole.operator.part(&slots));
         let solid = Arc::new(self.solid.part(own.clone()));
         let (count, all) = (own.len(), slots.iter().count());
@@ -101,8 +98,8 @@ impl<const D: usize> TotalLagrangian<D> {
             has_images: self.has_images,
             team,
             prescribed: self.prescribed.part(place),
-            // Ranks that divide the particles among them have none.
             rigid: self.rigid.clone(),
+            group,
             statics: None,
             is_static: false,
             stable: self.stable,

@@ -18,15 +18,13 @@ impl<const D: usize> SplitScheme for TotalLagrangian<D> {
     #[inline(never)]
     fn drift(&mut self, time: f64, step: f64, state: &mut [f64]) {
         let (own, tail) = ColumnsMut::<D>::of(state, self.solid.len());
-        self.rigid.advance(step, own.displacement, own.velocity);
+        self.rigid.advance((self.team.first(), step), own.displacement, own.velocity);
         if !self.rigid.is_empty() {
             let (mut totals, mut boundary) = (Totals::default(), Total::default());
-            self.rigid.drift(
-                [time, step],
-                &self.solid,
-                [own.displacement, own.velocity],
-                &mut boundary,
-            );
+            let moved = [&mut *own.displacement, &mut *own.velocity];
+            self.with_group([], moved, |solid, [], moved| {
+                self.rigid.drift([time, step], solid, moved, &mut boundary);
+            });
             totals.book(BOUNDARY_MOTION, &boundary);
             LEDGER.add(D, &totals, tail);
         }

@@ -160,6 +160,11 @@ impl<const D: usize> RigidBodies<D> {
         self.bodies.is_empty()
     }
 
+    /// The particles of all of them.
+    pub fn particles(&self) -> impl Iterator<Item = &u32> {
+        self.bodies.iter().flat_map(|body| &body.particles)
+    }
+
     /// Bytes of all arrays.
     pub fn memory(&self) -> usize {
         let of = |body: &Bound<D>| size_of_val(&*body.particles) + size_of_val(&*body.weights);
@@ -220,13 +225,19 @@ impl<const D: usize> RigidBodies<D> {
         }
     }
 
-    /// Moves particles that belong to none on straight paths for `step` s.
-    pub fn advance(&self, step: f64, displacement: &mut [Vector<D>], velocity: &[Vector<D>]) {
+    /// Moves particles that belong to none on straight paths for `step` s: those from number `begin` on.
+    pub fn advance(
+        &self,
+        (begin, step): (usize, f64),
+        displacement: &mut [Vector<D>],
+        velocity: &[Vector<D>],
+    ) {
         if self.is_empty() {
             return advance(displacement, velocity, step);
         }
         parallel::for_each_chunk(displacement, |first, rows| {
-            for (a, displacement) in (first..).zip(rows).filter(|(a, _)| !self.is_rigid[*a]) {
+            let rows = (first..).zip(rows);
+            for (a, displacement) in rows.filter(|(a, _)| !self.is_rigid[begin + *a]) {
                 *displacement += velocity[a] * step;
             }
         });
