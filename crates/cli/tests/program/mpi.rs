@@ -68,7 +68,7 @@ const LONG: &str = "--set time.end=2.0 --set output.every=0.2 --set output.table
 /// Cases of the repository that run on several ranks, made shorter: energies of hourglass modes, mirrors, neighbours that
 /// move, new ones in a fluid between walls, a solid in a fluid, and particles that enter and leave, of which the reserve has
 /// too few after some 150 steps. With each, after which steps it is broken off.
-const CASES: [(&str, &str, [u64; 2]); 6] = [
+const CASES: [(&str, &str, [u64; 2]); 8] = [
     ("dual-support/free-vibration", "--set parameters.dx=0.5 --set time.end=0.05", [6, 13]),
     ("elastodynamics/wave-2d", "", [6, 13]),
     ("upwind/column-impact", "--set time.end=0.5", [6, 13]),
@@ -78,6 +78,16 @@ const CASES: [(&str, &str, [u64; 2]); 6] = [
         "open/channel",
         "--set parameters.across=10 --set time.end=0.2 --set scheme.reserve=1",
         [20, 180],
+    ),
+    (
+        "dual-support/tension",
+        "--set parameters.dx=0.5 --set time.step=0.05 --set time.linear_solver='krylov'",
+        [6, 13],
+    ),
+    (
+        "upwind/piston",
+        "--variant implicit --set time.end=0.5 --set time.linear_solver='krylov'",
+        [6, 13],
     ),
 ];
 
@@ -293,9 +303,22 @@ fn is_running(id: u32) -> bool {
 #[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
 #[test]
 fn a_killed_process_ends_all() {
+    a_killed_process_ends(LONG);
+}
+
+/// The same in the middle of a solution of equations.
+#[cfg_attr(not(feature = "mpi"), ignore = "needs --features mpi")]
+#[test]
+fn a_process_that_is_killed_while_equations_are_solved_ends_all() {
+    let steps = "--set scheme.viscosity=0 --set time.integrator='newmark' --set time.linear_solver='krylov'";
+    a_killed_process_ends(&format!("{steps} --set time.step=0.0005 --set time.end=0.1"));
+}
+
+#[track_caller]
+fn a_killed_process_ends(set: &str) {
     let place = place_with(PLATE);
-    place.run(&format!("run plate.toml --out whole {LONG}"), 0);
-    let arguments = format!("run plate.toml --threads 1 --out split --resume {LONG}");
+    place.run(&format!("run plate.toml --out whole {set}"), 0);
+    let arguments = format!("run plate.toml --threads 1 --out split --resume {set}");
     for lost in [1, 0] {
         let newest = place.newest_checkpoint("split");
         let mut program = Program::start(&mut processes(&place, 2, &arguments));

@@ -115,11 +115,10 @@ impl<const D: usize> CellGrid<D> {
 
     /// Bytes of all arrays.
     pub(super) fn memory(&self) -> usize {
-        size_of_val(self.starts.as_slice())
-            + size_of_val(self.points.as_slice())
-            + size_of_val(self.ids.as_slice())
-            + size_of_val(self.keys.as_slice())
-            + size_of_val(self.own.as_slice())
+        self.points.capacity() * size_of::<Vector<D>>()
+            + self.keys.capacity() * size_of::<u128>()
+            + [&self.starts, &self.ids, &self.own].map(Vec::capacity).iter().sum::<usize>()
+                * size_of::<u32>()
     }
 
     fn axes(

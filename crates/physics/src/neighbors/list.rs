@@ -9,8 +9,8 @@ use crate::parallel::{CHUNK, for_each_long_span};
 
 /// Entries that a chunk of rows makes before it compares the sum of all chunks with the limit.
 const REPORT: usize = 1 << 16;
-/// An array that is too short becomes longer than needed by one part in this many.
-const SPARE: usize = 8;
+/// One part in this many of an array may be longer than needed.
+const SPARE: usize = 4;
 
 /// For each particle the numbers of its neighbours, all rows in one array.
 ///
@@ -112,31 +112,21 @@ impl NeighborList {
         limit: usize,
         append: impl Fn(&mut S, usize, &mut Vec<u32>) + Sync,
     ) -> Option<Self> {
-        let (mut rows, mut list) = (Rows::default(), Self::default());
-        rows.make([count, limit], append).then(|| {
-            rows.join(&mut list);
-            list
-        })
-    }
-
-    /// Adds empty rows behind the others, or takes rows off, until there are so many.
-    pub(super) fn resize(&mut self, count: usize) {
-        self.offsets.resize(count + 1, self.indices.len());
-    }
-
-    /// All rows one after the other, to write others in.
-    pub(super) fn indices_mut(&mut self) -> &mut [u32] {
-        &mut self.indices
+        let mut rows = Rows::default();
+        rows.make([count, limit], append).then(|| rows.join())
     }
 }
 
-/// Rows in chunks, each of which has a state of its own, and the arrays of which serve for the next rows.
+/// Rows in chunks, the arrays of which serve for the next rows, too.
 #[derive(Default)]
 pub(super) struct Rows<S> {
+    /// Where each row begins among the entries of all, and their number.
     offsets: Vec<usize>,
+    /// Those of [`CHUNK`] rows each, and perhaps some that have none now.
     chunks: Vec<Chunk<S>>,
 }
 
+/// Some rows, with what making them takes.
 #[derive(Default)]
 struct Chunk<S> {
     state: S,
@@ -144,22 +134,29 @@ struct Chunk<S> {
 }
 
 impl<S: Default + Send> Rows<S> {
-    /// Makes the rows of a list, as [`NeighborList::from_rows`]; whether there are no more entries than the limit.
+    /// So many rows without entries.
+    pub fn clear(&mut self, count: usize) {
+        self.chunks.iter_mut().for_each(|chunk| chunk.rows.clear());
+        self.offsets.clear();
+        self.offsets.resize(count + 1, 0);
+    }
+
+    /// Makes `count` rows, as [`NeighborList::from_rows`]. There are none left where there would be too many entries.
     pub fn make(
         &mut self,
         [count, limit]: [usize; 2],
         append: impl Fn(&mut S, usize, &mut Vec<u32>) + Sync,
     ) -> bool {
         let (made, is_full) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let Self { offsets, chunks } = self;
-        match offsets.capacity() > count {
-            true => {
-                offsets.clear();
-                offsets.resize(count + 1, 0);
-            }
-            false => *offsets = vec![0; count + 1],
+        match self.offsets.capacity() > count {
+            true => self.clear(count),
+            false => self.offsets = vec![0; count + 1],
         }
-        chunks.resize_with(count.div_ceil(CHUNK), Chunk::default);
+        let Self { offsets, chunks } = self;
+        let number = count.div_ceil(CHUNK);
+        chunks.resize_with(number.max(chunks.len()), Chunk::default);
+        let (chunks, others) = chunks.split_at_mut(number);
+        others.iter_mut().for_each(|chunk| chunk.rows.clear());
         let each = offsets[1..].par_chunks_mut(CHUNK).zip(chunks.par_iter_mut()).enumerate();
         each.for_each(|(chunk, (ends, Chunk { state, rows }))| {
             rows.clear();
@@ -180,30 +177,70 @@ impl<S: Default + Send> Rows<S> {
                     }
                 }
             }
+            // With a little more than is needed now, as rows that follow are about as long.
+            if rows.capacity() > rows.len() + rows.len() / SPARE {
+                rows.shrink_to(rows.len() + rows.len() / (2 * SPARE));
+            }
         });
-        !is_full.into_inner()
-    }
-
-    /// Puts the rows that were made last together.
-    pub fn join(&mut self, list: &mut NeighborList) {
-        std::mem::swap(&mut self.offsets, &mut list.offsets);
-        let (chunks, NeighborList { offsets, indices }) = (&mut self.chunks, list);
-        let (count, mut first) = (offsets.len() - 1, 0);
-        for (ends, Chunk { rows, .. }) in offsets[1..].chunks_mut(CHUNK).zip(&*chunks) {
+        if is_full.into_inner() {
+            self.clear(0);
+            return false;
+        }
+        let mut first = 0;
+        for (ends, Chunk { rows, .. }) in offsets[1..].chunks_mut(CHUNK).zip(chunks) {
             ends.iter_mut().for_each(|end| *end += first);
             first += rows.len();
         }
-        if indices.capacity() < first {
-            // The second time with some more than is needed, as lists that follow are about as long.
-            let spare = if indices.capacity() > 0 { first / SPARE } else { 0 };
-            indices.clear();
-            indices.reserve_exact(first + spare);
-        }
-        indices.resize(first, 0);
+        true
+    }
+
+    /// Adds rows without entries behind the others until there are so many.
+    pub fn extend(&mut self, count: usize) {
+        self.offsets.resize(count + 1, self.entries());
+    }
+
+    /// The rows as a list.
+    fn join(self) -> NeighborList {
+        let Self { offsets, mut chunks } = self;
+        let (count, length) = (offsets.len() - 1, offsets[offsets.len() - 1]);
+        let mut indices = vec![0; length];
         let start = |chunk: usize| offsets[(chunk * CHUNK).min(count)];
-        for_each_long_span(indices, chunks, &start, |indices, Chunk { rows, .. }| {
-            indices.copy_from_slice(rows);
+        for_each_long_span(&mut indices, &mut chunks, &start, |indices, chunk| {
+            indices.copy_from_slice(&chunk.rows);
         });
+        NeighborList { offsets, indices }
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.offsets.len() < 2
+    }
+
+    /// Number of entries of all rows.
+    pub fn entries(&self) -> usize {
+        self.offsets.last().copied().unwrap_or_default()
+    }
+
+    /// Number of entries of the rows before `row`.
+    #[inline]
+    pub fn offset(&self, row: usize) -> usize {
+        self.offsets[row]
+    }
+
+    /// The entries of a row.
+    #[inline]
+    pub fn row(&self, row: usize) -> &[u32] {
+        let (begin, end) = (self.offsets[row], self.offsets[row + 1]);
+        if begin == end {
+            return &[];
+        }
+        let first = self.offsets[row / CHUNK * CHUNK];
+        &self.chunks[row / CHUNK].rows[begin - first..end - first]
+    }
+
+    /// All entries, to write others in.
+    pub fn each_mut(&mut self) -> impl Iterator<Item = &mut u32> {
+        self.chunks.iter_mut().flat_map(|chunk| &mut chunk.rows)
     }
 
     /// The states of all chunks.
@@ -211,10 +248,10 @@ impl<S: Default + Send> Rows<S> {
         self.chunks.iter_mut().map(|chunk| &mut chunk.state)
     }
 
-    /// Bytes of all arrays.
+    /// Bytes of all rows.
     pub fn memory(&self) -> usize {
-        let rows = |chunk: &Chunk<S>| size_of_val(chunk.rows.as_slice());
-        size_of_val(self.offsets.as_slice()) + self.chunks.iter().map(rows).sum::<usize>()
+        let entries: usize = self.chunks.iter().map(|chunk| chunk.rows.capacity()).sum();
+        self.offsets.capacity() * size_of::<usize>() + entries * size_of::<u32>()
     }
 }
 

@@ -53,7 +53,7 @@ pub fn search<const D: usize>(
 #[derive(Default)]
 pub(super) struct RankedSearch<const D: usize> {
     grid: CellGrid<D>,
-    rows: Rows<Candidates<D>>,
+    pub rows: Rows<Candidates<D>>,
 }
 
 impl<const D: usize> RankedSearch<D> {
@@ -62,7 +62,7 @@ impl<const D: usize> RankedSearch<D> {
     /// at least `seen` sees only those with lower ones.
     ///
     /// # Errors
-    /// Those of [`search`].
+    /// Those of [`search`]; where there are too many entries there are no rows left.
     pub fn make(
         &mut self,
         points: &[Vector<D>],
@@ -95,11 +95,6 @@ impl<const D: usize> RankedSearch<D> {
             true => Ok(()),
             false => Err(NeighborError::TooManyEntries { particles, most }),
         }
-    }
-
-    /// Puts the rows that were made last together.
-    pub fn join(&mut self, list: &mut NeighborList) {
-        self.rows.join(list);
     }
 
     /// Bytes of all arrays.
@@ -253,7 +248,7 @@ fn octaves_below(largest: f64, support: f64) -> u32 {
 }
 
 /// The points around the cell of the last particle, kept as the next one is often in the same.
-struct Candidates<const D: usize> {
+pub(super) struct Candidates<const D: usize> {
     cell: Option<(usize, [u64; D])>,
     ranges: Vec<Range<usize>>,
     near: Vec<u32>,

@@ -1,10 +1,12 @@
 //! Neighbour lists of moving particles, kept over many steps.
 
 use std::borrow::Cow;
+use std::mem::take;
 
+use super::list::Rows;
 use super::order::{Key, order_along};
-use super::search::{RankedSearch, check_points};
-use super::{Domain, NeighborError, NeighborList, shorter_way};
+use super::search::{Candidates, RankedSearch, check_points};
+use super::{Domain, NeighborError, shorter_way};
 use crate::parallel::Team;
 use crate::{Vector, parallel};
 
@@ -43,9 +45,10 @@ pub struct SkinList<const D: usize> {
     /// Positions by place, inside the bounds of the domain: now, and when the list was made.
     positions: Vec<Vector<D>>,
     made_at: Vec<Vector<D>>,
-    /// Rows of own particles, from the entry `passive_from[k]` on passive.
-    rows: NeighborList,
-    passive_from: Vec<usize>,
+    /// Makes rows of own particles, and has them.
+    search: RankedSearch<D>,
+    /// Entries of each row that are not passive.
+    seen: Vec<u32>,
     builds: u64,
     scratch: Scratch<D>,
 }
@@ -59,7 +62,6 @@ struct Scratch<const D: usize> {
     numbers: Vec<u32>,
     ranks: Vec<u32>,
     ranked: Vec<u32>,
-    search: RankedSearch<D>,
 }
 
 impl<const D: usize> SkinList<D> {
@@ -91,8 +93,8 @@ impl<const D: usize> SkinList<D> {
             numbers,
             positions: vec![Vector::zeros(); positions.len()],
             made_at: Vec::new(),
-            rows: NeighborList::default(),
-            passive_from: Vec::new(),
+            search: RankedSearch::default(),
+            seen: Vec::new(),
             builds: 0,
             scratch: Scratch::default(),
         };
@@ -105,7 +107,7 @@ impl<const D: usize> SkinList<D> {
     /// everything is where it was.
     ///
     /// # Errors
-    /// Those of [`search`](fn@super::search::search); the list then is as it was.
+    /// Those of [`search`](fn@super::search::search); the list then is as it was, or has no neighbours.
     pub fn update<T: Send>(
         &mut self,
         rows: &mut [T],
@@ -140,8 +142,8 @@ impl<const D: usize> SkinList<D> {
 
     /// The list of one of several ranks, which is made at the first update.
     pub(crate) fn part(&self, team: Team, count: usize) -> Self {
-        let mut rows = NeighborList::default();
-        rows.resize(count);
+        let mut search = RankedSearch::default();
+        search.rows.clear(count);
         let numbers = (0..count as u32).map(|row| row + team.first() as u32);
         Self {
             domain: self.domain,
@@ -156,8 +158,8 @@ impl<const D: usize> SkinList<D> {
             places: (0..count as u32).collect(),
             positions: vec![Vector::zeros(); count],
             made_at: Vec::new(),
-            rows,
-            passive_from: vec![0; count],
+            search,
+            seen: vec![0; count],
             builds: 0,
             team,
             scratch: Scratch::default(),
@@ -206,16 +208,23 @@ impl<const D: usize> SkinList<D> {
 
     /// Renews the places and lists the candidates of the current positions.
     fn build(&mut self) -> Result<(), NeighborError> {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let built = self.build_with(&mut scratch);
-        self.scratch = scratch;
+        let (mut scratch, mut search) = (take(&mut self.scratch), take(&mut self.search));
+        let built = self.build_with(&mut scratch, &mut search);
+        if search.rows.is_empty() {
+            search.rows.clear(self.owned());
+        }
+        (self.scratch, self.search) = (scratch, search);
         built
     }
 
-    fn build_with(&mut self, scratch: &mut Scratch<D>) -> Result<(), NeighborError> {
+    fn build_with(
+        &mut self,
+        scratch: &mut Scratch<D>,
+        search: &mut RankedSearch<D>,
+    ) -> Result<(), NeighborError> {
         let (reach, owned, first) = (self.support + self.skin, self.owned(), self.team.first());
         let (own, (positions, all)) = (first..first + owned, self.around(reach)?);
-        let Scratch { keys, points, numbers, ranks, ranked, search } = scratch;
+        let Scratch { keys, points, numbers, ranks, ranked } = scratch;
         // Those that no others see come last and are not looked for: many may be in one place. Own ones come first.
         let class = |at: usize| {
             let number = all[at] as usize;
@@ -239,21 +248,17 @@ impl<const D: usize> SkinList<D> {
         }
         let (both, rows) = ([ranks.as_slice(), ranked.as_slice()], [seeing, self.active as usize]);
         let made = search.make(&points[..seen], (reach, &self.domain), both, rows);
-        let is_found = self.team.all(made.is_ok());
-        made?;
-        if !is_found {
-            return Err(NeighborError::OtherRank);
+        if !self.team.all(made.is_ok()) {
+            // What was made here belongs to places that nobody takes.
+            search.rows.clear(owned);
+            return Err(made.err().unwrap_or(NeighborError::OtherRank));
         }
-        search.join(&mut self.rows);
-        self.rows.resize(owned);
+        search.rows.extend(owned);
         let is_active = |&at: &u32| ranks[at as usize] < self.active;
-        self.passive_from.clear();
-        self.passive_from.extend(
-            (0..owned).map(|row| {
-                self.rows.range(row).start + self.rows.row(row).partition_point(is_active)
-            }),
-        );
-        let copies = Self::copies(&self.team, owned, numbers, self.rows.indices_mut());
+        let seen_of = |row: usize| search.rows.row(row).partition_point(is_active) as u32;
+        self.seen.clear();
+        self.seen.extend((0..owned).map(seen_of));
+        let copies = Self::copies(&self.team, owned, numbers, &mut search.rows);
         self.numbers.clear();
         self.numbers.extend_from_slice(&numbers[..seeing]);
         self.numbers.extend_from_slice(&numbers[seen..][..owned - seeing]);
@@ -300,19 +305,19 @@ impl<const D: usize> SkinList<D> {
         Ok((Cow::Owned(positions), Cow::Owned(numbers)))
     }
 
-    /// What the rows of `entries`, which say where others stand in the order of `numbers`, name of other ranks: the rank
-    /// and where it stands there, rank by rank. From then on rows name the places of the copies behind own particles.
+    /// What `rows`, which say where others stand in the order of `numbers`, name of other ranks: the rank and where it
+    /// stands there, rank by rank. From then on rows name the places of the copies behind own particles.
     fn copies(
         team: &Team,
         owned: usize,
         numbers: &[u32],
-        entries: &mut [u32],
+        rows: &mut Rows<Candidates<D>>,
     ) -> Vec<(usize, usize)> {
         if team.is_alone() {
             return Vec::new();
         }
         let mut is_named = vec![false; numbers.len()];
-        entries.iter().for_each(|&at| is_named[at as usize] = true);
+        rows.each_mut().for_each(|at| is_named[*at as usize] = true);
         let others = numbers.iter().zip(is_named).enumerate().filter(|(_, (number, is_named))| {
             *is_named && team.own(**number as usize, owned).is_none()
         });
@@ -323,7 +328,7 @@ impl<const D: usize> SkinList<D> {
         for (place, (_, at)) in (owned as u32..).zip(&copies) {
             places[*at] = place;
         }
-        entries.iter_mut().for_each(|at| *at = places[*at as usize]);
+        rows.each_mut().for_each(|at| *at = places[*at as usize]);
         copies
     }
 
@@ -375,30 +380,30 @@ impl<const D: usize> SkinList<D> {
 
     /// Number of candidates of all particles.
     pub fn entries(&self) -> usize {
-        self.rows.pairs()
+        self.search.rows.entries()
     }
 
     /// Candidates of the particle at `place`.
     pub fn row(&self, place: usize) -> &[u32] {
-        self.rows.row(place)
+        self.search.rows.row(place)
     }
 
     /// Number of candidates of all particles before `place`.
     #[inline]
     pub fn offset(&self, place: usize) -> usize {
-        self.rows.range(place).start
+        self.search.rows.offset(place)
     }
 
     /// Candidates of the particle at `place` that are not passive.
     #[inline]
     pub fn active_row(&self, place: usize) -> &[u32] {
-        &self.rows.indices()[self.rows.range(place).start..self.passive_from[place]]
+        &self.row(place)[..self.seen[place] as usize]
     }
 
     /// Candidates of the particle at `place` that are passive.
     #[inline]
     pub fn passive_row(&self, place: usize) -> &[u32] {
-        &self.rows.indices()[self.passive_from[place]..self.rows.range(place).end]
+        &self.row(place)[self.seen[place] as usize..]
     }
 
     /// How often the list was made.
@@ -418,14 +423,13 @@ impl<const D: usize> SkinList<D> {
 
     /// Bytes of all arrays.
     pub fn memory(&self) -> usize {
-        let Scratch { keys, points, numbers, ranks, ranked, search } = &self.scratch;
-        let particle = 2 * size_of::<Vector<D>>() + 2 * size_of::<usize>() + 3 * size_of::<u32>();
-        self.len() * particle
-            + size_of_val(self.rows.indices())
-            + size_of_val(keys.as_slice())
-            + size_of_val(points.as_slice())
-            + [numbers, ranks, ranked].map(|it| size_of_val(it.as_slice())).iter().sum::<usize>()
-            + search.memory()
+        let Scratch { keys, points, numbers, ranks, ranked } = &self.scratch;
+        let words = [numbers, ranks, ranked, &self.numbers, &self.places, &self.seen];
+        let places = [&self.positions, &self.made_at, points];
+        words.map(Vec::capacity).iter().sum::<usize>() * size_of::<u32>()
+            + places.map(Vec::capacity).iter().sum::<usize>() * size_of::<Vector<D>>()
+            + keys.capacity() * size_of::<Key>()
+            + self.search.memory()
     }
 }
 

@@ -241,3 +241,52 @@ fn an_entry_without_its_reverse_is_named() {
     let error = list.reverse_entries().unwrap_err();
     assert_eq!(error, NeighborError::NotSymmetric { particle: 1, neighbor: 0 });
 }
+
+/// The rows of a list of what moves, by number.
+fn rows_by_number<const D: usize>(list: &SkinList<D>) -> Vec<[Vec<u32>; 2]> {
+    let name = |row: &[u32]| row.iter().map(|&at| list.numbers()[at as usize]).collect();
+    let of = |&place: &u32| {
+        let place = place as usize;
+        [name(list.active_row(place)), name(list.passive_row(place))]
+    };
+    list.places().iter().map(of).collect()
+}
+
+/// A list that is made in the arrays of others, of more neighbours and of fewer, of crowds and of points far away, with other
+/// particles passive and left out, is that of a list that was never another.
+#[test]
+fn lists_in_the_arrays_of_others_are_as_good_as_new() {
+    const COUNT: usize = 2300;
+    let mut source = Pcg64::seed_from_u64(5);
+    let domain = Domain::<2>::open();
+    let mut reused: Option<SkinList<2>> = None;
+    for (k, size) in [1.0, 0.4, 3.0, 1e6, 0.6, 1e6, 1.0].into_iter().enumerate() {
+        let mut points = random::<2>(COUNT, k as u64);
+        points.iter_mut().for_each(|point| *point *= size);
+        // Crowds far apart, so that cells are those with points alone.
+        let far = |a: usize| if a % 7 == k % 7 { 1e9 * a as f64 } else { 0.0 };
+        points.iter_mut().enumerate().for_each(|(a, point)| point.x += far(a));
+        let mut some = |share: f64| -> Vec<bool> {
+            (0..COUNT).map(|_| source.random_range(0.0..1.0) < share).collect()
+        };
+        let (passive, excluded) = (some(0.3), some(if k % 2 == 0 { 0.5 } else { 0.0 }));
+        let mut new = SkinList::new(&points, passive.clone(), 0.05, 0.01, domain).unwrap();
+        let list = reused.get_or_insert_with(|| {
+            SkinList::new(&points, vec![false; COUNT], 0.05, 0.01, domain).unwrap()
+        });
+        for list in [&mut new, list] {
+            list.exclude(&passive, &excluded);
+            list.update(&mut vec![(); COUNT], |number, ()| points[number]).unwrap();
+        }
+        assert_eq!(rows_by_number(list), rows_by_number(&new), "{k}");
+        // A list that cannot be made leaves one that can be asked, and the next one is good.
+        let broken = list.update(&mut vec![(); COUNT], |number, ()| match number {
+            9 => Vector::<2>::repeat(f64::NAN),
+            _ => points[number] * 3.0,
+        });
+        assert!(broken.is_err());
+        assert_eq!(rows_by_number(list).len(), COUNT);
+        list.update(&mut vec![(); COUNT], |number, ()| points[number]).unwrap();
+        assert_eq!(rows_by_number(list), rows_by_number(&new), "{k}");
+    }
+}

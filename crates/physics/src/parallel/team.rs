@@ -5,6 +5,7 @@
 //! not rounded, every number is the same to the bit for any number of ranks.
 
 use std::cell::{Cell, RefCell};
+use std::fmt;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -22,6 +23,13 @@ use super::{
 #[derive(Clone, Default)]
 pub struct Team {
     shared: Option<Arc<Shared>>,
+}
+
+impl fmt::Debug for Team {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ranks = self.shared.as_ref().map(|shared| (shared.ranks.rank(), shared.ranks.size()));
+        formatter.debug_tuple("Team").field(&ranks).finish()
+    }
 }
 
 /// What a rank knows of the others.
@@ -152,6 +160,8 @@ impl Team {
 
     /// Which of `count` particles in all this rank has.
     pub fn share_of(&self, count: usize) -> Range<usize> {
+        let all = self.shared.as_ref().and_then(|shared| shared.bounds.last().copied());
+        debug_assert_eq!(all.unwrap_or(count), count, "these are all particles");
         self.shared.as_ref().map_or(0..count, |shared| shared.share(shared.ranks.rank()))
     }
 
@@ -163,7 +173,7 @@ impl Team {
     }
 
     /// Fills rows of all particles that every rank has, as [`for_each_chunk`]: each rank those of its own particles, which it
-    /// then tells the others.
+    /// then tells the others. Rows are of 64-bit numbers.
     pub fn fill<T: Pod + Send>(&self, rows: &mut [T], body: impl Fn(usize, &mut [T]) + Sync) {
         if rows.is_empty() {
             return;

@@ -122,3 +122,19 @@ pub enum Missed {
     /// What was found does not stay.
     Unstable,
 }
+
+/// A step is less accurate than was asked for. The run takes a shorter one.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, where {largest:.1e} is allowed"
+)]
+pub struct Inaccurate {
+    /// What its error was estimated to be.
+    pub error: f64,
+    /// What it may be.
+    pub largest: f64,
+    /// Simulated time at its start in s.
+    pub time: f64,
+    /// Its length in s.
+    pub step: f64,
+}

@@ -179,7 +179,7 @@ pub struct RankShare {
     pub copies: usize,
     /// Ranks that have them.
     pub partners: usize,
-    /// Bytes that come in an evaluation of the rates.
+    /// Bytes that come in an evaluation of the rates, or in a product where equations are solved.
     pub bytes: usize,
     /// What it computes over an even share of all that there is to compute.
     pub load: f64,
@@ -215,10 +215,8 @@ pub enum RankRefusal {
         /// What a case has to be like instead.
         instead: &'static str,
     },
-    /// The integrator solves for states, or is not known.
-    #[error(
-        "the integrator `{0}` does not run on several ranks yet: take explicit steps, or leave out `--ranks`"
-    )]
+    /// The integrator is not known to ranks.
+    #[error("the integrator `{0}` does not run on several ranks yet: leave out `--ranks`")]
     Integrator(&'static str),
     /// There is nothing for a rank to do.
     #[error(

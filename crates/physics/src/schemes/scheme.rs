@@ -260,7 +260,8 @@ pub trait Scheme: Send + Sync {
         Err(DeviceRefusal::Formulation(self.description().name))
     }
 
-    /// The part of a rank: a formulation of its particles, with copies of those of others. All ranks call this together.
+    /// The part of a rank: a formulation of its particles, with copies of those of others, or one of all that
+    /// [shares](Self::is_whole_on_ranks) what takes long. All ranks call this together.
     ///
     /// # Errors
     /// Something of it cannot be shared, or a rank is lost.

@@ -6,7 +6,7 @@ use crate::{Tensor, Vector};
 
 /// A square matrix of blocks on a fixed pattern, which is the same on both sides of the diagonal;
 /// the blocks need not be. Each of several ranks has all of it, and makes the rows of its own particles.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct BlockMatrix<const D: usize> {
     /// Row a has the blocks from `offsets[a]` to `offsets[a + 1]`.
     offsets: Vec<usize>,

@@ -152,7 +152,7 @@ impl<const D: usize> Coarse<D> {
         });
         let values = team.rows_of_all(columns.concat());
         // Where a rank is lost, so is what they compute.
-        if values.len() == self.matrix.entries() {
+        if team.fault().is_none() {
             self.matrix.set_values(values);
             self.matrix.regularise(SHIFT);
         }

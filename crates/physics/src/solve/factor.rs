@@ -22,20 +22,21 @@ use super::SparseMatrix;
 /// On one thread: the result is the same for any number of them, and small systems are faster.
 pub struct Factor {
     symbolic: Arc<SymbolicCholesky<usize>>,
-    values: Vec<f64>,
-    /// Scratch, and how much of it is needed.
-    memory: MemBuffer,
+    /// Nothing of a copy that has not taken a matrix apart.
+    room: Option<Room>,
     request: StackReq,
 }
 
+/// The factors, and scratch.
+struct Room {
+    values: Vec<f64>,
+    memory: MemBuffer,
+}
+
+/// The copy knows the pattern, and has no factors.
 impl Clone for Factor {
     fn clone(&self) -> Self {
-        Self {
-            symbolic: Arc::clone(&self.symbolic),
-            values: self.values.clone(),
-            memory: MemBuffer::new(self.request),
-            request: self.request,
-        }
+        Self { symbolic: Arc::clone(&self.symbolic), room: None, request: self.request }
     }
 }
 
@@ -96,15 +97,30 @@ impl Factor {
         let request = symbolic
             .factorize_numeric_ldlt_scratch::<f64>(Par::Seq, parameters())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let needed = (symbolic.len_val() * size_of::<f64>() + request.size_bytes()) as u64;
-        if needed > free {
-            return Err(too_much(needed));
-        }
-        let buffer = MemBuffer::try_new(request).map_err(|_| too_much(needed))?;
-        let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| too_much(needed))?;
-        values.resize(symbolic.len_val(), 0.0);
-        Ok(Self { symbolic: Arc::new(symbolic), values, memory: buffer, request })
+        let mut factor = Self { symbolic: Arc::new(symbolic), room: None, request };
+        factor.make_room(free)?;
+        Ok(factor)
+    }
+
+    /// Takes the memory for the factors, if there is none yet and this many bytes are free.
+    fn make_room(&mut self, free: u64) -> Result<&mut Room, FactorError> {
+        let room = match self.room.take() {
+            Some(room) => room,
+            None => {
+                let (unknowns, length) = (self.symbolic.nrows(), self.symbolic.len_val());
+                let needed = (length * size_of::<f64>() + self.request.size_bytes()) as u64;
+                let too_much = || FactorError::Memory { unknowns, needed, free };
+                if needed > free {
+                    return Err(too_much());
+                }
+                let memory = MemBuffer::try_new(self.request).map_err(|_| too_much())?;
+                let mut values = Vec::new();
+                values.try_reserve_exact(length).map_err(|_| too_much())?;
+                values.resize(length, 0.0);
+                Room { values, memory }
+            }
+        };
+        Ok(self.room.insert(room))
     }
 
     /// Takes a matrix with the pattern apart and returns how many pivots are negative: as many as
@@ -117,10 +133,13 @@ impl Factor {
         let unknowns = matrix.len();
         let pattern = SymbolicSparseColMatRef::new_checked(unknowns, unknowns, offsets, None, rows);
         let matrix = SparseColMatRef::new(pattern, values);
-        let stack = MemStack::new(&mut self.memory);
-        self.symbolic
+        let free = if self.room.is_some() { u64::MAX } else { free_memory() };
+        let symbolic = Arc::clone(&self.symbolic);
+        let Room { values, memory } = self.make_room(free)?;
+        let stack = MemStack::new(memory);
+        symbolic
             .factorize_numeric_ldlt(
-                &mut self.values,
+                values,
                 matrix,
                 Side::Lower,
                 LdltRegularization::default(),
@@ -144,23 +163,25 @@ impl Factor {
     /// Solves in place, with the factors of the last matrix.
     pub fn solve(&mut self, right: &mut [f64]) {
         let unknowns = right.len();
-        let stack = MemStack::new(&mut self.memory);
+        let Some(Room { values, memory }) = &mut self.room else { return };
+        let stack = MemStack::new(memory);
         let right = MatMut::from_column_major_slice_mut(right, unknowns, 1);
-        let factors = LdltRef::new(&self.symbolic, &self.values);
+        let factors = LdltRef::new(&self.symbolic, values);
         factors.solve_in_place_with_conj(Conj::No, right, Par::Seq, stack);
     }
 
     /// Entries of the factor L.
     pub fn entries(&self) -> usize {
-        self.values.len()
+        self.symbolic.len_val()
     }
 
     /// Shows all entries of D.
     fn pivots(&self, mut see: impl FnMut(usize, f64)) {
+        let Some(Room { values, .. }) = &self.room else { return };
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(factor) => {
                 let starts = &factor.col_ptr()[..factor.ncols()];
-                starts.iter().enumerate().for_each(|(index, &at)| see(index, self.values[at]));
+                starts.iter().enumerate().for_each(|(index, &at)| see(index, values[at]));
             }
             SymbolicCholeskyRaw::Supernodal(factor) => {
                 for node in 0..factor.n_supernodes() {
@@ -168,7 +189,7 @@ impl Factor {
                     let columns = factor.supernode_end()[node] - first;
                     let rows = columns + factor.supernode(node).pattern().len();
                     let start = factor.col_ptr_for_val()[node];
-                    (0..columns).for_each(|j| see(first + j, self.values[start + j * rows + j]));
+                    (0..columns).for_each(|j| see(first + j, values[start + j * rows + j]));
                 }
             }
         }

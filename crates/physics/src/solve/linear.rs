@@ -224,6 +224,7 @@ impl<const D: usize> LinearSolver<D> {
     /// Shares the work with a team, all of whom have the same tangents.
     pub(crate) fn share(&mut self, team: Team) {
         self.team = team;
+        self.is_stale = true;
     }
 
     /// The unknowns it solves for.

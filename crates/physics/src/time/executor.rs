@@ -388,16 +388,15 @@ impl Executor {
         let speeds = tally.start_speeds;
         let broken = self.broken(&health, &self.run.state, &self.run.clock, speeds);
         let warns = self.device.as_ref().is_some_and(|device| device.warns());
-        if broken.is_some() || !self.run.tally.warned && warns {
+        let elsewhere = self.device.as_ref().and_then(|device| device.warning());
+        if broken.is_some() || !self.run.tally.warned && warns && elsewhere.is_none() {
             self.ask();
         }
         if broken.is_some() {
             return self.broken(&health, &self.run.state, &self.run.clock, speeds).or(broken);
         }
         let Run { clock, tally, .. } = &mut self.run;
-        let elsewhere = || self.device.as_ref().and_then(|device| device.warning());
-        if let (false, Some(warning)) =
-            (tally.warned, elsewhere().or_else(|| self.scheme.warning()))
+        if let (false, Some(warning)) = (tally.warned, elsewhere.or_else(|| self.scheme.warning()))
         {
             let Clock { step, time, .. } = *clock;
             tally.warnings.push(format!("{warning}; first seen at t = {time:e} s, step {step}"));

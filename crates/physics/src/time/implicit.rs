@@ -104,10 +104,11 @@ impl Integrator for ImplicitStepping {
         false
     }
 
-    fn renewed(&self, scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
+    fn renewed(&self, _scheme: &mut dyn Scheme) -> Option<Box<dyn Integrator>> {
         let plain = Self::new(self.name, self.rule);
         Some(Box::new(match &self.estimate {
-            Some(estimate) => plain.with_error(estimate.largest, scheme.initial_state().len()),
+            // Each of several ranks has the whole state.
+            Some(estimate) => plain.with_error(estimate.largest, estimate.whole.len()),
             None => plain,
         }))
     }

@@ -152,10 +152,49 @@ fn springs_and_rigid_bodies_are_the_same_on_any_number_of_ranks() {
         };
         assert!(values.iter().any(|work| work.abs() > 1e-3), "{name}: {values:?}");
     }
+    // Velocities that are gathered stand in front of copies of others.
+    same_on_any_number(PLATE, &[&[spring][..], &rigid, &["scheme.viscosity=25.0"]].concat());
     // It is turned as a clock says, and held at a point.
     let turned = "boundary+={ name = 'axle', body = 'other', where = { kind = 'all' }, velocity = { x = '0', y = 't' }, \
                   angular_velocity = { z = '3 * cos(40 * t)' } }";
     same_on_any_number(PLATE, &[&rigid[..], &[turned]].concat());
+}
+
+/// A block in space that tumbles, which is prescribed about one axis, beside one that is not rigid.
+#[test]
+fn a_rigid_body_in_space_is_the_same_on_any_number_of_ranks() {
+    let text = r#"
+version = 1
+title = "Two blocks"
+dimension = 3
+[[body]]
+name = "rigid"
+shape = { kind = "box", min = [0.0, 0.0, 0.0], max = [0.5, 0.3, 0.2] }
+spacing = 0.05
+material = { kind = "rigid", density = 700.0 }
+initial = { velocity = ["2 * y - z", "z - 2 * x", "x - y"] }
+[[body]]
+name = "soft"
+shape = { kind = "box", min = [2.0, 0.0, 0.0], max = [2.4, 0.3, 0.3] }
+spacing = 0.06
+material = { kind = "neo_hookean", density = 500.0, young_modulus = 1e5, poisson_ratio = 0.3 }
+initial = { velocity = ["y", "-z", "0.0"] }
+[scheme]
+kind = "total_lagrangian"
+viscosity = 30.0
+[[boundary]]
+name = "clock"
+body = "rigid"
+where = { kind = "all" }
+angular_velocity = { x = "3 + sin(50 * t)" }
+[time]
+end = 0.04
+[output]
+every = 0.02
+table_every = 0.002
+"#;
+    same_on_any_number(text, &[]);
+    same_on_any_number(text, &["boundary="]);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::split::KICK_DRIFT_KICK;
-use super::{Health, NoSolution, Phase, RankCosts, StepLimit};
+use super::{Health, Inaccurate, NoSolution, Phase, RankCosts, StepLimit};
 use crate::solve::Costs;
 
 pub(crate) use listed::{Acting, Listed};
@@ -34,22 +34,6 @@ pub enum StepsError {
     /// A step is less accurate than was asked for.
     #[error(transparent)]
     Inaccurate(#[from] Inaccurate),
-}
-
-/// A step is less accurate than was asked for. The run takes a shorter one.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error(
-    "the step of {step:.4e} s from t = {time:.6} s has an error of {error:.1e}, where {largest:.1e} is allowed"
-)]
-pub struct Inaccurate {
-    /// What its error was estimated to be.
-    pub error: f64,
-    /// What it may be.
-    pub largest: f64,
-    /// Simulated time at its start in s.
-    pub time: f64,
-    /// Its length in s.
-    pub step: f64,
 }
 
 /// The steps of a formulation on a device, by the kick-drift-kick method, or on several ranks, with a state that stays

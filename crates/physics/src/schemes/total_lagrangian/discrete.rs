@@ -150,6 +150,12 @@ impl<const D: usize> Discrete<D> {
         -self.operator.plane_power(&Team::default(), force, &along)
     }
 
+    /// Stress times volume of particle a at a displacement gradient, in J.
+    #[inline]
+    pub(super) fn tension(&self, a: usize, gradient: &Tensor<D>) -> Tensor<D> {
+        self.solid.mixture(a).stress(gradient) * self.solid.particles.volume[a]
+    }
+
     /// Internal forces on all particles in N, theory (49), Dual-support (28) with the sign of its (27) turned
     /// round. Where there are images their displacements stand behind those of particles, and `force` has
     /// a place for each of them too.
@@ -159,10 +165,7 @@ impl<const D: usize> Discrete<D> {
         strained: &mut Strained<D>,
         force: &mut [Vector<D>],
     ) {
-        let solid = &*self.solid;
-        self.operator.strain(displacement, strained, |a, gradient: &Tensor<D>| {
-            solid.mixture(a).stress(gradient) * solid.particles.volume[a]
-        });
+        self.operator.strain(displacement, strained, |a, gradient| self.tension(a, gradient));
         self.operator.forces(displacement, &strained.tension, force);
         self.fold(force);
     }

@@ -23,22 +23,6 @@ impl<const D: usize> TotalLagrangian<D> {
         !self.loads.body_forces.is_empty()
     }
 
-    /// What springs do to the centres of their particles.
-    fn pulls(&self, at: &Columns<'_, D>) -> Vec<(&Spring<D>, Vector<D>)> {
-        if self.loads.springs.is_empty() {
-            return Vec::new();
-        }
-        let read = [at.displacement, at.velocity];
-        self.with_group(read, [], |solid, [displacement, velocity], []| {
-            let pull = |spring: &Spring<D>| {
-                let position = |a: usize| solid.particles.position[a] + displacement[a];
-                let place = spring.mean(&solid.mass, position);
-                spring.force(&place, &spring.mean(&solid.mass, |a| velocity[a]))
-            };
-            self.loads.springs.iter().map(|spring| (spring, pull(spring))).collect()
-        })
-    }
-
     /// Writes the rates of the loaded state, whose forces have been evaluated.
     pub(super) fn external_pass(&self, time: f64, at: &Columns<'_, D>, (rate, totals): Found<'_>) {
         let (solid, damping) = (&*self.solid, self.dissipation.damping);
@@ -90,15 +74,23 @@ impl<const D: usize> TotalLagrangian<D> {
             own.velocity,
             &mut pressure,
         );
-        for (load, pull) in self.pulls(at) {
-            let mass = self.masses();
-            let whole: f64 = load.particles.iter().map(|&a| mass[a as usize]).sum();
-            let share = |&a: &u32| {
-                let here = self.team.own(a as usize, count)?;
-                Some((here, pull * (mass[a as usize] / whole)))
-            };
-            let forces = load.particles.iter().filter_map(share);
-            push(forces, particle, own.velocity, &mut spring);
+        if !self.loads.springs.is_empty() {
+            let read = [at.displacement, at.velocity];
+            self.with_group(read, [], |solid, [displacement, velocity], []| {
+                let mass = &solid.mass;
+                for load in &self.loads.springs {
+                    let position = |a: usize| solid.particles.position[a] + displacement[a];
+                    let pull =
+                        load.force(&load.mean(mass, position), &load.mean(mass, |a| velocity[a]));
+                    let whole: f64 = load.particles.iter().map(|&a| mass[a as usize]).sum();
+                    let share = |&a: &u32| {
+                        let here = self.team.own(a as usize, count)?;
+                        Some((here, pull * (mass[a as usize] / whole)))
+                    };
+                    let forces = load.particles.iter().filter_map(share);
+                    push(forces, particle, own.velocity, &mut spring);
+                }
+            });
         }
         prescribe(&self.prescribed, time, particle, own.velocity, &mut boundary);
         let acts = self.is_pulled() || damping > 0.0 || self.dissipation.is_viscous();
@@ -117,7 +109,7 @@ impl<const D: usize> TotalLagrangian<D> {
         totals.drive(VISCOSITY, &viscous);
         totals.drive(SPRING, &spring);
         if !self.rigid.is_empty() {
-            let (read, written) = ([at.displacement, velocity], [own.velocity]);
+            let (read, written) = ([at.displacement, &velocity[..count]], [own.velocity]);
             self.with_group(read, written, |solid, moved, [acceleration]| {
                 self.rigid.accelerate(time, solid, moved, acceleration, &mut boundary);
             });

@@ -11,6 +11,9 @@ use crate::operators::Slots;
 use crate::schemes::{Part, RankRefusal, RankRows, RankShare};
 use crate::{Tensor, Vector};
 
+/// Vectors that ranks tell each other of the particles of a rigid body in an evaluation, and about as many of those of a spring.
+const GATHERED: usize = 5;
+
 impl<const D: usize> TotalLagrangian<D> {
     /// What several ranks cannot share yet, with what a case has to be like instead.
     fn unshared(&self) -> Option<[&'static str; 2]> {
@@ -53,10 +56,13 @@ impl<const D: usize> TotalLagrangian<D> {
         let numbers = vectors * D + whole.operator.tensions() * D * D;
         let mut shares =
             Part::planned(self, bounds, numbers, |own| Self::slots(whole, own, bounds));
-        if is_solved {
-            // Each rank gets the forces on all particles of the others.
-            let told = |share: &RankShare| (self.solid.len() - share.particles) * D;
-            shares.iter_mut().for_each(|it| it.bytes += told(it) * size_of::<f64>());
+        for (share, ends) in shares.iter_mut().zip(bounds.windows(2)) {
+            let told = match is_solved {
+                // Each rank gets the forces on all particles of the others.
+                true => self.solid.len() - share.particles,
+                false => GATHERED * Group::elsewhere(self, &(ends[0]..ends[1])),
+            };
+            share.bytes += told * D * size_of::<f64>();
         }
         Ok(shares)
     }

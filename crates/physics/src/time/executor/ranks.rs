@@ -1,6 +1,6 @@
 //! Runs whose steps several ranks take together.
 //!
-//! Rank 0 has the run: clock, observers, files. It tells the others what to do, and does the same with its own particles.
+//! Rank 0 has the run: clock, observers, files. It tells the others what to do, and does the same with its part.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -152,9 +152,14 @@ impl CaseResults {
     pub fn keep_long(&mut self, earlier: &Self) {
         for row in self.rows.iter_mut().filter(|row| !row.was_run()) {
             let same = || earlier.rows.iter().filter(|known| known.was_run() && known.is_same(row));
-            // Two checks may ask for different bounds of one quantity.
-            let own = same().find(|known| known.check == row.check);
-            let known = own.or_else(|| same().next());
+            // Two checks may ask for different bounds of one quantity, and a check may have moved.
+            let words =
+                |row: &Row| -> Vec<String> { row.expected.split(' ').map(str::to_owned).collect() };
+            let asked = words(row);
+            let asks =
+                |known: &&Row| words(known).iter().zip(&asked).all(|(one, other)| one == other);
+            let known = same().find(|known| asks(known) && known.check == row.check);
+            let known = known.or_else(|| same().find(asks)).or_else(|| same().next());
             if let Some(known) = known {
                 // What the check says today of the value and its worth stays; why it is not met is only told of values.
                 let (against, bound) = (row.against, row.bound.clone());

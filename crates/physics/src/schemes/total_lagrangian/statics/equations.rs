@@ -26,10 +26,7 @@ impl<const D: usize> Statics<D> {
     /// Internal forces at the displacements at hand, into `left`.
     fn fill_internal(&mut self) {
         let Self { discrete, displacement, passes, internal, left, .. } = self;
-        let solid = &*discrete.solid;
-        let tension = |a: usize, gradient: &Tensor<D>| {
-            solid.mixture(a).stress(gradient) * solid.particles.volume[a]
-        };
+        let tension = |a: usize, gradient: &Tensor<D>| discrete.tension(a, gradient);
         passes.forces(&discrete.operator, displacement, tension, internal);
         discrete.fold(internal);
         let count = left.len();

@@ -222,6 +222,7 @@ impl<const D: usize> Statics<D> {
     /// A rank is lost.
     pub(super) fn share(&self, part: &Part) -> Result<Self, RankError> {
         let mut share = self.clone();
+        share.loaded = None;
         (share.passes, share.team) = Passes::of_rank(&self.discrete, part)?;
         share.stiffness.share(&share.passes, &share.team);
         share.solver.share(share.team.clone());
