@@ -1,7 +1,9 @@
 //! Evaluation by `exmex`, once with plain numbers and once with dual numbers for the rate.
 
+use std::cell::Cell;
 use std::fmt::Debug;
 use std::str::FromStr;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use exmex::{Express, FlatEx, MatchLiteral};
 
@@ -152,6 +154,8 @@ pub(super) struct Program {
     dual: Evaluator<Dual>,
     /// The variables that occur, in the order in which `exmex` wants them.
     variables: Vec<Variable>,
+    /// Its number, if time is the only one.
+    of_time: Option<u64>,
 }
 
 impl Program {
@@ -173,7 +177,9 @@ impl Program {
                 _ => None,
             })
             .collect();
-        Ok(Self { plain, dual, variables: variables.ok_or_else(refused)? })
+        let variables = variables.ok_or_else(refused)?;
+        let of_time = (variables == [Variable::T]).then(|| NEXT.fetch_add(1, Ordering::Relaxed));
+        Ok(Self { plain, dual, variables, of_time })
     }
 
     /// The value where there are no variables.
@@ -186,6 +192,13 @@ impl Program {
     }
 
     pub(super) fn eval(&self, position: [f64; 3], time: f64) -> f64 {
+        match self.of_time {
+            Some(number) => recent(2 * number, time, || self.found(position, time)),
+            None => self.found(position, time),
+        }
+    }
+
+    fn found(&self, position: [f64; 3], time: f64) -> f64 {
         let [x, y, z] = position;
         let all = [x, y, z, time];
         let mut values = [0.0; 4];
@@ -197,6 +210,15 @@ impl Program {
 
     /// The derivative by one of the variables.
     pub(super) fn derivative(&self, by: Variable, position: [f64; 3], time: f64) -> f64 {
+        match self.of_time {
+            Some(number) if by == Variable::T => {
+                recent(2 * number + 1, time, || self.found_derivative(by, position, time))
+            }
+            _ => self.found_derivative(by, position, time),
+        }
+    }
+
+    fn found_derivative(&self, by: Variable, position: [f64; 3], time: f64) -> f64 {
         let [x, y, z] = position;
         let mut all = [x, y, z, time].map(Dual::from_number);
         all[by as usize].rate = 1.0;
@@ -206,4 +228,32 @@ impl Program {
         }
         self.dual.eval(&values[..self.variables.len()]).map_or(f64::NAN, |result| result.rate)
     }
+}
+
+/// The number of the next function of time.
+static NEXT: AtomicU64 = AtomicU64::new(0);
+
+/// Values that a thread keeps.
+const KEPT: usize = 16;
+
+/// A value of a function of time: which one, the bits of the time, and the value.
+type Kept = (u64, u64, f64);
+
+thread_local! {
+    /// The last values of functions of time alone, each of which is asked for by all particles that it acts on.
+    static RECENT: [Cell<Kept>; KEPT] = const { [const { Cell::new((u64::MAX, 0, 0.0)) }; KEPT] };
+}
+
+/// The value of a function of time at a time, which `find` finds if it is not the last one that was.
+fn recent(function: u64, time: f64, find: impl FnOnce() -> f64) -> f64 {
+    RECENT.with(|all| {
+        let kept = &all[function as usize % KEPT];
+        let (of, at, value) = kept.get();
+        if (of, at) == (function, time.to_bits()) {
+            return value;
+        }
+        let value = find();
+        kept.set((function, time.to_bits(), value));
+        value
+    })
 }

@@ -214,3 +214,29 @@ proptest! {
         }
     }
 }
+
+/// Functions of time alone are kept: more of them than there is room for, at times that come and go, on several threads.
+#[test]
+fn functions_of_time_have_their_own_values() {
+    let all: Vec<Expression> =
+        (0..40).map(|k| parse(&format!("{k} + sin({k} * t) + t^2")).unwrap()).collect();
+    let expected = |k: usize, t: f64| k as f64 + (k as f64 * t).sin() + t * t;
+    let rate = |k: usize, t: f64| k as f64 * (k as f64 * t).cos() + 2.0 * t;
+    std::thread::scope(|scope| {
+        for first in 0..3 {
+            let all = &all;
+            scope.spawn(move || {
+                for t in [0.3, 0.7, 0.3, -0.0, 0.0, 0.7] {
+                    for k in (0..all.len()).chain([first, first]) {
+                        let near = |one: f64, other: f64| {
+                            (one - other).abs() < 1e-12 * (1.0 + other.abs())
+                        };
+                        assert!(near(all[k].eval([1.0; 3], t), expected(k, t)), "{k} at {t}");
+                        assert!(near(all[k].rate([2.0; 3], t), rate(k, t)), "{k} at {t}");
+                        assert_eq!(all[k].derivative(Variable::X, [2.0; 3], t), 0.0);
+                    }
+                }
+            });
+        }
+    });
+}
