@@ -90,7 +90,7 @@ impl Context<'_> {
         if let Some(dimension) = self.dimension.filter(|d| !kind.dimensions.contains(d)) {
             let known: Vec<String> = kind.dimensions.iter().map(|d| format!("{d}D")).collect();
             let message = format!(
-                "{} of kind `{name}` exists in {} only, and the case has {dimension} dimension(s)",
+                "{} of kind `{name}` exists only in {}, and the case is {dimension}D",
                 quoted(spec.title),
                 known.join(" and ")
             );

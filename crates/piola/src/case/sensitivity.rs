@@ -14,7 +14,7 @@ use crate::schemes::{NoSensitivity, Sensitivity};
 #[non_exhaustive]
 pub enum SensitivityError {
     /// The key is of no constant.
-    #[error("there is no derivative by `{key}`: {advice}")]
+    #[error("there is no derivative with respect to `{key}`: {advice}")]
     Unknown {
         /// What was asked for.
         key: String,
@@ -22,7 +22,7 @@ pub enum SensitivityError {
         advice: String,
     },
     /// The state has none.
-    #[error("there is no derivative by `{key}`: {source}")]
+    #[error("there is no derivative with respect to `{key}`: {source}")]
     None {
         /// What was asked for.
         key: String,

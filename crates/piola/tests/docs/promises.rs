@@ -15,11 +15,13 @@ fn promised_tests_exist() {
                 source = fs::read_to_string(root().join(name)).expect(name);
             } else {
                 let test = format!("#[test]\nfn {name}()");
-                let inside = format!("#[test]\n    fn {name}()");
+                // With arguments where they are drawn at random.
+                let inside = format!("#[test]\n    fn {name}(");
+                let python = format!("\ndef {name}(");
                 // A test with a harness of its own is listed by name beside the function.
                 let listed = format!("\"{name}\"");
                 assert!(
-                    [test, inside, listed].iter().any(|form| source.contains(form)),
+                    [test, inside, python, listed].iter().any(|form| source.contains(form)),
                     "{name} is no test: {row}"
                 );
                 count += 1;

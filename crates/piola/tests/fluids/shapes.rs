@@ -131,7 +131,7 @@ fn a_ring_is_packed() {
     assert!((body.volume / body.exact_volume.unwrap() - 1.0).abs() < 1e-12);
     for (from, to, said) in [
         ("kind = \"packed\"", "kind = \"packed\", jitter = 0.1", "`jitter` has no meaning"),
-        ("on = \"cells\"", "kind = \"packed\"", "do not go round a periodic domain"),
+        ("on = \"cells\"", "kind = \"packed\"", "cannot cross a periodic boundary"),
     ] {
         let error = session(&text.replacen(from, to, 1), &torus(0)).err().expect(to);
         assert!(error.contains(said) && error.contains("case.toml:"), "{error}");
@@ -158,7 +158,7 @@ fn what_is_wrong_with_a_surface_is_told() {
     assert!(thin.contains(said) && thin.contains(") m, less than 3: make"), "{thin}");
     // Another ring, half as high again, goes through the first one.
     let crossing = warnings(&(torus(0) + &above(&torus(0), 0.4)));
-    let said = "pairs of facets cross each other, first facet ";
+    let said = "pairs of facets intersect, first facet ";
     assert!(
         crossing.contains(said) && crossing.contains(" and facet ") && crossing.contains(") m"),
         "{crossing}"

@@ -374,7 +374,7 @@ fn what_has_no_derivative_is_refused_with_its_key() {
     let mut session = ended(&text, &[]);
     let mut advised = |key: &str, advice: &str| {
         let refused = session.sensitivity(key).unwrap_err();
-        let expected = format!("there is no derivative by `{key}`: {advice}");
+        let expected = format!("there is no derivative with respect to `{key}`: {advice}");
         assert_eq!(refused.to_string(), expected);
     };
     let known =

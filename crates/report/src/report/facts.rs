@@ -141,7 +141,7 @@ pub fn timings(record: &RunRecord) -> Markup {
         section #timings {
             h2 { "Wall time" }
             @if record.stages.is_empty() {
-                p { "The record has no timings: the run did not end by itself." }
+                p { "The record has no timings: the run is still going on, or it was killed before it ended." }
             } @else {
                 (stages("Stage", &record.stages))
                 @if !record.passes.is_empty() {

@@ -211,13 +211,14 @@ fn ply(bytes: Vec<u8>) -> Result<Vec<(Triangle, u32)>, String> {
     let mut source = Reader::new(Cursor::new(bytes));
     let header = parser.read_header(&mut source).map_err(|error| ply_fault(&error.to_string()))?;
     for element in header.elements.values() {
+        if element.properties.is_empty() {
+            return Err(format!("the element `{}` has no properties", element.name));
+        }
         // Each takes a byte and more.
-        if element.count > most || element.properties.is_empty() {
+        if element.count > most {
             return Err(format!(
-                "{} of the element `{}` with {} properties are more than it can hold",
-                element.count,
-                element.name,
-                element.properties.len()
+                "the header announces {} elements `{}`, more than the file can hold",
+                element.count, element.name
             ));
         }
     }

@@ -401,6 +401,42 @@ fn broken_files_are_told() {
     assert!(matches!(flat, Err(GeometryError::Dimension { .. })));
 }
 
+#[test]
+fn large_files_with_wrong_counts_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.stl");
+    let rotation = Rotation3::identity();
+    let plain = Arrangement { scale: 1.0, rotation, shift: Vector::zeros() };
+    // Behind the header of 84 bytes, 100 MiB have 2 097 150 facets of 50 bytes, and 16 bytes.
+    for (count, said) in [
+        (7_u32, "its header announces 7 facets, and it has 104857166 bytes after the last"),
+        (u32::MAX, "its header announces 4294967295 facets, and it ends after 2097150 of them"),
+    ] {
+        // What is not written takes no room on the disk.
+        let mut file = std::fs::File::create(&path).unwrap();
+        file.write_all(&[b' '; 80]).unwrap();
+        file.write_all(&count.to_le_bytes()).unwrap();
+        file.set_len(100 << 20).unwrap();
+        let error = Facets::from_file(&path, &plain).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+    let bits = PLY.replace("ascii", "binary_little_endian");
+    for (text, said) in [
+        (
+            PLY.replace("vertex 8", "vertex 5000000"),
+            "the header announces 5000000 elements `vertex`, more than the file can hold",
+        ),
+        (
+            bits.replace("face 6", "face 5000000"),
+            "the header announces 5000000 elements `face`, more than the file can hold",
+        ),
+        (PLY.replace("element face", "element edge 3\nelement face"), "`edge` has no properties"),
+    ] {
+        let error = read("a.ply", text.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+}
+
 proptest! {
     /// Bytes changed, cut out and put into files of all kinds.
     #[test]

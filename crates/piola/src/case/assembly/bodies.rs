@@ -155,7 +155,7 @@ fn packed<const D: usize>(
 ) -> Result<(FillReport<D>, Packing), Problem> {
     let (shape, spec) = lattice_of(case, body, domain)?;
     if spec.periodic.contains(&true) {
-        let message = "packed particles do not go round a periodic domain; use a lattice";
+        let message = "packed particles cannot cross a periodic boundary; use a lattice";
         let label = format!("body `{}`", *body.name);
         return Err(case.problem_at(body.shape.place, message, label, None));
     }
@@ -329,11 +329,9 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         }
         let pairs = match facets.crossings(MOST_CROSSINGS) {
             0 => continue,
-            1 => "1 pair of facets crosses",
-            MOST_CROSSINGS => {
-                &format!("at least {MOST_CROSSINGS} pairs of facets cross each other")
-            }
-            count => &format!("{count} pairs of facets cross each other"),
+            1 => "1 pair of facets intersects",
+            MOST_CROSSINGS => &format!("at least {MOST_CROSSINGS} pairs of facets intersect"),
+            count => &format!("{count} pairs of facets intersect"),
         };
         let first = facets.first_crossing();
         let first = first.map(|(spot, other)| format!(", first facet {other} and {spot}"));

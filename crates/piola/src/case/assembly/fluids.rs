@@ -125,8 +125,8 @@ pub(super) fn prepare<const D: usize>(
         .any(|(faces, &body)| walls.iter().any(|wall| wall.body == body) && *faces == no_face)
     {
         warnings.push(
-            "some particles of walls have no path to the fluid inside the bounding box of all \
-             bodies, so that they have no normal: they do not hold back fluid"
+            "some wall particles have no path to the fluid inside the bounding box of all bodies, and so no \
+             normal: they do not hold fluid back"
                 .into(),
         );
     }

@@ -69,7 +69,7 @@ pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> 
         let help = match &error {
             WorldError::Overlap { .. } => REMEDY,
             WorldError::Interface { error: InterfaceError::Spacings { .. }, .. } => {
-                "make the two spacings more alike"
+                "bring the two spacings within a factor of 3"
             }
             WorldError::Interface { .. } => "use a smaller spacing for the solid",
             WorldError::Motion { .. } => "use `total_lagrangian`",
@@ -166,8 +166,8 @@ impl Beat {
             if viscosity > most {
                 return format!(
                     "nothing damps its vibrations, which the steps of the fluid may drive slowly, theory (82): a \
-                     `scheme.viscosity` of {shown} Pa s would, but takes more than 1 % a period from slow ones that \
-                     bend it; watch its energy over long runs, or take implicit steps"
+                     `scheme.viscosity` of {shown} Pa s would damp them, but also takes more than 1 % per period from \
+                     its slow bending vibrations; watch its energy over long runs, or take implicit steps"
                 );
             }
             settings.dissipation.value.viscosity = viscosity;
@@ -188,9 +188,9 @@ fn unheld(main: &Case) -> Option<String> {
         || main.loads.iter().any(|load| matches!(load.kind, model::LoadKind::BodyForce { .. }));
     (!is_held).then(|| {
         format!(
-            "nothing holds the fluid `{}`: there is no wall, no opening, no periodic axis and no body force, so that it \
-             goes on as it starts but for what solids do to it; add a wall, make the domain periodic, or add a \
-             `[[load]]` of the kind `body_force`",
+            "nothing holds the fluid `{}`: there is no wall, no opening, no periodic axis and no body force, so it \
+             keeps its initial motion except where solids push it; add a wall, make the domain periodic, or add \
+             a `[[load]]` of the kind `body_force`",
             fluid.name.value
         )
     })

@@ -257,7 +257,7 @@ impl<'a> Parser<'a> {
                 error(format!("`{name}` cannot be used here: the value must be one number"))
                     .help("only parameters, numbers and functions are known here")
             }
-            "y" | "z" => error(format!("there is no `{name}` in {axes} dimension(s)")),
+            "y" | "z" => error(format!("there is no `{name}` in {axes}D")),
             "t" => error("`t` cannot be used here: the value does not change with time".to_owned()),
             "e" => error("`e` is not known".to_owned()).help("write `exp(1)`"),
             _ if functions().iter().any(|function| function.name == name) => {

@@ -139,7 +139,7 @@ fn knows_only_the_variables_of_its_scope() {
     let flat = Scope { axes: 2, ..Scope::of_parameters(&[]) };
     assert!(Expression::parse("x + y", &flat).is_ok());
     let error = Expression::parse("z", &flat).unwrap_err();
-    assert_eq!(error.message, "there is no `z` in 2 dimension(s)");
+    assert_eq!(error.message, "there is no `z` in 2D");
     assert!(Expression::parse("t", &flat).unwrap_err().message.contains("with time"));
     let none = Scope { axes: 0, ..flat };
     assert!(Expression::parse("x", &none).unwrap_err().message.contains("one number"));

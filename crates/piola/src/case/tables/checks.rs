@@ -245,5 +245,5 @@ pub(super) const LONG: KeySpec = key(
     Kind::Boolean,
     "",
     Default("false"),
-    "whether `piola verify` runs it only with `--long`, as it takes more than some minutes",
+    "whether `piola verify` runs it only with `--long`, as it takes more than a few minutes",
 );
