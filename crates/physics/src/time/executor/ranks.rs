@@ -280,7 +280,8 @@ impl DeviceSteps for RankSteps {
 
     fn was_quick(&self) -> bool {
         let Worker { integrator, scheme, state, .. } = &self.worker;
-        integrator.was_quick(scheme.as_ref(), state)
+        // Where each has a part of the state, steps are explicit.
+        scheme.is_whole_on_ranks() && integrator.was_quick(scheme.as_ref(), state)
     }
 
     fn linear_costs(&self) -> Option<Costs> {
