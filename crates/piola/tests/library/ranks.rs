@@ -160,7 +160,7 @@ fn springs_and_rigid_bodies_are_the_same_on_any_number_of_ranks() {
     same_on_any_number(PLATE, &[&rigid[..], &[turned]].concat());
 }
 
-/// A block in space that tumbles, which is prescribed about one axis, beside one that is not rigid.
+/// A block in space that tumbles, which is prescribed about two axes, beside one that is not rigid.
 #[test]
 fn a_rigid_body_in_space_is_the_same_on_any_number_of_ranks() {
     let text = r#"
@@ -186,7 +186,7 @@ viscosity = 30.0
 name = "clock"
 body = "rigid"
 where = { kind = "all" }
-angular_velocity = { x = "3 + sin(50 * t)" }
+angular_velocity = { x = "3 + sin(50 * t)", y = "t" }
 [time]
 end = 0.04
 [output]

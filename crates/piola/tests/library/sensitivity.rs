@@ -388,7 +388,7 @@ fn what_has_no_derivative_is_refused_with_its_key() {
     let key = "body.block.material.young_modulus";
     let refused = |text: &str, expected: NoSensitivity| {
         let refused = started(text, &[]).sensitivity(key).unwrap_err();
-        assert!(refused.to_string().contains(&format!("by `{key}`")), "{refused}");
+        assert!(refused.to_string().contains(&format!("with respect to `{key}`")), "{refused}");
         assert_eq!(refused, SensitivityError::None { key: key.to_owned(), source: expected });
     };
     let moving = text.replace(STATIC, "[time]\nend = 1e-3\ncfl = 0.3\n");
