@@ -276,17 +276,17 @@ fn lists_in_the_arrays_of_others_are_as_good_as_new() {
         });
         for list in [&mut new, list] {
             list.exclude(&passive, &excluded);
-            list.update(&mut vec![(); COUNT], |number, ()| points[number]).unwrap();
+            list.update(&mut [(); COUNT], |number, ()| points[number]).unwrap();
         }
         assert_eq!(rows_by_number(list), rows_by_number(&new), "{k}");
         // A list that cannot be made leaves one that can be asked, and the next one is good.
-        let broken = list.update(&mut vec![(); COUNT], |number, ()| match number {
+        let broken = list.update(&mut [(); COUNT], |number, ()| match number {
             9 => Vector::<2>::repeat(f64::NAN),
             _ => points[number] * 3.0,
         });
         assert!(broken.is_err());
         assert_eq!(rows_by_number(list).len(), COUNT);
-        list.update(&mut vec![(); COUNT], |number, ()| points[number]).unwrap();
+        list.update(&mut [(); COUNT], |number, ()| points[number]).unwrap();
         assert_eq!(rows_by_number(list), rows_by_number(&new), "{k}");
     }
 }
