@@ -224,8 +224,8 @@ def test_any_memory_order_and_exact_type(case):
         (np.full((45, 2), "1"), TypeError, "takes 64-bit floats, not <U1"),
         (np.zeros((45, 2), object), TypeError, "takes 64-bit floats, not object"),
         (None, TypeError, "takes 64-bit floats, not object (of a `NoneType`)"),
-        (np.full((45, 2), np.nan), ValueError, "the value for particle 0, component x, of the column `velocity` is NaN"),
-        (np.full((45, 2), np.inf), ValueError, "the value for particle 0, component x, of the column `velocity` is inf"),
+        (np.full((45, 2), np.nan), ValueError, "the value for particle 0, component x, of the field `velocity` is NaN"),
+        (np.full((45, 2), np.inf), ValueError, "the value for particle 0, component x, of the field `velocity` is inf"),
     ],
 )
 def test_bad_arrays_are_refused_and_change_nothing(case, values, error, text):
@@ -244,11 +244,11 @@ def test_bad_arrays_are_refused_and_change_nothing(case, values, error, text):
 
 def test_fields_that_are_not_there_or_cannot_be_set(case):
     body = case.start().bodies["water"]
-    with pytest.raises(KeyError, match="the scheme `upwind` has no column `velocty`; expected `position`"):
+    with pytest.raises(KeyError, match="the scheme `upwind` has no field `velocty`; expected `position`"):
         body["velocty"]
-    with pytest.raises(KeyError, match="has no column `velocty`"):
+    with pytest.raises(KeyError, match="has no field `velocty`"):
         body["velocty"] = np.zeros((45, 2))
-    with pytest.raises(ValueError, match="`pressure` of the scheme `upwind` cannot be set; those that can: `velocity`"):
+    with pytest.raises(ValueError, match="the field `pressure` cannot be set; only `velocity` can be set"):
         body["pressure"] = np.zeros(45)
     with pytest.raises(TypeError, match="a field cannot be deleted: `velocity`"):
         del body["velocity"]
