@@ -5,6 +5,7 @@ use std::sync::Arc;
 use numpy::PyArray1;
 use piola::case::Session;
 use piola::fields::{FieldDescription, Life};
+use piola_cli::count;
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
 
@@ -197,6 +198,6 @@ impl Body {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let name = self.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
-        Ok(format!("<Body{name} of {} particles>", self.__len__(py)?))
+        Ok(format!("<Body{name} of {}>", count(self.__len__(py)? as u64, "particle")))
     }
 }

@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::display::{preformatted, table};
+use crate::display::{preformatted, seconds, table};
 use crate::errors::{Fault, case_error, faults, file_error, guard};
 use crate::functions::{Registry, Shared, make_threads, refuse_inside};
 use crate::plan::Plan;
@@ -241,7 +241,7 @@ impl Case {
         };
         let dimension = format!("{}D", case.dimension);
         let bodies: Vec<&str> = case.bodies.iter().map(|body| body.name.value.as_str()).collect();
-        let (bodies, end) = (bodies.join(", "), format!("{} s", *case.time.end));
+        let (bodies, end) = (bodies.join(", "), seconds(*case.time.end));
         let rows = [
             ["dimension", dimension.as_str()],
             ["bodies", &bodies],

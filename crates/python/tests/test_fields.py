@@ -374,5 +374,20 @@ def test_simulations_in_a_notebook(case):
     simulation = case.start()
     simulation.step()
     assert simulation._repr_html_().startswith("<table><caption>a column of water</caption>")
-    assert repr(simulation).startswith("<Simulation at t = 0.0")
-    assert repr(case) == "<Case of a dict>" and repr(simulation.now()).endswith("after 1 steps>")
+    assert repr(case) == "<Case of a dict>"
+
+
+def test_texts_have_six_digits_and_one_step(case):
+    simulation = case.set("output.table_every", 0.01 / 3).start()
+    simulation.step()
+    time = f"t = {simulation.time:.6g}"
+    assert len(time) < len(f"t = {simulation.time}")
+    assert repr(simulation) == f"<Simulation at {time} s of 0.2 s, after 1 step>"
+    assert repr(simulation.now()) == f"<Moment {time} s, after 1 step>"
+    assert repr(simulation.bodies["water"]["velocity"].base) == f"<Field velocity of water at {time} s>"
+    assert f"1, the last of {simulation.step_size:.6g} s (" in simulation._repr_html_()
+    steps = simulation.run().steps
+    assert repr(simulation.result) == f"<Run completed at t = 0.2 s, after {steps} steps>"
+    table = simulation.tables["energy"]
+    assert repr(table).startswith(f"<Table of {len(table)} rows: time, kinetic")
+    assert repr(case.check()).startswith("<Plan of 45 particles, ")
