@@ -123,6 +123,16 @@ def test_which_bodies_can_be_clouds(name, which, _settable, cloud):
         assert clouded.run().outcome == "completed"
 
 
+def test_solids_take_the_spacing_of_a_fluid_that_has_one():
+    """Of water that is a cloud they take that of its floor; without one, there is none."""
+    x, y = (axis.ravel() for axis in np.meshgrid(*2 * [np.arange(0.0625, 1, 0.125)]))
+    case = piola.Case(CASES["coupled"]).set("body.water.spacing", None).set("body.water.lattice", None)
+    case.set("body.water.shape", piola.Cloud(np.stack([x, y], axis=1), np.full(64, 1 / 64)))
+    assert case.faults() == []
+    (fault,) = case.set("body.floor", None).faults()
+    assert fault.message == "points have no spacing, with which solids are walls to the fluid"
+
+
 def test_initial_fields_of_systems_from_arrays_are_those_of_expressions():
     """Steps are given, and nothing shifts particles by what it remembers of the velocities before."""
     still = {**MOVING, "shifting": "none"}
