@@ -59,24 +59,28 @@ pub enum Command {
     /// Run all cases below some folders and evaluate their checks
     Verify(VerifyArguments),
     /// Recreate the report of an earlier run from its results folder
+    #[command(after_help = Exit::table())]
     Report {
         /// The results folder
         #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
         folder: PathBuf,
     },
     /// Write a commented case to start from
+    #[command(after_help = Exit::table())]
     New {
         /// Folder of the new case, which is created
         #[arg(value_name = "NAME")]
         name: PathBuf,
     },
     /// List the devices for `--device`, or show what a case runs on one
+    #[command(after_help = Exit::table())]
     Devices {
         /// What to show instead.
         #[command(subcommand)]
         command: Option<DevicesCommand>,
     },
     /// Serve assistants that speak the Model Context Protocol over the standard input and output
+    #[command(after_help = Exit::table())]
     Mcp {
         /// The folder with the cases, outside of which nothing is written
         #[arg(value_name = "DIR", default_value = ".", value_hint = ValueHint::DirPath)]
@@ -87,6 +91,7 @@ pub enum Command {
     /// Print the reference of all keys of case files, as Markdown
     Reference,
     /// Write the manual pages, one for each command
+    #[command(after_help = Exit::table())]
     Man {
         /// The folder to write them to, which is created
         #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]

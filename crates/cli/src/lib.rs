@@ -11,6 +11,7 @@ use exit::{Exit, Fault};
 
 pub use commands::check::{plan_rows, plan_text};
 pub use progress::Pace;
+pub use text::count;
 
 mod arguments;
 mod commands;

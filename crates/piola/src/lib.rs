@@ -12,7 +12,7 @@ pub mod observe;
 use {piola_physics_1d as _, piola_physics_2d as _, piola_physics_3d as _};
 
 pub use piola_physics::{
-    Tensor, Vector, boundaries, fields, geometry, neighbors, operators, parallel, schemes, solve,
-    time,
+    Tensor, Vector, boundaries, coordinates, fields, geometry, neighbors, operators, parallel,
+    schemes, solve, time,
 };
 pub use piola_report as output;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use numpy::PyArray1;
-use piola::case::{ColumnError, Session};
+use piola::case::Session;
 use piola::fields::{FieldDescription, Life};
+use piola_cli::count;
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
 
@@ -134,23 +135,12 @@ impl Body {
     /// Sets the values of a field.
     fn __setitem__(&self, py: Python<'_>, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let number = self.number;
-        let shape = self.with(py, |session| {
-            let column = session.column(name)?;
-            let count = session.particles_of(number).len();
-            Ok(column.description.kind.shape(count, session.case().dimension))
-        })?;
-        let shape = shape.map_err(|error: ColumnError| column_error(&error))?;
+        let shape = self.with(py, |session| session.view(name, number).map(|view| view.shape()))?;
+        let shape = shape.map_err(|error| column_error(&error))?;
         let given = numbers(&format!("`{name}` of {}", self.label()), values, &shape)?;
-        let width = shape[1..].iter().product::<usize>();
         let simulation = self.simulation.get();
-        // Another thread may have taken steps since: the values of all others are read here, not before.
         let set = self.with(py, |session| {
-            let mut column = session.column(name)?;
-            let particles = session.particles_of(number);
-            for (particle, row) in particles.iter().zip(given.chunks_exact(width)) {
-                column.values[particle * width..(particle + 1) * width].copy_from_slice(row);
-            }
-            let set = session.set(name, &column.values);
+            let set = session.set_of(name, number, &given);
             if set.is_ok() {
                 simulation.note(session);
             }
@@ -208,6 +198,6 @@ impl Body {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let name = self.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
-        Ok(format!("<Body{name} of {} particles>", self.__len__(py)?))
+        Ok(format!("<Body{name} of {}>", count(self.__len__(py)? as u64, "particle")))
     }
 }

@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::display::{preformatted, table};
+use crate::display::{preformatted, seconds, table};
 use crate::errors::{Fault, case_error, faults, file_error, guard};
 use crate::functions::{Registry, Shared, make_threads, refuse_inside};
 use crate::plan::Plan;
@@ -90,6 +90,21 @@ impl Case {
     }
 }
 
+/// Drops the last override of a key that is set once more, if nothing set since can depend on it: something within it, what is
+/// found by a name that it gives, or places in a list that something has been removed from.
+fn forget(overrides: &mut Vec<String>, path: &str) {
+    let of_same = |text: &String| text.split_once('=').is_some_and(|(known, _)| known == path);
+    let Some(last) = overrides.iter().rposition(of_same) else { return };
+    let depends = |text: &String| {
+        let rest = text.strip_prefix(path).unwrap_or_default();
+        rest.starts_with(['.', '+']) || text.ends_with('=')
+    };
+    let is_needed = overrides[last].contains("name") || overrides[last..].iter().any(depends);
+    if !is_needed && !path.ends_with('+') {
+        overrides.remove(last);
+    }
+}
+
 /// Creates the particles. Functions are called for the values at the start.
 fn built(
     py: Python<'_>,
@@ -157,6 +172,7 @@ impl Case {
             true => String::new(),
             false => toml::value(value, path, &mut slf.registry)?.to_string(),
         };
+        forget(&mut slf.options.overrides, path);
         slf.options.overrides.push(format!("{path}={text}"));
         Ok(slf)
     }
@@ -241,7 +257,7 @@ impl Case {
         };
         let dimension = format!("{}D", case.dimension);
         let bodies: Vec<&str> = case.bodies.iter().map(|body| body.name.value.as_str()).collect();
-        let (bodies, end) = (bodies.join(", "), format!("{} s", *case.time.end));
+        let (bodies, end) = (bodies.join(", "), seconds(*case.time.end));
         let rows = [
             ["dimension", dimension.as_str()],
             ["bodies", &bodies],

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use piola::geometry::PointCloud;
+use piola_cli::count;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -68,6 +69,7 @@ impl Cloud {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Cloud of {} particles in {}D>", self.__len__(), self.cloud.dimension())
+        let particles = count(self.__len__() as u64, "particle");
+        format!("<Cloud of {particles} in {}D>", self.cloud.dimension())
     }
 }

@@ -1,4 +1,11 @@
-//! What notebooks show.
+//! What notebooks show, and times as texts show them.
+
+use piola::output::{DIGITS, significant};
+
+/// A time in s with as many digits as people read.
+pub fn seconds(time: f64) -> String {
+    format!("{} s", significant(time, DIGITS))
+}
 
 /// Text inside of HTML.
 pub fn escape(text: &str) -> String {

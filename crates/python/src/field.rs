@@ -6,6 +6,7 @@ use piola::case::FieldView;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::display::seconds;
 use crate::simulation::{Standing, inside};
 
 /// 64-bit floats in the order of bytes of this machine, as NumPy writes it.
@@ -96,7 +97,7 @@ impl Field {
         let of = self.body.as_ref().map_or_else(String::new, |body| format!(" of {body}"));
         let copy = if self.is_copy() { ", a copy" } else { "" };
         let past = if self.is_current() { "" } else { ", past" };
-        format!("<Field {}{of} at t = {} s{copy}{past}>", self.name(), self.time())
+        format!("<Field {}{of} at t = {}{copy}{past}>", self.name(), seconds(self.time()))
     }
 }
 

@@ -1,10 +1,12 @@
 //! Moments of a run: as they are iterated over, and as functions see them.
 
 use piola::time::{Progress, Schedule};
+use piola_cli::count;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::bodies::{Bodies, Body};
+use crate::display::seconds;
 use crate::simulation::{Simulation, Standing};
 use crate::stepping::Goal;
 
@@ -50,9 +52,10 @@ pub fn there(simulation: &Simulation, moment: Standing) -> PyResult<&Simulation>
         return Ok(simulation);
     }
     Err(PyRuntimeError::new_err(format!(
-        "this is of t = {} s, and the state has changed since (it is at t = {} s now): read what \
-         you need before a step or a new value; arrays remain valid",
-        moment.progress.time, now.progress.time
+        "this moment is at t = {}, but the simulation has moved on (now t = {}): read what you \
+         need before a step or a new value; arrays remain valid",
+        seconds(moment.progress.time),
+        seconds(now.progress.time)
     )))
 }
 
@@ -110,7 +113,7 @@ impl Moment {
 
     fn __repr__(&self) -> String {
         let Progress { time, step, .. } = self.standing.progress;
-        format!("<Moment t = {time} s, after {step} steps>")
+        format!("<Moment t = {}, after {}>", seconds(time), count(step, "step"))
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a run will do.
 
 use piola::case::{self, PlannedLimit};
+use piola_cli::count;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -165,7 +166,8 @@ impl Plan {
 
     fn __repr__(&self) -> String {
         let particles: usize = self.plan.bodies.iter().map(|body| body.particles).sum();
-        format!("<Plan of {particles} particles, {} steps>", self.plan.steps)
+        let particles = count(particles as u64, "particle");
+        format!("<Plan of {particles}, {}>", count(self.plan.steps, "step"))
     }
 
     fn _repr_html_(&self) -> String {

@@ -6,11 +6,12 @@ use piola::case::Finished;
 use piola::observe::Series;
 use piola::output::ResultsFolder;
 use piola::time::Outcome;
+use piola_cli::count;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use crate::arrays::array;
-use crate::display::{page, table};
+use crate::display::{page, seconds, table};
 use crate::tables::Tables;
 
 /// A run that has ended, successfully or not.
@@ -37,7 +38,7 @@ impl Run {
             return page(&report);
         }
         let summary = &self.finished.summary;
-        let time = format!("{} s", summary.time);
+        let time = seconds(summary.time);
         let (steps, particles) = (summary.steps.to_string(), self.finished.particles.to_string());
         let [notes, warnings] =
             [&self.finished.notes, &self.finished.warnings].map(|lines| lines.join("; "));
@@ -147,7 +148,8 @@ impl Run {
 
     fn __repr__(&self) -> String {
         let summary = &self.finished.summary;
-        format!("<Run {} at t = {} s, after {} steps>", self.outcome(), summary.time, summary.steps)
+        let (time, steps) = (seconds(summary.time), count(summary.steps, "step"));
+        format!("<Run {} at t = {time}, after {steps}>", self.outcome())
     }
 
     fn _repr_html_(&self) -> String {

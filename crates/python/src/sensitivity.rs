@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::array;
+use crate::display::seconds;
 use crate::errors::sensitivity_error;
 use crate::simulation::Simulation;
 
@@ -74,6 +75,6 @@ fn find(session: &mut Session, key: &str) -> Result<Found, SensitivityError> {
 #[pymethods]
 impl Sensitivity {
     fn __repr__(&self) -> String {
-        format!("<Sensitivity to {} at t = {} s>", self.key, self.time)
+        format!("<Sensitivity to {} at t = {}>", self.key, seconds(self.time))
     }
 }

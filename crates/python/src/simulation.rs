@@ -10,13 +10,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use piola::case::Session;
 use piola::time::Progress;
+use piola_cli::count;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
 use crate::bodies::{Bodies, Body};
-use crate::display::table;
+use crate::display::{seconds, table};
 use crate::errors::{guard, panic_error};
 use crate::functions::{Shared, refuse_inside};
 use crate::moment::{Every, Moment, Watcher, schedule};
@@ -318,7 +319,8 @@ impl Simulation {
 
     fn __repr__(&self) -> String {
         let Progress { time, end, step, .. } = self.standing().progress;
-        format!("<Simulation at t = {time} of {end} s, after {step} steps>")
+        let steps = count(step, "step");
+        format!("<Simulation at t = {} of {}, after {steps}>", seconds(time), seconds(end))
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
@@ -326,8 +328,8 @@ impl Simulation {
             return Ok(run.get().html());
         }
         let Progress { time, end, step, step_size, limiter, .. } = self.standing().progress;
-        let time = format!("{time} of {end} s");
-        let step = format!("{step}, the last of {step_size} s ({limiter})");
+        let time = format!("{} of {}", seconds(time), seconds(end));
+        let step = format!("{step}, the last of {} ({limiter})", seconds(step_size));
         Ok(table(&self.title, [["time", time.as_str()], ["steps", &step]]))
     }
 }

@@ -1,7 +1,8 @@
 //! Tables of a run.
 
 use piola::observe::{self, Series};
-use piola::output;
+use piola::output::{self, DIGITS, significant};
+use piola_cli::count;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -159,7 +160,8 @@ impl Table {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Table of {} rows: {}>", self.table.len(), self.columns().join(", "))
+        let rows = count(self.table.len() as u64, "row");
+        format!("<Table of {rows}: {}>", self.columns().join(", "))
     }
 
     fn _repr_html_(&self) -> String {
@@ -169,11 +171,11 @@ impl Table {
             format!("<tr>{cells}</tr>")
         };
         let head = cells(&mut self.table.columns().iter().map(output::Column::header), "th");
-        let count = self.table.len();
+        let length = self.table.len();
         let mut rows = String::new();
         for (number, row) in self.table.rows().enumerate() {
-            if number < SHOWN || number + SHOWN >= count {
-                rows += &cells(&mut row.iter().map(|value| format!("{value:.6e}")), "td");
+            if number < SHOWN || number + SHOWN >= length {
+                rows += &cells(&mut row.iter().map(|value| significant(*value, DIGITS)), "td");
             } else if number == SHOWN {
                 rows += &cells(&mut self.table.columns().iter().map(|_| "…".to_owned()), "td");
             }

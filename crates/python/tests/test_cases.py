@@ -81,6 +81,35 @@ def test_set_is_the_override_of_the_command_line(case):
         case.set("time.end=1", 2)
 
 
+def test_a_key_that_is_set_again_is_set_once(case):
+    for spacing in (0.5, 1.0, 0.25):
+        case.set("time.end", spacing).set("body.water.spacing", spacing)
+    assert repr(case) == "<Case of a dict, time.end=0.25, body.water.spacing=0.25>"
+    assert case.check().bodies[0]["spacing"] == [0.25, 0.25]
+
+
+def test_what_depends_on_a_key_that_is_set_again_stays(case):
+    force = {"kind": "body_force", "acceleration": ["0", "1"]}
+    # Two are appended.
+    case.set("load+", force).set("load+", force)
+    assert case.toml.count("[[load]]") == 2
+    # Both are removed, one after the other.
+    case.set("load.0", None).set("load.0", None)
+    assert "[[load]]" not in case.toml
+    # What is called for the second time is another one.
+    case.set("load", [force, force, force]).set("load.1.acceleration", ["0", "2"])
+    case.set("load.0", None).set("load.1.acceleration", ["0", "3"])
+    assert [text in case.toml for text in ('"1"', '"2"', '"3"')] == [False, True, True]
+    # A table is as it was set, whatever has been changed in it before.
+    whole = {"velocity": ["0", "0"]}
+    case.set("body.water.initial", whole).set("body.water.initial.velocity", ["0", "4"])
+    assert '"4"' in case.toml
+    assert '"4"' not in case.set("body.water.initial", whole).toml
+    # By its name a body has been found.
+    case.set("body.0.name", "sea").set("body.sea.spacing", 0.5).set("body.0.name", "lake")
+    assert case.check().bodies[0]["name"] == "lake"
+
+
 def test_faults_have_the_text_and_places_of_the_program(table, tmp_path):
     table["body"][0]["spacing"] = -1.0
     table["scheme"]["kernl"] = "gauss"

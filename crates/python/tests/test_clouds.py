@@ -98,7 +98,7 @@ POINTS, VOLUMES = lattice()
         (*bad(9, 2, 0.0), ValueError, "particle 9: the volume is 0, expected a finite number above 0"),
         (*bad(9, 2, np.inf), ValueError, "particle 9: the volume is inf, expected a finite number above 0"),
         (POINTS[[0, 1, 2, 1]], np.ones(4), ValueError,
-         "particles 1 and 3 are both at [0.25, 0.0], expected each place once"),
+         "particles 1 and 3 are both at (0.25, 0), expected each place once"),
         (POINTS, VOLUMES[:44], ValueError, "`volumes` has the shape (45,), not (44,)"),
         (POINTS, VOLUMES[:, None], ValueError, "`volumes` has the shape (45,), not (45, 1)"),
         (POINTS.ravel(), 1.0, ValueError, "`positions` has the shape (particles, D), not (90,)"),

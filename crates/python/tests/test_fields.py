@@ -224,8 +224,8 @@ def test_any_memory_order_and_exact_type(case):
         (np.full((45, 2), "1"), TypeError, "takes 64-bit floats, not <U1"),
         (np.zeros((45, 2), object), TypeError, "takes 64-bit floats, not object"),
         (None, TypeError, "takes 64-bit floats, not object (of a `NoneType`)"),
-        (np.full((45, 2), np.nan), ValueError, "the value for particle 0, component x, of the column `velocity` is NaN"),
-        (np.full((45, 2), np.inf), ValueError, "the value for particle 0, component x, of the column `velocity` is inf"),
+        (np.full((45, 2), np.nan), ValueError, "the value for particle 0, component x, of the field `velocity` is NaN"),
+        (np.full((45, 2), np.inf), ValueError, "the value for particle 0, component x, of the field `velocity` is inf"),
     ],
 )
 def test_bad_arrays_are_refused_and_change_nothing(case, values, error, text):
@@ -244,11 +244,11 @@ def test_bad_arrays_are_refused_and_change_nothing(case, values, error, text):
 
 def test_fields_that_are_not_there_or_cannot_be_set(case):
     body = case.start().bodies["water"]
-    with pytest.raises(KeyError, match="the scheme `upwind` has no column `velocty`; expected `position`"):
+    with pytest.raises(KeyError, match="the scheme `upwind` has no field `velocty`; expected `position`"):
         body["velocty"]
-    with pytest.raises(KeyError, match="has no column `velocty`"):
+    with pytest.raises(KeyError, match="has no field `velocty`"):
         body["velocty"] = np.zeros((45, 2))
-    with pytest.raises(ValueError, match="`pressure` of the scheme `upwind` cannot be set; those that can: `velocity`"):
+    with pytest.raises(ValueError, match="the field `pressure` cannot be set; only `velocity` can be set"):
         body["pressure"] = np.zeros(45)
     with pytest.raises(TypeError, match="a field cannot be deleted: `velocity`"):
         del body["velocity"]
@@ -374,5 +374,20 @@ def test_simulations_in_a_notebook(case):
     simulation = case.start()
     simulation.step()
     assert simulation._repr_html_().startswith("<table><caption>a column of water</caption>")
-    assert repr(simulation).startswith("<Simulation at t = 0.0")
-    assert repr(case) == "<Case of a dict>" and repr(simulation.now()).endswith("after 1 steps>")
+    assert repr(case) == "<Case of a dict>"
+
+
+def test_texts_have_six_digits_and_one_step(case):
+    simulation = case.set("output.table_every", 0.01 / 3).start()
+    simulation.step()
+    time = f"t = {simulation.time:.6g}"
+    assert len(time) < len(f"t = {simulation.time}")
+    assert repr(simulation) == f"<Simulation at {time} s of 0.2 s, after 1 step>"
+    assert repr(simulation.now()) == f"<Moment {time} s, after 1 step>"
+    assert repr(simulation.bodies["water"]["velocity"].base) == f"<Field velocity of water at {time} s>"
+    assert f"1, the last of {simulation.step_size:.6g} s (" in simulation._repr_html_()
+    steps = simulation.run().steps
+    assert repr(simulation.result) == f"<Run completed at t = 0.2 s, after {steps} steps>"
+    table = simulation.tables["energy"]
+    assert repr(table).startswith(f"<Table of {len(table)} rows: time, kinetic")
+    assert repr(case.check()).startswith("<Plan of 45 particles, ")

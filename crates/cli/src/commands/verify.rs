@@ -10,6 +10,7 @@ use std::time::Instant;
 use piola::case::page::{PageCase, Row, SettingRuns};
 use piola::case::verify::{VariantRun, needed_variants, verify as evaluate};
 use piola::case::{Case, Finished, Level, LoadOptions, Session, load};
+use piola::time::Outcome;
 
 use super::{locked, refusal, side_by_side};
 use crate::arguments::VerifyArguments;
@@ -49,8 +50,8 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     let rows: Vec<Rows> = found.into_values().collect::<Result<_, _>>()?;
     let seconds = start.elapsed().as_secs_f64();
     let all = || rows.iter().flat_map(|(_, rows)| rows);
-    let skipped = all().filter(|row| !row.was_run()).count();
-    let total = all().count() - skipped;
+    let skipped = all().filter(|row| !row.was_run() && !row.is_interrupted).count();
+    let total = all().filter(|row| row.was_run()).count();
     let failed = all().filter(|row| row.is_failed()).count();
     let unmet = all().filter(|row| row.was_run() && row.unmet.is_some()).count();
     let passed = total - failed - unmet;
@@ -69,7 +70,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Fault> {
     }
     terminal::print(&format!("{}\n{text}", render(&rows)))?;
     if stop.load(Ordering::Relaxed) {
-        terminal::report("interrupted: the other cases have not been run\n");
+        terminal::report("interrupted: what was not finished has neither passed nor failed\n");
         return Ok(Exit::Interrupted);
     }
     if let Some(page) = page.filter(|_| !rows.is_empty()) {
@@ -130,7 +131,7 @@ fn is_called(path: &Path, only: &str) -> bool {
 
 /// What is found at a path.
 enum Found {
-    /// No check, or no time for all of them before an interruption.
+    /// No check, or no time for any of them before an interruption.
     Nothing,
     /// A case that cannot be read, which is one failed row.
     Unreadable(Box<Rows>),
@@ -201,20 +202,23 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
         let mut runs = Vec::new();
         let mut rows = evaluate(&base, &mut |variant| {
             let number = runs.len() + 1;
-            if stop.load(Ordering::Relaxed) {
-                return Err("interrupted before its run".to_owned());
-            }
             let case = read(variant, *level).map_err(|fault| fault.report.trim_end().to_owned())?;
             let traits = base.traits_of(variant);
+            let mut leave = |case: &Case, why: &str| {
+                runs.push((variant.map(str::to_owned), case.clone(), None));
+                Err(why.to_owned())
+            };
             if traits.is_long && !arguments.is_long_wanted(variant)
                 || only_paper && !traits.is_paper
             {
-                runs.push((variant.map(str::to_owned), case, None));
-                return Err("it takes long, and has not been run".to_owned());
+                return leave(&case, "it takes long, and has not been run");
             }
             let same = known.iter().find(|(as_run, _)| *as_run == case.as_run);
             let run = match same {
                 Some((_, run)) => Rc::clone(run),
+                None if stop.load(Ordering::Relaxed) => {
+                    return leave(&case, "interrupted before its run");
+                }
                 None => {
                     let setting = level.name();
                     let label = match variant {
@@ -222,6 +226,9 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
                         None => format!("{name} {setting} ({number} of {all})"),
                     };
                     let run = Rc::new(run_quietly(&case, &label, stop)?);
+                    if run.summary.outcome == Outcome::Interrupted {
+                        return leave(&case, "interrupted");
+                    }
                     known.push((case.as_run.clone(), Rc::clone(&run)));
                     run
                 }
@@ -229,10 +236,6 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
             runs.push((variant.map(str::to_owned), case.clone(), Some(Rc::clone(&run))));
             Ok(VariantRun { case, run })
         });
-        if stop.load(Ordering::Relaxed) {
-            // What was interrupted has neither passed nor failed.
-            return Found::Nothing;
-        }
         if only_paper {
             rows.retain(|row| row.level == Level::Paper);
         }
@@ -240,7 +243,8 @@ fn one(path: &Path, arguments: &VerifyArguments, stop: &AtomicBool) -> Found {
             found.settings.push(SettingRuns { case: base, rows, runs });
         }
     }
-    match found.settings.is_empty() {
+    // Of a case that was interrupted before the end of its first run there is nothing to tell.
+    match found.settings.is_empty() || stop.load(Ordering::Relaxed) && known.is_empty() {
         true => Found::Nothing,
         false => Found::Case(Box::new(found)),
     }

@@ -142,14 +142,15 @@ fn serve_calls(
 ) -> Result<(), Fault> {
     while !told.load(Ordering::SeqCst) {
         let Ok(Call { id, params, stop }) = calls.recv_timeout(LOOK) else { continue };
-        let answer = answer(&id, &params, tools, &stop);
+        let is_stopped = || stop.load(Ordering::SeqCst);
+        let answer = (!is_stopped()).then(|| answer(&id, &params, tools, &stop));
         let mut waiting = locked(pending);
         if let Some(own) = waiting.iter().position(|(_, other)| Arc::ptr_eq(other, &stop)) {
             waiting.remove(own);
         }
         drop(waiting);
         // Whoever has cancelled a call waits for no answer.
-        if !stop.load(Ordering::SeqCst) {
+        if let Some(answer) = answer.filter(|_| !is_stopped()) {
             send(&answer)?;
         }
     }

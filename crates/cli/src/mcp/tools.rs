@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use piola::case::{Case, LoadOptions, Problems, Session, load, parse_in, report, schema};
@@ -130,7 +130,7 @@ impl Tools {
         }
         let result = match name {
             "schema" => part_of_schema(arguments["key"].as_str()),
-            "check" => self.check(arguments),
+            "check" => self.check(arguments, stop),
             "run" => self.run(arguments, stop, progress),
             _ => self.report(arguments["results"].as_str().unwrap_or_default()),
         };
@@ -140,10 +140,13 @@ impl Tools {
         }
     }
 
-    fn check(&self, arguments: &Value) -> Result<String, String> {
+    fn check(&self, arguments: &Value, stop: &AtomicBool) -> Result<String, String> {
         let case = self.case(arguments)?;
         let mut session = Session::new(&case).map_err(|problems| problems.to_string())?;
-        Ok(plan_text(&case, &session.plan()))
+        match stop.load(Ordering::SeqCst) {
+            true => Err("cancelled".to_owned()),
+            false => Ok(plan_text(&case, &session.plan())),
+        }
     }
 
     fn run(
@@ -326,5 +329,19 @@ fn fits(arguments: &Value, schema: &Value) -> Result<(), String> {
     match required.find(|name| !given.contains_key(*name)) {
         Some(name) => Err(format!("the argument `{name}` is missing")),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_check_that_is_cancelled_has_no_plan() {
+        let tools = Tools::new(Path::new(env!("CARGO_MANIFEST_DIR"))).expect("there is a folder");
+        let arguments = json!({ "text": piola::case::template::new_case("a column") });
+        let check = |stop| tools.check(&arguments, &AtomicBool::new(stop));
+        assert!(check(false).is_ok_and(|plan| plan.contains("first step")));
+        assert_eq!(check(true), Err("cancelled".to_owned()));
     }
 }

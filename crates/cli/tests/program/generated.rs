@@ -1,3 +1,4 @@
+use std::fs;
 use std::io::Read;
 use std::process::{Command, Stdio};
 
@@ -31,8 +32,10 @@ fn completions_know_the_commands() {
 
 #[test]
 fn help_lists_the_exit_codes() {
-    for arguments in ["--help", "run --help", "check --help", "verify --help"] {
-        let (stdout, _) = Place::new().run(arguments, 0);
+    let all = "run check sweep verify report new devices mcp man";
+    let commands = all.split(' ').map(|command| format!("{command} --help"));
+    for arguments in commands.chain(["--help".to_owned(), "devices show --help".to_owned()]) {
+        let (stdout, _) = Place::new().run(&arguments, 0);
         assert_contains(&stdout, &["Exit codes:", "  3  the run failed", "130  interrupted"]);
     }
     let (stdout, _) = Place::new().run("--version", 0);
@@ -52,7 +55,7 @@ fn manual_pages_tell_of_every_command() {
     let place = Place::new();
     place.run("man pages/man1", 0);
     for (page, parts) in [
-        ("piola", ["piola\\-verify(1)", "Exit codes"]),
+        ("piola", ["piola\\-verify(1)", ".SH SUBCOMMANDS"]),
         ("piola-run", ["\\-\\-resume", "newest sound checkpoint"]),
         ("piola-mcp", ["Model Context Protocol", "[default: .]"]),
         ("piola-devices-show", ["\\-\\-language", "no device is needed"]),
@@ -60,6 +63,22 @@ fn manual_pages_tell_of_every_command() {
         let text = place.read(&format!("pages/man1/{page}.1"));
         assert!(text.starts_with(".ie") || text.contains(".TH"), "{text}");
         assert_contains(&text, &parts);
+    }
+    let pages: Vec<_> = fs::read_dir(place.path("pages/man1")).unwrap().collect();
+    // One for each command, `devices show` and the program itself.
+    assert_eq!(pages.len(), 14);
+    for page in pages {
+        let text = fs::read_to_string(page.unwrap().path()).unwrap();
+        let version = env!("CARGO_PKG_VERSION");
+        assert!(
+            text.lines().any(|line| line.starts_with(".TH") && line.contains(version)),
+            "{text}"
+        );
+        let (before, status) = text.split_once(".SH \"EXIT STATUS\"\n").unwrap();
+        assert!(!before.contains("Exit codes") && !text.contains(".SH EXTRA"), "{text}");
+        let listed = ".TP\n\\fB3\\fR\nthe run failed; its last good state is on disk\n";
+        let version = format!(".SH VERSION\nv{version}\n");
+        assert_contains(status, &[listed, "\\fB130\\fR", &version]);
     }
     place.write("file", "");
     place.run("man file", 4);

@@ -52,6 +52,57 @@ fn an_interrupted_verification_says_so() {
 }
 
 #[test]
+fn an_interrupted_verification_keeps_the_rows_that_it_has() {
+    let place = Place::new();
+    let bar = BAR.replace("time.end=0.01", "output.every=0.03");
+    let endless = format!("\n[[variant]]\nname = \"endless\"\nset = {ENDLESS:?}\n");
+    let check = |variant: &str| {
+        format!(
+            "\n[[check]]\nvariant = \"{variant}\"\nquantity = \"tip.displacement.x\"\nreduce = \"final\"\n\
+             at_least = -1.0\nagainst = \"invariant\"\nsource = \"of {variant}\"\n"
+        )
+    };
+    place.write("bar/case.toml", bar.clone() + &endless + &check("fast"));
+    place.run("verify bar --page page.md", 0);
+    // The other variant keeps its row, of the case as it was run then; the next time it has changed.
+    for (speed, kept) in [("2.0", &["at rest again", "of fast"][..]), ("3.0", &["at rest again"])] {
+        let case =
+            bar.replace("at rest", "at rest again").replace("speed=2.0", &format!("speed={speed}"));
+        place.write("bar/case.toml", case + &endless + &check("endless") + &check("fast"));
+        let mut program = Program::piola(&place, "verify bar --page page.md");
+        let (mut told, mut next) = (String::new(), [0]);
+        while !told.contains("endless") {
+            program.0.stderr.as_mut().unwrap().read_exact(&mut next).unwrap();
+            told.push(char::from(next[0]));
+        }
+        let (code, stdout, stderr) = program.stop("INT");
+        assert_eq!(code, Some(130), "{stdout}{stderr}");
+        assert_contains(
+            &stderr,
+            &["interrupted: what was not finished has neither passed nor failed"],
+        );
+        assert_contains(&stdout, &["1 check of 1 case: 1 passed, 0 failed"]);
+        let results: serde_json::Value = serde_json::from_str(&place.read("page.json")).unwrap();
+        let rows = results["cases"][0]["rows"].as_array().unwrap();
+        let sources: Vec<_> = rows.iter().map(|row| row["source"].as_str().unwrap()).collect();
+        let expected: Vec<String> =
+            kept.iter().map(|end| end.replace("at rest", "it starts at rest")).collect();
+        assert_eq!(sources, expected);
+        let page = place.read("page.md");
+        kept.iter().for_each(|source| assert_contains(&page, &[source]));
+        assert!(!page.contains("endless") && !page.contains("not run"), "{page}");
+    }
+    // Before the end of a first run there is nothing to tell, and the page stays.
+    let page = place.read("page.md");
+    let other = BAR.replace("set = [\"time.end=0.01\"]", &format!("set = {ENDLESS:?}"));
+    place.write("bar/case.toml", other);
+    let mut program = Program::piola(&place, "verify bar --page page.md");
+    program.0.stderr.as_mut().unwrap().read_exact(&mut [0; 7]).unwrap();
+    assert_eq!(program.stop("INT").0, Some(130));
+    assert_eq!(place.read("page.md"), page);
+}
+
+#[test]
 fn an_interrupted_sweep_keeps_what_it_has() {
     let place = Place::with_bar();
     let endless = ENDLESS[1..].join(" --set ");

@@ -1,5 +1,6 @@
 use std::io::{BufRead, BufReader, Lines, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::Instant;
 
 use serde_json::{Value, json};
 
@@ -257,6 +258,25 @@ fn a_run_tells_how_far_it_is_and_can_be_cancelled() {
     assert_eq!(answer["id"], 10);
     let record = place.read("results/first/run.json");
     assert_contains(&record, &["interrupted"]);
+}
+
+#[test]
+fn checks_can_be_cancelled() {
+    let place = Place::with_bar();
+    let mut server = Server::start(&place);
+    let fine = json!({ "case": "bar/case.toml", "set": ["body.bar.spacing=1e-5"] });
+    server.say(&call(1, "check", fine.clone()));
+    // While the first one is read and built, others wait and are cancelled.
+    let others = 2..=20;
+    others.clone().for_each(|id| server.say(&call(id, "check", fine.clone())));
+    others.for_each(|id| server.say(&cancel(id)));
+    server.say(&call(21, "schema", json!({ "key": "time" })));
+    let start = Instant::now();
+    assert_eq!(server.hear()["id"], 1);
+    let one = start.elapsed();
+    assert_eq!(server.hear()["id"], 21);
+    // Nineteen checks would take as many times as long as one.
+    assert!(start.elapsed() - one < 5 * one, "{one:?} and {:?}", start.elapsed());
 }
 
 #[test]

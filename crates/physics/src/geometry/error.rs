@@ -4,13 +4,14 @@ use thiserror::Error;
 
 use super::fill::MOST_SITES;
 use super::{MeshError, OutlineError, PointsError, SurfaceError};
+use crate::coordinates;
 
 /// A reason why no particles can be made or selected.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GeometryError {
     /// A coordinate is NaN, infinite, or so large that lengths overflow.
-    #[error("{what} is {value:?}, expected finite coordinates in m")]
+    #[error("{what} is {place}, expected finite coordinates in m", place = coordinates(value))]
     NotFinite {
         /// What the coordinates are, for example `the center of a ball`.
         what: &'static str,
@@ -87,13 +88,19 @@ pub enum GeometryError {
         what: &'static str,
     },
     /// A normal has no direction.
-    #[error("the normal is {value:?}, expected finite components, not all of them 0")]
+    #[error(
+        "the normal is {normal}, expected finite components, not all of them 0",
+        normal = coordinates(value)
+    )]
     Normal {
         /// The components.
         value: Vec<f64>,
     },
     /// Other arrangements than a square lattice have one spacing.
-    #[error("{what} the spacings {value:?} m, expected the same along each axis")]
+    #[error(
+        "{what} the spacings {spacings} m, expected the same along each axis",
+        spacings = coordinates(value)
+    )]
     Uneven {
         /// What has them.
         what: &'static str,
@@ -131,8 +138,10 @@ pub enum GeometryError {
     },
     /// The spacing is too small for the extent.
     #[error(
-        "a spacing of {spacing} m in a body of {extent:?} m gives about {estimate:.1e} lattice \
-         sites, expected at most {:.0e}; make the spacing larger", MOST_SITES as f64
+        "a spacing of {spacing} m in a body of {extents} m gives about {estimate:.1e} lattice \
+         sites, expected at most {:.0e}; make the spacing larger",
+        MOST_SITES as f64,
+        extents = coordinates(extent)
     )]
     TooManySites {
         /// Smallest spacing in m.
@@ -166,18 +175,6 @@ pub enum GeometryError {
     /// A mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-}
-
-/// A place in words: coordinates to five digits, of which those that are round-off beside others are 0.
-pub(super) fn coordinates(place: &[f64]) -> String {
-    let most = place.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let digits = |x: &f64| match x.abs() < 1e-9 * most {
-        true => 0.0,
-        // What has been written as a number can be read.
-        false => format!("{x:.4e}").parse().unwrap_or(*x),
-    };
-    let all: Vec<String> = place.iter().map(|x| digits(x).to_string()).collect();
-    format!("({})", all.join(", "))
 }
 
 /// Name of a coordinate axis.

@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::Particles;
 use super::points::{place, push};
 use crate::Vector;
+use crate::coordinates;
 
 /// Points with their volumes, of which a body is made.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +61,10 @@ pub enum PointCloudError {
         got: f64,
     },
     /// Two particles are at one place.
-    #[error("particles {first} and {particle} are both at {point:?}, expected each place once")]
+    #[error(
+        "particles {first} and {particle} are both at {at}, expected each place once",
+        at = coordinates(point)
+    )]
     Duplicate {
         /// The number of the first of them.
         first: usize,

@@ -12,6 +12,7 @@ use thiserror::Error;
 use super::file::{FileFault, MOST_BYTES, read};
 use super::{GeometryError, Particles};
 use crate::Vector;
+use crate::coordinates;
 
 /// Why a file of points cannot be used, and where.
 #[derive(Debug, Error)]
@@ -90,7 +91,10 @@ pub enum PointsFault {
         got: f64,
     },
     /// A point occurs twice.
-    #[error("the point {point:?} is already on line {line}, expected each point once")]
+    #[error(
+        "the point {at} is already on line {line}, expected each point once",
+        at = coordinates(point)
+    )]
     Duplicate {
         /// Its coordinates.
         point: Vec<f64>,

@@ -2,12 +2,17 @@
 
 use thiserror::Error;
 
+use crate::coordinates;
+
 /// A reason why no neighbour list can be made. Particles are named by their row.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NeighborError {
     /// A coordinate is NaN or infinite.
-    #[error("particle {particle} is at {position:?}, expected finite coordinates in m")]
+    #[error(
+        "particle {particle} is at {at}, expected finite coordinates in m",
+        at = coordinates(position)
+    )]
     NonFinite {
         /// Row of the particle.
         particle: usize,
@@ -97,8 +102,9 @@ pub enum NeighborError {
     },
     /// Two particles are at the same place.
     #[error(
-        "particles {first} and {second} are {distance:e} m apart at {position:?}, expected at \
-         least {tolerance:e} m; remove one of them or the overlap of their bodies"
+        "particles {first} and {second} are {distance:e} m apart at {at}, expected at \
+         least {tolerance:e} m; remove one of them or the overlap of their bodies",
+        at = coordinates(position)
     )]
     Coincident {
         /// Row of the first particle.

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::coordinates;
 use crate::neighbors::NeighborError;
 
 /// An operator that cannot be built on the given particles.
@@ -13,9 +14,10 @@ pub enum OperatorError {
     Neighbors(#[from] NeighborError),
     /// Too few neighbours, or neighbours in a plane or line, for a correction matrix.
     #[error(
-        "particle {id} at {position:?} has {neighbors} neighbours, which do not span \
+        "particle {id} at {at} has {neighbors} neighbours, which do not span \
          {dimension} dimensions (reciprocal condition {condition:.1e}): the {correction} \
-         correction does not exist there; enlarge the smoothing length or refine the spacing"
+         correction does not exist there; enlarge the smoothing length or refine the spacing",
+        at = coordinates(position)
     )]
     PoorSupport {
         /// Number of the particle in the order of creation.
@@ -34,8 +36,9 @@ pub enum OperatorError {
     },
     /// Particles that are not those of an even lattice, with or without ghosts.
     #[error(
-        "the neighbours of particle {id} at {position:?} do not surround it evenly: the strong form is \
-         for a box of one lattice, with particles on its edges and none left out"
+        "the neighbours of particle {id} at {at} do not surround it evenly: the strong form is \
+         for a box of one lattice, with particles on its edges and none left out",
+        at = coordinates(position)
     )]
     Gap {
         /// Number of the particle in the order of creation.
@@ -45,7 +48,8 @@ pub enum OperatorError {
     },
     /// Two particles at one place: the direction between them does not exist.
     #[error(
-        "particles {first} and {second} lie at the same place {position:?}; remove one of them"
+        "particles {first} and {second} lie at the same place {at}; remove one of them",
+        at = coordinates(position)
     )]
     Coincident {
         /// Number of the one particle.
@@ -57,9 +61,10 @@ pub enum OperatorError {
     },
     /// Boundary areas that do not enclose the volumes of the particles.
     #[error(
-        "the boundary areas of body {body} do not enclose its volume: they sum to {sum:?} m^(D-1) \
+        "the boundary areas of body {body} do not enclose its volume: they sum to {areas} m^(D-1) \
          instead of zero, and their moment misses the volume by a factor of {misfit:.1e}; correct \
-         areas or volumes, or use plain gradients"
+         areas or volumes, or use plain gradients",
+        areas = coordinates(sum)
     )]
     Areas {
         /// Number of the body.

@@ -44,6 +44,7 @@ pub trait CoupledScheme: Scheme {
     /// Forgets what is known of one state for the next: another one follows.
     fn forget(&mut self);
 
-    /// Brings the fluid into line with solids that have been changed from outside.
+    /// Brings accelerations that systems hold, and the fluid around solids, into line with a state that has been changed
+    /// from outside.
     fn refresh(&mut self, time: f64, state: &mut [f64]);
 }

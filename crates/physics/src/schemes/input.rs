@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::Vector;
 use crate::boundaries::{FollowerPressure, PrescribedVelocity, Traction};
+use crate::coordinates;
 use crate::geometry::Particles;
 
 /// Parts that do not fit together, or values that no particle can have.
@@ -32,8 +33,9 @@ pub enum InputError {
     },
     /// A particle without mass.
     #[error(
-        "particle {id} at {position:?} has a mass of {mass} kg; its volume and the density of its \
-         material must be positive"
+        "particle {id} at {at} has a mass of {mass} kg; its volume and the density of its \
+         material must be positive",
+        at = coordinates(position)
     )]
     Mass {
         /// Number of the particle in the order of creation.
@@ -44,7 +46,10 @@ pub enum InputError {
         mass: f64,
     },
     /// An initial displacement that is no number.
-    #[error("the initial displacement of particle {id} at {position:?} is not finite")]
+    #[error(
+        "the initial displacement of particle {id} at {at} is not finite",
+        at = coordinates(position)
+    )]
     Displacement {
         /// Number of the particle in the order of creation.
         id: u32,
@@ -52,7 +57,10 @@ pub enum InputError {
         position: Vec<f64>,
     },
     /// An initial velocity that is no number.
-    #[error("the initial velocity of particle {id} at {position:?} is not finite")]
+    #[error(
+        "the initial velocity of particle {id} at {at} is not finite",
+        at = coordinates(position)
+    )]
     Velocity {
         /// Number of the particle in the order of creation.
         id: u32,

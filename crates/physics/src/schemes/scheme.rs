@@ -314,9 +314,9 @@ pub trait Scheme: Send + Sync {
         Vec::new()
     }
 
-    /// The columns of its state that may be set from outside: those that nothing else in the state has to
-    /// follow but accelerations.
-    fn settable(&self) -> &'static [&'static str] {
+    /// The columns of its state that may be set from outside for a particle (index in memory): those that nothing else in
+    /// the state has to follow but accelerations.
+    fn settable(&self, _index: usize) -> &'static [&'static str] {
         &["velocity"]
     }
 

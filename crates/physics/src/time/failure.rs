@@ -5,6 +5,7 @@ use piola_ranks::RankError;
 use thiserror::Error;
 
 use super::integrator::Unserved;
+use crate::coordinates;
 use crate::schemes::{Behind, Escape, Inaccurate, Missed, NoSolution, Particle, StepsError};
 
 /// What went wrong, where and when, with what to do about it.
@@ -13,11 +14,11 @@ use crate::schemes::{Behind, Escape, Inaccurate, Missed, NoSolution, Particle, S
 pub enum Failure {
     /// A value is infinite or not a number.
     #[error(
-        "particle {} (reference position {:?} m) has a value that is not finite after step \
+        "particle {} (reference position {} m) has a value that is not finite after step \
          {step}, t = {time:.6} s: the step was too large for the state or the state had broken up \
          before; take smaller steps (`time.cfl` or `time.step`), or {advice}",
         particle.id,
-        particle.reference
+        coordinates(&particle.reference)
     )]
     NotFinite {
         /// Index in memory of the first such particle.
@@ -33,10 +34,10 @@ pub enum Failure {
     },
     /// A particle has lost its volume or turned inside out.
     #[error(
-        "particle {} (reference position {:?} m) collapsed: its volume ratio fell to {ratio:.2e} \
+        "particle {} (reference position {} m) collapsed: its volume ratio fell to {ratio:.2e} \
          at step {step}, t = {time:.6} s; {advice}",
         particle.id,
-        particle.reference
+        coordinates(&particle.reference)
     )]
     Inverted {
         /// Index of the particle in memory.
@@ -54,10 +55,10 @@ pub enum Failure {
     },
     /// A particle is where it must not be.
     #[error(
-        "particle {} (reference position {:?} m) {} at {:?} m with {:.4e} m/s, after step {step}, \
+        "particle {} (reference position {} m) {} at {} m with {:.4e} m/s, after step {step}, \
          t = {time:.6} s; {}",
         particle.id,
-        particle.reference,
+        coordinates(&particle.reference),
         match &escape.behind {
             Behind::Wall(wall) => format!("has passed through the wall `{wall}`, and is"),
             Behind::End(wall) => {
@@ -71,7 +72,7 @@ pub enum Failure {
                     .into()
             }
         },
-        escape.position,
+        coordinates(&escape.position),
         escape.speed,
         escape.advice
     )]
@@ -112,7 +113,7 @@ pub enum Failure {
     },
     /// A particle is much faster than anything was at the start.
     #[error(
-        "particle {} (reference position {:?} m) moves at {speed:.4e} m/s after step {step}, \
+        "particle {} (reference position {} m) moves at {speed:.4e} m/s after step {step}, \
          t = {time:.6} s, where at most {limit:.4e} m/s is expected (ten times the sum of the \
          largest speed and the wave speed at the start, unless `time.max_speed` says otherwise): \
          the state has broken up, or the material is far too soft for its loads; check the \
@@ -120,7 +121,7 @@ pub enum Failure {
          `time.step`) or \
          {advice}, or raise `time.max_speed` if such speeds are meant",
         particle.id,
-        particle.reference
+        coordinates(&particle.reference)
     )]
     TooFast {
         /// Index of the particle in memory.
@@ -141,10 +142,10 @@ pub enum Failure {
     /// A fixed step is larger than the state allows.
     #[error(
         "the fixed step {step:.4e} s is larger than the stable step {stable:.4e} s at \
-         t = {time:.6} s, set by the limit `{limiter}` of particle {} (reference position {:?} m); \
+         t = {time:.6} s, set by the limit `{limiter}` of particle {} (reference position {} m); \
          lower `time.step`, or set `time.cfl` and let the step follow the state",
         particle.id,
-        particle.reference
+        coordinates(&particle.reference)
     )]
     FixedStepTooLarge {
         /// Index in memory of the particle that sets the limit.
@@ -163,10 +164,10 @@ pub enum Failure {
     /// The stable step has become too small to get anywhere.
     #[error(
         "the step fell to {size:.3e} s, below the floor of {floor:.3e} s, at step {step}, \
-         t = {time:.6} s: the limit `{limiter}` of particle {} (reference position {:?} m) sets \
+         t = {time:.6} s: the limit `{limiter}` of particle {} (reference position {} m) sets \
          it, and the smallest volume ratio is {ratio:.2e}; {advice}",
         particle.id,
-        particle.reference
+        coordinates(&particle.reference)
     )]
     StepBelowFloor {
         /// Index in memory of the particle that sets the step.

@@ -11,7 +11,7 @@ use crate::fields::{FieldDescription, FieldValues, component_name};
 #[non_exhaustive]
 pub enum ColumnError {
     /// The formulation has no column of this name.
-    #[error("the scheme `{scheme}` has no column `{name}`; expected {known}")]
+    #[error("the scheme `{scheme}` has no field `{name}`; expected {known}")]
     Unknown {
         /// The name.
         name: String,
@@ -22,18 +22,21 @@ pub enum ColumnError {
     },
     /// It follows from others, or others would have to follow it.
     #[error(
-        "the column `{name}` of the scheme `{scheme}` cannot be set; those that can: {settable}"
+        "the field `{name}` cannot be set; {} can be set",
+        if settable.is_empty() {
+            "no field of this scheme".to_owned()
+        } else {
+            format!("only {}", one_of(settable.iter().copied()))
+        }
     )]
     NotSettable {
         /// The name.
         name: &'static str,
-        /// Name of the scheme.
-        scheme: &'static str,
         /// Those that can be.
-        settable: String,
+        settable: &'static [&'static str],
     },
     /// Too few numbers, or too many.
-    #[error("the column `{name}` has {expected} numbers, not {got}")]
+    #[error("the field `{name}` has {expected} numbers, not {got}")]
     Length {
         /// The name.
         name: &'static str,
@@ -44,7 +47,7 @@ pub enum ColumnError {
     },
     /// A value that is not finite.
     #[error(
-        "the value for particle {particle}{} of the column `{name}` is {value}",
+        "the value for particle {particle}{} of the field `{name}` is {value}",
         if component.is_empty() { String::new() } else { format!(", component {component},") }
     )]
     NotFinite {
@@ -114,30 +117,52 @@ impl Session {
     /// There is no such column, it cannot be set, or the values are too few, too many or not finite;
     /// then nothing is changed.
     pub fn set(&mut self, name: &str, values: &[f64]) -> Result<(), ColumnError> {
+        let all: Vec<usize> = (0..self.ids().len()).collect();
+        self.put(name, &all, values)
+    }
+
+    /// The same for the particles of [`Session::particles_of`], in their order. Of a fluid with solids in it each system has
+    /// fields of its own that can be set.
+    ///
+    /// # Errors
+    /// As [`Session::set`].
+    pub fn set_of(
+        &mut self,
+        name: &str,
+        body: Option<usize>,
+        values: &[f64],
+    ) -> Result<(), ColumnError> {
+        let particles = self.particles_of(body);
+        self.put(name, &particles, values)
+    }
+
+    fn put(&mut self, name: &str, particles: &[usize], values: &[f64]) -> Result<(), ColumnError> {
         let field = self.described(name)?;
         let (name, scheme) = (field.name, self.executor.scheme.as_ref());
-        let (settable, column) = (scheme.settable(), scheme.column(field));
-        if !settable.contains(&name) || column.is_empty() {
-            let settable = match settable {
-                [] => "none".to_owned(),
-                names => one_of(names.iter().copied()),
-            };
-            let scheme = scheme.description().name;
-            return Err(ColumnError::NotSettable { name, scheme, settable });
-        }
-        let (expected, got) = (column.len(), values.len());
+        let place = |&particle: &usize| {
+            let settable = scheme.settable(particle);
+            let stretch = scheme.stretch(field, &(particle..particle + 1));
+            stretch
+                .filter(|_| settable.contains(&name))
+                .ok_or(ColumnError::NotSettable { name, settable })
+        };
+        let places = particles.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+        let components = field.kind.components(self.case.dimension);
+        let (expected, got) = (components * places.len(), values.len());
         if got != expected {
             return Err(ColumnError::Length { name, expected, got });
         }
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             let dimension = self.case.dimension;
-            let components = field.kind.components(dimension);
             let component = component_name(field.kind, index % components, dimension);
             let particle = index / components;
             return Err(ColumnError::NotFinite { name, particle, component, value: values[index] });
         }
-        if self.executor.state()[column.clone()] != *values {
-            self.executor.change(|state| state[column].copy_from_slice(values));
+        let state = self.executor.state();
+        let rows = || places.iter().cloned().zip(values.chunks_exact(components));
+        if rows().any(|(place, row)| state[place] != *row) {
+            self.executor
+                .change(|state| rows().for_each(|(place, row)| state[place].copy_from_slice(row)));
         }
         Ok(())
     }

@@ -104,6 +104,7 @@ impl PageCase {
                 let sums: Vec<String> =
                     runs.iter().map(|(_, case, _)| case.fingerprint()).collect();
                 let mut new = Row::new(row, setting.case.level, work, sums.join(" "));
+                new.is_interrupted = !row.is_long && runs.iter().any(|(.., run)| run.is_none());
                 if row.is_long && finished.count() == row.runs.len() {
                     new.date = Some(today.to_owned());
                 }
@@ -127,13 +128,14 @@ impl PageCase {
 
 impl Results {
     /// Puts the results of a case in the place of earlier ones, of which those of runs that take
-    /// long are kept where the case has not changed since.
+    /// long, or that an interruption has left out, are kept where the case has not changed since.
     pub fn put(&mut self, mut case: CaseResults) {
         let is_same = |known: &CaseResults| known.link == case.link;
         if let Some(index) = self.cases.iter().position(is_same) {
-            case.keep_long(&self.cases[index]);
+            case.keep(&self.cases[index]);
             self.cases.remove(index);
         }
+        case.rows.retain(|row| !row.is_interrupted);
         self.cases.push(case);
         self.cases.sort_by_key(|case| (place(&case.id), case.name.clone()));
     }

@@ -3,6 +3,8 @@
 //! Checking, defaults, the JSON schema and the reference all follow these descriptions; the descriptions themselves
 //! are in [`tables`](super::tables).
 
+use crate::output::significant;
+
 /// A table with a fixed set of keys.
 #[derive(Debug)]
 pub struct TableSpec {
@@ -205,24 +207,56 @@ impl Interval {
     /// In words: `above 0`, `at least 1`, `from 0 to 1`. `None` for any number.
     pub fn describe(&self) -> Option<String> {
         if self.lower == self.upper {
-            return Some(self.lower.to_string());
+            return Some(short(self.lower));
         }
         if self.has_lower && self.has_upper {
-            return Some(format!("from {} to {}", self.lower, self.upper));
+            return Some(format!("from {} to {}", short(self.lower), short(self.upper)));
         }
         let lower = match (self.lower.is_finite(), self.has_lower) {
             (false, _) => None,
-            (true, true) => Some(format!("at least {}", self.lower)),
-            (true, false) => Some(format!("above {}", self.lower)),
+            (true, true) => Some(format!("at least {}", short(self.lower))),
+            (true, false) => Some(format!("above {}", short(self.lower))),
         };
         let upper = match (self.upper.is_finite(), self.has_upper) {
             (false, _) => None,
-            (true, true) => Some(format!("at most {}", self.upper)),
-            (true, false) => Some(format!("below {}", self.upper)),
+            (true, true) => Some(format!("at most {}", short(self.upper))),
+            (true, false) => Some(format!("below {}", short(self.upper))),
         };
         match (lower, upper) {
             (Some(lower), Some(upper)) => Some(format!("{lower} and {upper}")),
             (lower, upper) => lower.or(upper),
         }
+    }
+}
+
+/// A bound as people write it: `0.5`, `1/3`, `1e-13`.
+fn short(bound: f64) -> String {
+    let text = significant(bound, 12);
+    let denominator = (1.0 / bound).round();
+    match text.parse() == Ok(bound) {
+        true => text,
+        false if denominator > 0.0 && bound == 1.0 / denominator => format!("1/{denominator}"),
+        false => bound.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_short() {
+        let words = |interval: Interval| interval.describe().unwrap_or_default();
+        assert_eq!(words(Interval::between(0.0, 1.0 / 3.0)), "from 0 to 1/3");
+        assert_eq!(words(Interval::between(1e-13, 0.01)), "from 1e-13 to 0.01");
+        assert_eq!(words(Interval::between(1.0, 1e8)), "from 1 to 100000000");
+        assert_eq!(words(Interval::between(2.0, 2.0)), "2");
+        // Nothing is lost of others.
+        assert_eq!(words(Interval::at_least(0.1 + 0.2)), "at least 0.30000000000000004");
+        assert_eq!(
+            words(Interval { upper: 2.0 / 3.0, ..Interval::ANY }),
+            format!("below {}", 2.0 / 3.0)
+        );
+        assert_eq!(words(Interval::ANY), "");
     }
 }

@@ -340,7 +340,7 @@ fn walls_that_will_not_hold_are_warned_of() {
     let thin = warnings(&["parameters.speed=0.2", "parameters.layers=2"]);
     assert!(has(&thin, "`floor` is about") && has(&thin, "3 layers"), "{thin:?}");
     let hole = warnings(&["parameters.speed=0.2", "parameters.hole=1.0"]);
-    assert!(has(&hole, "`floor` has a gap of about 1.000e-1 m at [0.9"), "{hole:?}");
+    assert!(has(&hole, "`floor` has a gap of about 1.000e-1 m at (0.9"), "{hole:?}");
     let wide = warnings(&["parameters.speed=0.2", "parameters.hole=1.0", "parameters.gap=0.2"]);
     assert!(wide.is_empty(), "wider than the support: {wide:?}");
 }

@@ -408,8 +408,8 @@ fn input_that_cannot_be_computed_with_is_refused() {
     refuse(&|i| i.tractions[0].particles[2] = 77, "`load`: particle 77 does not exist");
     refuse(&|i| i.prescribed[0].particles[1] = 99, "particle 99 does not exist");
     refuse(&|i| i.prescribed[0].component = 2, "component 2 does not exist");
-    refuse(&|i| i.particles.volume[5] = 0.0, "particle 5 at [2.5, 0.0] has a mass of 0 kg");
-    refuse(&|i| i.materials[0].density = f64::NAN, "particle 0 at [0.0, 0.0] has a mass of NaN");
+    refuse(&|i| i.particles.volume[5] = 0.0, "particle 5 at (2.5, 0) has a mass of 0 kg");
+    refuse(&|i| i.materials[0].density = f64::NAN, "particle 0 at (0, 0) has a mass of NaN");
     refuse(&|i| i.initial.velocity[3][1] = f64::NAN, "velocity of particle 3 at");
     refuse(&|i| i.initial.pressure[4] = -1e9, "initial pressure -1000000000 Pa of particle 4");
     refuse(&|i| i.particles.position[8] = i.particles.position[1], "particles 1 and 8 lie");

@@ -9,12 +9,14 @@ class Picture:
     path: the PNG file.
     """
 
-    def __init__(self, path):
+    path: str
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = os.fspath(path)
 
-    def _repr_png_(self):
+    def _repr_png_(self) -> bytes:
         with open(self.path, "rb") as file:
             return file.read()
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<Picture {self.path}>"

@@ -8,6 +8,8 @@ from typing import Any, Literal, TypedDict
 import numpy as np
 import numpy.typing as npt
 
+from ._display import Picture
+
 __version__: str
 
 _Floats = npt.NDArray[np.float64]
@@ -294,7 +296,7 @@ class Run:
     @property
     def files(self) -> list[os.PathLike[str]]: ...
     @property
-    def pictures(self) -> list[Any]: ...
+    def pictures(self) -> list[Picture]: ...
     @property
     def report(self) -> os.PathLike[str] | None: ...
     @property

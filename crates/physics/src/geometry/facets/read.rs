@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::super::file;
 use super::Triangle;
 use crate::Vector;
+use crate::coordinates;
 
 /// Bytes of a binary STL before its facets, and of each facet.
 const STL_HEAD: usize = 84;
@@ -45,7 +46,10 @@ pub enum SurfaceError {
         reason: String,
     },
     /// A corner is no place.
-    #[error("a corner of facet {facet} is at {corner:?}, expected finite coordinates")]
+    #[error(
+        "a corner of facet {facet} is at {at}, expected finite coordinates",
+        at = coordinates(corner)
+    )]
     NotFinite {
         /// Number of the facet, from 1.
         facet: usize,

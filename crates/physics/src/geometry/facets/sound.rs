@@ -2,10 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::error::coordinates;
 use super::triangle::area;
 use super::{SurfaceError, Triangle};
 use crate::Vector;
+use crate::coordinates;
 
 /// A place of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

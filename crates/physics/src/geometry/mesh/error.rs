@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::coordinates;
 use crate::geometry::file::{FileFault, MOST_BYTES};
 
 /// Why a mesh cannot be used, and where.
@@ -151,7 +152,10 @@ pub enum MeshFault {
         dimension: usize,
     },
     /// A cell of no measure.
-    #[error("cell {cell} at {place:?} is flat: its measure is {measure} m^D; repair the mesh")]
+    #[error(
+        "cell {cell} at {at} is flat: its measure is {measure} m^D; repair the mesh",
+        at = coordinates(place)
+    )]
     Flat {
         /// Number of the cell.
         cell: u64,
@@ -162,8 +166,9 @@ pub enum MeshFault {
     },
     /// A cell that is turned inside out.
     #[error(
-        "cell {cell} at {place:?} is inverted: its measure is {measure} m^D, opposite in sign to \
-         the others; reverse the order of its nodes, or repair the mesh"
+        "cell {cell} at {at} is inverted: its measure is {measure} m^D, opposite in sign to \
+         the others; reverse the order of its nodes, or repair the mesh",
+        at = coordinates(place)
     )]
     Inverted {
         /// Number of the cell.
@@ -174,7 +179,10 @@ pub enum MeshFault {
         measure: f64,
     },
     /// A cell that is partly turned inside out.
-    #[error("cell {cell} at {place:?} is folded: a part of it is inverted; repair the mesh")]
+    #[error(
+        "cell {cell} at {at} is folded: a part of it is inverted; repair the mesh",
+        at = coordinates(place)
+    )]
     Folded {
         /// Number of the cell.
         cell: u64,
@@ -183,8 +191,9 @@ pub enum MeshFault {
     },
     /// Cells that overlap.
     #[error(
-        "cell {cell} at {place:?} has a face that two other cells share; a face belongs to at \
-         most two cells: remove duplicate cells"
+        "cell {cell} at {at} has a face that two other cells share; a face belongs to at \
+         most two cells: remove duplicate cells",
+        at = coordinates(place)
     )]
     Shared {
         /// Number of the cell.

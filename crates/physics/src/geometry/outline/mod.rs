@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::error::{coordinates, finite};
+use super::error::finite;
 use super::{GeometryError, Shape, file, polygon};
 use crate::Vector;
+use crate::coordinates;
 
 mod svg;
 

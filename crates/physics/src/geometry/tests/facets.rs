@@ -373,7 +373,7 @@ fn broken_files_are_told() {
             PLY.replace("1 2 0\n", "1 two 0\n").into_bytes(),
             "line 13: expected finite numbers or what the header announces, got `1 two 0`",
         ),
-        ("a.stl", binary(&[b'-'; 80], &nan), "a corner of facet 5 is at [1.0, NaN"),
+        ("a.stl", binary(&[b'-'; 80], &nan), "a corner of facet 5 is at (1, NaN"),
         ("a.stl", binary(&[b'-'; 80], &[]), "no facets"),
         (
             "a.obj",

@@ -66,7 +66,7 @@ fn impossible_shapes_are_refused() {
     let (o, far) = (Vector::<2>::zeros(), Vector::<2>::new(1.0, f64::INFINITY));
     let unit = Vector::<2>::new(1.0, 1.0);
     let refused: Vec<(Result<Shape<2>, GeometryError>, &str)> = vec![
-        (Shape::cuboid(o, far), "the upper corner of a box is [1.0, inf]"),
+        (Shape::cuboid(o, far), "the upper corner of a box is (1, inf)"),
         (Shape::cuboid(far * -1.0, o), "the lower corner of a box"),
         (Shape::cuboid(unit * -1e308, unit * 1e308), "the extent of a box"),
         (Shape::cuboid(unit, o), "a box reaches from 1 to 0 m in x"),

@@ -16,6 +16,7 @@ pub use boundary::Boundary;
 pub use scheme::DESCRIPTION;
 
 use crate::boundaries::padded;
+use crate::coordinates;
 use crate::geometry::{GeometryError, Particles};
 use crate::neighbors::Domain;
 use crate::operators::{
@@ -68,7 +69,10 @@ pub enum InterpolationError {
     #[error(transparent)]
     Boundary(#[from] BoundaryValueError),
     /// The function has no value.
-    #[error("the function or its gradient is not finite at {position:?} m, where {what} lies")]
+    #[error(
+        "the function or its gradient is not finite at {at} m, where {what} lies",
+        at = coordinates(position)
+    )]
     NotFinite {
         /// Where.
         position: Vec<f64>,

@@ -60,7 +60,7 @@ impl<const D: usize> Scheme for Interpolation<D> {
         false
     }
 
-    fn settable(&self) -> &'static [&'static str] {
+    fn settable(&self, _index: usize) -> &'static [&'static str] {
         &[]
     }
 

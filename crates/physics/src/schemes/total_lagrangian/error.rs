@@ -5,6 +5,7 @@ use std::fmt;
 use thiserror::Error;
 
 use super::StaticsError;
+use crate::coordinates;
 use crate::operators::OperatorError;
 use crate::schemes::{InputError, StageFault};
 
@@ -48,8 +49,9 @@ pub enum TotalLagrangianError {
     /// An edge in the strong form of which only a part is held.
     #[error(
         "the velocity along axis {component} is prescribed on a part of an edge only, and not of particle \
-         {id} at {position:?}: in the strong form a component is held on all of an edge or nowhere on \
-         it; use `form = \"adjoint\"`"
+         {id} at {at}: in the strong form a component is held on all of an edge or nowhere on \
+         it; use `form = \"adjoint\"`",
+        at = coordinates(position)
     )]
     PartOfEdge {
         /// The component, from 0.
@@ -70,8 +72,9 @@ pub enum TotalLagrangianError {
     },
     /// A hole in the strong form around which there are too few particles.
     #[error(
-        "the hole of {radius} m around {center:?} is too small for the particles around it, or has a site \
-         of the lattice in its centre; make the spacing smaller, or use `form = \"adjoint\"`"
+        "the hole of {radius} m around {at} is too small for the particles around it, or has a site \
+         of the lattice in its centre; make the spacing smaller, or use `form = \"adjoint\"`",
+        at = coordinates(center)
     )]
     Hole {
         /// Its centre in m.
@@ -105,9 +108,10 @@ pub enum TotalLagrangianError {
     },
     /// A mirror that does not end the bodies, or that is not one plane as it moves.
     #[error(
-        "particle {id} at {position:?} {what}, the mirror across {axis}: all bodies end on it, \
+        "particle {id} at {at} {what}, the mirror across {axis}: all bodies end on it, \
          and particles on it move across it together; move the plane, hold all of it by one \
-         condition, or remove `mirror`"
+         condition, or remove `mirror`",
+        at = coordinates(position)
     )]
     Plane {
         /// The axis that it lies across.

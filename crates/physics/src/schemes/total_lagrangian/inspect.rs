@@ -4,6 +4,7 @@ use piola_formulas::tensor;
 
 use super::TotalLagrangian;
 use super::fields::Columns;
+use crate::coordinates;
 use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, Particle, StepLimit};
 use crate::{Tensor, Vector};
@@ -107,9 +108,12 @@ pub(super) fn convexity_is_lost<const D: usize>(
     let stretches =
         [tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain)].map(f64::sqrt);
     format!(
-        "the material of particle {} at {:?} m has lost its convexity, at principal stretches from \
+        "the material of particle {} at {} m has lost its convexity, at principal stretches from \
          {:.3} to {:.3}: no waves travel there, strains localise in single layers of particles, \
          and further results depend on the lattice; {advice}",
-        particle.id, particle.reference, stretches[0], stretches[1]
+        particle.id,
+        coordinates(&particle.reference),
+        stretches[0],
+        stretches[1]
     )
 }

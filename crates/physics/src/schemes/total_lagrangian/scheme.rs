@@ -226,7 +226,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
     }
 
     /// What is in equilibrium has no other state to be set to.
-    fn settable(&self) -> &'static [&'static str] {
+    fn settable(&self, _index: usize) -> &'static [&'static str] {
         if self.is_static { &[] } else { &["velocity", "displacement"] }
     }
 

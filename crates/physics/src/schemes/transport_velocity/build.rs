@@ -13,6 +13,7 @@ use super::{
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, SpaceTime, padded};
+use crate::coordinates;
 use crate::fields::width;
 use crate::geometry::{Faces, Particles};
 use crate::neighbors::{Domain, NeighborError};
@@ -122,7 +123,8 @@ pub enum TransportVelocityError {
     },
     /// Damping that feeds motion, or is no number.
     #[error(
-        "`damping` is {got} 1/s at particle {id} at {position:?}, expected a number that is not negative"
+        "`damping` is {got} 1/s at particle {id} at {at}, expected a number that is not negative",
+        at = coordinates(position)
     )]
     Damping {
         /// Number of the particle in the order of creation.
@@ -133,7 +135,10 @@ pub enum TransportVelocityError {
         got: f64,
     },
     /// A start that is no number, or has no density.
-    #[error("the initial velocity or pressure of particle {id} at {position:?} is not usable")]
+    #[error(
+        "the initial velocity or pressure of particle {id} at {at} is not usable",
+        at = coordinates(position)
+    )]
     Start {
         /// Number of the particle in the order of creation.
         id: u32,

@@ -10,6 +10,7 @@ use super::{Initial, Material, Reference, Settings, Upwind};
 use crate::Vector;
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::boundaries::{BodyForce, PrescribedVelocity, Traction};
+use crate::coordinates;
 use crate::geometry::Particles;
 use crate::operators::{GradientOperator, LeastSquares, OperatorError, PairAreas, Support};
 use crate::parallel::{self, Team};
@@ -54,8 +55,9 @@ pub enum UpwindError {
     Operator(#[from] OperatorError),
     /// No volume ratio of the material has the prestress asked for.
     #[error(
-        "the initial pressure {pressure} Pa of particle {id} at {position:?} is beyond what its \
-         material can carry; change `initial.pressure` or the bulk modulus"
+        "the initial pressure {pressure} Pa of particle {id} at {at} is beyond what its \
+         material can carry; change `initial.pressure` or the bulk modulus",
+        at = coordinates(position)
     )]
     Prestress {
         /// Number of the particle in the order of creation.

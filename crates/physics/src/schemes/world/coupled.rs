@@ -365,6 +365,11 @@ impl<const D: usize> CoupledScheme for World<D> {
 
     #[inline(never)]
     fn refresh(&mut self, time: f64, state: &mut [f64]) {
+        for (solid, part) in self.solids.iter_mut().zip(&self.parts.all[1..]) {
+            if let Some(solid) = solid.scheme.split() {
+                solid.accelerate(time, &mut state[part.state.clone()]);
+            }
+        }
         self.carry_walls(state);
         self.guide(state);
         self.forget();

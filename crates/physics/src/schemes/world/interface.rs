@@ -18,6 +18,7 @@ use nalgebra::{DMatrix, DVector};
 use piola_formulas::tensor;
 use thiserror::Error;
 
+use crate::coordinates;
 use crate::neighbors::{Domain, NeighborError, search};
 use crate::{Tensor, Vector};
 
@@ -44,8 +45,9 @@ pub const MOST_RATIO: f64 = 3.0;
 pub enum InterfaceError {
     /// The solid has no particles across which it deforms.
     #[error(
-        "the solid has too few particles around {position:?} m to tell how its surface deforms \
-         there: it needs at least two layers, and three where it bends"
+        "the solid has too few particles around {at} m to tell how its surface deforms \
+         there: it needs at least two layers, and three where it bends",
+        at = coordinates(position)
     )]
     Thin {
         /// Where, in m.

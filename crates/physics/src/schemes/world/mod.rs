@@ -45,6 +45,7 @@ pub use self::flow::MOST_FLUID_STEPS;
 use self::flow::{Way, shortest};
 use self::interface::Interface;
 pub use self::interface::{InterfaceError, MOST_RATIO};
+use crate::coordinates;
 use crate::fields::FieldKind;
 use crate::neighbors::Domain;
 use crate::schemes::parts::Parts;
@@ -86,8 +87,9 @@ pub enum WorldError {
     },
     /// Two bodies are in the same place.
     #[error(
-        "the bodies of the system `{system}` and others overlap: particle {id} of these, at {position:?} m, lies inside \
-         one of `{system}`, or closer to its particles than in two adjacent bodies"
+        "the bodies of the system `{system}` and others overlap: particle {id} of these, at {at} m, lies inside \
+         one of `{system}`, or closer to its particles than in two adjacent bodies",
+        at = coordinates(position)
     )]
     Overlap {
         /// Name of the system.

@@ -390,8 +390,9 @@ impl<const D: usize> Scheme for World<D> {
         names.zip(counts).map(|(name, count)| (name, count[1] as u64)).collect()
     }
 
-    fn settable(&self) -> &'static [&'static str] {
-        &[]
+    fn settable(&self, index: usize) -> &'static [&'static str] {
+        let (k, own) = self.local(index);
+        self.system(k).settable(own)
     }
 
     fn coupled(&mut self) -> Option<&mut dyn CoupledScheme> {

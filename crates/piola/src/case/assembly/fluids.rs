@@ -10,6 +10,7 @@ use crate::boundaries::PrescribedVelocity;
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::case::plan::counted;
+use crate::coordinates;
 use crate::geometry::{Faces, Particles, ball_volume};
 use crate::neighbors::{Domain, spatial_order};
 use crate::observe::{Line, Probe};
@@ -283,9 +284,9 @@ fn open_end<const D: usize, M: Continuum<D>>(
     let is_open =
         |(a, size): &(u32, usize)| !scheme.is_wall(*a) && (*size as f64) < ENCLOSED * full;
     let open: Vec<u32> = row_sizes(scheme).filter(is_open).map(|(a, _)| a).collect();
-    let place = scheme.particle(*open.first()? as usize).reference;
+    let place = coordinates(&scheme.particle(*open.first()? as usize).reference);
     Some(format!(
-        "{} of the fluid, the first at {place:?} m, border on empty space, and `free_surface` is false: nothing holds \
+        "{} of the fluid, the first at {place} m, border on empty space, and `free_surface` is false: nothing holds \
          the fluid there; put a wall there, make the domain periodic, or set `free_surface = true`",
         counted(open.len() as u64, "particle", "particles")
     ))

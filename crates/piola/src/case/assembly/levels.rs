@@ -8,6 +8,7 @@ use super::{Built, kernel, probes};
 use crate::case::diagnostics::Problem;
 use crate::case::model::{self, Case};
 use crate::case::source::Located;
+use crate::coordinates;
 use crate::geometry::{Particles, Shape};
 use crate::neighbors::Domain;
 use crate::schemes::Scheme;
@@ -252,9 +253,9 @@ fn within<const D: usize>(
         return Ok(());
     };
     let message = format!(
-        "the spacing would be divided by four near {:?} m: the particles of this region, which \
+        "the spacing would be divided by four near {} m: the particles of this region, which \
          extend {:.3e} m beyond it, have to stay {needed:.3e} m inside the next coarser region",
-        particles.position[out].as_slice(),
+        coordinates(particles.position[out].as_slice()),
         own.reach[1],
     );
     let help = Some("make this region smaller, or the coarser one larger".to_owned());
@@ -295,9 +296,11 @@ fn halved(
         None => Ok(()),
         Some((body, (own, all))) => {
             let message = format!(
-                "the lattice of the body `{}` fits its shape with spacings of {all:?} m, and that of the finer level {level} \
-                 with {:?} m, which is not 2^{level} times finer",
-                *body.name, own.spacing
+                "the lattice of the body `{}` fits its shape with spacings of {} m, and that of the finer level {level} \
+                 with {} m, which is not 2^{level} times finer",
+                *body.name,
+                coordinates(all),
+                coordinates(&own.spacing)
             );
             let help = Some("make the sides of the shape whole numbers of spacings".to_owned());
             Err(vec![case.problem_at(body.spacing.place, message, "does not halve", help)])

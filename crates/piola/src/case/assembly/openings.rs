@@ -10,6 +10,7 @@ use crate::case::diagnostics::Problem;
 use crate::case::expression::Expression;
 use crate::case::model::{self, Body, Case, OpenFlow, Opening};
 use crate::case::source::Located;
+use crate::coordinates;
 use crate::geometry::Particles;
 use crate::neighbors::search;
 use crate::schemes::transport_velocity::{Flow, OpenBoundaries, OpenBoundary};
@@ -198,10 +199,10 @@ fn boundary<const D: usize>(
         ends.iter().any(|end| shape.depth(&(place + normal * (depth - end))) < -0.5 * spacing)
     };
     if let Some(a) = own().find(leaves) {
-        let place = particles.position[a].as_slice();
+        let place = coordinates(particles.position[a].as_slice());
         let message = format!(
             "the buffer `{name}` does not extend straight along its normal, for example at \
-             {place:?} m"
+             {place} m"
         );
         let help = "make it a box, or a `turned` one, whose sides are along the normal";
         return refuse(message, "not straight", help);
@@ -240,9 +241,9 @@ fn boundary<const D: usize>(
         expressions.iter().all(|it| value(it).is_finite())
     };
     if let Some(a) = own().find(|&a| !is_finite(a)) {
-        let place = particles.position[a].as_slice();
+        let place = coordinates(particles.position[a].as_slice());
         let message =
-            format!("the value prescribed at the opening `{name}` is not a number at {place:?} m");
+            format!("the value prescribed at the opening `{name}` is not a number at {place} m");
         return refuse(message, "not finite", "correct the expression");
     }
     let relaxation = opening.relaxation.unwrap_or_else(|| {
@@ -285,8 +286,8 @@ fn boundary<const D: usize>(
     if let Some(a) = (0..particles.len()).find(is_in_way) {
         let wall = &case.bodies[particles.body[a] as usize].name.value;
         let message = format!(
-            "the wall `{wall}` is in the opening `{name}`, at {:?} m",
-            particles.position[a].as_slice()
+            "the wall `{wall}` is in the opening `{name}`, at {} m",
+            coordinates(particles.position[a].as_slice())
         );
         return refuse(
             message,

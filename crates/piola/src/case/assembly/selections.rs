@@ -14,6 +14,7 @@ use crate::case::expression::Expression;
 use crate::case::model::{self, Case};
 use crate::case::source::Located;
 use crate::case::suggest::suggestion;
+use crate::coordinates;
 use crate::geometry::{CloudPoints, Particles, Region};
 use crate::schemes::total_lagrangian::RigidBody;
 
@@ -151,7 +152,7 @@ fn no_set<const D: usize>(
 fn corner<const D: usize>(particles: &Particles<D>, pick: fn(f64, f64) -> f64) -> String {
     let first = particles.position[0];
     let corner = particles.position.iter().fold(first, |corner, x| corner.zip_map(x, pick));
-    format!("{:?}", corner.as_slice())
+    coordinates(corner.as_slice())
 }
 
 pub(super) fn function(expression: &Expression) -> Arc<dyn SpaceTime> {

@@ -2,6 +2,7 @@
 
 use crate::Vector;
 use crate::case::model::Case;
+use crate::coordinates;
 use crate::geometry::{Faces, Particles, Shape};
 
 /// Steps a spacing in which a wall is probed.
@@ -41,11 +42,11 @@ pub(super) fn warnings<const D: usize>(
         })
     });
     let name = |a: usize| &case.bodies[particles.body[a] as usize].name.value;
-    let place = |a: usize| particles.position[a].iter().copied().collect::<Vec<_>>();
+    let place = |a: usize| coordinates(particles.position[a].as_slice());
     let mut warnings = Vec::new();
     if let Some((a, thickness)) = thin {
         warnings.push(format!(
-            "the wall `{}` is about {thickness:.3e} m thick at {:?} m, thinner than the support of the \
+            "the wall `{}` is about {thickness:.3e} m thick at {} m, thinner than the support of the \
              kernel, {support:.3e} m: fluid may pass through it; make it {} layers of particles \
              thick",
             name(a),
@@ -55,7 +56,7 @@ pub(super) fn warnings<const D: usize>(
     }
     if let Some((a, width)) = gap {
         warnings.push(format!(
-            "the wall `{}` has a gap of about {width:.3e} m at {:?} m, narrower than the support of \
+            "the wall `{}` has a gap of about {width:.3e} m at {} m, narrower than the support of \
              the kernel, {support:.3e} m: particles on its two sides interact, and fluid may \
              leak; close it, or resolve it with smaller particles",
             name(a),

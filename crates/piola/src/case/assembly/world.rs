@@ -11,6 +11,12 @@ use crate::time::{Coupled, Integrator};
 
 /// Builds a fluid with solids in it.
 pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
+    if let (None, Some(points)) = (case.spaced_fluid(), case.bodies.first()) {
+        let message = "points have no spacing, with which solids are walls to the fluid";
+        let help = "describe the fluid by shapes, or give it a wall that has a spacing".to_owned();
+        let problem = case.problem_at(points.shape.place, message, "no spacing", Some(help));
+        return Err(vec![problem]);
+    }
     let main = case.part(None);
     let domain = domain::<D>(&main)?;
     let thin = layers::check(case, &main, &domain)?;

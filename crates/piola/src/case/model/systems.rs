@@ -70,16 +70,22 @@ impl Case {
         bodies.filter(|(_, body)| is_in(body)).map(|(number, _)| number).collect()
     }
 
+    /// The first body of fluid, or wall, with a spacing of its own, which solids are walls to the fluid with: points from a
+    /// file have none.
+    pub fn spaced_fluid(&self) -> Option<&Body> {
+        let is_fluid = |body: &&Body| {
+            body.system.is_none() && matches!(*body.material, Material::WeaklyCompressible { .. })
+        };
+        self.bodies.iter().filter(is_fluid).find(|body| !body.spacing.is_empty())
+    }
+
     /// A body as a system sees it: its own are those of the main one then.
     fn body_in(&self, number: usize, system: Option<usize>) -> Body {
         let body = &self.bodies[number];
         let (None, Some(other)) = (system, body.system) else {
             return Body { system: None, ..body.clone() };
         };
-        let is_fluid = |body: &&Body| {
-            body.system.is_none() && matches!(*body.material, Material::WeaklyCompressible { .. })
-        };
-        let Some(fluid) = self.bodies.iter().find(is_fluid) else { return body.clone() };
+        let Some(fluid) = self.spaced_fluid() else { return body.clone() };
         let zero = || vec![Expression::constant(0.0); self.dimension];
         let wall = Wall { slip: self.systems[other].slip, sliding: Vec::new() };
         Body {

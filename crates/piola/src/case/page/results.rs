@@ -90,6 +90,9 @@ pub struct Row {
     /// The day on which a long one was run, `None` for one that was not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
+    /// Whether an interruption came before the end of its runs. Such a row is on no page.
+    #[serde(skip)]
+    pub is_interrupted: bool,
 }
 
 impl Row {
@@ -118,6 +121,7 @@ impl Row {
             fingerprint,
             is_long: row.is_long,
             date: None,
+            is_interrupted: false,
         }
     }
 
@@ -142,14 +146,15 @@ impl Row {
 
     /// Whether it was run at all.
     pub fn was_run(&self) -> bool {
-        !self.is_long || self.date.is_some()
+        !self.is_interrupted && (!self.is_long || self.date.is_some())
     }
 }
 
 impl CaseResults {
-    /// Takes what `earlier` has of runs that take long and that were not run again, of the case as
-    /// it is now.
-    pub fn keep_long(&mut self, earlier: &Self) {
+    /// Takes what `earlier` has of runs that take long, or came after an interruption, and that were not run again, of the
+    /// case as it is now.
+    pub fn keep(&mut self, earlier: &Self) {
+        let is_part = self.rows.iter().any(|row| row.is_long || row.is_interrupted);
         for row in self.rows.iter_mut().filter(|row| !row.was_run()) {
             let same = || earlier.rows.iter().filter(|known| known.was_run() && known.is_same(row));
             // Two checks may ask for different bounds of one quantity, and a check may have moved.
@@ -168,7 +173,7 @@ impl CaseResults {
                 *row = Row { check: row.check, against, bound, unmet, ..known.clone() };
             }
         }
-        let kept = earlier.charts.iter().filter(|_| self.rows.iter().any(|row| row.is_long));
+        let kept = earlier.charts.iter().filter(|_| is_part);
         let new: Vec<_> = kept.filter(|chart| !self.charts.contains(chart)).cloned().collect();
         self.charts.extend(new);
     }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::Statics;
+use crate::coordinates;
 use crate::schemes::InputError;
 use crate::solve::{LinearError, LoadError, NewtonError};
 
@@ -21,8 +22,9 @@ pub enum StaticsError {
     },
     /// Directions of one particle that depend on each other.
     #[error(
-        "particle {id} at {position:?} is held in linearly dependent directions; remove \
-         `{name}` there"
+        "particle {id} at {at} is held in linearly dependent directions; remove \
+         `{name}` there",
+        at = coordinates(position)
     )]
     Overconstrained {
         /// Number of the particle in the order of creation.
@@ -34,9 +36,10 @@ pub enum StaticsError {
     },
     /// A tie of a component that is not free.
     #[error(
-        "`{name}` ties component {} of particle {id} at {position:?}, which is tied already, \
+        "`{name}` ties component {} of particle {id} at {at}, which is tied already, \
          prescribed, or on an inclined roller: leave the particle out of one of them",
-        ["x", "y", "z"][*component]
+        ["x", "y", "z"][*component],
+        at = coordinates(position)
     )]
     Tie {
         /// Name of the tie.
@@ -64,9 +67,10 @@ pub enum StaticsError {
     Linear(#[from] LinearError),
     /// A particle is turned inside out at a load.
     #[error(
-        "particle {id} at {position:?} is inverted at a load factor of {factor}; an \
+        "particle {id} at {at} is inverted at a load factor of {factor}; an \
          equilibrium was found up to {reached}: take smaller load steps, or a law that resists \
-         compression"
+         compression",
+        at = coordinates(position)
     )]
     Inverted {
         /// Number of the particle in the order of creation.
@@ -80,7 +84,8 @@ pub enum StaticsError {
     },
     /// Newton's method has not arrived.
     #[error(
-        "{source}; the largest residual force, {force:.1e} N, is at particle {id} at {position:?}"
+        "{source}; the largest residual force, {force:.1e} N, is at particle {id} at {at}",
+        at = coordinates(position)
     )]
     Residual {
         /// Number of the particle in the order of creation.
@@ -95,7 +100,8 @@ pub enum StaticsError {
     /// An implicit step of a body in motion without an end.
     #[error(
         "no state was found at t = {time:.6} s, after {reached:.6} s: {source}; the largest \
-         residual force, {force:.1e} N, is at particle {id} at {position:?}"
+         residual force, {force:.1e} N, is at particle {id} at {at}",
+        at = coordinates(position)
     )]
     Step {
         /// Number of the particle in the order of creation.
@@ -113,8 +119,9 @@ pub enum StaticsError {
     },
     /// A particle is turned inside out in an implicit step of a body in motion.
     #[error(
-        "particle {id} at {position:?} is inverted at t = {time:.6} s; a state was found up \
-         to {reached:.6} s: take smaller steps, or a law that resists compression"
+        "particle {id} at {at} is inverted at t = {time:.6} s; a state was found up \
+         to {reached:.6} s: take smaller steps, or a law that resists compression",
+        at = coordinates(position)
     )]
     Collapsed {
         /// Number of the particle in the order of creation.
@@ -152,7 +159,8 @@ impl<const D: usize> Statics<D> {
 /// That a body can move as a whole, with the name of it.
 pub fn free_to_move(body: &str, part: Option<&(u32, Vec<f64>)>, motion: &str) -> String {
     let part = part.map(|(id, position)| {
-        format!("nothing connects particle {id} at {position:?} with the rest: this part of ")
+        let at = coordinates(position);
+        format!("nothing connects particle {id} at {at} with the rest: this part of ")
     });
     format!(
         "{}{body} is free to {motion}: prescribe displacements that hold it",

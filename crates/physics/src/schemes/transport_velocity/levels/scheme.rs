@@ -277,7 +277,7 @@ impl<const D: usize> Scheme for Levels<D> {
         Err(refusal())
     }
 
-    fn settable(&self) -> &'static [&'static str] {
+    fn settable(&self, _index: usize) -> &'static [&'static str] {
         &[]
     }
 

@@ -15,6 +15,7 @@ use super::fields::ColumnsMut;
 use super::local::Unknowns;
 use super::{KEPT, LEDGER, Upwind};
 use crate::boundaries::BodyForce;
+use crate::coordinates;
 use crate::parallel::{Halo, Team};
 use crate::schemes::momentum::kinetic_distance;
 use crate::schemes::{Missed, NoSolution, Part, Scheme, Theta, ThetaScheme};
@@ -280,9 +281,10 @@ impl<const D: usize> StepEquations<'_, D> {
             reached: time,
             message: format!(
                 "no state was found at t = {end:.6} s, a step after t = {time:.6} s: particle {} \
-                 (reference position {:?} m) {what}; lower `time.step`, or let \
+                 (reference position {} m) {what}; lower `time.step`, or let \
                  `time.on_failure = \"retry\"` halve it",
-                particle.id, particle.reference
+                particle.id,
+                coordinates(&particle.reference)
             ),
         }
     }
