@@ -172,7 +172,10 @@ impl Case {
             true => String::new(),
             false => toml::value(value, path, &mut slf.registry)?.to_string(),
         };
-        forget(&mut slf.options.overrides, path);
+        // What takes a key away needs it there.
+        if !text.is_empty() {
+            forget(&mut slf.options.overrides, path);
+        }
         slf.options.overrides.push(format!("{path}={text}"));
         Ok(slf)
     }

@@ -52,7 +52,7 @@ pub fn there(simulation: &Simulation, moment: Standing) -> PyResult<&Simulation>
         return Ok(simulation);
     }
     Err(PyRuntimeError::new_err(format!(
-        "this moment is at t = {}, but the simulation has moved on (now t = {}): read what you \
+        "this moment is at t = {}, and the state has changed since (now t = {}): read what you \
          need before a step or a new value; arrays remain valid",
         seconds(moment.progress.time),
         seconds(now.progress.time)

@@ -75,6 +75,9 @@ def test_set_is_the_override_of_the_command_line(case):
     assert '[[load]]' in case.toml
     case.set("load", None)
     assert '[[load]]' not in case.toml
+    # A key that the case itself does not have is set, and taken away again.
+    case.set("body.water.initial", {"velocity": ["0", "-2"]}).set("body.water.initial", None)
+    assert "initial" not in case.toml
     case.set("body.water.initial.velocity", ["0", "0"])
     assert case.start().energy["kinetic"] == 0.0
     with pytest.raises(ValueError, match="not the path of a key"):

@@ -97,10 +97,7 @@ pub enum GeometryError {
         value: Vec<f64>,
     },
     /// Other arrangements than a square lattice have one spacing.
-    #[error(
-        "{what} the spacings {spacings} m, expected the same along each axis",
-        spacings = coordinates(value)
-    )]
+    #[error("{what} the spacings {value:?} m, expected exactly the same along each axis")]
     Uneven {
         /// What has them.
         what: &'static str,

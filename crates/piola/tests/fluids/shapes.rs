@@ -147,7 +147,7 @@ fn what_is_wrong_with_a_surface_is_told() {
     // Of the faces that are left, the first is beside the missing one: the middle of the edge that they had in common.
     let radius = 0.5 * (1.0 + 0.4 * (2.0 * PI / 24.0).cos());
     let x = 0.5 * radius * (1.0 + (2.0 * PI / 64.0).cos());
-    let x = format!("{x:.4e}").parse::<f64>().unwrap();
+    let x = format!("{x:.5e}").parse::<f64>().unwrap();
     let said =
         "it has holes: 4 edges have no facet on their other side, first an edge of facet 1 at";
     assert!(holed.contains(&format!("{said} ({x}, ")), "{holed}");

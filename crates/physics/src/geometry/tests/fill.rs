@@ -304,7 +304,7 @@ fn impossible_lattices_are_refused() {
         (LatticeSpec { jitter: 0.5, ..spec }, "the jitter is 0.5 spacings"),
         (LatticeSpec { jitter: -0.1, ..spec }, "the jitter is -0.1 spacings"),
         (LatticeSpec { jitter: f64::NAN, ..spec }, "the jitter is NaN spacings"),
-        (LatticeSpec { spacing: [0.1, 0.2], ..hexagonal }, "the spacings (0.1, 0.2) m"),
+        (LatticeSpec { spacing: [0.1, 0.2], ..hexagonal }, "the spacings [0.1, 0.2] m"),
         (LatticeSpec { periodic: [true, false], ..hexagonal }, "around a periodic domain"),
     ];
     for (spec, message) in refused {

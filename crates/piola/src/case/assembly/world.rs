@@ -11,7 +11,9 @@ use crate::time::{Coupled, Integrator};
 
 /// Builds a fluid with solids in it.
 pub(super) fn build<const D: usize>(case: &Case) -> Result<Parts, Vec<Problem>> {
-    if let (None, Some(points)) = (case.spaced_fluid(), case.bodies.first()) {
+    if let (None, Some(points)) =
+        (case.spaced_fluid(), case.bodies.iter().find(|body| body.system.is_none()))
+    {
         let message = "points have no spacing, with which solids are walls to the fluid";
         let help = "describe the fluid by shapes, or give it a wall that has a spacing".to_owned();
         let problem = case.problem_at(points.shape.place, message, "no spacing", Some(help));

@@ -135,7 +135,9 @@ impl Row {
 
     /// Whether both are of the same check of the same runs of the same case.
     fn is_same(&self, other: &Self) -> bool {
-        let key = |row: &Self| (row.read_at, row.name(), row.tolerance.clone(), row.source.clone());
+        // The unit of a bound is only known from values.
+        let bound = |row: &Self| row.tolerance.split(' ').next().map(str::to_owned);
+        let key = |row: &Self| (row.read_at, row.name(), bound(row), row.source.clone());
         key(self) == key(other) && self.fingerprint == other.fingerprint
     }
 
@@ -158,13 +160,14 @@ impl CaseResults {
         for row in self.rows.iter_mut().filter(|row| !row.was_run()) {
             let same = || earlier.rows.iter().filter(|known| known.was_run() && known.is_same(row));
             // Two checks may ask for different bounds of one quantity, and a check may have moved.
-            let words =
-                |row: &Row| -> Vec<String> { row.expected.split(' ').map(str::to_owned).collect() };
-            let asked = words(row);
-            let asks =
-                |known: &&Row| words(known).iter().zip(&asked).all(|(one, other)| one == other);
+            // Units are only known from values: what is asked are words among those of the row that is known.
+            let asks = |known: &&Row| {
+                let mut words = known.expected.split([' ', ',']);
+                row.expected.split([' ', ',']).all(|asked| words.any(|word| word == asked))
+            };
             let known = same().find(|known| asks(known) && known.check == row.check);
-            let known = known.or_else(|| same().find(asks)).or_else(|| same().next());
+            let known = known.or_else(|| same().find(asks));
+            let known = known.or_else(|| same().find(|_| !row.is_interrupted));
             if let Some(known) = known {
                 // What the check says today of the value and its worth stays; why it is not met is only told of values.
                 let (against, bound) = (row.against, row.bound.clone());
