@@ -34,7 +34,7 @@ pub fn coordinates(place: &[f64]) -> String {
         let rounded = format!("{x:.5e}").parse().unwrap_or(*x);
         match rounded.abs() {
             size if size < 1e-9 * most || size == 0.0 => "0".to_owned(),
-            size if size < 1e-4 || size >= 1e6 => format!("{rounded:e}"),
+            size if !(1e-4..1e6).contains(&size) => format!("{rounded:e}"),
             _ => rounded.to_string(),
         }
     };
