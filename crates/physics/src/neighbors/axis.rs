@@ -1,6 +1,7 @@
 //! Cells along one axis.
 
 use rayon::prelude::*;
+use smallvec::{SmallVec, smallvec};
 
 use super::error::axis_name;
 use super::{Domain, MOST_CELLS, NeighborError};
@@ -13,9 +14,8 @@ const MARGIN: f64 = 1e-5;
 /// An axis cut into cells. Stretches of it that hold points are numbered one after the other with
 /// an empty cell between them, whatever their distance.
 pub(super) struct Axis {
-    /// The first stretch, and all of them where there are several.
-    first: Stretch,
-    several: Vec<Stretch>,
+    /// One, unless there are gaps.
+    stretches: SmallVec<[Stretch; 1]>,
     /// Cells a metre.
     inverse: f64,
     cells: u64,
@@ -32,13 +32,8 @@ struct Stretch {
 
 impl Axis {
     /// An axis without cells.
-    pub(super) const EMPTY: Self = Self {
-        first: Stretch { lower: 0.0, first: 0, last: 0 },
-        several: Vec::new(),
-        inverse: 1.0,
-        cells: 1,
-        periodic: false,
-    };
+    pub(super) const EMPTY: Self =
+        Self { stretches: SmallVec::new_const(), inverse: 1.0, cells: 1, periodic: false };
 
     /// Cells at least `width` m wide between the least and the largest coordinate `axis` of
     /// `points`, or between the bounds of a periodic axis.
@@ -58,9 +53,9 @@ impl Axis {
                 let axis = axis_name(axis);
                 return Err(NeighborError::PeriodicTooLong { axis, length, support: width });
             }
-            let first = Stretch { lower, first: 0, last: cells as u64 - 1 };
-            let (several, inverse, cells) = (Vec::new(), cells / length, cells as u64);
-            return Ok(Self { first, several, inverse, cells, periodic: true });
+            let stretch = Stretch { lower, first: 0, last: cells as u64 - 1 };
+            let (stretches, inverse) = (smallvec![stretch], cells / length);
+            return Ok(Self { stretches, inverse, cells: cells as u64, periodic: true });
         }
         let coordinates = || points.iter().map(|point| point[axis]);
         let lower = coordinates().fold(f64::INFINITY, f64::min);
@@ -83,22 +78,16 @@ impl Axis {
 
     fn from_stretches(ends: impl Iterator<Item = (f64, f64)>, width: f64) -> Self {
         let inverse = 1.0 / (width * (1.0 + MARGIN));
-        let (mut one, mut several) = (None, Vec::new());
+        let mut stretches = SmallVec::new();
         let mut cells = 0;
         for (lower, upper) in ends {
             // A conversion of a large or non-finite number ends at the bounds of the type; such
             // an axis has too many cells to be used and is replaced by one without gaps.
             let further = (((upper - lower) * inverse) as u64).min(MOST_CELLS as u64);
-            let stretch = Stretch { lower, first: cells, last: cells + further };
-            match one {
-                None => one = Some(stretch),
-                Some(first) if several.is_empty() => several.extend([first, stretch]),
-                Some(_) => several.push(stretch),
-            }
+            stretches.push(Stretch { lower, first: cells, last: cells + further });
             cells += further + 2;
         }
-        let first = one.unwrap_or(Self::EMPTY.first);
-        Self { first, several, inverse, cells: cells.max(1), periodic: false }
+        Self { stretches, inverse, cells: cells.max(1), periodic: false }
     }
 
     /// Number of cells.
@@ -110,8 +99,8 @@ impl Axis {
     /// The cell of a coordinate that the axis was made for.
     #[inline]
     pub(super) fn cell(&self, x: f64) -> u64 {
-        let stretch = match self.several.as_slice() {
-            [] => &self.first,
+        let stretch = match self.stretches.as_slice() {
+            [only] => only,
             all => &all[all.partition_point(|stretch| stretch.lower <= x).max(1) - 1],
         };
         (stretch.first + ((x - stretch.lower) * self.inverse) as u64).min(stretch.last)

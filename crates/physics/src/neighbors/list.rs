@@ -148,18 +148,13 @@ impl<S: Default + Send> Rows<S> {
         append: impl Fn(&mut S, usize, &mut Vec<u32>) + Sync,
     ) -> bool {
         let (made, is_full) = (AtomicUsize::new(0), AtomicBool::new(false));
-        match self.offsets.capacity() > count {
-            true => self.clear(count),
-            false => self.offsets = vec![0; count + 1],
-        }
+        self.clear(count);
         let Self { offsets, chunks } = self;
         let number = count.div_ceil(CHUNK);
         chunks.resize_with(number.max(chunks.len()), Chunk::default);
-        let (chunks, others) = chunks.split_at_mut(number);
-        others.iter_mut().for_each(|chunk| chunk.rows.clear());
+        let chunks = &mut chunks[..number];
         let each = offsets[1..].par_chunks_mut(CHUNK).zip(chunks.par_iter_mut()).enumerate();
         each.for_each(|(chunk, (ends, Chunk { state, rows }))| {
-            rows.clear();
             let (mut before, last) = (0, ends.len() - 1);
             for (row, end) in ends.iter_mut().enumerate() {
                 if is_full.load(Ordering::Relaxed) {
