@@ -15,6 +15,7 @@ use cudarc::nvrtc::{CompileError, CompileOptions, Ptx, compile_ptx_with_opts};
 
 use crate::device::{Found, Given};
 use crate::error::DeviceError;
+use crate::text::Precision;
 
 type Outcome<T> = Result<T, DeviceError>;
 
@@ -57,19 +58,20 @@ pub(crate) fn devices() -> Outcome<Vec<Found>> {
     ask().map_err(refused("list devices"))
 }
 
-/// Compiles a text to PTX for an architecture such as `compute_90`, without contraction of products and
-/// sums and with exact roots and quotients: what equal bits need.
+/// Compiles a text to PTX for an architecture such as `compute_90`. In double precision products and sums are not contracted,
+/// and roots and quotients are exact: what equal bits need.
 ///
 /// # Errors
 /// When there is no compiler, or it refuses the text.
-pub fn compile(text: &str, architecture: &'static str) -> Outcome<Module> {
+pub fn compile(text: &str, of_pairs: Precision, architecture: &'static str) -> Outcome<Module> {
     if !has_compiler() {
         return Err(DeviceError::NoCompiler);
     }
+    let is_exact = of_pairs == Precision::Double;
     let options = CompileOptions {
-        fmad: Some(false),
-        prec_div: Some(true),
-        prec_sqrt: Some(true),
+        fmad: Some(!is_exact),
+        prec_div: Some(is_exact),
+        prec_sqrt: Some(is_exact),
         ftz: Some(false),
         arch: Some(architecture),
         ..CompileOptions::default()
@@ -129,8 +131,8 @@ impl Device {
         &self.found
     }
 
-    pub fn compile(&self, text: &str) -> Outcome<Program> {
-        let module = compile(text, self.architecture)?;
+    pub fn compile(&self, text: &str, of_pairs: Precision) -> Outcome<Program> {
+        let module = compile(text, of_pairs, self.architecture)?;
         let module = self.context.load_module(module.0).map_err(refused("load a program"))?;
         Ok(Program { module, stream: self.stream.clone() })
     }

@@ -3,7 +3,7 @@
 //! A device does what it is told one after the other; only what gives numbers back waits for it.
 
 use crate::error::DeviceError;
-use crate::text::Language;
+use crate::text::{Language, Precision};
 use crate::{cuda, opencl};
 
 type Outcome<T> = Result<T, DeviceError>;
@@ -196,15 +196,16 @@ impl Device {
         self.found().description.clone()
     }
 
-    /// Compiles a text in its [language](Self::language), without contraction of products and sums and
-    /// with exact roots and quotients: what equal bits need.
+    /// Compiles a text in its [language](Self::language). In double precision products and sums are not contracted, and
+    /// roots and quotients are exact: what equal bits need. With pairs in single precision roots and quotients are those that
+    /// the device is fast at, and CUDA contracts.
     ///
     /// # Errors
     /// When there is no compiler, or it refuses the text.
-    pub fn compile(&self, text: &str) -> Outcome<Program> {
+    pub fn compile(&self, text: &str, of_pairs: Precision) -> Outcome<Program> {
         Ok(Program(match &self.0 {
-            Body::Cuda(device) => ProgramBody::Cuda(device.compile(text)?),
-            Body::OpenCl(device) => ProgramBody::OpenCl(device.compile(text)?),
+            Body::Cuda(device) => ProgramBody::Cuda(device.compile(text, of_pairs)?),
+            Body::OpenCl(device) => ProgramBody::OpenCl(device.compile(text, of_pairs)?),
         }))
     }
 

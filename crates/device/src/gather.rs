@@ -11,7 +11,7 @@ use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::{self, Moving, MovingPair, Of, PairLaw, Record};
 
 use crate::law::Law;
-use crate::pass::{Pass, Use, filled, flat, width};
+use crate::pass::{Pass, Use, counts, filled, flat, width};
 use crate::record::Traced;
 use crate::text::Dialect;
 
@@ -30,6 +30,8 @@ pub struct Space<const D: usize> {
     pub smoothing_length: f64,
     /// Lengths of periodic axes in m.
     pub periods: [Option<f64>; D],
+    /// What neighbours are closer than in m.
+    pub reach: f64,
 }
 
 impl<const D: usize> Space<D> {
@@ -39,6 +41,33 @@ impl<const D: usize> Space<D> {
         let half = Traced::from(0.5 * period);
         let down = Traced::select(half.less(distance), distance - period, distance);
         Traced::select(distance.below(-0.5 * period), distance + period, down)
+    }
+
+    /// The length in m in which positions are counted, modulo `2^32`, where pairs are in single precision. It is as small
+    /// as differences within the reach allow, and the length of a periodic axis is a multiple of `2^32` of it: the shorter way
+    /// round comes by itself.
+    pub fn unit(&self, axis: usize) -> f64 {
+        let whole = 2.0_f64.powi(32);
+        match self.periods[axis] {
+            None => 4.0 * self.reach / whole,
+            Some(mut period) => {
+                while 0.5 * period >= 4.0 * self.reach {
+                    period *= 0.5;
+                }
+                period / whole
+            }
+        }
+    }
+
+    /// The column of counts that gathers in single precision read, and its numbers of a position in m: see
+    /// [`unit`](Self::unit).
+    pub fn counts(&self, position: &[Traced]) -> (Use, Vec<Traced>) {
+        let column = counts(loops::COUNTS, loops::counted(D));
+        let count = |axis: usize| match position.get(axis) {
+            Some(&place) => place * (1.0 / self.unit(axis)),
+            None => Traced::from(0.0),
+        };
+        (column, (0..column.width).map(count).collect())
     }
 
     /// The pair of two particles of this separation.
@@ -100,7 +129,9 @@ impl<const D: usize> Meets for Space<D> {
         };
         let axes = |of: &'static str| (0..D).map(move |axis| format!("{of}_{axis}"));
         let separation = Law::record("separation", axes("here").chain(axes("there")), way);
-        Pairs::Moving { dimension: D, over, separation }
+        let halves = self.periods.iter().map(|period| Some(0.5 * (*period)?)).collect();
+        let units = (0..D).map(|axis| self.unit(axis)).collect();
+        Pairs::Moving { dimension: D, over, separation, halves, units }
     }
 
     fn pair(&self, read: &[Traced]) -> Moving<Traced, D> {

@@ -74,6 +74,18 @@ impl Law {
         self.places().filter(counts).count()
     }
 
+    /// Whether results depend on an input.
+    pub(crate) fn takes(&self, input: usize) -> bool {
+        let is = |place| self.tape.operations[place as usize] == Operation::Input(input as u32);
+        self.places().any(is)
+    }
+
+    /// Whether a result is an input as it came.
+    pub(crate) fn passes_on(&self, result: usize, input: usize) -> bool {
+        let place = self.results[result] as usize;
+        self.tape.operations[place] == Operation::Input(input as u32)
+    }
+
     /// The law of some numbers: each operation by that of the number type.
     ///
     /// # Panics

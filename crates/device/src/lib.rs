@@ -36,5 +36,5 @@ pub use law::{Law, Outputs};
 pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, difference, filled, flat, local, own, spread, through};
 pub use record::{Traced, Truth};
-pub use text::{Dialect, Language, Precision};
+pub use text::{Dialect, Language, Layout, Precision};
 pub use work::Work;

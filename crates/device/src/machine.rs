@@ -9,7 +9,7 @@ use crate::error::DeviceError;
 use crate::lists::Lists;
 use crate::pass::{Ask, Pass};
 use crate::reduce;
-use crate::text::{Dialect, Precision};
+use crate::text::{Dialect, Layout, Precision};
 
 /// Threads a block.
 const BLOCK: u32 = 128;
@@ -30,8 +30,7 @@ pub struct Machine {
     kernels: HashMap<&'static str, (Kernel, Pass)>,
     numbers: HashMap<&'static str, Column<f64>>,
     singles: HashMap<&'static str, Column<f32>>,
-    /// Which columns are in single precision.
-    narrow: &'static [&'static str],
+    layout: Layout,
     indices: HashMap<&'static str, Column<u32>>,
     lists: Option<Lists>,
     /// Particles a chunk of sums.
@@ -39,31 +38,34 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Compiles passes for a device, with those that sum over chunks of this many particles. Columns of the names
-    /// `narrow` are in single precision, and what is computed of pairs, too, if there are any.
+    /// Compiles passes for a device, with those that sum over chunks of this many particles. If the layout has columns in
+    /// single precision, what is computed of pairs is in it, too.
     ///
     /// # Errors
     /// When the device's compiler refuses their text.
     pub fn new(
         device: Device,
         lists: Option<Lists>,
-        narrow: &'static [&'static str],
+        layout: impl Into<Layout>,
         passes: impl FnOnce(Dialect) -> Vec<Pass>,
         chunk: usize,
     ) -> Result<Self, DeviceError> {
-        let passes = passes(Dialect { language: device.language(), narrow })
+        let layout = layout.into();
+        let passes = passes(Dialect { language: device.language(), layout })
             .into_iter()
             .chain(reduce::passes(chunk));
         let passes: Vec<Pass> = passes.collect();
         let mut text = device.language().prologue(Precision::Double);
         passes.iter().for_each(|pass| text += &pass.text);
-        let program = device.compile(&text)?;
+        let precision =
+            if layout.narrow.is_empty() { Precision::Double } else { Precision::Single };
+        let program = device.compile(&text, precision)?;
         let mut kernels = HashMap::new();
         for pass in passes {
             kernels.insert(pass.name, (program.kernel(pass.name)?, pass));
         }
         let (numbers, singles, indices) = (HashMap::new(), HashMap::new(), HashMap::new());
-        Ok(Self { device, kernels, numbers, singles, narrow, indices, lists, chunk })
+        Ok(Self { device, kernels, numbers, singles, layout, indices, lists, chunk })
     }
 
     /// The device.
@@ -76,7 +78,7 @@ impl Machine {
     /// # Errors
     /// When the memory does not suffice.
     pub fn add(&mut self, name: &'static str, numbers: &[f64]) -> Result<(), DeviceError> {
-        match self.narrow.contains(&name) {
+        match self.layout.narrow.contains(&name) {
             true => drop(self.singles.insert(name, self.device.upload(&singles(numbers))?)),
             false => drop(self.numbers.insert(name, self.device.upload(numbers)?)),
         }
@@ -97,7 +99,7 @@ impl Machine {
     /// # Errors
     /// When the memory does not suffice.
     pub fn add_zeros(&mut self, name: &'static str, length: usize) -> Result<(), DeviceError> {
-        match self.narrow.contains(&name) {
+        match self.layout.narrow.contains(&name) {
             true => drop(self.singles.insert(name, self.device.zeros(length)?)),
             false => drop(self.numbers.insert(name, self.device.zeros(length)?)),
         }
@@ -194,6 +196,13 @@ impl Machine {
                 let of_lists = || self.lists.as_ref().filter(|_| name == "made_at");
                 let column = self.numbers.get(name).or_else(|| Some(of_lists()?.made_at()));
                 Argument::Doubles(column.unwrap_or_else(|| missing(name)))
+            }
+            Ask::Height(name, width) => {
+                let length = match self.layout.narrow.contains(&name) {
+                    true => self.singles.get(name).map(Column::len),
+                    false => self.numbers.get(name).map(Column::len),
+                };
+                Argument::Count((length.unwrap_or_else(|| missing(name)) / width) as i32)
             }
             Ask::Singles(name) => {
                 Argument::Singles(self.singles.get(name).unwrap_or_else(|| missing(name)))

@@ -19,6 +19,7 @@ use opencl3::types::CL_BLOCKING;
 
 use crate::device::{Found, Given};
 use crate::error::DeviceError;
+use crate::text::Precision;
 
 type Outcome<T> = Result<T, DeviceError>;
 
@@ -99,11 +100,12 @@ impl Device {
         &self.found
     }
 
-    pub fn compile(&self, text: &str) -> Outcome<Program> {
+    pub fn compile(&self, text: &str, of_pairs: Precision) -> Outcome<Program> {
         let mut program = opencl3::program::Program::create_from_source(&self.context, text)
             .map_err(refused("take a text"))?;
         let devices = self.context.devices();
-        program.build(devices, self.options).map_err(|error| match error.0 {
+        let options = if of_pairs == Precision::Double { self.options } else { "" };
+        program.build(devices, options).map_err(|error| match error.0 {
             CL_BUILD_PROGRAM_FAILURE => DeviceError::Compile {
                 log: program.get_build_log(devices[0]).unwrap_or_else(|error| error.to_string()),
             },

@@ -23,6 +23,8 @@ pub enum Ask {
     Singles(&'static str),
     /// A column of indices.
     Indices(&'static str),
+    /// The number of rows of a column in planes, which have this many numbers.
+    Height(&'static str, usize),
 }
 
 /// A kernel as text, and how it is started.
@@ -62,27 +64,41 @@ pub struct Use {
     pub at: At,
     /// Whether laws of pairs take differences of it only.
     pub is_difference: bool,
+    /// Whether its bits are those of whole numbers modulo `2^32`: the nearest to those that are written.
+    pub is_counted: bool,
+}
+
+impl Use {
+    const fn of(column: &'static str, width: usize, at: At) -> Self {
+        Self { column, width, at, is_difference: false, is_counted: false }
+    }
 }
 
 /// The row of the same number of a column.
 pub const fn own(column: &'static str, width: usize) -> Use {
-    Use { column, width, at: At::Own, is_difference: false }
+    Use::of(column, width, At::Own)
 }
 
 /// The row of a column that an index column names.
 pub const fn through(index: &'static str, column: &'static str, width: usize) -> Use {
-    Use { column, width, at: At::Through(index), is_difference: false }
+    Use::of(column, width, At::Through(index))
 }
 
 /// The row of the same number of a column whose components stand apart.
 pub const fn spread(column: &'static str, width: usize) -> Use {
-    Use { column, width, at: At::Spread, is_difference: false }
+    Use::of(column, width, At::Spread)
 }
 
 /// The row of the same number of a column of which a law of pairs takes the difference between a neighbour and the particle
 /// itself, and nothing else: where laws are in single precision, the difference is not.
 pub const fn difference(column: &'static str, width: usize) -> Use {
     Use { is_difference: true, ..own(column, width) }
+}
+
+/// The row of the same number of a column in single precision, the bits of which are whole numbers modulo `2^32`: the nearest
+/// to those that are written. Differences of such numbers are exact.
+pub(crate) const fn counts(column: &'static str, width: usize) -> Use {
+    Use { is_counted: true, ..own(column, width) }
 }
 
 impl Use {
@@ -97,12 +113,24 @@ impl Use {
     }
 
     /// Where number i of its row stands.
-    pub(crate) fn place(&self, i: usize) -> String {
-        let (column, width) = (self.column, self.width);
+    pub(crate) fn place(&self, dialect: Dialect, i: usize) -> String {
         match self.at {
-            At::Own => format!("{column}[a * {width} + {i}]"),
-            At::Through(index) => format!("{column}[{index}_of_a * {width} + {i}]"),
-            At::Spread => format!("{column}[{i} * n + a]"),
+            At::Own => dialect.element(self.column, self.width, "a", i),
+            At::Through(index) => {
+                dialect.element(self.column, self.width, &format!("{index}_of_a"), i)
+            }
+            At::Spread => format!("{}[{i} * n + a]", self.column),
+        }
+    }
+
+    /// Writes the numbers of this prefix to its row.
+    pub(crate) fn write(&self, dialect: Dialect, prefix: &str, indent: &str, text: &mut String) {
+        for (i, number) in self.names(prefix).iter().enumerate() {
+            let place = self.place(dialect, i);
+            let _ = match self.is_counted {
+                true => writeln!(text, "{indent}{place} = p_counts({number});"),
+                false => writeln!(text, "{indent}{place} = {number};"),
+            };
         }
     }
 }
@@ -166,8 +194,8 @@ fn local_boxed(
             arguments.indices(index);
         }
     }
-    reads.iter().for_each(|read| arguments.numbers(read.column, true));
-    writes.iter().for_each(|write| arguments.numbers(write.column, false));
+    reads.iter().for_each(|read| arguments.numbers(read, true));
+    writes.iter().for_each(|write| arguments.numbers(write, false));
     let mut text = law.text(dialect.language, Precision::Double);
     let _ = writeln!(text, "KERNEL void {name}({})\n{{\n    EACH(a, n) {{", arguments.text());
     for index in arguments.asks.iter().filter_map(|ask| match ask {
@@ -178,7 +206,7 @@ fn local_boxed(
     }
     for read in reads {
         for (i, number) in read.names("").iter().enumerate() {
-            let _ = writeln!(text, "        const real {number} = {};", read.place(i));
+            let _ = writeln!(text, "        const real {number} = {};", read.place(dialect, i));
         }
     }
     let pointers = outputs.iter().map(|name| format!("&{name}"));
@@ -189,13 +217,10 @@ fn local_boxed(
         law.name,
         inputs.into_iter().chain(pointers).collect::<Vec<_>>().join(", ")
     );
-    for write in writes {
-        for (i, number) in write.names("new_").iter().enumerate() {
-            let _ = writeln!(text, "        {} = {number};", write.place(i));
-        }
-    }
+    writes.iter().for_each(|write| write.write(dialect, "new_", "        ", &mut text));
     text += "    }\n}\n";
-    let mut work = Work { operations: law.operations(), narrow: dialect.narrow, ..Work::default() };
+    let narrow = dialect.layout.narrow;
+    let mut work = Work { operations: law.operations(), narrow, ..Work::default() };
     work::join(&mut work.reads, reads);
     work::join(&mut work.writes, writes);
     Pass { name, text, asks: arguments.asks, threads: 1, work }
@@ -222,7 +247,11 @@ impl Arguments {
     }
 
     /// A column that is written is not constant, though it is read, too.
-    pub fn numbers(&mut self, name: &'static str, is_constant: bool) {
+    pub fn numbers(&mut self, column: &Use, is_constant: bool) {
+        let name = column.column;
+        if self.dialect.is_in_planes(name) {
+            self.add(Ask::Height(name, column.width), true);
+        }
         let ask = match self.dialect.is_narrow(name) {
             true => Ask::Singles(name),
             false => Ask::Numbers(name),
@@ -252,6 +281,7 @@ impl Arguments {
                 format!("GLOBAL {constant}{real} *{restrict}{name}")
             }
             Ask::Indices(name) => format!("GLOBAL const unsigned *{restrict}{name}"),
+            Ask::Height(name, _) => format!("const int {name}_rows"),
         };
         self.text.iter().map(parameter).collect::<Vec<_>>().join(", ")
     }

@@ -30,10 +30,9 @@ pub fn passes(chunk: usize) -> [Pass; 3] {
          const int begin = part * {chunk};\n        \
          const int end = begin + {chunk} < all ? begin + {chunk} : all;\n        \
          GLOBAL const real *row = terms + component * (long)all;\n        real sum = 0;\n        int k = begin;\n        \
-         for (; k + 8 <= end; k += 8) {{\n            \
-         const real x0 = row[k], x1 = row[k + 1], x2 = row[k + 2], x3 = row[k + 3];\n            \
-         const real x4 = row[k + 4], x5 = row[k + 5], x6 = row[k + 6], x7 = row[k + 7];\n            \
-         sum += x0; sum += x1; sum += x2; sum += x3; sum += x4; sum += x5; sum += x6; sum += x7;\n        }}\n        \
+         for (; k + 32 <= end; k += 32) {{\n            real ahead[32];\n            \
+         for (int i = 0; i < 32; ++i) ahead[i] = row[k + i];\n            \
+         for (int i = 0; i < 32; ++i) sum += ahead[i];\n        }}\n        \
          for (; k < end; ++k) sum += row[k];\n        chunk_sums[a] = sum;\n    }}\n}}\n"
     );
     let strides = format!(

@@ -51,7 +51,7 @@ impl Precision {
         }
     }
 
-    fn literal(self, value: f64) -> String {
+    pub(crate) fn literal(self, value: f64) -> String {
         let text = match self {
             Self::Double => format!("{value:?}"),
             Self::Single => format!("{:?}f", value as f32),
@@ -72,9 +72,11 @@ const C: &str = "#include <math.h>
 #define KERNEL
 #define GLOBAL
 #define EACH(a, n) for (int a = 0; a < (n); ++a)
-#define ALIGNED
+#define ALIGNED(bytes)
 #define P_INFINITY INFINITY
 #define P_NAN NAN
+LAW float p_float(unsigned bits) { float x; memcpy(&x, &bits, 4); return x; }
+LAW unsigned p_whole(float x) { unsigned bits; memcpy(&bits, &x, 4); return bits; }
 ";
 
 const OPEN_CL: &str = "#pragma OPENCL FP_CONTRACT OFF
@@ -82,18 +84,26 @@ const OPEN_CL: &str = "#pragma OPENCL FP_CONTRACT OFF
 #define KERNEL __kernel
 #define GLOBAL __global
 #define EACH(a, n) const int a = get_global_id(0); if (a < (n))
-#define ALIGNED __attribute__((aligned(16)))
+#define ALIGNED(bytes) __attribute__((aligned(bytes)))
 #define P_INFINITY INFINITY
 #define P_NAN NAN
+#define p_float(bits) as_float((uint)(bits))
+#define p_whole(x) as_uint(x)
 ";
 
+/// With pairs in single precision registers suffice for eight blocks of 128 threads on a multiprocessor; with fewer of them
+/// more time goes by until neighbours are read.
 const CUDA: &str = "#define LAW static __device__ __forceinline__
+#define ALL 0xffffffffu
+#define CROWDED __launch_bounds__(128, 8)
 #define KERNEL extern \"C\" __global__
 #define GLOBAL
 #define EACH(a, n) const int a = blockIdx.x * blockDim.x + threadIdx.x; if (a < (n))
-#define ALIGNED __align__(16)
+#define ALIGNED(bytes) __align__(bytes)
 #define P_INFINITY __longlong_as_double(0x7ff0000000000000)
 #define P_NAN __longlong_as_double(0x7ff8000000000000)
+#define p_float(bits) __uint_as_float(bits)
+#define p_whole(x) __float_as_uint(x)
 ";
 
 /// The helpers that take a double precision number apart.
@@ -143,24 +153,121 @@ fn function(name: &str) -> Law {
     })
 }
 
+/// How columns are stored, by their names.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Layout {
+    /// Those in single precision.
+    pub narrow: &'static [&'static str],
+    /// Those of which rows are cut into pieces of 16 bytes, and smaller ones at the end; the first pieces of all rows stand side
+    /// by side, then the second ones. Neighbours that are close in memory then share lines of the cache.
+    pub planes: &'static [&'static str],
+}
+
+impl From<&'static [&'static str]> for Layout {
+    /// Some columns in single precision, all row by row.
+    fn from(narrow: &'static [&'static str]) -> Self {
+        Self { narrow, planes: &[] }
+    }
+}
+
 /// How passes are written: in a language, with some columns, and what is computed of pairs, in single precision.
 #[derive(Clone, Copy, Debug)]
 pub struct Dialect {
     /// The language.
     pub language: Language,
-    /// The columns in single precision. Where there are any, pairs are computed in it, and all else in double.
-    pub narrow: &'static [&'static str],
+    /// How columns are stored. Where some are in single precision, pairs are computed in it, and all else in double.
+    pub layout: Layout,
 }
+
+/// A stretch of the numbers of a row that stand side by side: where it begins, and how many they are.
+pub(crate) type Piece = [usize; 2];
 
 impl Dialect {
     /// Whether a column is in single precision.
     pub fn is_narrow(&self, column: &str) -> bool {
-        self.narrow.contains(&column)
+        self.layout.narrow.contains(&column)
+    }
+
+    /// Whether a column is stored in planes.
+    pub(crate) fn is_in_planes(&self, column: &str) -> bool {
+        self.layout.planes.contains(&column)
+    }
+
+    /// The pieces that a row of a column is read in.
+    pub(crate) fn pieces(&self, column: &str, width: usize) -> Vec<Piece> {
+        let most = if self.is_narrow(column) { 4 } else { 2 };
+        let (mut pieces, mut from, mut size) = (Vec::new(), 0, most);
+        while from < width {
+            // Row by row pieces are aligned if rows are made of whole ones.
+            let fits = from + size <= width && (self.is_in_planes(column) || width % size == 0);
+            if fits {
+                pieces.push([from, size]);
+                from += size;
+            } else {
+                size /= 2;
+            }
+        }
+        pieces
+    }
+
+    /// Where a piece of a row stands, in pieces of its size.
+    fn place(&self, column: &str, width: usize, row: &str, [from, size]: Piece) -> String {
+        match (self.is_in_planes(column), from / size) {
+            (true, 0) => row.to_string(),
+            (true, planes) => format!("{row} + {planes} * {column}_rows"),
+            (false, _) if width == size => row.to_string(),
+            (false, at) => format!("(size_t){row} * {} + {at}", width / size),
+        }
+    }
+
+    /// Number i of a row.
+    pub(crate) fn element(&self, column: &str, width: usize, row: &str, i: usize) -> String {
+        let pieces = match self.is_in_planes(column) {
+            true => self.pieces(column, width),
+            false => vec![[i, 1]],
+        };
+        let last = pieces.into_iter().rfind(|[from, _]| *from <= i);
+        let [from, size] = last.unwrap_or([0, 1]);
+        let place = self.place(column, width, row, [from, size]);
+        match size {
+            1 => format!("{column}[{place}]"),
+            _ => format!("{column}[({place}) * {size} + {}]", i - from),
+        }
+    }
+
+    /// Statements that read a row, piece by piece, into constants of these names.
+    pub(crate) fn load(&self, column: &str, row: &str, names: &[String], indent: &str) -> String {
+        let (width, real) = (names.len(), self.token(column));
+        let mut text = String::new();
+        for [from, size] in self.pieces(column, width) {
+            let (names, place) =
+                (&names[from..from + size], self.place(column, width, row, [from, size]));
+            let kind = match (self.is_narrow(column), size) {
+                (_, 1) => {
+                    let _ =
+                        writeln!(text, "{indent}const {real} {} = {column}[{place}];", names[0]);
+                    continue;
+                }
+                (false, _) => "Pair",
+                (true, 2) => "WorkPair",
+                (true, _) => "WorkQuad",
+            };
+            let piece = format!("{}_piece", names[0]);
+            let each = |(name, part): (&String, &str)| format!("{name} = {piece}.{part}");
+            let parts: Vec<String> = names.iter().zip(["x", "y", "z", "w"]).map(each).collect();
+            let _ = writeln!(
+                text,
+                "{indent}const {kind} {piece} = ((GLOBAL const {kind} *){column})[{place}];\n\
+                 {indent}const {real} {};",
+                parts.join(", ")
+            );
+        }
+        text
     }
 
     /// The precision of pairs.
     pub(crate) fn of_pairs(&self) -> Precision {
-        if self.narrow.is_empty() { Precision::Double } else { Precision::Single }
+        if self.layout.narrow.is_empty() { Precision::Double } else { Precision::Single }
     }
 
     /// The name of the numbers of a column.
@@ -172,7 +279,7 @@ impl Dialect {
 impl From<Language> for Dialect {
     /// All in double precision.
     fn from(language: Language) -> Self {
-        Self { language, narrow: &[] }
+        Self { language, layout: Layout::default() }
     }
 }
 
@@ -188,9 +295,13 @@ impl Language {
         .to_string();
         let _ = writeln!(
             text,
-            "typedef {} real;\ntypedef float work;\ntypedef struct ALIGNED {{ real x, y; }} Pair;\n\
-             typedef struct {{ work x, y; }} WorkPair;",
-            precision.type_name()
+            "typedef {} real;\ntypedef float work;\ntypedef struct ALIGNED(16) {{ real x, y; }} Pair;\n\
+             typedef struct ALIGNED(8) {{ work x, y; }} WorkPair;\n\
+             typedef struct ALIGNED(16) {{ work x, y, z, w; }} WorkQuad;\n\
+             #define p_counts(x) p_float((unsigned)({})rint(x))\n\
+             #define p_way(here, there) ((work)(int)(p_whole(here) - p_whole(there)))",
+            precision.type_name(),
+            if self == Self::OpenCl { "long" } else { "long long" },
         );
         if precision == Precision::Double {
             text += &bits(self);

@@ -9,6 +9,13 @@ use crate::work::{self, Work};
 
 /// The column of positions by slot.
 pub(super) const POSITION: &str = "place";
+/// That of positions modulo a length, in [units](Pairs::Moving::units): what pairs in single precision are made of.
+pub(super) const COUNTS: &str = "spot";
+
+/// The numbers of a row of these counts: those of all axes are read in one piece.
+pub(super) const fn counted(dimension: usize) -> usize {
+    dimension.next_power_of_two()
+}
 
 /// How a loop goes through neighbours.
 pub enum Pairs {
@@ -20,6 +27,10 @@ pub enum Pairs {
         over: Among,
         /// What is between two of them, of the places of both.
         separation: Law,
+        /// Half of the lengths of periodic axes in m.
+        halves: Vec<Option<f64>>,
+        /// The lengths in m in which axes are [counted](super::Space::unit).
+        units: Vec<f64>,
     },
     /// Those of rows that do not change.
     Frozen(Rows),
@@ -45,6 +56,8 @@ pub(super) struct Term {
     pub mine: Vec<Use>,
     pub others: Vec<Use>,
     pub among: Among,
+    /// The number of inputs of the law before those of the particle itself.
+    first: usize,
 }
 
 /// The numbers of which a term is made.
@@ -67,9 +80,31 @@ fn names(prefix: &str, columns: &[Use]) -> Vec<String> {
 }
 
 impl Term {
-    /// Names of what both show.
-    pub fn names(&self) -> [Vec<String>; 2] {
-        [names("my_", &self.mine), names("its_", &self.others)]
+    /// Names of what both show; nothing of columns of the particle itself that its law does not take.
+    pub fn shown(&self) -> [Vec<String>; 2] {
+        let mine = self.mine.iter().enumerate().flat_map(|(column, of)| {
+            let is_taken = self.takes(column);
+            of.names("my_").into_iter().map(move |name| if is_taken { name } else { "0".into() })
+        });
+        [mine.collect(), names("its_", &self.others)]
+    }
+
+    /// Columns of the particle itself that its law takes.
+    pub fn taken(&self) -> impl Iterator<Item = &Use> {
+        let columns = self.mine.iter().enumerate().filter(|(column, _)| self.takes(*column));
+        columns.map(|(_, column)| column)
+    }
+
+    fn takes(&self, column: usize) -> bool {
+        let before: usize = self.mine[..column].iter().map(|column| column.width).sum();
+        let numbers = self.first + before..self.first + before + self.mine[column].width;
+        numbers.into_iter().any(|number| self.law.takes(number))
+    }
+
+    /// Whether it adds nothing to a sum.
+    pub fn passes_on(&self, sum: usize) -> bool {
+        let sums = self.law.outputs.len();
+        self.law.passes_on(sum, self.law.inputs.len() - sums + sum)
     }
 }
 
@@ -114,7 +149,7 @@ impl Loop {
             results.iter().cloned().zip(f(&met)).collect()
         });
         let (mine, others) = (mine.to_vec(), others.to_vec());
-        self.terms.push(Term { law, mine, others, among });
+        self.terms.push(Term { law, mine, others, among, first: known + 2 });
     }
 
     /// What sums begin with.
@@ -150,7 +185,7 @@ impl Loop {
     pub fn work(&self, close: &Law, columns: &[Use], writes: &[Use]) -> Work {
         // Of rows the numbers of pairs are read, not the places of particles.
         let (place, of_pair) = match &self.pairs {
-            Pairs::Moving { dimension, .. } => (Some(own(POSITION, *dimension)), None),
+            Pairs::Moving { dimension, .. } => (Some(self.place(*dimension)), None),
             Pairs::Frozen(rows) => {
                 (None, Some(own(rows.numbers, rows.kept.iter().flatten().count())))
             }
@@ -161,7 +196,7 @@ impl Loop {
             .map_or((0, &[][..]), |(law, columns)| (law.operations(), columns.as_slice()));
         let mut work = Work {
             operations: start + close.operations(),
-            narrow: self.dialect.narrow,
+            narrow: self.dialect.layout.narrow,
             ..Work::default()
         };
         let only = self.only.map(|only| own(only, 1));

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::loops::{Loop, POSITION, Pairs, Term};
+use super::loops::{COUNTS, Loop, POSITION, Pairs, Term, counted};
 use super::{Among, Order, Rows};
 use crate::law::Law;
-use crate::pass::{Arguments, At, Pass, Use};
+use crate::pass::{Arguments, At, Pass, Use, own};
 use crate::text::{Language, Precision};
 
 /// Columns of numbers by slot, of who is passive by number, and of neighbours.
@@ -45,8 +45,12 @@ impl Loop {
         let arguments = self.arguments(scalars, columns, writes);
         let mut text = self.laws(close);
         let name = self.name;
-        let _ = writeln!(text, "KERNEL void {name}({})\n{{", arguments.text());
-        self.write_head(columns, &mut text);
+        let is_moving = matches!(self.pairs, Pairs::Moving { .. });
+        let is_single = self.dialect.of_pairs() == Precision::Single;
+        let is_crowded = self.has_lanes() && is_single && is_moving;
+        let bounds = if is_crowded { "CROWDED " } else { "" };
+        let _ = writeln!(text, "KERNEL void {bounds}{name}({})\n{{", arguments.text());
+        self.write_head(&mut text);
         self.write_sums(&mut text);
         self.write_close(close, scalars, [columns, writes], &mut text);
         let (threads, work) =
@@ -54,38 +58,45 @@ impl Loop {
         Pass { name, text, asks: arguments.asks, threads, work }
     }
 
-    /// Columns that are read of the particle itself.
-    fn mine<'a>(&'a self, columns: &'a [Use]) -> impl Iterator<Item = &'a Use> {
+    /// Columns that are read of the particle itself before its neighbours: those that sums depend on.
+    fn mine(&self) -> Vec<&Use> {
+        let mut mine: Vec<&Use> = Vec::new();
         let started = self.start.iter().flat_map(|(_, columns)| columns);
-        self.terms.iter().flat_map(|term| &term.mine).chain(started).chain(columns)
+        let of_terms = self.terms.iter().flat_map(Term::taken);
+        for column in of_terms.chain(started) {
+            if !mine.iter().any(|known| known.is_of(column)) {
+                mine.push(column);
+            }
+        }
+        mine
     }
 
     fn arguments(&self, scalars: &[&'static str], columns: &[Use], writes: &[Use]) -> Arguments {
         let mut arguments = Arguments::new(self.dialect);
         scalars.iter().for_each(|name| arguments.scalar(name));
         match &self.pairs {
-            Pairs::Moving { .. } => {
+            Pairs::Moving { dimension, .. } => {
                 [NUMBERS, PASSIVE, ENTRIES].iter().for_each(|name| arguments.indices(name));
                 for term in &self.terms {
                     term.among.rows().iter().flatten().for_each(|name| arguments.indices(name));
                 }
-                arguments.numbers(POSITION, true);
+                arguments.numbers(&self.place(*dimension), true);
             }
             Pairs::Frozen(rows) => {
                 let Rows { first, count, neighbors, numbers, .. } = rows;
                 [first, count, neighbors].iter().for_each(|name| arguments.indices(name));
-                arguments.numbers(numbers, true);
+                arguments.numbers(&own(numbers, 1), true);
             }
         }
         let others = self.terms.iter().flat_map(|term| &term.others);
-        for column in self.mine(columns).chain(others) {
+        for column in self.mine().into_iter().chain(others).chain(columns) {
             if let At::Through(index) = column.at {
                 arguments.indices(index);
             }
-            arguments.numbers(column.column, true);
+            arguments.numbers(column, true);
         }
-        self.only.iter().for_each(|only| arguments.numbers(only, true));
-        writes.iter().for_each(|write| arguments.numbers(write.column, false));
+        self.only.iter().for_each(|only| arguments.numbers(&own(only, 1), true));
+        writes.iter().for_each(|write| arguments.numbers(write, false));
         arguments
     }
 
@@ -96,15 +107,36 @@ impl Loop {
         let laws = laws.chain(self.start.iter().map(|(law, _)| law));
         laws.for_each(|law| text += &law.text(dialect.language, dialect.of_pairs()));
         text += &close.text(dialect.language, Precision::Double);
-        if let Pairs::Moving { separation, .. } = &self.pairs {
+        if let (Pairs::Moving { separation, .. }, Precision::Double) =
+            (&self.pairs, dialect.of_pairs())
+        {
             let own = Law { name: format!("{name}_separation"), ..separation.clone() };
             text += &own.text(dialect.language, Precision::Double);
         }
         text
     }
 
+    /// Whether a term adds something to a sum.
+    fn is_added_to(&self, sum: usize) -> bool {
+        !self.terms.iter().all(|term| term.passes_on(sum))
+    }
+
+    /// The column of places of which pairs are made.
+    pub(super) fn place(&self, dimension: usize) -> Use {
+        match self.dialect.of_pairs() {
+            Precision::Double => own(POSITION, dimension),
+            Precision::Single => own(COUNTS, counted(dimension)),
+        }
+    }
+
+    /// Loads the place of a row.
+    fn load_place(&self, dimension: usize, row: &str, of: &str, indent: &str) -> String {
+        let place = self.place(dimension);
+        self.dialect.load(place.column, row, &axes(of, place.width), indent)
+    }
+
     /// Who works on which particle, and what is read of it.
-    fn write_head(&self, columns: &[Use], text: &mut String) {
+    fn write_head(&self, text: &mut String) {
         let passive = match &self.pairs {
             Pairs::Moving { over, .. } => {
                 Some(format!("{PASSIVE}[{NUMBERS}[a]] {}", over.condition()))
@@ -117,7 +149,6 @@ impl Loop {
             true => format!(
                 "    const int thread = blockIdx.x * blockDim.x + threadIdx.x;\n    \
                  const int lane = thread % 8;\n    \
-                 const unsigned group = 0xffu << (threadIdx.x & 24);\n    \
                  const int a = thread / 8 < n ? thread / 8 : 0;\n    \
                  const int is_on = {};\n    {{\n",
                 [&["thread / 8 < n".to_string()], &*wanted].concat().join(" && ")
@@ -126,28 +157,17 @@ impl Loop {
             false => format!("    EACH(a, n) if ({}) {{\n", wanted.join(" && ")),
         };
         if let Pairs::Moving { dimension, .. } = self.pairs {
-            for axis in 0..dimension {
-                let _ = writeln!(
-                    text,
-                    "    const real here_{axis} = {POSITION}[a * {dimension} + {axis}];"
-                );
-            }
+            *text += &self.load_place(dimension, "a", "here", "    ");
         }
-        let mut mine: Vec<Use> = Vec::new();
-        for column in self.mine(columns) {
-            if !mine.iter().any(|known| known.is_of(column)) {
-                mine.push(*column);
-                self.load(text, "    ", column, "my_", "a");
-            }
-        }
+        self.mine().into_iter().for_each(|column| self.load(text, "    ", column, "my_", "a"));
     }
 
     /// The loops over neighbours.
     fn write_sums(&self, text: &mut String) {
         let (sums, work) = (&self.sums[0], self.dialect.of_pairs().token());
         let is_laned = self.order == Order::Lanes && !self.has_lanes();
-        for sum in sums {
-            let _ = match is_laned {
+        for (i, sum) in sums.iter().enumerate() {
+            let _ = match is_laned && self.is_added_to(i) {
                 true => writeln!(text, "    {work} l{sum}[8] = {{0, 0, 0, 0, 0, 0, 0, 0}};"),
                 false => writeln!(text, "    {work} {sum} = 0;"),
             };
@@ -169,7 +189,7 @@ impl Loop {
                 }
             }
         }
-        for sum in sums {
+        for (_, sum) in sums.iter().enumerate().filter(|(i, _)| self.is_added_to(*i)) {
             let _ = match (is_laned, self.order) {
                 (true, _) => writeln!(
                     text,
@@ -178,9 +198,9 @@ impl Loop {
                 ),
                 (false, Order::Lanes) => writeln!(
                     text,
-                    "    {sum} += __shfl_down_sync(group, {sum}, 4, 8);\n    \
-                     {sum} += __shfl_down_sync(group, {sum}, 2, 8);\n    \
-                     {sum} += __shfl_down_sync(group, {sum}, 1, 8);"
+                    "    {sum} += __shfl_down_sync(ALL, {sum}, 4, 8);\n    \
+                     {sum} += __shfl_down_sync(ALL, {sum}, 2, 8);\n    \
+                     {sum} += __shfl_down_sync(ALL, {sum}, 1, 8);"
                 ),
                 (false, Order::Single | Order::Fold) => Ok(()),
             };
@@ -199,6 +219,12 @@ impl Loop {
         if self.has_lanes() {
             *text += "    if (!is_on || lane > 0) return;\n";
         }
+        let mine = self.mine();
+        let is_late = |column: &&Use| !mine.iter().any(|known| known.is_of(column));
+        columns
+            .iter()
+            .filter(is_late)
+            .for_each(|column| self.load(text, "    ", column, "my_", "a"));
         let outputs: Vec<String> = writes.iter().flat_map(|write| write.names("new_")).collect();
         let inputs = sums.iter().cloned().chain(scalars.iter().map(|name| name.to_string()));
         let inputs = inputs.chain(columns.iter().flat_map(|column| column.names("my_")));
@@ -210,11 +236,7 @@ impl Loop {
             close.name,
             join(inputs.chain(pointers))
         );
-        for write in writes {
-            for (i, number) in write.names("new_").iter().enumerate() {
-                let _ = writeln!(text, "    {} = {number};", write.place(i));
-            }
-        }
+        writes.iter().for_each(|write| write.write(self.dialect, "new_", "    ", text));
         *text += "    }\n}\n";
     }
 
@@ -224,34 +246,48 @@ impl Loop {
     }
 
     /// What is known of the pair of a particle and its neighbour `b`, number `k` of its row.
-    fn write_pair(&self, first: &str, text: &mut String) {
+    fn write_pair(&self, text: &mut String) {
         match &self.pairs {
-            Pairs::Moving { dimension, .. } => {
-                for axis in 0..*dimension {
+            Pairs::Moving { dimension, units, .. }
+                if self.dialect.of_pairs() == Precision::Single =>
+            {
+                *text += &self.load_place(*dimension, "b", "there", "        ");
+                for (axis, unit) in units.iter().enumerate() {
+                    let unit = Precision::Single.literal(*unit);
                     let _ = writeln!(
                         text,
-                        "        const real there_{axis} = {POSITION}[b * {dimension} + {axis}];"
+                        "        const work way_{axis} = p_way(here_{axis}, there_{axis}) * {unit};"
                     );
                 }
-                let each = |of: &'static str| (0..*dimension).map(move |i| format!("{of}_{i}"));
-                let places = each("here").chain(each("there")).chain(each("&way"));
-                let _ = writeln!(
-                    text,
-                    "        real {};\n        {}_separation({});",
-                    join(each("way")),
-                    self.name,
-                    join(places)
-                );
+            }
+            Pairs::Moving { dimension, halves, .. } => {
+                let [here, there, way] = ["here", "there", "way"].map(|of| axes(of, *dimension));
+                *text += &self.load_place(*dimension, "b", "there", "        ");
+                let apart = here.iter().zip(&there).zip(&way);
+                let apart = apart.map(|((here, there), way)| format!("{way} = {here} - {there}"));
+                let _ = writeln!(text, "        real {};", join(apart));
+                // Few pairs reach across the end of a periodic axis.
+                let beyond = way.iter().zip(halves).filter_map(|(way, half)| {
+                    Some(format!("fabs({way}) > {}", Precision::Double.literal((*half)?)))
+                });
+                let beyond: Vec<String> = beyond.collect();
+                if !beyond.is_empty() {
+                    let places = here.iter().chain(&there).cloned();
+                    let places = places.chain(way.iter().map(|way| format!("&{way}")));
+                    let (name, places) = (self.name, join(places));
+                    let beyond = beyond.join(" || ");
+                    let _ = writeln!(text, "        if ({beyond}) {name}_separation({places});");
+                }
             }
             Pairs::Frozen(Rows { numbers, kept, .. }) => {
                 let (width, real) = (kept.iter().flatten().count(), self.dialect.token(numbers));
-                let _ = writeln!(text, "        const unsigned block = {first}[a] + k / 8;");
+                text.push_str("        const unsigned block = from + k / 8;\n");
                 for (number, place) in kept.iter().enumerate() {
                     let _ = match place {
                         Some(place) => writeln!(
                             text,
                             "        const {real} pair_{number} = \
-                             {numbers}[(long)block * {} + {} + k % 8];",
+                             {numbers}[(size_t)block * {} + {} + k % 8];",
                             8 * width,
                             8 * place
                         ),
@@ -272,26 +308,24 @@ impl Loop {
         let (is_gpu, work) = (self.has_lanes(), self.dialect.of_pairs().token());
         // Where the neighbour of a place in the row stands.
         let entry = |k: &str| match &self.pairs {
-            Pairs::Moving { .. } => format!("{ENTRIES}[{first}[a] + {k}]"),
-            Pairs::Frozen(rows) => {
-                format!("{}[({first}[a] + ({k}) / 8) * 8 + ({k}) % 8]", rows.neighbors)
-            }
+            Pairs::Moving { .. } => format!("{ENTRIES}[from + {k}]"),
+            Pairs::Frozen(rows) => format!("{}[from * 8 + {k}]", rows.neighbors),
         };
+        let is_on = if is_gpu { format!("is_on ? {count}[a] : 0") } else { format!("{count}[a]") };
+        let _ = writeln!(text, "    {{\n    const unsigned from = {first}[a], end = {is_on};");
         let _ = match (is_gpu, self.order) {
             (true, Order::Lanes) => writeln!(
                 text,
-                "    for (unsigned k = lane, end = is_on ? {count}[a] : 0, next = k < end ? \
-                 {} : 0; k < end; k += 8) {{",
+                "    for (unsigned k = lane, next = k < end ? {} : 0; k < end; k += 8) {{",
                 entry("k")
             ),
+            // All threads of a warp go on until the longest of its rows has ended.
             (true, Order::Single) => writeln!(
                 text,
-                "    for (unsigned row = 0, end = is_on ? {count}[a] : 0; row < end; row += 8) {{\n        \
-                 const unsigned k = row + lane < end ? row + lane : row;"
+                "    for (unsigned row = 0; __any_sync(ALL, row < end); row += 8) {{\n        \
+                 const unsigned k = row + lane;"
             ),
-            (_, _) => {
-                writeln!(text, "    for (unsigned k = 0, end = {count}[a]; k < end; ++k) {{")
-            }
+            (_, _) => writeln!(text, "    for (unsigned k = 0; k < end; ++k) {{"),
         };
         let _ = match (is_gpu, self.order) {
             // The place of the next neighbour is read ahead: what is read of it waits for nothing else.
@@ -301,20 +335,24 @@ impl Loop {
                  next = k + 8 < end ? {} : 0;",
                 entry("k + 8")
             ),
+            (true, _) => {
+                writeln!(text, "        const unsigned b = k < end ? {} : a;", entry("k"))
+            }
             _ => writeln!(text, "        const unsigned b = {};", entry("k")),
         };
-        self.write_pair(first, text);
+        self.write_pair(text);
         for column in &term.others {
             self.load(text, "        ", column, "its_", "b");
         }
         let slots = vec!["(real)a".to_string(), "(real)b".to_string()];
         let [mine, others] = self.shown(term);
         let is_single = is_gpu && self.order == Order::Single;
-        let kept: Vec<String> = match (is_gpu, self.order) {
-            (false, Order::Lanes) => sums.iter().map(|sum| format!("l{sum}[k % 8]")).collect(),
-            _ if is_single => sums.iter().map(|_| "0".into()).collect(),
-            _ => sums.to_vec(),
+        let kept = |(i, sum): (usize, &String)| match (is_gpu, self.order) {
+            (false, Order::Lanes) if self.is_added_to(i) => format!("l{sum}[k % 8]"),
+            _ if is_single => "0".into(),
+            _ => sum.clone(),
         };
+        let kept: Vec<String> = sums.iter().enumerate().map(kept).collect();
         let given: Vec<String> = match is_single {
             true => sums.iter().map(|sum| format!("t{sum}")).collect(),
             false => kept.clone(),
@@ -328,54 +366,34 @@ impl Loop {
         let _ = writeln!(text, "        {}({call});", term.law.name);
         if is_single {
             text.push_str("        for (int j = 0; j < 8; ++j) {\n");
-            for (sum, term) in sums.iter().zip(&given) {
+            for (i, (sum, given)) in sums.iter().zip(&given).enumerate() {
+                if term.passes_on(i) {
+                    continue;
+                }
                 let _ = writeln!(
                     text,
-                    "            {{ const {work} t = __shfl_sync(group, {term}, j, 8); \
+                    "            {{ const {work} t = __shfl_sync(ALL, {given}, j, 8); \
                      if (row + j < end) {sum} += t; }}"
                 );
             }
             text.push_str("        }\n");
         }
-        text.push_str("    }\n");
+        text.push_str("    }\n    }\n");
     }
 
-    /// Loads a row of a column, by pairs of numbers where rows are whole pairs.
+    /// Loads a row of a column.
     fn load(&self, text: &mut String, indent: &str, column: &Use, prefix: &str, row: &str) {
-        let real = self.dialect.token(column.column);
-        let pair = if self.dialect.is_narrow(column.column) { "WorkPair" } else { "Pair" };
-        let (name, width) = (column.column, column.width);
         let row = match column.at {
             At::Through(index) => format!("{index}[{row}]"),
             At::Own | At::Spread => row.to_string(),
         };
-        let numbers = column.names(prefix);
-        if width % 2 == 1 {
-            for (i, number) in numbers.iter().enumerate() {
-                let _ = writeln!(
-                    text,
-                    "{indent}const {real} {number} = {name}[{row} * {width} + {i}];"
-                );
-            }
-            return;
-        }
-        for (number, numbers) in numbers.chunks(2).enumerate() {
-            let both = format!("{prefix}{name}_pair_{number}");
-            let _ = writeln!(
-                text,
-                "{indent}const {pair} {both} = ((GLOBAL const {pair} *){name})[{row} * {} + {number}];\n\
-             {indent}const {real} {} = {both}.x, {} = {both}.y;",
-                width / 2,
-                numbers[0],
-                numbers[1]
-            );
-        }
+        *text += &self.dialect.load(column.column, &row, &column.names(prefix), indent);
     }
 
     /// What both particles of a pair show to a law. In single precision [differences](crate::pass::difference) of columns in
     /// double precision are taken before, so that those of the particle itself are zero.
     fn shown(&self, term: &Term) -> [Vec<String>; 2] {
-        let all = term.names();
+        let all = term.shown();
         if self.dialect.of_pairs() == Precision::Double || term.mine != term.others {
             return all;
         }
@@ -392,6 +410,11 @@ impl Loop {
         let (mine, others) = shown.unzip();
         [mine, others]
     }
+}
+
+/// Names of the numbers of a place.
+fn axes(of: &str, dimension: usize) -> Vec<String> {
+    (0..dimension).map(|axis| format!("{of}_{axis}")).collect()
 }
 
 fn join(all: impl Iterator<Item = String>) -> String {

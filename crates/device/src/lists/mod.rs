@@ -8,7 +8,7 @@ use scan::Scan;
 
 use crate::device::{Argument, Column, Device, Kernel, Program};
 use crate::error::DeviceError;
-use crate::text::{Language, Precision};
+use crate::text::{Dialect, Language, Layout, Precision};
 
 type Outcome<T> = Result<T, DeviceError>;
 
@@ -100,11 +100,18 @@ pub fn text(language: Language, periodic: &[bool]) -> String {
     // Ways are compared as on the processor: the shorter one along periodic axes, squares one by one.
     let mut square = String::new();
     for (axis, is_periodic) in periodic.iter().enumerate() {
-        square += &format!("    double d{axis} = here[{axis}] - position[b * D + {axis}];\n");
+        square += &format!("    double d{axis} = here[{axis}] - there[{axis}];\n");
         if *is_periodic {
             square += &format!("    d{axis} = list_shorter(d{axis}, period[{axis}]);\n");
         }
         square += &format!("    square += d{axis} * d{axis};\n");
+    }
+    let layout = Layout { planes: &["position"], ..Layout::default() };
+    let dialect = Dialect { language, layout };
+    let names: Vec<String> = (0..periodic.len()).map(|axis| format!("x{axis}")).collect();
+    let mut places = dialect.load("position", "s", &names, "    ");
+    for (axis, name) in names.iter().enumerate() {
+        places += &format!("    there[{axis}] = {name};\n");
     }
     let tools = match language {
         Language::Cuda => {
@@ -127,8 +134,10 @@ pub fn text(language: Language, periodic: &[bool]) -> String {
          const double half_way = 0.5 * period;\n    \
          const double down = way > half_way ? way - period : way;\n    \
          return way < -half_way ? way + period : down;\n}}\n\
-         LAW double list_square(const double *here, const double *period, GLOBAL const double *position, const unsigned b)\n{{\n    \
-         double square = 0;\n{square}    return square;\n}}\n{}",
+         LAW double list_square(const double *here, const double *period, const double *there)\n{{\n    \
+         double square = 0;\n{square}    return square;\n}}\n\
+         LAW void list_place(GLOBAL const double *position, const int position_rows, const unsigned s, double *there)\n{{\n\
+         {places}}}\n{}",
         language.prologue(Precision::Double),
         periodic.len(),
         lanes(language),
@@ -154,7 +163,7 @@ impl Lists {
             return Err(DeviceError::TooMany { what: "particles", count });
         }
         let is_periodic: Vec<bool> = periodic.iter().map(Option::is_some).collect();
-        let program = device.compile(&text(device.language(), &is_periodic))?;
+        let program = device.compile(&text(device.language(), &is_periodic), Precision::Double)?;
         let dimension = periodic.len();
         let reach = support + skin;
         let grid = Grid::new(count, reach, periodic);
@@ -296,7 +305,7 @@ impl Lists {
         self.kernels.candidates.start(self.count, BLOCK, &arguments)
     }
 
-    /// Picks those inside the support at positions in m by slot.
+    /// Picks those inside the support at positions in m by slot, in [planes](Layout::planes).
     ///
     /// # Errors
     /// When positions are missing, or the device fails.

@@ -137,7 +137,9 @@ KERNEL void list_candidates(const int n, const int writes, const double reach, G
             for (unsigned b = start[place]; b < end; ++b) {
                 const unsigned its = key[b];
                 const int are_in = ((its | mine) & 0x40000000u) == 0;
-                if (its != mine && ((its & mine) >> 31) == 0 && are_in && list_square(here, periods, made_at, b) < reach * reach) {
+                double there[D];
+                for (int axis = 0; axis < D; ++axis) there[axis] = made_at[b * D + axis];
+                if (its != mine && ((its & mine) >> 31) == 0 && are_in && list_square(here, periods, there) < reach * reach) {
                     if (writes) found[to + all] = its;
                     all += 1;
                     others += 1u - (its >> 31);
@@ -181,18 +183,17 @@ KERNEL void list_pick(const int n, const double support, GLOBAL const double *RE
 {
     EACH(thread, n * LANES) {
         const int s = thread / LANES, lane = thread % LANES;
-        double here[D], periods[D];
-        for (int axis = 0; axis < D; ++axis) {
-            here[axis] = position[s * D + axis];
-            periods[axis] = period[axis];
-        }
+        double here[D], there[D], periods[D];
+        list_place(position, n, (unsigned)s, here);
+        for (int axis = 0; axis < D; ++axis) periods[axis] = period[axis];
         for (int kind = 0; kind < 2; ++kind) {
             const int from = (int)(kind ? passive_first[s] : first[s]);
             const int to = (int)(kind ? first[s + 1] : passive_first[s]);
             int count = 0;
             for (int k = from; k < to; k += LANES) {
                 const unsigned b = candidate[k + lane < to ? k + lane : from];
-                const int is_inside = k + lane < to && list_square(here, periods, position, b) < support * support;
+                list_place(position, n, b, there);
+                const int is_inside = k + lane < to && list_square(here, periods, there) < support * support;
                 const unsigned votes = VOTES(is_inside);
                 if (is_inside) entry[from + count + (int)COUNT(votes & ((1u << lane) - 1u))] = b;
                 count += (int)COUNT(votes);

@@ -50,7 +50,7 @@ fn every_law_has_the_bits_of_the_processor_on_a_device() {
     let (laws, mut random) = (laws::all(), random(6));
     let mut text = device.language().prologue(Precision::Double);
     laws.iter().for_each(|law| text += &kernel(law, device.language()));
-    let program = device.compile(&text).unwrap();
+    let program = device.compile(&text, Precision::Double).unwrap();
     for law in &laws {
         let rows: Vec<Vec<f64>> = (0..300).map(|_| sample(law, &mut random)).collect();
         let inputs = device.upload(&rows.concat()).unwrap();
@@ -74,7 +74,7 @@ fn single_precision_compiles_on_a_device() {
     let Some(device) = device() else { return };
     let mut text = device.language().prologue(Precision::Single);
     laws::all().iter().for_each(|law| text += &law.text(device.language(), Precision::Single));
-    device.compile(&text).unwrap_or_else(|error| panic!("{error}"));
+    device.compile(&text, Precision::Double).unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
@@ -104,12 +104,12 @@ fn a_device_says_what_is_wrong() {
     assert!(unknown.to_string().starts_with("there is no device `vulkan:3`: there is "));
     let Some(device) = device() else { return };
     assert!(unknown.to_string().contains(&device.found().to_string()), "{unknown}");
-    let log = device.compile("nonsense").unwrap_err();
+    let log = device.compile("nonsense", Precision::Double).unwrap_err();
     assert!(matches!(&log, DeviceError::Compile { log } if log.contains("nonsense")), "{log}");
     let text = device.language().prologue(Precision::Double)
         + "KERNEL void twice(const int n, const double x, const float y, GLOBAL double *z)\n\
            { EACH(a, n) { z[a] = a < 2 ? x : y; } }";
-    let program = device.compile(&text).unwrap();
+    let program = device.compile(&text, Precision::Double).unwrap();
     let missing = program.kernel("other").unwrap_err();
     assert!(missing.to_string().contains("find the kernel `other`"), "{missing}");
     let z = device.zeros(5).unwrap();

@@ -63,7 +63,7 @@ fn functions_have_the_bits_of_the_processor() {
     }
     let Some(device) = device() else { return };
     let text = device.language().prologue(Precision::Double) + &kernel(&law, device.language());
-    let program = device.compile(&text).unwrap();
+    let program = device.compile(&text, Precision::Double).unwrap();
     let inputs = device.upload(rows.as_flattened()).unwrap();
     let outputs = device.zeros(expected.len()).unwrap();
     let arguments = [

@@ -1,7 +1,7 @@
 //! Neighbour lists made on a device against a look at all pairs.
 
 use piola_device::lists::{self, Lists};
-use piola_device::{Column, Device, Language, cuda};
+use piola_device::{Column, Device, Language, Precision, cuda};
 
 use super::devices::device;
 use super::random;
@@ -97,8 +97,13 @@ impl Cloud {
         for (number, slot) in slots.iter().enumerate() {
             assert_eq!(numbers[*slot as usize] as usize, number, "{what}");
         }
-        let by_slot: Vec<f64> =
-            numbers.iter().flat_map(|a| self.positions[*a as usize].clone()).collect();
+        // The first two coordinates of all, then the third of all.
+        let of = |from: usize, to: usize| {
+            let place = move |a: &u32| self.positions[*a as usize][from..to].to_vec();
+            numbers.iter().flat_map(place)
+        };
+        let axes = self.periodic.len();
+        let by_slot: Vec<f64> = of(0, axes.min(2)).chain(of(axes.min(2), axes)).collect();
         lists.pick(&device.upload(&by_slot).unwrap()).unwrap();
         let (first, active) = (get(lists.first()), get(lists.active()));
         let (from, passive) = (get(lists.passive_first()), get(lists.passive_count()));
@@ -230,7 +235,8 @@ fn the_text_of_lists_compiles_for_cuda() {
     }
     for periodic in [vec![false], vec![true, false], vec![true, false, true]] {
         let text = lists::text(Language::Cuda, &periodic);
-        let module = cuda::compile(&text, "compute_80").unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let module = cuda::compile(&text, Precision::Double, "compute_80")
+            .unwrap_or_else(|e| panic!("{e}\n{text}"));
         assert!(!module.text().contains("fma."), "an operation is fused");
     }
 }

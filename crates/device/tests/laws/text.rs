@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use piola_device::{
-    Among, Dialect, Frozen, Gather, Language, Order, Pass, Precision, Rows, Space, cuda,
+    Among, Dialect, Frozen, Gather, Language, Layout, Order, Pass, Precision, Rows, Space, cuda,
     difference, laws, own,
 };
 use piola_formulas::kernels::Kernel;
@@ -32,10 +32,14 @@ fn the_text_of_laws_is_the_stored_one() {
     compare("johnson_cook.cl", &law.text(Language::OpenCl, Precision::Single));
 }
 
+/// Sides in planes, pairs in single precision.
+const SINGLE: Layout =
+    Layout { narrow: &["side", "numbers", "spot"], planes: &["place", "side", "spot"] };
+
 /// Sums of density, one after the other, and of forces in lanes, in 2D with one periodic axis.
 fn gathers(dialect: Dialect) -> [Pass; 3] {
     let periods = [Some(2.0), None];
-    let space = Space { kernel: Kernel::WendlandC2, smoothing_length: 0.1, periods };
+    let space = Space { kernel: Kernel::WendlandC2, smoothing_length: 0.1, periods, reach: 0.23 };
     let side = [own("side", 8)];
     let density = Gather::<One, _>::new(dialect, "density", &space, Among::Active, Order::Single)
         .term(&Density::<2>, &side, Among::All)
@@ -80,7 +84,7 @@ fn the_text_of_gathers_is_the_stored_one() {
     let [_, forces, gradients] = gathers(Language::Cuda.into());
     compare("forces.cu", &forces.text);
     compare("gradients.cu", &gradients.text);
-    let single = Dialect { language: Language::Cuda, narrow: &["side", "numbers"] };
+    let single = Dialect { language: Language::Cuda, layout: SINGLE };
     let [_, forces, gradients] = gathers(single);
     compare("forces_single.cu", &forces.text);
     compare("gradients_single.cu", &gradients.text);
@@ -114,12 +118,14 @@ fn all_cuda_text_compiles() {
             text += &law.text(Language::Cuda, precision);
         }
         if precision == Precision::Double {
-            let single = Dialect { language: Language::Cuda, narrow: &["side", "numbers"] };
+            let single = Dialect { language: Language::Cuda, layout: SINGLE };
             let mixed = text.clone() + &gathers(single).map(|pass| pass.text).concat();
-            cuda::compile(&mixed, "compute_80").unwrap_or_else(|e| panic!("{e}\n{mixed}"));
+            cuda::compile(&mixed, Precision::Single, "compute_80")
+                .unwrap_or_else(|e| panic!("{e}\n{mixed}"));
             gathers(Language::Cuda.into()).iter().for_each(|pass| text += &pass.text);
         }
-        let module = cuda::compile(&text, "compute_80").unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let module =
+            cuda::compile(&text, precision, "compute_80").unwrap_or_else(|e| panic!("{e}\n{text}"));
         // The exponentials of the machine, which single precision uses, are made of fused operations.
         let is_fused = precision == Precision::Double && module.text().contains("fma.");
         assert!(!is_fused, "an operation is fused");

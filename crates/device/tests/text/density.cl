@@ -19,7 +19,7 @@ LAW void density_pair_0(real way_0, real way_1, real slot_a, real slot_b, real m
     const int t42 = t27 < 2.0;
     const real t43 = t42 ? t40 : 0.0;
     const real t45 = t43 * 55.70423008216338;
-    const real t53 = its_side_7 * its_side_4;
+    const real t53 = its_side_5 * its_side_4;
     const real t54 = t53 * t45;
     const real t55 = s + t54;
     *d = t55;
@@ -46,51 +46,49 @@ LAW void density_separation(real here_0, real here_1, real there_0, real there_1
 KERNEL void density(const int n, GLOBAL const unsigned *numbers, GLOBAL const unsigned *passive, GLOBAL const unsigned *entries, GLOBAL const unsigned *first, GLOBAL const unsigned *active, GLOBAL const unsigned *passive_first, GLOBAL const unsigned *passive_count, GLOBAL const real *place, GLOBAL const real *side, GLOBAL real *summed)
 {
     EACH(a, n) if (passive[numbers[a]] == 0) {
-    const real here_0 = place[a * 2 + 0];
-    const real here_1 = place[a * 2 + 1];
-    const Pair my_side_pair_0 = ((GLOBAL const Pair *)side)[a * 4 + 0];
-    const real my_side_0 = my_side_pair_0.x, my_side_1 = my_side_pair_0.y;
-    const Pair my_side_pair_1 = ((GLOBAL const Pair *)side)[a * 4 + 1];
-    const real my_side_2 = my_side_pair_1.x, my_side_3 = my_side_pair_1.y;
-    const Pair my_side_pair_2 = ((GLOBAL const Pair *)side)[a * 4 + 2];
-    const real my_side_4 = my_side_pair_2.x, my_side_5 = my_side_pair_2.y;
-    const Pair my_side_pair_3 = ((GLOBAL const Pair *)side)[a * 4 + 3];
-    const real my_side_6 = my_side_pair_3.x, my_side_7 = my_side_pair_3.y;
+    const Pair here_0_piece = ((GLOBAL const Pair *)place)[a];
+    const real here_0 = here_0_piece.x, here_1 = here_0_piece.y;
     real s = 0;
-    for (unsigned k = 0, end = active[a]; k < end; ++k) {
-        const unsigned b = entries[first[a] + k];
-        const real there_0 = place[b * 2 + 0];
-        const real there_1 = place[b * 2 + 1];
-        real way_0, way_1;
-        density_separation(here_0, here_1, there_0, there_1, &way_0, &way_1);
-        const Pair its_side_pair_0 = ((GLOBAL const Pair *)side)[b * 4 + 0];
-        const real its_side_0 = its_side_pair_0.x, its_side_1 = its_side_pair_0.y;
-        const Pair its_side_pair_1 = ((GLOBAL const Pair *)side)[b * 4 + 1];
-        const real its_side_2 = its_side_pair_1.x, its_side_3 = its_side_pair_1.y;
-        const Pair its_side_pair_2 = ((GLOBAL const Pair *)side)[b * 4 + 2];
-        const real its_side_4 = its_side_pair_2.x, its_side_5 = its_side_pair_2.y;
-        const Pair its_side_pair_3 = ((GLOBAL const Pair *)side)[b * 4 + 3];
-        const real its_side_6 = its_side_pair_3.x, its_side_7 = its_side_pair_3.y;
-        density_pair_0(way_0, way_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
+    {
+    const unsigned from = first[a], end = active[a];
+    for (unsigned k = 0; k < end; ++k) {
+        const unsigned b = entries[from + k];
+        const Pair there_0_piece = ((GLOBAL const Pair *)place)[b];
+        const real there_0 = there_0_piece.x, there_1 = there_0_piece.y;
+        real way_0 = here_0 - there_0, way_1 = here_1 - there_1;
+        if (fabs(way_0) > 1.0) density_separation(here_0, here_1, there_0, there_1, &way_0, &way_1);
+        const Pair its_side_0_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 0];
+        const real its_side_0 = its_side_0_piece.x, its_side_1 = its_side_0_piece.y;
+        const Pair its_side_2_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 1];
+        const real its_side_2 = its_side_2_piece.x, its_side_3 = its_side_2_piece.y;
+        const Pair its_side_4_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 2];
+        const real its_side_4 = its_side_4_piece.x, its_side_5 = its_side_4_piece.y;
+        const Pair its_side_6_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 3];
+        const real its_side_6 = its_side_6_piece.x, its_side_7 = its_side_6_piece.y;
+        density_pair_0(way_0, way_1, (real)a, (real)b, 0, 0, 0, 0, 0, 0, 0, 0, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
     }
-    for (unsigned k = 0, end = passive_count[a]; k < end; ++k) {
-        const unsigned b = entries[passive_first[a] + k];
-        const real there_0 = place[b * 2 + 0];
-        const real there_1 = place[b * 2 + 1];
-        real way_0, way_1;
-        density_separation(here_0, here_1, there_0, there_1, &way_0, &way_1);
-        const Pair its_side_pair_0 = ((GLOBAL const Pair *)side)[b * 4 + 0];
-        const real its_side_0 = its_side_pair_0.x, its_side_1 = its_side_pair_0.y;
-        const Pair its_side_pair_1 = ((GLOBAL const Pair *)side)[b * 4 + 1];
-        const real its_side_2 = its_side_pair_1.x, its_side_3 = its_side_pair_1.y;
-        const Pair its_side_pair_2 = ((GLOBAL const Pair *)side)[b * 4 + 2];
-        const real its_side_4 = its_side_pair_2.x, its_side_5 = its_side_pair_2.y;
-        const Pair its_side_pair_3 = ((GLOBAL const Pair *)side)[b * 4 + 3];
-        const real its_side_6 = its_side_pair_3.x, its_side_7 = its_side_pair_3.y;
-        density_pair_0(way_0, way_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
+    }
+    {
+    const unsigned from = passive_first[a], end = passive_count[a];
+    for (unsigned k = 0; k < end; ++k) {
+        const unsigned b = entries[from + k];
+        const Pair there_0_piece = ((GLOBAL const Pair *)place)[b];
+        const real there_0 = there_0_piece.x, there_1 = there_0_piece.y;
+        real way_0 = here_0 - there_0, way_1 = here_1 - there_1;
+        if (fabs(way_0) > 1.0) density_separation(here_0, here_1, there_0, there_1, &way_0, &way_1);
+        const Pair its_side_0_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 0];
+        const real its_side_0 = its_side_0_piece.x, its_side_1 = its_side_0_piece.y;
+        const Pair its_side_2_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 1];
+        const real its_side_2 = its_side_2_piece.x, its_side_3 = its_side_2_piece.y;
+        const Pair its_side_4_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 2];
+        const real its_side_4 = its_side_4_piece.x, its_side_5 = its_side_4_piece.y;
+        const Pair its_side_6_piece = ((GLOBAL const Pair *)side)[(size_t)b * 4 + 3];
+        const real its_side_6 = its_side_6_piece.x, its_side_7 = its_side_6_piece.y;
+        density_pair_0(way_0, way_1, (real)a, (real)b, 0, 0, 0, 0, 0, 0, 0, 0, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s, &s);
+    }
     }
     real new_summed_0;
     density_close(s, &new_summed_0);
-    summed[a * 1 + 0] = new_summed_0;
+    summed[a] = new_summed_0;
     }
 }

@@ -24,7 +24,7 @@ LAW void forces_pair_0(work way_0, work way_1, work slot_a, work slot_b, work my
     const work t63 = t62 * t61;
     const work t64 = t56 ? t63 : 0.0f;
     const work t66 = t64 * 5570.423f;
-    const work t67 = its_side_7 * its_side_4;
+    const work t67 = its_side_5 * its_side_4;
     const work t68 = t67 * t66;
     const work t69 = my_side_0 - its_side_0;
     const work t70 = my_side_1 - its_side_1;
@@ -45,7 +45,7 @@ LAW void forces_pair_0(work way_0, work way_1, work slot_a, work slot_b, work my
     const work t87 = s_pressure_y - t86;
     const work t88 = t70 * t79;
     const work t89 = s_viscosity_y + t88;
-    const work t90 = its_side_7 * t66;
+    const work t90 = its_side_5 * t66;
     const work t91 = its_side_2 * way_0;
     const work t92 = its_side_3 * way_1;
     const work t93 = t91 + t92;
@@ -103,38 +103,19 @@ LAW void forces_close(real s_pressure_x, real s_pressure_y, real s_viscosity_x, 
     *new_force_0 = t18;
     *new_force_1 = t20;
 }
-/* 8 operations */
-LAW void forces_separation(real here_0, real here_1, real there_0, real there_1, real *way_0, real *way_1)
-{
-    const real t4 = here_0 - there_0;
-    const int t6 = 1.0 < t4;
-    const real t8 = t4 - 2.0;
-    const real t9 = t6 ? t8 : t4;
-    const int t11 = t4 < (-1.0);
-    const real t12 = t4 + 2.0;
-    const real t13 = t11 ? t12 : t9;
-    const real t14 = here_1 - there_1;
-    *way_0 = t13;
-    *way_1 = t14;
-}
-KERNEL void forces(const int n, const real scale, GLOBAL const unsigned *__restrict__ numbers, GLOBAL const unsigned *__restrict__ passive, GLOBAL const unsigned *__restrict__ entries, GLOBAL const unsigned *__restrict__ first, GLOBAL const unsigned *__restrict__ active, GLOBAL const real *__restrict__ place, GLOBAL const work *__restrict__ side, GLOBAL const real *__restrict__ near, GLOBAL real *__restrict__ force)
+KERNEL void CROWDED forces(const int n, const real scale, GLOBAL const unsigned *__restrict__ numbers, GLOBAL const unsigned *__restrict__ passive, GLOBAL const unsigned *__restrict__ entries, GLOBAL const unsigned *__restrict__ first, GLOBAL const unsigned *__restrict__ active, const int spot_rows, GLOBAL const work *__restrict__ spot, const int side_rows, GLOBAL const work *__restrict__ side, GLOBAL const real *__restrict__ near, GLOBAL real *__restrict__ force)
 {
     const int thread = blockIdx.x * blockDim.x + threadIdx.x;
     const int lane = thread % 8;
-    const unsigned group = 0xffu << (threadIdx.x & 24);
     const int a = thread / 8 < n ? thread / 8 : 0;
     const int is_on = thread / 8 < n && passive[numbers[a]] >= 0 && near[a] > 0.5;
     {
-    const real here_0 = place[a * 2 + 0];
-    const real here_1 = place[a * 2 + 1];
-    const WorkPair my_side_pair_0 = ((GLOBAL const WorkPair *)side)[a * 4 + 0];
-    const work my_side_0 = my_side_pair_0.x, my_side_1 = my_side_pair_0.y;
-    const WorkPair my_side_pair_1 = ((GLOBAL const WorkPair *)side)[a * 4 + 1];
-    const work my_side_2 = my_side_pair_1.x, my_side_3 = my_side_pair_1.y;
-    const WorkPair my_side_pair_2 = ((GLOBAL const WorkPair *)side)[a * 4 + 2];
-    const work my_side_4 = my_side_pair_2.x, my_side_5 = my_side_pair_2.y;
-    const WorkPair my_side_pair_3 = ((GLOBAL const WorkPair *)side)[a * 4 + 3];
-    const work my_side_6 = my_side_pair_3.x, my_side_7 = my_side_pair_3.y;
+    const WorkPair here_0_piece = ((GLOBAL const WorkPair *)spot)[a];
+    const work here_0 = here_0_piece.x, here_1 = here_0_piece.y;
+    const WorkQuad my_side_0_piece = ((GLOBAL const WorkQuad *)side)[a];
+    const work my_side_0 = my_side_0_piece.x, my_side_1 = my_side_0_piece.y, my_side_2 = my_side_0_piece.z, my_side_3 = my_side_0_piece.w;
+    const WorkQuad my_side_4_piece = ((GLOBAL const WorkQuad *)side)[a + 1 * side_rows];
+    const work my_side_4 = my_side_4_piece.x, my_side_5 = my_side_4_piece.y, my_side_6 = my_side_4_piece.z, my_side_7 = my_side_4_piece.w;
     work s_pressure_x = 0;
     work s_pressure_y = 0;
     work s_viscosity_x = 0;
@@ -150,72 +131,59 @@ KERNEL void forces(const int n, const real scale, GLOBAL const unsigned *__restr
     work s_volume_y = 0;
     work s_crowding_x = 0;
     work s_crowding_y = 0;
-    for (unsigned k = lane, end = is_on ? active[a] : 0, next = k < end ? entries[first[a] + k] : 0; k < end; k += 8) {
+    {
+    const unsigned from = first[a], end = is_on ? active[a] : 0;
+    for (unsigned k = lane, next = k < end ? entries[from + k] : 0; k < end; k += 8) {
         const unsigned b = next;
-        next = k + 8 < end ? entries[first[a] + k + 8] : 0;
-        const real there_0 = place[b * 2 + 0];
-        const real there_1 = place[b * 2 + 1];
-        real way_0, way_1;
-        forces_separation(here_0, here_1, there_0, there_1, &way_0, &way_1);
-        const WorkPair its_side_pair_0 = ((GLOBAL const WorkPair *)side)[b * 4 + 0];
-        const work its_side_0 = its_side_pair_0.x, its_side_1 = its_side_pair_0.y;
-        const WorkPair its_side_pair_1 = ((GLOBAL const WorkPair *)side)[b * 4 + 1];
-        const work its_side_2 = its_side_pair_1.x, its_side_3 = its_side_pair_1.y;
-        const WorkPair its_side_pair_2 = ((GLOBAL const WorkPair *)side)[b * 4 + 2];
-        const work its_side_4 = its_side_pair_2.x, its_side_5 = its_side_pair_2.y;
-        const WorkPair its_side_pair_3 = ((GLOBAL const WorkPair *)side)[b * 4 + 3];
-        const work its_side_6 = its_side_pair_3.x, its_side_7 = its_side_pair_3.y;
+        next = k + 8 < end ? entries[from + k + 8] : 0;
+        const WorkPair there_0_piece = ((GLOBAL const WorkPair *)spot)[b];
+        const work there_0 = there_0_piece.x, there_1 = there_0_piece.y;
+        const work way_0 = p_way(here_0, there_0) * 2.3283064e-10f;
+        const work way_1 = p_way(here_1, there_1) * 2.142042e-10f;
+        const WorkQuad its_side_0_piece = ((GLOBAL const WorkQuad *)side)[b];
+        const work its_side_0 = its_side_0_piece.x, its_side_1 = its_side_0_piece.y, its_side_2 = its_side_0_piece.z, its_side_3 = its_side_0_piece.w;
+        const WorkQuad its_side_4_piece = ((GLOBAL const WorkQuad *)side)[b + 1 * side_rows];
+        const work its_side_4 = its_side_4_piece.x, its_side_5 = its_side_4_piece.y, its_side_6 = its_side_4_piece.z, its_side_7 = its_side_4_piece.w;
         forces_pair_0(way_0, way_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s_pressure_x, s_pressure_y, s_viscosity_x, s_viscosity_y, s_artificial_viscosity_x, s_artificial_viscosity_y, s_walls_x, s_walls_y, s_carried_x, s_carried_y, s_stretch, s_volume_x, s_volume_y, s_crowding_x, s_crowding_y, &s_pressure_x, &s_pressure_y, &s_viscosity_x, &s_viscosity_y, &s_artificial_viscosity_x, &s_artificial_viscosity_y, &s_walls_x, &s_walls_y, &s_carried_x, &s_carried_y, &s_stretch, &s_volume_x, &s_volume_y, &s_crowding_x, &s_crowding_y);
     }
-    s_pressure_x += __shfl_down_sync(group, s_pressure_x, 4, 8);
-    s_pressure_x += __shfl_down_sync(group, s_pressure_x, 2, 8);
-    s_pressure_x += __shfl_down_sync(group, s_pressure_x, 1, 8);
-    s_pressure_y += __shfl_down_sync(group, s_pressure_y, 4, 8);
-    s_pressure_y += __shfl_down_sync(group, s_pressure_y, 2, 8);
-    s_pressure_y += __shfl_down_sync(group, s_pressure_y, 1, 8);
-    s_viscosity_x += __shfl_down_sync(group, s_viscosity_x, 4, 8);
-    s_viscosity_x += __shfl_down_sync(group, s_viscosity_x, 2, 8);
-    s_viscosity_x += __shfl_down_sync(group, s_viscosity_x, 1, 8);
-    s_viscosity_y += __shfl_down_sync(group, s_viscosity_y, 4, 8);
-    s_viscosity_y += __shfl_down_sync(group, s_viscosity_y, 2, 8);
-    s_viscosity_y += __shfl_down_sync(group, s_viscosity_y, 1, 8);
-    s_artificial_viscosity_x += __shfl_down_sync(group, s_artificial_viscosity_x, 4, 8);
-    s_artificial_viscosity_x += __shfl_down_sync(group, s_artificial_viscosity_x, 2, 8);
-    s_artificial_viscosity_x += __shfl_down_sync(group, s_artificial_viscosity_x, 1, 8);
-    s_artificial_viscosity_y += __shfl_down_sync(group, s_artificial_viscosity_y, 4, 8);
-    s_artificial_viscosity_y += __shfl_down_sync(group, s_artificial_viscosity_y, 2, 8);
-    s_artificial_viscosity_y += __shfl_down_sync(group, s_artificial_viscosity_y, 1, 8);
-    s_walls_x += __shfl_down_sync(group, s_walls_x, 4, 8);
-    s_walls_x += __shfl_down_sync(group, s_walls_x, 2, 8);
-    s_walls_x += __shfl_down_sync(group, s_walls_x, 1, 8);
-    s_walls_y += __shfl_down_sync(group, s_walls_y, 4, 8);
-    s_walls_y += __shfl_down_sync(group, s_walls_y, 2, 8);
-    s_walls_y += __shfl_down_sync(group, s_walls_y, 1, 8);
-    s_carried_x += __shfl_down_sync(group, s_carried_x, 4, 8);
-    s_carried_x += __shfl_down_sync(group, s_carried_x, 2, 8);
-    s_carried_x += __shfl_down_sync(group, s_carried_x, 1, 8);
-    s_carried_y += __shfl_down_sync(group, s_carried_y, 4, 8);
-    s_carried_y += __shfl_down_sync(group, s_carried_y, 2, 8);
-    s_carried_y += __shfl_down_sync(group, s_carried_y, 1, 8);
-    s_stretch += __shfl_down_sync(group, s_stretch, 4, 8);
-    s_stretch += __shfl_down_sync(group, s_stretch, 2, 8);
-    s_stretch += __shfl_down_sync(group, s_stretch, 1, 8);
-    s_volume_x += __shfl_down_sync(group, s_volume_x, 4, 8);
-    s_volume_x += __shfl_down_sync(group, s_volume_x, 2, 8);
-    s_volume_x += __shfl_down_sync(group, s_volume_x, 1, 8);
-    s_volume_y += __shfl_down_sync(group, s_volume_y, 4, 8);
-    s_volume_y += __shfl_down_sync(group, s_volume_y, 2, 8);
-    s_volume_y += __shfl_down_sync(group, s_volume_y, 1, 8);
-    s_crowding_x += __shfl_down_sync(group, s_crowding_x, 4, 8);
-    s_crowding_x += __shfl_down_sync(group, s_crowding_x, 2, 8);
-    s_crowding_x += __shfl_down_sync(group, s_crowding_x, 1, 8);
-    s_crowding_y += __shfl_down_sync(group, s_crowding_y, 4, 8);
-    s_crowding_y += __shfl_down_sync(group, s_crowding_y, 2, 8);
-    s_crowding_y += __shfl_down_sync(group, s_crowding_y, 1, 8);
+    }
+    s_pressure_x += __shfl_down_sync(ALL, s_pressure_x, 4, 8);
+    s_pressure_x += __shfl_down_sync(ALL, s_pressure_x, 2, 8);
+    s_pressure_x += __shfl_down_sync(ALL, s_pressure_x, 1, 8);
+    s_pressure_y += __shfl_down_sync(ALL, s_pressure_y, 4, 8);
+    s_pressure_y += __shfl_down_sync(ALL, s_pressure_y, 2, 8);
+    s_pressure_y += __shfl_down_sync(ALL, s_pressure_y, 1, 8);
+    s_viscosity_x += __shfl_down_sync(ALL, s_viscosity_x, 4, 8);
+    s_viscosity_x += __shfl_down_sync(ALL, s_viscosity_x, 2, 8);
+    s_viscosity_x += __shfl_down_sync(ALL, s_viscosity_x, 1, 8);
+    s_viscosity_y += __shfl_down_sync(ALL, s_viscosity_y, 4, 8);
+    s_viscosity_y += __shfl_down_sync(ALL, s_viscosity_y, 2, 8);
+    s_viscosity_y += __shfl_down_sync(ALL, s_viscosity_y, 1, 8);
+    s_carried_x += __shfl_down_sync(ALL, s_carried_x, 4, 8);
+    s_carried_x += __shfl_down_sync(ALL, s_carried_x, 2, 8);
+    s_carried_x += __shfl_down_sync(ALL, s_carried_x, 1, 8);
+    s_carried_y += __shfl_down_sync(ALL, s_carried_y, 4, 8);
+    s_carried_y += __shfl_down_sync(ALL, s_carried_y, 2, 8);
+    s_carried_y += __shfl_down_sync(ALL, s_carried_y, 1, 8);
+    s_stretch += __shfl_down_sync(ALL, s_stretch, 4, 8);
+    s_stretch += __shfl_down_sync(ALL, s_stretch, 2, 8);
+    s_stretch += __shfl_down_sync(ALL, s_stretch, 1, 8);
+    s_volume_x += __shfl_down_sync(ALL, s_volume_x, 4, 8);
+    s_volume_x += __shfl_down_sync(ALL, s_volume_x, 2, 8);
+    s_volume_x += __shfl_down_sync(ALL, s_volume_x, 1, 8);
+    s_volume_y += __shfl_down_sync(ALL, s_volume_y, 4, 8);
+    s_volume_y += __shfl_down_sync(ALL, s_volume_y, 2, 8);
+    s_volume_y += __shfl_down_sync(ALL, s_volume_y, 1, 8);
+    s_crowding_x += __shfl_down_sync(ALL, s_crowding_x, 4, 8);
+    s_crowding_x += __shfl_down_sync(ALL, s_crowding_x, 2, 8);
+    s_crowding_x += __shfl_down_sync(ALL, s_crowding_x, 1, 8);
+    s_crowding_y += __shfl_down_sync(ALL, s_crowding_y, 4, 8);
+    s_crowding_y += __shfl_down_sync(ALL, s_crowding_y, 2, 8);
+    s_crowding_y += __shfl_down_sync(ALL, s_crowding_y, 1, 8);
     if (!is_on || lane > 0) return;
     real new_force_0, new_force_1;
     forces_close(s_pressure_x, s_pressure_y, s_viscosity_x, s_viscosity_y, s_artificial_viscosity_x, s_artificial_viscosity_y, s_walls_x, s_walls_y, s_carried_x, s_carried_y, s_stretch, s_volume_x, s_volume_y, s_crowding_x, s_crowding_y, scale, &new_force_0, &new_force_1);
-    force[a * 2 + 0] = new_force_0;
-    force[a * 2 + 1] = new_force_1;
+    force[(size_t)a * 2 + 0] = new_force_0;
+    force[(size_t)a * 2 + 1] = new_force_1;
     }
 }

@@ -28,44 +28,46 @@ KERNEL void gradients(const int n, GLOBAL const unsigned *__restrict__ row, GLOB
 {
     const int thread = blockIdx.x * blockDim.x + threadIdx.x;
     const int lane = thread % 8;
-    const unsigned group = 0xffu << (threadIdx.x & 24);
     const int a = thread / 8 < n ? thread / 8 : 0;
     const int is_on = thread / 8 < n;
     {
-    const Pair my_displacement_pair_0 = ((GLOBAL const Pair *)displacement)[a * 1 + 0];
-    const real my_displacement_0 = my_displacement_pair_0.x, my_displacement_1 = my_displacement_pair_0.y;
+    const Pair my_displacement_0_piece = ((GLOBAL const Pair *)displacement)[a];
+    const real my_displacement_0 = my_displacement_0_piece.x, my_displacement_1 = my_displacement_0_piece.y;
     work s_0_xx = 0;
     work s_0_xy = 0;
     work s_0_yx = 0;
     work s_0_yy = 0;
-    for (unsigned k = lane, end = is_on ? row_count[a] : 0, next = k < end ? neighbors[(row[a] + (k) / 8) * 8 + (k) % 8] : 0; k < end; k += 8) {
+    {
+    const unsigned from = row[a], end = is_on ? row_count[a] : 0;
+    for (unsigned k = lane, next = k < end ? neighbors[from * 8 + k] : 0; k < end; k += 8) {
         const unsigned b = next;
-        next = k + 8 < end ? neighbors[(row[a] + (k + 8) / 8) * 8 + (k + 8) % 8] : 0;
-        const unsigned block = row[a] + k / 8;
-        const work pair_0 = numbers[(long)block * 16 + 0 + k % 8];
-        const work pair_1 = numbers[(long)block * 16 + 8 + k % 8];
-        const Pair its_displacement_pair_0 = ((GLOBAL const Pair *)displacement)[b * 1 + 0];
-        const real its_displacement_0 = its_displacement_pair_0.x, its_displacement_1 = its_displacement_pair_0.y;
+        next = k + 8 < end ? neighbors[from * 8 + k + 8] : 0;
+        const unsigned block = from + k / 8;
+        const work pair_0 = numbers[(size_t)block * 16 + 0 + k % 8];
+        const work pair_1 = numbers[(size_t)block * 16 + 8 + k % 8];
+        const Pair its_displacement_0_piece = ((GLOBAL const Pair *)displacement)[b];
+        const real its_displacement_0 = its_displacement_0_piece.x, its_displacement_1 = its_displacement_0_piece.y;
         gradients_pair_0(pair_0, pair_1, (real)a, (real)b, 0, 0, (work)(its_displacement_0 - my_displacement_0), (work)(its_displacement_1 - my_displacement_1), s_0_xx, s_0_xy, s_0_yx, s_0_yy, &s_0_xx, &s_0_xy, &s_0_yx, &s_0_yy);
     }
-    s_0_xx += __shfl_down_sync(group, s_0_xx, 4, 8);
-    s_0_xx += __shfl_down_sync(group, s_0_xx, 2, 8);
-    s_0_xx += __shfl_down_sync(group, s_0_xx, 1, 8);
-    s_0_xy += __shfl_down_sync(group, s_0_xy, 4, 8);
-    s_0_xy += __shfl_down_sync(group, s_0_xy, 2, 8);
-    s_0_xy += __shfl_down_sync(group, s_0_xy, 1, 8);
-    s_0_yx += __shfl_down_sync(group, s_0_yx, 4, 8);
-    s_0_yx += __shfl_down_sync(group, s_0_yx, 2, 8);
-    s_0_yx += __shfl_down_sync(group, s_0_yx, 1, 8);
-    s_0_yy += __shfl_down_sync(group, s_0_yy, 4, 8);
-    s_0_yy += __shfl_down_sync(group, s_0_yy, 2, 8);
-    s_0_yy += __shfl_down_sync(group, s_0_yy, 1, 8);
+    }
+    s_0_xx += __shfl_down_sync(ALL, s_0_xx, 4, 8);
+    s_0_xx += __shfl_down_sync(ALL, s_0_xx, 2, 8);
+    s_0_xx += __shfl_down_sync(ALL, s_0_xx, 1, 8);
+    s_0_xy += __shfl_down_sync(ALL, s_0_xy, 4, 8);
+    s_0_xy += __shfl_down_sync(ALL, s_0_xy, 2, 8);
+    s_0_xy += __shfl_down_sync(ALL, s_0_xy, 1, 8);
+    s_0_yx += __shfl_down_sync(ALL, s_0_yx, 4, 8);
+    s_0_yx += __shfl_down_sync(ALL, s_0_yx, 2, 8);
+    s_0_yx += __shfl_down_sync(ALL, s_0_yx, 1, 8);
+    s_0_yy += __shfl_down_sync(ALL, s_0_yy, 4, 8);
+    s_0_yy += __shfl_down_sync(ALL, s_0_yy, 2, 8);
+    s_0_yy += __shfl_down_sync(ALL, s_0_yy, 1, 8);
     if (!is_on || lane > 0) return;
     real new_gradient_0, new_gradient_1, new_gradient_2, new_gradient_3;
     gradients_close(s_0_xx, s_0_xy, s_0_yx, s_0_yy, &new_gradient_0, &new_gradient_1, &new_gradient_2, &new_gradient_3);
-    gradient[a * 4 + 0] = new_gradient_0;
-    gradient[a * 4 + 1] = new_gradient_1;
-    gradient[a * 4 + 2] = new_gradient_2;
-    gradient[a * 4 + 3] = new_gradient_3;
+    gradient[(size_t)a * 4 + 0] = new_gradient_0;
+    gradient[(size_t)a * 4 + 1] = new_gradient_1;
+    gradient[(size_t)a * 4 + 2] = new_gradient_2;
+    gradient[(size_t)a * 4 + 3] = new_gradient_3;
     }
 }

@@ -16,12 +16,12 @@ record! {
         pub deviation: Components<D>,
         /// Density in kg/m^3.
         pub density: One,
-        /// Pressure in Pa.
-        pub pressure: One,
-        /// `p / rho^2` in Pa m^6/kg^2.
-        pub load: One,
         /// `m / rho` in m^D.
         pub volume: One,
+        /// `p / rho^2` in Pa m^6/kg^2.
+        pub load: One,
+        /// Pressure in Pa.
+        pub pressure: One,
     }
 }
 

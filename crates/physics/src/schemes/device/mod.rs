@@ -6,7 +6,7 @@ mod numbers;
 pub(crate) mod solid;
 mod state;
 
-use piola_device::{DeviceError, Dialect, Language, Pass, Precision};
+use piola_device::{DeviceError, Dialect, Language, Layout, Pass, Precision};
 use piola_ranks::RankError;
 use thiserror::Error;
 
@@ -142,17 +142,17 @@ pub struct DeviceMethod {
 }
 
 impl DeviceMethod {
-    /// Which of the columns that may be in single precision are.
-    pub(crate) fn narrow(self, columns: &'static [&'static str]) -> &'static [&'static str] {
+    /// How columns are stored, of which those of this layout may be in single precision.
+    pub(crate) fn layout(self, layout: Layout) -> Layout {
         match self.precision {
-            Precision::Double => &[],
-            Precision::Single => columns,
+            Precision::Double => Layout { narrow: &[], ..layout },
+            Precision::Single => layout,
         }
     }
 
     /// How passes are written then.
-    pub(crate) fn dialect(self, language: Language, columns: &'static [&'static str]) -> Dialect {
-        Dialect { language, narrow: self.narrow(columns) }
+    pub(crate) fn dialect(self, language: Language, layout: Layout) -> Dialect {
+        Dialect { language, layout: self.layout(layout) }
     }
 
     /// Refuses all integrators but kick-drift-kick.

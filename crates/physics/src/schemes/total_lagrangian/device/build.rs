@@ -1,6 +1,6 @@
 //! From a solid to its passes and columns on a device, or what has none there.
 
-use piola_device::{Device, Dialect, Language, Machine, Pass, Rows};
+use piola_device::{Device, Dialect, Language, Layout, Machine, Pass, Rows};
 
 use super::super::fields::Made;
 use super::super::{Discrete, FIGURES as BEHIND, LEDGER, Matrices, TotalLagrangian};
@@ -17,9 +17,11 @@ use crate::schemes::device::{
 /// Most mixtures whose stresses stand in one pass.
 const MOST_MIXTURES: usize = 16;
 
-/// Columns that may be in single precision: what is known of pairs, and what of a particle they make or see.
-const NARROW: [&str; 5] =
-    ["coefficients", "dual_coefficients", "tension", "gradient", "gradient_rate"];
+/// Columns that may be in single precision: rows, and what is computed of them. Neighbours read tensions.
+const LAYOUT: Layout = Layout {
+    narrow: &["coefficients", "dual_coefficients", "tension", "gradient", "gradient_rate"],
+    planes: &["tension"],
+};
 
 /// Columns of the state with the names of their copies.
 const STATE: [[&str; 2]; 3] = [
@@ -109,7 +111,7 @@ impl<const D: usize> TotalLagrangian<D> {
         method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         let (discrete, method) = (self.on_devices()?, method.unless_kicked()?);
-        let dialect = method.dialect(language, &NARROW);
+        let dialect = method.dialect(language, LAYOUT);
         let passes = match &discrete.operator.pairs {
             ReferencePairs::Plain(pairs) => self.passes(dialect, discrete, pairs),
             ReferencePairs::Consistent(pairs) => self.passes(dialect, discrete, pairs),
@@ -158,9 +160,10 @@ impl<const D: usize> TotalLagrangian<D> {
         // Displacements and velocities of images, with their copies.
         let beyond = ("images", 4 * images.len() * D * size_of::<f64>());
         let all = StateColumns::bytes(&columns).chain(room.bytes()).chain([beyond]);
-        fits(&device, method.narrow(&NARROW), all.chain(of_rows))?;
+        let layout = method.layout(LAYOUT);
+        fits(&device, layout.narrow, all.chain(of_rows))?;
         let passes = |dialect| plan.passes(dialect, &supports, &duals, &folds);
-        let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;
+        let mut machine = Machine::new(device, None, layout, passes, chunk(count))?;
         let tail = LEDGER.length(D) + BEHIND;
         let state = StateColumns::new(columns, tail);
         state.make(&mut machine, |name| if name == "kick" { 0 } else { images.len() * D })?;

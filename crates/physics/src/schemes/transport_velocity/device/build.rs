@@ -1,7 +1,7 @@
 //! From a settled fluid to its passes and columns on a device, or what has none there.
 
 use piola_device::lists::Lists;
-use piola_device::{Device, Machine, Precision};
+use piola_device::{Device, Layout, Machine, Precision};
 
 use super::super::{AtSurface, Continuum, DensityRule, Shifting, Slip, TransportVelocity};
 use super::passes::{FIGURES, FORCES, drift_terms, kick_terms, side_width};
@@ -15,11 +15,33 @@ use crate::schemes::device::{
     DeviceMethod, DeviceRefusal, DeviceSteps, Gravity, StateColumn, StateColumns, fits,
 };
 
-/// Columns that may be in single precision: what neighbours see, and what is summed over them.
-pub(super) const NARROW: [&str; 18] = [
-    "side", "rate", "force", "summed", "shear", "hold", "sliding", "faces", "mark", "near",
-    "alone", "surface", "close_by", "reach", "sharp", "normal", "crowd", "escaped",
-];
+/// Columns that may be in single precision: what neighbours see, and what is summed over them; and what neighbours read
+/// most of.
+pub(super) const LAYOUT: Layout = Layout {
+    narrow: &[
+        "side",
+        "rate",
+        "force",
+        "summed",
+        "shear",
+        "hold",
+        "sliding",
+        "faces",
+        "mark",
+        "near",
+        "alone",
+        "surface",
+        "close_by",
+        "reach",
+        "sharp",
+        "normal",
+        "crowd",
+        "escaped",
+        "half_force",
+        "spot",
+    ],
+    planes: &["place", "spot", "side", "half_force", "shear", "hold"],
+};
 
 /// Whole numbers up to this one are numbers in single precision: what holds a particle has its own.
 const COUNTED: usize = 1 << f32::MANTISSA_DIGITS;
@@ -36,7 +58,7 @@ const STATE: [[&str; 2]; 6] = [
 
 impl<const D: usize> Plan<D> {
     /// Columns beside those of the state, with their numbers a particle.
-    fn scratch(&self) -> Vec<(&'static str, usize)> {
+    fn scratch(&self, of_pairs: Precision) -> Vec<(&'static str, usize)> {
         let mut all = vec![
             ("place", D),
             ("side", side_width(D)),
@@ -48,6 +70,10 @@ impl<const D: usize> Plan<D> {
             ("half_force", D),
             ("gravity", D),
         ];
+        if of_pairs == Precision::Single {
+            let (counts, _) = self.space().counts(&[]);
+            all.push((counts.column, counts.width));
+        }
         if self.sums_densities {
             all.push(("summed", 1));
         }
@@ -112,6 +138,7 @@ impl<const D: usize> TransportVelocity<D> {
             kernel: common.support.kernel(),
             smoothing_length: common.support.smoothing_length(),
             periods,
+            reach: (1.0 + MovingSupport::<D>::SKIN) * common.support.list().support(),
             fluid: *fluid,
             sums_densities: common.settings.density == DensityRule::Summation,
             evolves,
@@ -152,20 +179,20 @@ impl<const D: usize> TransportVelocity<D> {
         let (list, periods) = (common.support.list(), plan.periods);
         let count = common.particles.len();
         let (faces, normals) = (walls::faces_width(D, plan.normals), plan.normals);
-        let (narrow, scratch) = (method.narrow(&NARROW), plan.scratch());
+        let (layout, scratch) = (method.layout(LAYOUT), plan.scratch(method.precision));
         let columns = StateColumn::all(self.description().fields, [D, count], &STATE);
         let bytes =
             |(name, width): &(&'static str, usize)| (*name, width * count * size_of::<f64>());
         let neighbors = ("neighbours", 2 * list.entries() * size_of::<u32>());
         let all = StateColumns::bytes(&columns).chain(scratch.iter().map(bytes));
-        fits(&device, narrow, all.chain([neighbors]))?;
+        fits(&device, layout.narrow, all.chain([neighbors]))?;
         let support = list.support();
         let skin = MovingSupport::<D>::SKIN * support;
         let removal = plan.removes.then(|| Removal::new(common));
         let is_wall = removal.as_ref().map_or(&common.is_wall, |removal| &removal.is_wall);
         let lists = Lists::new(&device, is_wall, support, skin, &periods)?;
         let passes = |dialect| plan.passes(dialect);
-        let mut machine = Machine::new(device, Some(lists), narrow, passes, chunk(count))?;
+        let mut machine = Machine::new(device, Some(lists), layout, passes, chunk(count))?;
         let state = StateColumns::new(columns, self.start.len() - count * self.width());
         state.make(&mut machine, |_| 0)?;
         for (name, width) in scratch {

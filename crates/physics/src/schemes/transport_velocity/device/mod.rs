@@ -40,6 +40,8 @@ struct Plan<const D: usize> {
     kernel: Kernel,
     smoothing_length: f64,
     periods: [Option<[f64; 2]>; D],
+    /// What lists reach, in m.
+    reach: f64,
     fluid: Fluid,
     /// Whether densities are sums over masses, and whether they evolve.
     sums_densities: bool,

@@ -45,15 +45,15 @@ pub(super) fn side<const D: usize>(numbers: &mut &[Traced]) -> Side<Traced, D> {
         velocity: take(numbers),
         deviation: take(numbers),
         density: one(numbers),
-        pressure: one(numbers),
-        load: one(numbers),
         volume: one(numbers),
+        load: one(numbers),
+        pressure: one(numbers),
     }
 }
 
 /// The numbers of a side.
 pub(super) fn flat<const D: usize>(side: &Side<Traced, D>) -> Vec<Traced> {
-    let scalars = [side.density, side.pressure, side.load, side.volume];
+    let scalars = [side.density, side.volume, side.load, side.pressure];
     side.velocity.iter().chain(&side.deviation).copied().chain(scalars).collect()
 }
 
@@ -63,14 +63,19 @@ pub(super) fn if_fluid(wall: Traced, yes: Traced, no: Traced) -> Traced {
 }
 
 impl<const D: usize> Plan<D> {
-    /// All passes of the plan.
-    pub(super) fn passes(&self, dialect: Dialect) -> Vec<Pass> {
-        let space = Space {
+    /// The space in which its particles move.
+    pub(super) fn space(&self) -> Space<D> {
+        Space {
             kernel: self.kernel,
             smoothing_length: self.smoothing_length,
             periods: self.periods.map(|bounds| bounds.map(|[lower, upper]| upper - lower)),
-        };
-        let space = &space;
+            reach: self.reach,
+        }
+    }
+
+    /// All passes of the plan.
+    pub(super) fn passes(&self, dialect: Dialect) -> Vec<Pass> {
+        let space = &self.space();
         let mut all = vec![
             self.load(dialect, space),
             self.state(dialect),
@@ -113,9 +118,12 @@ impl<const D: usize> Plan<D> {
             of("mass", 1),
             own("made_at", D),
         ];
-        let writes = [own("place", D), own("side", side_width(D)), spread("terms", 1)];
+        let mut writes = vec![own("place", D), own("side", side_width(D)), spread("terms", 1)];
+        let is_single = dialect.is_narrow("side");
+        writes.extend(is_single.then(|| space.counts(&[]).0));
         local(dialect, "load", &[], &reads, &writes, |mut x| {
             let position: Vector<D> = take(&mut x);
+            let counts = if is_single { space.counts(position.as_slice()).1 } else { Vec::new() };
             let (velocity, deviation) = (take(&mut x), take(&mut x));
             let (density, pressure, mass) = (one(&mut x), one(&mut x), one(&mut x));
             let zero = Traced::from(0.0);
@@ -128,7 +136,8 @@ impl<const D: usize> Plan<D> {
                 let distance = space.shorter_way(axis, position[axis] - made_at[axis]);
                 way += distance * distance;
             }
-            position.iter().copied().chain(flat(&side)).chain([way]).collect()
+            let place = position.iter().copied();
+            place.chain(flat(&side)).chain([way]).chain(counts).collect()
         })
     }
 

@@ -4,7 +4,7 @@ use piola_device::{DeviceError, Language};
 
 use super::super::stages::{Pass, stage_of};
 use super::super::{TransportVelocity, WeaklyCompressible};
-use super::build::NARROW;
+use super::build::LAYOUT;
 use super::{Ends, OnDevice, Plan};
 use crate::schemes::device::staged;
 use crate::schemes::{DeviceMethod, DeviceRefusal, DeviceStage};
@@ -69,7 +69,7 @@ impl<const D: usize> TransportVelocity<D> {
         method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         let plan = self.device_plan()?;
-        let passes = plan.passes(method.dialect(language, &NARROW));
+        let passes = plan.passes(method.dialect(language, LAYOUT));
         let mut all = vec![("kick", &["kick_velocities"][..])];
         for &stage in self.drift.passes().iter().chain(self.accelerate.passes()) {
             let name = stage_of::<D, WeaklyCompressible<D>>(stage).name;

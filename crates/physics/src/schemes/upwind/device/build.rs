@@ -1,6 +1,6 @@
 //! From an upwind body to its passes and columns on a device, or what has none there.
 
-use piola_device::{Device, Language, Machine, Precision};
+use piola_device::{Device, Language, Layout, Machine, Precision};
 use piola_formulas::pairs::Record as _;
 use piola_formulas::pairs::upwind::{UpwindSide, UpwindSlope};
 
@@ -18,8 +18,9 @@ use crate::schemes::device::{
 };
 use crate::schemes::split::KICK_DRIFT_KICK;
 
-/// Columns that may be in single precision: what is known of pairs, and what neighbours see.
-const NARROW: [&str; 4] = ["areas", "side", "slope", "inverse"];
+/// Columns that may be in single precision: rows, and what is computed of them. Neighbours read sides and slopes.
+const LAYOUT: Layout =
+    Layout { narrow: &["areas", "side", "slope", "inverse"], planes: &["side", "slope"] };
 
 /// What the stages of a step start on a device.
 const STAGES: [(&str, &[&str]); 7] = [
@@ -55,11 +56,12 @@ impl<const D: usize> Upwind<D> {
         let names = state::<D>().map(|([name, before, _], _)| [name, before]);
         let columns = StateColumn::all(Made::FIELDS, [D, count], &names);
         let room = Room { scratch: self.scratch(&listed), filled: self.filled(&plan) };
+        let layout = method.layout(LAYOUT);
         let all = StateColumns::bytes(&columns).chain(room.bytes());
         let of_rows = [(pairs.rows.numbers, of_pairs.bytes())];
-        fits(&device, method.narrow(&NARROW), all.chain(of_rows))?;
+        fits(&device, layout.narrow, all.chain(of_rows))?;
         let passes = |dialect| plan.passes(dialect, &pairs);
-        let mut machine = Machine::new(device, None, method.narrow(&NARROW), passes, chunk(count))?;
+        let mut machine = Machine::new(device, None, layout, passes, chunk(count))?;
         let tail = LEDGER.length(D) + KEPT;
         let state = StateColumns::new(columns, tail);
         state.make(&mut machine, |_| 0)?;
@@ -114,7 +116,7 @@ impl<const D: usize> Upwind<D> {
         method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
         let (pairs, _) = self.areas.pairs.columns(PAIRS);
-        let passes = self.device_plan(method)?.passes(method.dialect(language, &NARROW), &pairs);
+        let passes = self.device_plan(method)?.passes(method.dialect(language, LAYOUT), &pairs);
         Ok(staged(&passes, &STAGES))
     }
 
