@@ -8,7 +8,7 @@ use piola_formulas::pairs::wall::{Around, Ghost, StressExtrapolation, Surroundin
 use super::fracture::{Bonds, piece_count};
 use super::{
     Contact, ENERGY, Hypoelastic, Matter, PLASTIC, Solid, SolidRates, SolidsInput, TEMPERATURE,
-    Tension, entry, full,
+    Tension, cauchy_stress, full,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::fields::{FieldDescription, columns};
@@ -308,8 +308,7 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
         }
         let solid = self.solid(common, common.first() + row);
         let density = common.columns(state).density[row];
-        let bulk = solid.state.wave_speed_squared(density, matter[ENERGY]);
-        Some((bulk + 4.0 / 3.0 * solid.shear_modulus / density).sqrt())
+        Some(solid.longitudinal_speed(density, matter[ENERGY]))
     }
 
     fn energies(&self, common: &Common<D>, state: &[f64], energies: &mut [f64]) {
@@ -335,10 +334,9 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
                 let way = common.support.list().domain().separation(start, end);
                 values.extend_from_slice(way.as_slice());
             }
-            Some(Own::cauchy_stress) => values.extend((0..D * D).map(|k| {
-                let (i, j) = (k / D, k % D);
-                matter[entry(i, j)] - if i == j { pressure } else { 0.0 }
-            })),
+            Some(Own::cauchy_stress) => {
+                values.extend_from_slice(cauchy_stress::<_, D>(pressure, &matter).as_slice());
+            }
             Some(Own::von_mises) => values.push(von_mises(&full(&matter))),
             None => {}
         }
