@@ -100,6 +100,21 @@ record! {
     }
 }
 
+impl<T: Number, const D: usize> ForceSums<T, D> {
+    /// The accelerations in m/s^2 of a particle of a mass in kg by stress and contact, and by walls, with its
+    /// [`Tension::share`].
+    #[inline(always)]
+    pub fn accelerations(
+        &self,
+        share: T,
+        mass: T,
+        constants: &ForceConstants,
+    ) -> [Of<Components<D>, T>; 2] {
+        let contact = if constants.penalty > 0.0 { mass.recip() } else { T::one() };
+        [self.stress * share + self.contact * contact, self.walls * share]
+    }
+}
+
 /// `m_b (sigma_a/rho_a^2 + sigma_b/rho_b^2) . grad W_ab`, with corrected gradients
 /// `V_b (sigma_a L_a + sigma_b L_b) . grad W_ab`.
 ///

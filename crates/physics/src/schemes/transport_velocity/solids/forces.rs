@@ -74,11 +74,11 @@ impl<const D: usize> Hypoelastic<D> {
         let walls = Term { law: WallForces(law), source, among: Among::Passive };
         let close = |place: usize, sums: &ForceSums<f64, D>, row: &mut _| {
             let (side, share) = (&common.sides[place], self.tensions[place].share);
-            let contact = if constants.penalty > 0.0 { 1.0 / side.mass() } else { 1.0 };
+            let [pressure, walls] = sums.accelerations(share, side.mass(), &constants);
             *row = Forces {
-                pressure: sums.stress * share + sums.contact * contact,
+                pressure,
                 artificial_viscosity: sums.artificial,
-                walls: sums.walls * share,
+                walls,
                 crowding: sums.crowding,
                 opening: -sums.volume,
                 ..Forces::default()

@@ -38,6 +38,11 @@ pub use material::{Heat, Solid};
 pub use rates::SolidRates;
 pub use system::DESCRIPTION;
 
+pub(super) use held::hold;
+pub(super) use material::{Moved, Step};
+pub(super) use rates::Counted;
+pub(super) use system::Stress;
+
 use fracture::Bonds;
 use system::{Stored, StoredMut};
 
@@ -110,6 +115,21 @@ impl<const D: usize> Hypoelastic<D> {
         let is_elastic =
             |solid: &Solid| solid.strength == Strength::Elastic && !solid.state.is_caloric();
         self.materials.iter().all(is_elastic)
+    }
+
+    /// The material of each body.
+    pub(super) fn materials(&self) -> &[Solid] {
+        &self.materials
+    }
+
+    /// The prescribed velocities.
+    pub(super) fn held(&self) -> &PrescribedComponents {
+        &self.held
+    }
+
+    /// Whether velocity gradients are corrected.
+    pub(super) fn corrects(&self) -> bool {
+        !self.corrections.is_empty()
     }
 
     /// The solid that a particle (number) is of.

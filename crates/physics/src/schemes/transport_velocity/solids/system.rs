@@ -1,5 +1,6 @@
 //! Solids as a system of the formulation.
 
+use piola_device::{Device, Language};
 use piola_formulas::hypoelastic::von_mises;
 use piola_formulas::pairs::Record;
 use piola_formulas::pairs::solid::{MATTER, SolidTension};
@@ -16,14 +17,18 @@ use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::input::{check_index, check_selected};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
+use crate::schemes::transport_velocity::device::{self, SolidPlan};
 use crate::schemes::transport_velocity::fields::Made;
 use crate::schemes::transport_velocity::ledger::{ACCELERATIONS, Drift};
 use crate::schemes::transport_velocity::stages::{Instant, Pass, stage};
 use crate::schemes::transport_velocity::walls::WallValues;
 use crate::schemes::transport_velocity::{
-    AtRest, Columns, Common, Continua, Continuum, NAME, Rates, Slip, TransportVelocityError,
+    AtRest, Columns, Common, Continua, Continuum, NAME, Rates, Slip, TransportVelocity,
+    TransportVelocityError,
 };
-use crate::schemes::{Accounts, Capability, SchemeDescription};
+use crate::schemes::{
+    Accounts, Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, SchemeDescription,
+};
 use crate::{Tensor, Vector};
 
 columns! {
@@ -344,6 +349,22 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
 
     fn memory() -> usize {
         size_of::<SolidRates<D>>() + size_of::<Tension<D>>() + size_of::<Matter>()
+    }
+
+    fn to_device(
+        system: &TransportVelocity<D, Self>,
+        device: Device,
+        method: DeviceMethod,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        device::steps::<D, SolidPlan<D>>(system, device, method)
+    }
+
+    fn device_stages(
+        system: &TransportVelocity<D, Self>,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        device::stages::<D, SolidPlan<D>>(system, language, method)
     }
 }
 
