@@ -54,10 +54,43 @@ const CASES: [(&str, &[&str]); 22] = [
     ("upwind/drop-3d", &["scheme.wave_speed='stretch'"]),
 ];
 
+const NO_SLIP: &str = "body.wall.wall.slip='no'";
+const LEAD: &str = "body.wall.material={ kind = 'hypoelastic', density = 11340, young_modulus = 16e9, poisson_ratio = 0.44 }";
+const SPALL: &str = "body.projectile.material.spall_strength=1e8";
+
+/// Hypoelastic solids: alone, in contact of each kind, at walls, with what flows, tears and heats.
+const HYPOELASTIC: [(&str, &[&str]); 18] = [
+    ("ctvf/swinging-plate", &[]),
+    ("ctvf/swinging-plate", &["scheme.pressure='edac'", "scheme.corrected_gradients=false"]),
+    (
+        "ctvf/swinging-plate",
+        &[
+            "scheme.corrections='gtvf'",
+            "load+={ kind = 'body_force', acceleration = ['0', '9 * sin(40 * t)'] }",
+            "boundary.clamp.velocity.y='0.1 * x * sin(100 * t)'",
+        ],
+    ),
+    ("ctvf/swinging-plate-3d", &["parameters.across=4"]),
+    ("ctvf/rings", &[]),
+    ("ctvf/rings", &["scheme.self_contact=10.0", "scheme.free_surface=false"]),
+    ("ctvf/rings-3d", &[]),
+    ("ctvf/impact", &[SPALL, "scheme.pressure='edac'"]),
+    ("ctvf/impact-3d", &[SPALL]),
+    ("ctvf/taylor-bar", &["parameters.across=6"]),
+    ("ctvf/taylor-bar", &["parameters.across=6", NO_SLIP, LEAD]),
+    ("ctvf/compression", &[]),
+    ("ctvf/compression", &["boundary.piston.velocity.y='-10 * sin(1e5 * t)'"]),
+    ("ctvf/contact", &[]),
+    ("ctvf/contact", &["scheme.contact='repulsive'", "body.left.material.bulk_modulus=4e7"]),
+    ("ctvf/johnson-cook", &[]),
+    ("ctvf/plane-shock", &[]),
+    ("ctvf/plane-shock", &["body.bar.material.pressure_law={ kind = 'tait', exponent = 4.0 }"]),
+];
+
 #[test]
 fn a_device_has_the_bits_of_the_processor() {
     let Some(device) = device() else { return };
-    for (name, set) in CASES {
+    for (name, set) in CASES.into_iter().chain(HYPOELASTIC) {
         let set: Vec<&str> = set.iter().copied().chain(["time.max_steps=60"]).collect();
         let [mut here, mut there] =
             ["processor", &device].map(|device| session(&load(name, &set, device)));

@@ -4,6 +4,7 @@ use piola_device::lists::Lists;
 use piola_device::{Device, Machine, Precision};
 
 use super::super::{AtSurface, Continuum, DensityRule, Shifting, Slip, TransportVelocity};
+use super::moving::Moving;
 use super::passes::{FORCES, Plan, drift_terms, kick_terms, side_width};
 use super::removal::Removal;
 use super::{OfMatter, OnDevice, walls};
@@ -67,8 +68,9 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             return Err(refusal);
         }
         let refuse = |what: &str, instead| Err(DeviceRefusal::Stage { what: what.into(), instead });
-        if common.motion.iter().next().is_some() {
-            return refuse("a wall that moves", "let it slide or rest");
+        let periodic = common.support.list().domain().periodic();
+        if common.motion.iter().any(|entry| periodic[entry.component].is_some()) {
+            return refuse("a wall that moves along a periodic axis", "let it slide");
         }
         if !common.sliding.iter().all(|entry| entry.is_steady()) {
             return refuse("a wall that slides by a function of time", "let it slide steadily");
@@ -83,7 +85,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
         Ok(Plan {
             kernel: common.support.kernel(),
             smoothing_length,
-            periods: *common.support.list().domain().periodic(),
+            periods: *periodic,
             at_rest: first.filter(|first| common.at_rest.iter().all(|other| other == first)),
             sums_densities: common.settings.density == DensityRule::Summation,
             shifts: by_crowding,
@@ -94,6 +96,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             even_count: common.even_count() as f64,
             falls: !common.body_forces.is_empty(),
             normals: self.most_normals(),
+            moves: !common.motion.is_empty(),
             spacing: common.particles.spacing[0],
             room: common.room(&self.start),
             removes: common.guard.as_ref().is_some_and(|(guard, _)| guard.removes),
@@ -131,6 +134,10 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
             all.push(("start", D));
         }
         let mut filled = vec![("mass", common.mass.clone())];
+        if plan.moves {
+            all.extend([("motion", D), ("motion_rate", D)]);
+            filled.push(("driven", Moving::driven(common)));
+        }
         if plan.at_rest.is_none() {
             let of = |number| {
                 let at_rest = common.at_rest(number);
@@ -242,5 +249,6 @@ pub(in super::super) fn steps<const D: usize, P: OfMatter<D>>(
         gravity: Gravity::default(),
         removal,
         skin,
+        moving: Moving::of(common),
     }))
 }

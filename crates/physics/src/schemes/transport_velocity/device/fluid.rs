@@ -242,6 +242,7 @@ impl<const D: usize> FluidPlan<D> {
             through("slots", "rate", 4),
             through("slots", "side", side_width(D)),
         ];
+        let reads = [&reads, &*self.plan.of_motion()].concat();
         let writes = [
             own("position", D),
             own("density", 1),
@@ -272,7 +273,8 @@ impl<const D: usize> FluidPlan<D> {
                 false => value,
             };
             let next = self.plan.moved(&position, &(velocity + deviation), step);
-            let next = position.into_iter().copied().zip(next.into_iter().copied()).chain([
+            let still = self.plan.carried(&position, step, &mut x);
+            let next = still.into_iter().copied().zip(next.into_iter().copied()).chain([
                 (density, evolved(self.evolves, density, density_rate)),
                 (pressure, evolved(true, pressure, pressure_rate)),
             ]);
@@ -351,7 +353,7 @@ impl<const D: usize> FluidPlan<D> {
         gather.close(&[], &plan.of_ghosts(), &writes, |around, mut x| {
             let ghost = plan.ghost(around, &mut x);
             let shear = pick(ghost.slips, &ghost.of_fluid.velocity, &ghost.of_fluid.dragged);
-            let shear = pick(ghost.is_wet, &shear, &ghost.sliding);
+            let shear = pick(ghost.is_wet, &shear, &ghost.surface);
             let velocities = [ghost.of_fluid.velocity, ghost.of_fluid.deviation];
             let side = plan.ghost_side(&ghost, velocities, &mut x);
             side.into_iter().chain(shear.iter().copied()).collect()

@@ -7,6 +7,7 @@
 
 mod build;
 mod fluid;
+mod moving;
 mod passes;
 mod removal;
 mod solids;
@@ -21,6 +22,7 @@ pub(super) use self::fluid::FluidPlan;
 pub(super) use self::solids::SolidPlan;
 pub(super) use self::stages::stages;
 
+use self::moving::Moving;
 use self::passes::{Plan, drift_terms, kick_terms};
 use self::removal::Removal;
 use super::ledger::{DRIFTING, Drift, Kick};
@@ -123,6 +125,8 @@ struct OnDevice<const D: usize, P: OfMatter<D>> {
     removal: Option<Removal>,
     /// What lists reach beyond the support in m.
     skin: f64,
+    /// Walls that move.
+    moving: Option<Moving<D>>,
 }
 
 impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
@@ -188,6 +192,9 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
             }
             Pass::Walls => {
                 self.fall(time)?;
+                if let Some(moving) = &mut self.moving {
+                    moving.write(&mut self.machine, time)?;
+                }
                 self.launch(pass, &[])
             }
             Pass::Rates => {
@@ -197,8 +204,9 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
                 self.launch(pass, &[])
             }
             Pass::Move => {
-                self.launch(pass, &[("step", step)])?;
+                self.start("advance", &[("step", step)])?;
                 self.is_picked = false;
+                self.moving.iter_mut().for_each(|moving| moving.drift(step, time));
                 let sums = self.machine.sums(drift_terms(D), self.count)?;
                 let mut drift = Drift::ZERO;
                 let (powers, impulse) = sums.split_at(DRIFTING);
@@ -239,6 +247,11 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
         }
     }
 
+    /// Where particles may be, if that changes.
+    fn room(&self) -> Vec<(&'static str, f64)> {
+        self.moving.as_ref().map_or_else(Vec::new, Moving::room)
+    }
+
     fn kick(&mut self, duration: f64) -> Result<(), DeviceError> {
         self.start("kick_velocities", &[("duration", duration)])?;
         Self::LEDGER.kick(D, duration, &mut self.state.tail);
@@ -262,6 +275,10 @@ impl<const D: usize, P: OfMatter<D>> DeviceSteps for OnDevice<D, P> {
         let done = stages.attempt(|pass, totals| self.run(pass, middle, totals));
         self.drift = stages;
         Self::LEDGER.add(D, &done?, &mut self.state.tail);
+        if let Some(moving) = &mut self.moving {
+            moving.write(&mut self.machine, time + step)?;
+            self.start("impose", &[])?;
+        }
         if let Some(held) = self.matter.prescribe(&mut self.machine, time + step)? {
             let mut totals = Totals::default();
             totals.book(P::Kind::WALLS, &held);

@@ -36,6 +36,8 @@ pub(in super::super) struct Plan<const D: usize> {
     pub falls: bool,
     /// Most normals of a wall particle; 0 without walls.
     pub normals: usize,
+    /// Whether walls move.
+    pub moves: bool,
     pub spacing: f64,
     /// Where particles may be, if anybody asks, and whether those that are elsewhere are taken out.
     pub room: Option<Room<D>>,
@@ -114,6 +116,7 @@ impl<const D: usize> Plan<D> {
             self.kick(dialect),
         ];
         all.extend(self.wall_passes(dialect, space));
+        all.extend(self.moves.then(|| self.impose(dialect)));
         all.extend(self.surface_passes(dialect, space));
         all
     }

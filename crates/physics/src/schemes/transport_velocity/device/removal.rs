@@ -51,6 +51,7 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
     /// Takes the columns of a state over, and who has been removed in it.
     pub(super) fn take_over(&mut self, state: &[f64]) -> Result<(), DeviceError> {
         self.state.put(&mut self.machine, state)?;
+        self.moving.iter_mut().for_each(|moving| moving.put(state));
         self.is_picked = false;
         self.follow_removals(state)
     }
@@ -79,7 +80,7 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
             return Ok(Total::default());
         }
         self.load()?;
-        self.launch(Pass::Remove, &[])?;
+        self.launch(Pass::Remove, &self.room())?;
         let [(most, _)] = self.machine.largest(self.count)?;
         if most > 0.0 { self.take_out_escaped() } else { Ok(Total::default()) }
     }

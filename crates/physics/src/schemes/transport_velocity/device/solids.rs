@@ -441,6 +441,7 @@ impl<const D: usize> SolidPlan<D> {
             through("slots", "side", side_width(D)),
         ]);
         reads.extend((self.materials.len() > 1).then_some(own("material", 1)));
+        reads.extend(self.plan.of_motion());
         let mut writes = vec![own("position", D), own("density", 1), own("pressure", 1)];
         writes.extend(material);
         writes.push(spread("terms", drift_terms(D)));
@@ -476,7 +477,8 @@ impl<const D: usize> SolidPlan<D> {
             let terms = self.plan.drift_terms(powers, [&velocity, &deviation], [step, mass]);
             let next = self.plan.moved(&position, &(velocity + deviation), step);
             let before = [density, pressure].into_iter().chain(matter);
-            let moved = position.iter().copied().zip(next.iter().copied());
+            let still = self.plan.carried(&position, step, &mut x);
+            let moved = still.iter().copied().zip(next.iter().copied());
             let moved =
                 moved.chain(before.zip(after)).chain(terms.into_iter().map(|it| (zero, it)));
             moved.map(|(still, moved)| if_fluid(wall, moved, still)).collect()

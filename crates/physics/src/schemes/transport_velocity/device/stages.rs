@@ -19,6 +19,7 @@ impl<const D: usize> Plan<D> {
             Pass::State => &["state"],
             Pass::Walls => &["walls"],
             Pass::Rates => &["rates"],
+            Pass::Move if self.moves => &["advance", "impose"],
             Pass::Move => &["advance"],
             Pass::Forces if self.normals > 0 => &["forces", "reactions"],
             Pass::Forces => &["forces"],
@@ -56,7 +57,8 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
 
     /// Starts those of a look over the state.
     pub(super) fn launch_look(&self) -> Result<(), DeviceError> {
-        self.matter.plan().passes_of_look().iter().try_for_each(|pass| self.start(pass, &[]))
+        let (passes, room) = (self.matter.plan().passes_of_look(), self.room());
+        passes.iter().try_for_each(|pass| self.start(pass, &room))
     }
 }
 

@@ -8,8 +8,10 @@ use piola_formulas::{Number, fluid};
 
 use super::super::barrier::TOUCH;
 use super::super::escape::{Room, TOLERANCE};
+use super::super::extent::Extent;
 use super::super::ledger::ACCELERATIONS;
 use super::super::walls::{BESIDE, is_in_cell};
+use super::moving::ends;
 use super::passes::{FORCES, Plan, flat, side, side_width};
 use crate::schemes::device::{Recorded as Vector, one, square, take};
 
@@ -83,8 +85,9 @@ pub(super) struct GhostOf<const D: usize> {
     pub slips: <Traced as Number>::Mask,
     /// The normal towards the matter.
     pub normal: Vector<D>,
-    /// Velocity with which the wall slides in m/s.
-    pub sliding: Vector<D>,
+    /// Velocity with which the wall moves, and that of its surface, in m/s.
+    motion: Vector<D>,
+    pub surface: Vector<D>,
     mass: Traced,
     at_rest: [Traced; 2],
 }
@@ -124,33 +127,39 @@ impl<const D: usize> Plan<D> {
             of("faces", self.faces_width()),
             of("gravity", D),
         ];
+        if self.moves {
+            columns.extend([of("motion", D), of("motion_rate", D)]);
+        }
         columns.extend(self.of_rest());
         // What has been removed is passive, too, and stays as it is.
         columns.extend(self.removes.then_some(own("side", side_width(D))));
         columns
     }
 
-    /// What it makes of that, of numbers of these columns, of which those of a side that has been removed are left. Walls
-    /// that move are refused.
+    /// What it makes of that, of numbers of these columns, of which those of a side that has been removed are left.
     pub(super) fn ghost(&self, around: &Around<Traced, D>, x: &mut &[Traced]) -> GhostOf<D> {
         let (mass, sliding) = (one(x), take(x));
         let faces = Faces::<D>::take(x, self.normals);
         let gravity: Vector<D> = take(x);
-        let rest = Vector::<D>::repeat(Traced::from(0.0));
+        let (motion, lift) = match self.moves {
+            true => (take(x), gravity - take(x)),
+            false => (Vector::<D>::repeat(Traced::from(0.0)), gravity),
+        };
         let normal = faces.towards(&-around.arm);
         GhostOf {
-            of_fluid: around.ghost([&rest, &sliding], &gravity, &normal),
+            of_fluid: around.ghost([&motion, &sliding], &lift, &normal),
+            surface: if self.moves { motion + sliding } else { sliding },
             is_wet: around.weight.above(0.0),
             slips: faces.slips.above(0.5),
             at_rest: self.rest(x),
             normal,
-            sliding,
+            motion,
             mass,
         }
     }
 
-    /// The numbers of the side of a wall particle with a velocity and a deviation in m/s. Without matter around it rests and
-    /// bears no pressure.
+    /// The numbers of the side of a wall particle with a velocity and a deviation in m/s. Without matter around it moves with
+    /// the wall and bears no pressure.
     pub(super) fn ghost_side(
         &self,
         ghost: &GhostOf<D>,
@@ -161,7 +170,7 @@ impl<const D: usize> Plan<D> {
         let rest = Vector::<D>::repeat(zero);
         let pressure = Traced::select(is_wet, ghost.of_fluid.pressure, zero);
         let mut side: Side<Traced, D> = Side {
-            velocity: pick(is_wet, &velocity, &rest),
+            velocity: pick(is_wet, &velocity, &ghost.motion),
             deviation: pick(is_wet, &deviation, &rest),
             density: zero,
             pressure,
@@ -186,7 +195,8 @@ impl<const D: usize> Plan<D> {
     fn hold_off(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let mut mine = vec![own("side", side_width(D)), own("force", FORCES * D)];
         mine.extend(self.of_rest());
-        let others = [through("numbers", "faces", self.faces_width())];
+        let mut others = vec![through("numbers", "faces", self.faces_width())];
+        others.extend(self.moves.then_some(through("numbers", "motion", D)));
         let spacing = self.spacing;
         let writes = [own("hold", 2 * D + 1), own("side", side_width(D))];
         type Holds<const D: usize> = ((Components<D>, Components<D>), One);
@@ -207,7 +217,11 @@ impl<const D: usize> Plan<D> {
                     & height.below(TOUCH * spacing);
                 let shift = (me.deviation - *deviation).dot(&normal);
                 let shift = Traced::select(shift.below(0.0), shift, Traced::from(0.0));
-                let mut approach = me.velocity.dot(&normal);
+                let relative = match self.moves {
+                    true => me.velocity - take::<D>(&mut other),
+                    false => me.velocity,
+                };
+                let mut approach = relative.dot(&normal);
                 if self.shifts {
                     *deviation = pick(touches, &(*deviation + normal * shift), deviation);
                 } else {
@@ -279,6 +293,7 @@ impl<const D: usize> Plan<D> {
     /// Which particles have gone through a wall, or out of the box around everything.
     fn escape(&self, dialect: Dialect, space: &Space<D>, room: &Room<D>) -> Pass {
         let others = [through("numbers", "faces", self.faces_width())];
+        let ends = if self.moves { ends::<D>() } else { Vec::new() };
         let spacing = self.spacing;
         Gather::<(One, One), _>::new(dialect, "escape", space, Among::Active, Order::Fold)
             .start(&[], |_| (Traced::from(f64::INFINITY), Traced::from(0.0)))
@@ -296,11 +311,17 @@ impl<const D: usize> Plan<D> {
                     Traced::select(is_nearer, Traced::select(passed, yes, no), *is_through);
                 *nearest = Traced::select(is_nearer, meeting.pair.square, *nearest);
             })
-            .close(&[], &[own("place", D)], &[own("escaped", 1)], |(_, is_through), x| {
+            .close(&ends, &[own("place", D)], &[own("escaped", 1)], |(_, is_through), mut x| {
+                let fixed =
+                    |extent: &Extent<D>| [extent.low, extent.high].map(|end| end.map(Traced::from));
+                let extents: [[Vector<D>; 2]; 2] = match self.moves {
+                    true => [[take(&mut x), take(&mut x)], [take(&mut x), take(&mut x)]],
+                    false => [fixed(&room.walls), fixed(&room.bounds)],
+                };
                 let mut escaped = *is_through;
-                for (extent, outside) in [(&room.walls, 0.0), (&room.bounds, 1.0)] {
+                for ([low, high], outside) in extents.into_iter().zip([0.0, 1.0]) {
                     for axis in (0..D).filter(|axis| self.periods[*axis].is_none()) {
-                        let [low, high] = [extent.low[axis], extent.high[axis]].map(Traced::from);
+                        let [low, high] = [low[axis], high[axis]];
                         let is_inside = low.at_most(x[axis]) & x[axis].at_most(high);
                         escaped = Traced::select(is_inside, escaped, Traced::from(outside));
                     }
