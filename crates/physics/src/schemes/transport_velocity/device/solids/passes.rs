@@ -1,259 +1,36 @@
-//! Hypoelastic solids on a device.
+//! The passes of hypoelastic solids alone.
 
 use piola_device::{
-    Among, DeviceError, Dialect, Gather, Machine, Order, Pass, Space, Traced, Use, local, own,
-    spread, through,
+    Among, Dialect, Gather, Order, Pass, Space, Traced, Use, local, own, spread, through,
 };
 use piola_formulas::Number;
 use piola_formulas::pairs::fluid::Side;
 use piola_formulas::pairs::solid::{
-    ALONE, ANY, ELASTIC, ForceConstants, ForceSum, Forces, MATTER, Moments, ONE, PUSH,
-    RateConstants, RateSum, Rates, SPRINGS, SolidTension, Tension, Wall, WallForces, correction,
+    ALONE, ANY, ELASTIC, ForceSum, Forces, MATTER, Moments, ONE, PUSH, RateSum, Rates, SPRINGS,
+    SolidTension, Tension, Wall, WallForces, correction,
 };
 use piola_formulas::pairs::wall::{StressExtrapolation, Surroundings};
 use piola_formulas::pairs::{Components, Many, PairLaw as _, Record as _, Square};
 
-use super::super::inspect::step_limits;
-use super::super::solids::{Counted, Moved, Step, Stress, cauchy_stress, hold, mirrored};
-use super::super::stages::Pass as Stage;
-use super::super::{Common, Hypoelastic, Solid, SolidRates, TransportVelocity};
-use super::passes::{FORCES, Plan, drift_terms, flat, if_fluid, side, side_width};
-use super::walls::pick;
-use super::{OfMatter, STATE};
-use crate::parallel::Team;
+use super::super::super::solids::{Moved, Step, cauchy_stress, mirrored};
+use super::super::super::{Rates as CommonRates, Solid, SolidRates};
+use super::super::passes::{FORCES, drift_terms, flat, if_fluid, side, side_width};
+use super::super::walls::{forces, pick, total};
+use super::{FIGURES, MATERIAL, SolidPlan};
 use crate::schemes::device::{
-    Listed, Recorded as Vector, Room, are_finite, by_kind, entries, one, sighted, solid, square,
-    take, tensor,
+    Recorded as Vector, are_finite, by_kind, entries, one, square, take, tensor,
 };
-use crate::schemes::ledger::Total;
-use crate::schemes::look::Most;
-use crate::schemes::{DeviceRefusal, Health, StepLimit};
-
-/// Numbers that a look over the state takes of a particle.
-const FIGURES: usize = 8;
-
-/// Most materials whose laws stand in one pass.
-const MOST_MATERIALS: usize = 16;
-
-/// Columns of the material state, with their numbers.
-const MATERIAL: [(&str, usize); 4] =
-    [("deviatoric_stress", 6), ("plastic_strain", 1), ("temperature", 1), ("internal_energy", 1)];
-
-/// What the passes of hypoelastic solids depend on.
-pub(in super::super) struct SolidPlan<const D: usize> {
-    plan: Plan<D>,
-    /// The materials that differ, and which of them each body has.
-    materials: Vec<Solid>,
-    material_of: Vec<usize>,
-    /// Whether pressures follow from densities.
-    is_algebraic: bool,
-    /// Whether gradients are corrected.
-    corrects: bool,
-    rate_constants: RateConstants,
-    counted: Counted,
-    rate_kind: (u8, bool),
-    force_constants: ForceConstants,
-    force_kind: (bool, u8),
-    /// Rows of the particles that move as prescribed.
-    held: Listed<D>,
-}
 
 /// A tensor of numbers that are recorded.
-type Tensor<const D: usize> = nalgebra::SMatrix<Traced, D, D>;
-
-impl<const D: usize> OfMatter<D> for SolidPlan<D> {
-    type Kind = Hypoelastic<D>;
-
-    const STATE: &'static [[&'static str; 2]] = &{
-        let [a, b, c, d, e, f] = STATE;
-        [
-            a,
-            b,
-            c,
-            d,
-            e,
-            f,
-            ["deviatoric_stress", "deviatoric_stress_before"],
-            ["plastic_strain", "plastic_strain_before"],
-            ["temperature", "temperature_before"],
-            ["internal_energy", "internal_energy_before"],
-        ]
-    };
-    const FIGURES: usize = FIGURES;
-
-    fn of(system: &TransportVelocity<D, Hypoelastic<D>>) -> Result<Self, DeviceRefusal> {
-        let (common, matter) = (&system.common, &system.matter);
-        let mut materials: Vec<Solid> = Vec::new();
-        let find = |solid: &Solid| {
-            let known = materials.iter().position(|known| known == solid);
-            known.unwrap_or_else(|| {
-                materials.push(*solid);
-                materials.len() - 1
-            })
-        };
-        let material_of: Vec<usize> = matter.materials().iter().map(find).collect();
-        if materials.len() > MOST_MATERIALS {
-            return Err(DeviceRefusal::Stage {
-                what: "a case with more than 16 materials".into(),
-                instead: "give bodies the same material",
-            });
-        }
-        let mut plan = system.device_plan()?;
-        let of = |name, width| through("numbers", name, width);
-        plan.copied = MATERIAL.iter().map(|(name, width)| of(name, *width)).collect();
-        plan.copied.push(of("bulk", 2));
-        plan.copies = vec![own("matter", MATTER), own("waves", 2)];
-        if plan.are_several {
-            plan.copied.push(of("label", 1));
-            plan.copies.push(own("continuum", 1));
-        }
-        if plan.farthest.is_some() {
-            plan.copied.push(of("begin", D));
-            plan.copies.push(own("start", D));
-        }
-        let (rate_constants, counted, rate_kind) = matter.rate_law(common);
-        let (force_constants, force_kind) = matter.force_law(common);
-        Ok(Self {
-            plan,
-            materials,
-            material_of,
-            is_algebraic: common.settings.is_algebraic(),
-            corrects: matter.corrects(),
-            rate_constants,
-            counted,
-            rate_kind,
-            force_constants,
-            force_kind,
-            held: Listed::new(&[], &[], matter.held(), [], |number| common.mass[number]),
-        })
-    }
-
-    fn plan(&self) -> &Plan<D> {
-        &self.plan
-    }
-
-    fn room(&self, system: &TransportVelocity<D, Hypoelastic<D>>) -> Room {
-        let (common, rows) = (&system.common, self.held.len());
-        let count = common.particles.len();
-        let mut scratch = vec![
-            ("matter", MATTER * count),
-            ("waves", 2 * count),
-            ("rate", rate_width(D) * count),
-            ("tension", tension_width(D) * count),
-        ];
-        if self.corrects {
-            scratch.push(("correction", D * D * count));
-        }
-        let bodies = || common.particles.body.iter().map(|body| *body as usize);
-        let waves = |body: usize| {
-            let solid = &self.materials[self.material_of[body]];
-            [solid.state.wave_speed, solid.bulk_modulus()]
-        };
-        let mut filled = vec![("bulk", bodies().flat_map(waves).collect())];
-        if self.materials.len() > 1 {
-            let number = |body: usize| self.material_of[body] as f64;
-            filled.push(("material", bodies().map(number).collect()));
-        }
-        if self.plan.are_several {
-            filled.push(("label", self.labels(common)));
-        }
-        if self.plan.farthest.is_some() {
-            let begin = common.particles.position.iter();
-            filled.push(("begin", begin.flat_map(|place| place.iter().copied()).collect()));
-        }
-        if rows > 0 {
-            scratch.extend([("shown", 2 * D * rows), ("given", D * rows)]);
-            let mut held = vec![0.0; D * count];
-            for entry in system.matter.held().iter() {
-                held[D * entry.particle + entry.component] = 1.0;
-            }
-            filled.push(("held", held));
-        }
-        Room { scratch, filled }
-    }
-
-    fn indices(&self) -> Option<(&'static str, &[u32])> {
-        (self.held.len() > 0).then_some(("listed", &*self.held.particles))
-    }
-
-    fn passes(&self, dialect: Dialect) -> Vec<Pass> {
-        let plan = &self.plan;
-        let space = &plan.space();
-        let mut all = plan.passes::<Self::Kind>(dialect, space);
-        all.extend([
-            self.state(dialect),
-            self.rates(dialect, space),
-            self.advance(dialect),
-            self.tension(dialect),
-            self.forces(dialect, space),
-            self.look(dialect),
-        ]);
-        if self.corrects {
-            all.push(self.correct(dialect, space));
-        }
-        if plan.normals > 0 {
-            all.extend([self.walls(dialect, space), self.reactions(dialect, space)]);
-        }
-        if self.held.len() > 0 {
-            all.push(solid::show(dialect, &[("position", D), ("velocity", D)]));
-            all.extend([solid::give::<D>(dialect, "velocity"), self.hold(dialect)]);
-        }
-        all
-    }
-
-    fn passes_of(&self, stage: Stage<Stress>) -> &'static [&'static str] {
-        match stage {
-            Stage::Prescribe => &["show", "take"],
-            Stage::Own(Stress::Correct) => &["correct"],
-            Stage::Own(Stress::Tension) => &["tension"],
-            Stage::Own(Stress::Hold) => &["hold"],
-            _ => self.plan.passes_of(stage),
-        }
-    }
-
-    fn prescribe(
-        &mut self,
-        machine: &mut Machine,
-        time: f64,
-    ) -> Result<Option<Total>, DeviceError> {
-        let held = &mut self.held;
-        if held.len() == 0 {
-            return Ok(None);
-        }
-        for (row, shown) in held.shown(machine, 2 * D)?.chunks_exact(2 * D).enumerate() {
-            held.position[row].copy_from_slice(&shown[..D]);
-            held.velocity[row].copy_from_slice(&shown[D..]);
-        }
-        let Listed { prescribed, position, velocity, mass, .. } = held;
-        let matter = |row: usize| Some((row, mass[row]));
-        let totals = hold(prescribed, time, matter, position, velocity);
-        let total = Team::default().sum_in_order(totals);
-        held.give(machine, &held.velocity)?;
-        Ok(Some(total))
-    }
-
-    fn judge(
-        &self,
-        machine: &mut Machine,
-        count: usize,
-        limits: &mut Vec<StepLimit>,
-    ) -> Result<Health, DeviceError> {
-        let all: [(f64, usize); FIGURES] = machine.largest(count)?;
-        let (health, [signal, acceleration]) = sighted(&all, [0.0; 2]);
-        let fastest = Most { value: health.largest_speed, particle: health.largest_speed_particle };
-        step_limits(self.plan.smoothing_length, 0.0, [signal, fastest, acceleration], limits);
-        let escaped = all[FIGURES - 1];
-        Ok(Health { first_escaped: (escaped.0 > 0.0).then_some(escaped.1), ..health })
-    }
-}
+type Matrix<const D: usize> = nalgebra::SMatrix<Traced, D, D>;
 
 /// Numbers of rates: the common ones, the gradient, what is carried, heat.
-const fn rate_width(dimension: usize) -> usize {
+pub(super) const fn rate_width(dimension: usize) -> usize {
     4 + dimension * dimension + MATTER + 1
 }
 
 /// Numbers of the stress that forces gather, with its weight and share.
-const fn tension_width(dimension: usize) -> usize {
+pub(super) const fn tension_width(dimension: usize) -> usize {
     dimension * dimension + 2
 }
 
@@ -276,13 +53,6 @@ fn stressed<const D: usize>(x: &mut &[Traced]) -> Tension<Traced, D> {
 }
 
 impl<const D: usize> SolidPlan<D> {
-    /// The continuum of each particle.
-    fn labels(&self, common: &Common<D>) -> Vec<f64> {
-        let both = common.particles.body.iter().zip(&common.is_wall);
-        both.map(|(body, is_wall)| if *is_wall { super::passes::WALL } else { f64::from(*body) })
-            .collect()
-    }
-
     /// What is read to tell materials apart.
     fn of_material(&self) -> Option<Use> {
         (self.materials.len() > 1).then_some(through("numbers", "material", 1))
@@ -299,7 +69,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Corrections of gradients.
-    fn correct(&self, dialect: Dialect, space: &Space<D>) -> Pass {
+    pub(super) fn correct(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let columns = [&[own("side", side_width(D))], &*self.plan.of_continua()].concat();
         let writes = [own("correction", D * D)];
         Gather::<Square<D>, _>::new(dialect, "correct", space, Among::Active, Order::Lanes)
@@ -314,7 +84,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Pressures that follow from densities, and squares of speeds.
-    fn state(&self, dialect: Dialect) -> Pass {
+    pub(super) fn state(&self, dialect: Dialect) -> Pass {
         let of = |name, width| through("numbers", name, width);
         let mut reads = vec![of("wall", 1), own("side", side_width(D)), own("matter", MATTER)];
         // Not from the side, which may be in single precision.
@@ -350,7 +120,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Sides and stresses of wall particles from the solids around them.
-    fn walls(&self, dialect: Dialect, space: &Space<D>) -> Pass {
+    pub(super) fn walls(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         type Sums<const D: usize> = (Surroundings<D>, Many<6>);
         let (plan, around) = (&self.plan, [own("side", side_width(D)), own("matter", MATTER)]);
         let columns = [&*plan.of_ghosts(), &[own("matter", MATTER)]].concat();
@@ -376,7 +146,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Velocity gradients, and what the deviation carries.
-    fn rates(&self, dialect: Dialect, space: &Space<D>) -> Pass {
+    pub(super) fn rates(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         match self.rate_kind {
             (ALONE, false) => self.rates_of::<ALONE, false>(dialect, space),
             (ALONE, true) => self.rates_of::<ALONE, true>(dialect, space),
@@ -428,7 +198,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Particles move on with their rates, and what that does to energies and momenta.
-    fn advance(&self, dialect: Dialect) -> Pass {
+    pub(super) fn advance(&self, dialect: Dialect) -> Pass {
         let mut reads =
             vec![own("position", D), own("velocity", D), own("deviation", D), own("density", 1)];
         let material = MATERIAL.map(|(name, width)| own(name, width));
@@ -451,7 +221,7 @@ impl<const D: usize> SolidPlan<D> {
             let deviation: Vector<D> = take(&mut x);
             let (density, pressure) = (one(&mut x), one(&mut x));
             let (matter, mass, wall) = (matter(&mut x), one(&mut x), one(&mut x));
-            let common = super::super::Rates {
+            let common = CommonRates {
                 divergence: one(&mut x),
                 density_transport: one(&mut x),
                 pressure_transport: one(&mut x),
@@ -486,7 +256,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Stresses that forces gather.
-    fn tension(&self, dialect: Dialect) -> Pass {
+    pub(super) fn tension(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![own("side", side_width(D)), own("matter", MATTER)];
         if self.corrects {
             reads.extend([through("numbers", "wall", 1), own("correction", D * D)]);
@@ -497,7 +267,7 @@ impl<const D: usize> SolidPlan<D> {
             // Gradients of walls are not corrected.
             let correction = self.corrects.then(|| {
                 let (wall, correction) = (one(&mut x), tensor::<D>(&mut x));
-                correction.zip_map(&Tensor::<D>::identity(), |own, unit| if_fluid(wall, own, unit))
+                correction.zip_map(&Matrix::<D>::identity(), |own, unit| if_fluid(wall, own, unit))
             });
             let mut tension = SolidTension::<D>::zero();
             tension.set(&cauchy_stress(side.pressure, &matter), &side, correction.as_ref());
@@ -506,7 +276,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Accelerations between particles, and what shifting needs.
-    fn forces(&self, dialect: Dialect, space: &Space<D>) -> Pass {
+    pub(super) fn forces(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         match self.force_kind {
             (true, ONE) => self.forces_of::<true, ONE>(dialect, space),
             (true, PUSH) => self.forces_of::<true, PUSH>(dialect, space),
@@ -573,7 +343,7 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// What solids do to wall particles.
-    fn reactions(&self, dialect: Dialect, space: &Space<D>) -> Pass {
+    pub(super) fn reactions(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let columns =
             [own("side", side_width(D)), own("tension", tension_width(D)), own("waves", 2)];
         let tension = [own("tension", tension_width(D))];
@@ -593,13 +363,13 @@ impl<const D: usize> SolidPlan<D> {
     }
 
     /// Takes from the accelerations what prescribed velocities do not follow.
-    fn hold(&self, dialect: Dialect) -> Pass {
+    pub(super) fn hold(&self, dialect: Dialect) -> Pass {
         let (reads, writes) =
             ([through("numbers", "held", D), own("force", FORCES * D)], [own("force", FORCES * D)]);
         local(dialect, "hold", &[], &reads, &writes, |mut x| {
             let held: Vector<D> = take(&mut x);
             let mut all = x.to_vec();
-            let total = super::walls::total(&super::walls::forces::<D>(&mut x));
+            let total = total(&forces::<D>(&mut x));
             for axis in 0..D {
                 let walls = &mut all[4 * D + axis];
                 *walls = Traced::select(held[axis].above(0.5), *walls - total[axis], *walls);
@@ -610,7 +380,7 @@ impl<const D: usize> SolidPlan<D> {
 
     /// Squares of speed and acceleration, speeds of waves and signals, less the volume ratio, and whether something is not
     /// finite.
-    fn look(&self, dialect: Dialect) -> Pass {
+    pub(super) fn look(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![
             own("position", D),
             own("velocity", D),
