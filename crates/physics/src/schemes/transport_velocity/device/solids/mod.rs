@@ -31,7 +31,7 @@ const MATERIAL: [(&str, usize); 4] =
 /// What the passes of hypoelastic solids depend on.
 pub(in super::super) struct SolidPlan<const D: usize> {
     plan: Plan<D>,
-    /// The materials that differ, and which of them each body has.
+    /// The materials that differ, and which of them each body has; walls have any.
     materials: Vec<Solid>,
     material_of: Vec<usize>,
     /// Whether pressures follow from densities.
@@ -69,15 +69,20 @@ impl<const D: usize> OfMatter<D> for SolidPlan<D> {
 
     fn of(system: &TransportVelocity<D, Hypoelastic<D>>) -> Result<Self, DeviceRefusal> {
         let (common, matter) = (&system.common, &system.matter);
+        // Those of walls are not asked for.
+        let mut is_solid = vec![false; matter.materials().len()];
+        for (body, is_wall) in common.particles.body.iter().zip(&common.is_wall) {
+            is_solid[*body as usize] |= !is_wall;
+        }
         let mut materials: Vec<Solid> = Vec::new();
-        let find = |solid: &Solid| {
-            let known = materials.iter().position(|known| known == solid);
+        let mut find = |(solid, is_solid): (&Solid, bool)| {
+            let known = materials.iter().position(|known| known == solid || !is_solid);
             known.unwrap_or_else(|| {
-                materials.push(*solid);
-                materials.len() - 1
+                materials.extend(is_solid.then_some(*solid));
+                materials.len().saturating_sub(1)
             })
         };
-        let material_of: Vec<usize> = matter.materials().iter().map(find).collect();
+        let material_of = matter.materials().iter().zip(is_solid).map(&mut find).collect();
         if materials.len() > MOST_MATERIALS {
             return Err(DeviceRefusal::Stage {
                 what: "a case with more than 16 materials".into(),
@@ -132,7 +137,7 @@ impl<const D: usize> OfMatter<D> for SolidPlan<D> {
         }
         let bodies = || common.particles.body.iter().map(|body| *body as usize);
         let waves = |body: usize| {
-            let solid = &self.materials[self.material_of[body]];
+            let solid = &system.matter.materials()[body];
             [solid.state.wave_speed, solid.bulk_modulus()]
         };
         let mut filled = vec![("bulk", bodies().flat_map(waves).collect())];
