@@ -14,6 +14,9 @@ PIOLA, DEVICE = sys.argv[1:3]
 RUNS = [
     ("ctvf/taylor-green", "probes:fastest.velocity.magnitude probes:pressure.error energy:kinetic", "time.end=0.5"),
     ("ctvf/dam-break-3d", "probes:toe.position.x probes:tank.force.x energy:kinetic", "time.end=0.3"),
+    ("ctvf/swinging-plate", "probes:tip.position.y energy:kinetic energy:total", "parameters.across=10", "time.end=0.04"),
+    ("ctvf/taylor-bar", "probes:foot.position.x probes:strain.plastic_strain energy:total", "parameters.across=8", "time.end=20e-6"),
+    ("ctvf/rings", "probes:A.position.x energy:kinetic energy:total", "time.end=0.002"),
     ("upwind/piston", "probes:top.displacement.y probes:top.pressure energy:total", "time.end=5"),
     ("upwind/bar-sine", "probes:tip.displacement.x probes:clamp.pressure energy:total", "time.end=3"),
     ("upwind/column-impact", "probes:top.displacement.y probes:floor.pressure energy:total", "time.end=1"),

@@ -14,6 +14,7 @@ OGDEN = (
     "body.strip.material={ kind = 'ogden', density = 1000.0, moduli = [0.63e6, 1.2e3, -1e4], "
     "exponents = [1.3, 5.0, -2.0], bulk_modulus = 2e6, plane = 'strain' }"
 )
+SPALL = "body.{}.material.spall_strength=1.5e9"
 # Case, most steps, and what is set besides.
 RUNS = [
     ("ctvf/taylor-green", 100, "output.every=0.05"),
@@ -58,6 +59,26 @@ RUNS = [
     ("upwind/dam-break", 200),
     ("upwind/dam-break-3d", 100),
     ("upwind/drop-3d", 100),
+    ("ctvf/swinging-plate", 200),
+    ("ctvf/swinging-plate", 200, "scheme.pressure='edac'"),
+    ("ctvf/swinging-plate-3d", 100),
+    ("ctvf/rings", 200),
+    ("ctvf/rings", 200, "scheme.self_contact=10.0"),
+    ("ctvf/rings-3d", 100),
+    ("ctvf/impact", 200),
+    ("ctvf/impact", 200, SPALL.format("projectile"), SPALL.format("plate")),
+    ("ctvf/impact-3d", 100),
+    ("ctvf/taylor-bar", 100),
+    ("ctvf/compression", 200),
+    ("ctvf/contact", 200),
+    ("ctvf/contact", 200, "scheme.contact='repulsive'"),
+    ("ctvf/johnson-cook", 200),
+    ("ctvf/plane-shock", 200),
+    (
+        "ctvf/plane-shock",
+        200,
+        "body.bar.material.pressure_law={ kind = 'tait', exponent = 4.0 }",
+    ),
 ]
 
 

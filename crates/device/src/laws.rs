@@ -69,10 +69,15 @@ pub fn returned<T: Number>(strength: &Strength, shear_modulus: f64, x: &[T]) -> 
     ]
 }
 
-/// Pressure of a solid in Pa, of its density in kg/m^3 and its specific energy in J/kg.
-pub fn pressure(name: &str, law: &EquationOfState) -> Law {
+/// Pressure of a solid in Pa, its specific energy of compression in J/kg and the square of its bulk wave speed in
+/// m^2/s^2, of its density in kg/m^3 and its specific energy in J/kg.
+pub fn equation_of_state(name: &str, law: &EquationOfState) -> Law {
     Law::record(name, ["density", "energy"], |x: &[Traced]| {
-        vec![("pressure".into(), law.pressure(x[0], x[1]))]
+        vec![
+            ("pressure".into(), law.pressure(x[0], x[1])),
+            ("compression_energy".into(), law.compression_energy(x[0], x[1])),
+            ("wave_speed_squared".into(), law.wave_speed_squared(x[0], x[1])),
+        ]
     })
 }
 
@@ -133,7 +138,7 @@ pub fn equations_of_state() -> [(&'static str, EquationOfState); 3] {
     let mie_gruneisen = PressureLaw::MieGrueneisen { slope: 1.49, gruneisen: 2.0 };
     [
         ("linear_pressure", of(PressureLaw::Linear, f64::INFINITY)),
-        ("tait", of(PressureLaw::Tait { exponent: 7.15 }, f64::INFINITY)),
+        ("tait", of(PressureLaw::Tait { exponent: 7.15 }, 1.2e9)),
         ("mie_gruneisen", of(mie_gruneisen, 1.2e9)),
     ]
 }
@@ -147,6 +152,6 @@ pub fn all() -> Vec<Law> {
         .chain(solids().iter().map(stress))
         .chain(materials[..2].iter().map(volumetric))
         .chain(strengths)
-        .chain(equations_of_state().map(|(name, law)| pressure(name, &law)))
+        .chain(equations_of_state().map(|(name, law)| equation_of_state(name, &law)))
         .collect()
 }

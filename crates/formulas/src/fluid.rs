@@ -14,8 +14,13 @@ pub fn pressure<T: Number>(density: T, reference_density: f64, wave_speed: f64) 
 
 /// Density in kg/m^3 at which the law of [`pressure`] gives a pressure in Pa.
 #[inline]
-pub fn density<T: Number>(pressure: T, reference_density: f64, wave_speed: f64) -> T {
-    pressure / (wave_speed * wave_speed) + reference_density
+pub fn density<T: Number>(
+    pressure: T,
+    reference_density: impl Into<T>,
+    wave_speed: impl Into<T>,
+) -> T {
+    let wave_speed = wave_speed.into();
+    pressure / (wave_speed * wave_speed) + reference_density.into()
 }
 
 /// Diffusivity of the pressure `alpha h c / 8` in m^2/s, CTVF (24).

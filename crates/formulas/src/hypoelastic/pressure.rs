@@ -87,56 +87,56 @@ impl EquationOfState {
 
     /// Square of the bulk wave speed in m^2/s^2, `dp/drho` of the law at constant entropy, torn or
     /// not; not below a hundredth of that at rest.
-    pub fn wave_speed_squared(&self, density: f64, energy: f64) -> f64 {
+    pub fn wave_speed_squared<T: Number>(&self, density: T, energy: T) -> T {
         let at_rest = self.wave_speed * self.wave_speed;
         let square = match self.law {
-            PressureLaw::Linear => at_rest,
+            PressureLaw::Linear => T::from(at_rest),
             PressureLaw::Tait { exponent } => {
-                at_rest * Number::powf(density / self.density, exponent - 1.0)
+                (density / self.density).powf(exponent - 1.0) * at_rest
             }
             PressureLaw::MieGrueneisen { slope, gruneisen } => {
-                let pressure = self.pressure_of_law(density, energy);
-                let thermal = gruneisen * self.density * pressure / (density * density);
-                let cold = match self.compression(density, slope) {
-                    eta if eta <= 0.0 => at_rest,
-                    eta => {
-                        let rest = 1.0 - slope * eta;
-                        let hugoniot = self.density * at_rest * eta / (rest * rest);
-                        let growth = self.density * at_rest * (1.0 + slope * eta) / rest.powi(3);
-                        (growth * (1.0 - 0.5 * gruneisen * eta) - 0.5 * gruneisen * hugoniot)
-                            * self.density
-                            / (density * density)
-                    }
+                let (pressure, square) = (self.pressure_of_law(density, energy), density * density);
+                let thermal = pressure * (gruneisen * self.density) / square;
+                let eta = self.compression(density, slope);
+                let compressed = || {
+                    let (modulus, rest) = (self.density * at_rest, -(eta * slope) + 1.0);
+                    let hugoniot = eta * modulus / (rest * rest);
+                    let growth = (eta * slope + 1.0) * modulus / (rest * rest * rest);
+                    let half = 0.5 * gruneisen;
+                    let slope = growth * (-(eta * half) + 1.0) - hugoniot * half;
+                    slope * self.density / square
                 };
-                cold + thermal
+                T::choose(eta.at_most(T::zero()), || T::from(at_rest), compressed) + thermal
             }
         };
-        square.max(0.01 * at_rest)
+        let least = T::from(0.01 * at_rest);
+        T::select(least.at_most(square), square, least)
     }
 
     /// Specific energy of compression in J/kg: the integral of `p / rho^2 d rho`; with the law of
     /// Mie and Grueneisen the internal energy itself.
-    pub fn compression_energy(&self, density: f64, energy: f64) -> f64 {
-        match self.spall_density() {
-            // At the constant tension at which the solid opens.
-            Some(spall) if density < spall => {
-                self.energy_of_law(spall, energy)
-                    + self.spall_strength * (density.recip() - spall.recip())
-            }
-            _ => self.energy_of_law(density, energy),
-        }
+    pub fn compression_energy<T: Number>(&self, density: T, energy: T) -> T {
+        let whole = || self.energy_of_law(density, energy);
+        let Some(spall) = self.spall_density() else { return whole() };
+        // At the constant tension at which the solid opens.
+        let torn = || {
+            let opened = density.recip() - spall.recip();
+            self.energy_of_law(T::from(spall), energy) + opened * self.spall_strength
+        };
+        T::choose(density.below(spall), torn, whole)
     }
 
-    fn energy_of_law(&self, density: f64, energy: f64) -> f64 {
+    fn energy_of_law<T: Number>(&self, density: T, energy: T) -> T {
         let square = self.wave_speed * self.wave_speed;
         let ratio = density / self.density;
+        let growth = ratio - 1.0;
         match self.law {
             // ln x + 1/x - 1 with the digits of small x - 1.
-            PressureLaw::Linear => square * (Number::ln_1p(ratio - 1.0) - (ratio - 1.0) / ratio),
+            PressureLaw::Linear => (growth.ln_1p() - growth / ratio) * square,
             PressureLaw::Tait { exponent } => {
-                let logarithm = (exponent - 1.0) * Number::ln(ratio);
-                let power = Number::exp_m1(logarithm) / (exponent - 1.0);
-                square / exponent * (power - (ratio - 1.0) / ratio)
+                let logarithm = ratio.ln() * (exponent - 1.0);
+                let power = logarithm.exp_m1() / (exponent - 1.0);
+                (power - growth / ratio) * (square / exponent)
             }
             PressureLaw::MieGrueneisen { .. } => energy,
         }

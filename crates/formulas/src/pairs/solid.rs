@@ -1,11 +1,11 @@
 //! Pair laws of solids in the transport-velocity formulation. Paper: CTVF, sections 3.2 and 4.4 to 4.7.
 
-use super::fluid::FluidSide;
+use super::fluid::{FluidSide, Side};
 use super::{
     Components, Many, MovingPair, Of, One, PairLaw, Record, Square, difference, dot, record,
 };
 use crate::kernels::Needs;
-use crate::{Number, fluid};
+use crate::{Number, fluid, tensor};
 
 /// Numbers of a particle of a solid beside density, pressure and velocity: the deviatoric stress in Pa
 /// as xx, yy, zz, yz, xz, xy, the plastic strain, the temperature in K and the specific internal energy
@@ -29,6 +29,23 @@ record! {
         pub wave_speed: One,
         /// Bulk modulus at rest in Pa.
         pub stiffness: One,
+    }
+}
+
+impl<T: Number, const D: usize> Tension<T, D> {
+    /// Sets what follows from the stress in Pa of a particle and, with corrected gradients, from its
+    /// [`correction`].
+    #[inline(always)]
+    pub fn set(
+        &mut self,
+        stress: &Of<Square<D>, T>,
+        side: &Side<T, D>,
+        correction: Option<&Of<Square<D>, T>>,
+    ) {
+        (self.tensor, self.weight, self.share) = match correction {
+            Some(correction) => (stress * *correction, side.volume, side.density.recip()),
+            None => (stress / (side.density * side.density), side.mass(), T::one()),
+        };
     }
 }
 
@@ -80,6 +97,21 @@ record! {
         pub volume: Components<D>,
         /// The same with what CTVF (35) weighs crowds with.
         pub crowding: Components<D>,
+    }
+}
+
+impl<T: Number, const D: usize> ForceSums<T, D> {
+    /// The accelerations in m/s^2 of a particle of a mass in kg by stress and contact, and by walls, with its
+    /// [`Tension::share`].
+    #[inline(always)]
+    pub fn accelerations(
+        &self,
+        share: T,
+        mass: T,
+        constants: &ForceConstants,
+    ) -> [Of<Components<D>, T>; 2] {
+        let contact = if constants.penalty > 0.0 { mass.recip() } else { T::one() };
+        [self.stress * share + self.contact * contact, self.walls * share]
     }
 }
 
@@ -306,6 +338,22 @@ record! {
     }
 }
 
+impl<const D: usize, const KIND: u8, const CARRIES: bool> Rates<D, KIND, CARRIES> {
+    /// What the deviation carries of the material state in a second, theory (68): of the sums of the law, and
+    /// what makes the trace of the stress zero.
+    #[inline]
+    pub fn transport<T: Number>(sums: &RateSums<T, D>) -> [T; MATTER] {
+        let mut transport = sums.carried;
+        for (k, transport) in transport.iter_mut().enumerate() {
+            if !(CARRIES && is_carried(D, KIND, k)) {
+                *transport = T::zero();
+            }
+        }
+        transport[ZZ] = -transport[0] - transport[1];
+        transport
+    }
+}
+
 impl<const D: usize, const KIND: u8, const CARRIES: bool> PairLaw for Rates<D, KIND, CARRIES> {
     type Pair = MovingPair<D>;
     type Side = ((FluidSide<D>, SolidTension<D>), (Many<MATTER>, One));
@@ -396,4 +444,24 @@ impl<const D: usize> PairLaw for Moments<D> {
             }
         }
     }
+}
+
+/// Smallest eigenvalue of the matrix to be inverted that is trusted. At an edge of a body it is a
+/// half, in a corner a quarter; a particle that has lost its neighbours gets no correction.
+const LEAST: f64 = 0.1;
+
+/// The correction `L_a = [ sum V_b (r_b - r_a) (x) grad W_ab ]^-1` of theory (74) with the sums of [`Moments`], of
+/// which those with `i <= j` are filled; the identity where it cannot be trusted.
+#[inline]
+pub fn correction<T: Number, const D: usize>(sums: &Of<Square<D>, T>) -> Of<Square<D>, T> {
+    let sum = Of::<Square<D>, T>::from_fn(|i, j| sums[(i.min(j), i.max(j))]);
+    let determinant = tensor::determinant(&sum);
+    let inverse = tensor::cofactor(&sum).transpose() / determinant;
+    let is_finite = |number: &T| number.abs().at_most(T::from(f64::MAX));
+    let trusted = tensor::smallest_eigenvalue(&sum).above(LEAST) & is_finite(&determinant);
+    let trusted = inverse.iter().fold(trusted, |all, entry| all & is_finite(entry));
+    Of::<Square<D>, T>::from_fn(|i, j| {
+        let unit = if i == j { T::one() } else { T::zero() };
+        T::select(trusted, inverse[(i, j)], unit)
+    })
 }

@@ -55,6 +55,8 @@ fn single_precision_costs_no_more_than_its_rounding() {
     for (name, set) in [
         ("ctvf/taylor-green", &[][..]),
         ("ctvf/dam-break-3d", &[]),
+        ("ctvf/swinging-plate", &[]),
+        ("ctvf/rings", &[]),
         ("dual-support/free-vibration", &["parameters.dx=1"]),
         ("total-lagrangian/presets", &["scheme.artificial_viscosity=[1, 2]"]),
         ("upwind/bar-sine", &[]),

@@ -54,10 +54,40 @@ const CASES: [(&str, &[&str]); 22] = [
     ("upwind/drop-3d", &["scheme.wave_speed='stretch'"]),
 ];
 
+const NO_SLIP: &str = "body.wall.wall.slip='no'";
+const LEAD: &str = "body.wall.material={ kind = 'hypoelastic', density = 11340, young_modulus = 16e9, poisson_ratio = 0.44 }";
+const SWING: &str = "boundary.clamp.velocity.y='0.1 * x * sin(100 * t)'";
+const PUMP: &str = "boundary.piston.velocity.y='-10 * sin(1e5 * t)'";
+const SPALL: &str = "body.projectile.material.spall_strength=1e8";
+
+/// Hypoelastic solids: alone, in contact of each kind, at walls, with what flows, tears and heats.
+const HYPOELASTIC: [(&str, &[&str]); 13] = [
+    ("ctvf/swinging-plate", &["scheme.pressure='edac'", "scheme.corrected_gradients=false"]),
+    (
+        "ctvf/swinging-plate",
+        &[
+            "scheme.corrections='gtvf'",
+            "load+={ kind = 'body_force', acceleration = ['0', '9 * sin(40 * t)'] }",
+            SWING,
+        ],
+    ),
+    ("ctvf/swinging-plate-3d", &["parameters.across=4"]),
+    ("ctvf/rings", &[]),
+    ("ctvf/rings", &["scheme.self_contact=10.0", "scheme.free_surface=false"]),
+    ("ctvf/impact", &[SPALL, "scheme.pressure='edac'"]),
+    ("ctvf/taylor-bar", &["parameters.across=6"]),
+    ("ctvf/taylor-bar", &["parameters.across=6", NO_SLIP, LEAD, "scheme.escaped='remove'"]),
+    ("ctvf/compression", &["scheme.corrected_gradients=true", PUMP]),
+    ("ctvf/contact", &[]),
+    ("ctvf/contact", &["scheme.contact='repulsive'", "body.left.material.bulk_modulus=4e7"]),
+    ("ctvf/johnson-cook", &[]),
+    ("ctvf/plane-shock", &[]),
+];
+
 #[test]
 fn a_device_has_the_bits_of_the_processor() {
     let Some(device) = device() else { return };
-    for (name, set) in CASES {
+    for (name, set) in CASES.into_iter().chain(HYPOELASTIC) {
         let set: Vec<&str> = set.iter().copied().chain(["time.max_steps=60"]).collect();
         let [mut here, mut there] =
             ["processor", &device].map(|device| session(&load(name, &set, device)));
@@ -73,7 +103,7 @@ fn a_device_has_the_bits_of_the_processor() {
 }
 
 /// What a step keeps for the next one: rates of places, viscous forces, planes that move, forces that change.
-const KEPT: [(&str, &[&str]); 6] = [
+const KEPT: [(&str, &[&str]); 9] = [
     ("dual-support/free-vibration", &["parameters.dx=1", "scheme.artificial_viscosity=[1, 2]"]),
     ("total-lagrangian/presets", &[PULL, PRESS, LOAD]),
     ("elastodynamics/biaxial", &[]),
@@ -83,6 +113,9 @@ const KEPT: [(&str, &[&str]); 6] = [
     ),
     ("upwind/piston", &["time.integrator='ssp_rk3'"]),
     ("upwind/dam-break", &["load+={ kind = 'body_force', acceleration = ['sin(50 * t)', '0'] }"]),
+    ("ctvf/swinging-plate", &[SWING]),
+    ("ctvf/compression", &[PUMP]),
+    ("ctvf/rings", &[]),
 ];
 
 /// A session of a case with 40 steps, and the bits of its tables at the end.

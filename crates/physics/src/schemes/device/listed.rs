@@ -26,7 +26,7 @@ pub(crate) struct Listed<const D: usize> {
     loaded: Vec<Loaded<D>>,
     pressed: Vec<Pressed<D>>,
     pub prescribed: PrescribedComponents,
-    mass: Vec<f64>,
+    pub mass: Vec<f64>,
     pub position: Vec<Vector<D>>,
     pub velocity: Vec<Vector<D>>,
     pub acceleration: Vec<Vector<D>>,
@@ -86,13 +86,12 @@ impl<const D: usize> Listed<D> {
         Ok(shown)
     }
 
-    /// Gives a device the accelerations.
-    pub fn give(&self, machine: &mut Machine) -> Result<(), DeviceError> {
+    /// Gives a device a vector of each row.
+    pub fn give(&self, machine: &mut Machine, rows: &[Vector<D>]) -> Result<(), DeviceError> {
         if self.len() == 0 {
             return Ok(());
         }
-        let given: Vec<f64> =
-            self.acceleration.iter().flat_map(|row| row.iter().copied()).collect();
+        let given: Vec<f64> = rows.iter().flat_map(|row| row.iter().copied()).collect();
         machine.write("given", &given)?;
         machine.start("take", self.len(), &[])
     }

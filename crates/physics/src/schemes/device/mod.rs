@@ -16,7 +16,9 @@ use crate::solve::Costs;
 
 pub(crate) use listed::{Acting, Listed};
 pub(crate) use memory::{Room, fits};
-pub(crate) use numbers::{Recorded, are_finite, entries, one, sighted, square, take, tensor};
+pub(crate) use numbers::{
+    Recorded, are_finite, by_kind, entries, one, sighted, square, take, tensor,
+};
 pub(crate) use state::{Gravity, StateColumn, StateColumns};
 
 /// Why steps that are taken elsewhere cannot go on.
@@ -205,11 +207,6 @@ pub enum DeviceRefusal {
         "several systems in one case do not run on devices yet: leave out `--device` and `compute.device`"
     )]
     Systems,
-    /// The bodies are solids that deform as hypoelastic ones do.
-    #[error(
-        "solids of `transport_velocity` do not run on devices yet: leave out `--device` and `compute.device`"
-    )]
-    Solids,
     /// The integrator has no steps on devices.
     #[error(
         "the integrator `{integrator}` does not run on devices with this formulation: use {able}, or leave out \

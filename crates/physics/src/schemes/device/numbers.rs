@@ -36,6 +36,21 @@ pub(crate) fn entries<const D: usize>(tensor: &SMatrix<Traced, D, D>) -> Vec<Tra
     (0..D * D).map(|k| tensor[(k / D, k % D)]).collect()
 }
 
+/// What the kind of a particle makes of something, as `of` does for the number of a kind: the first one, or that of
+/// `kind` among so many.
+pub(crate) fn by_kind<const K: usize>(
+    kinds: usize,
+    kind: Option<Traced>,
+    of: impl Fn(usize) -> [Traced; K],
+) -> [Traced; K] {
+    let first = of(0);
+    let Some(kind) = kind else { return first };
+    (1..kinds).fold(first, |before, number| {
+        let (own, is_own) = (of(number), kind.above(number as f64 - 0.5));
+        std::array::from_fn(|k| Traced::select(is_own, own[k], before[k]))
+    })
+}
+
 /// The square of a length.
 pub(crate) fn square<const D: usize>(vector: &Recorded<D>) -> Traced {
     vector.dot(vector)

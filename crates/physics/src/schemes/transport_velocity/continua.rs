@@ -65,6 +65,11 @@ impl<const D: usize> Continua<D> {
         !self.labels.is_empty()
     }
 
+    /// How far apart in m particles of one continuum may have begun, if bodies touch themselves.
+    pub fn farthest(&self) -> Option<f64> {
+        (!self.starts.is_empty()).then_some(self.farthest)
+    }
+
     /// Fills what belongs to the places of particles of bodies, of walls or not, that began somewhere in m,
     /// where a new list has renewed them.
     pub fn follow(

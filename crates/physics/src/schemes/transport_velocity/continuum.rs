@@ -239,24 +239,20 @@ pub trait Continuum<const D: usize>: Sized + Send + Sync + 'static {
     /// # Errors
     /// It has none, or the device refuses.
     fn to_device(
-        _system: &TransportVelocity<D, Self>,
-        _device: Device,
-        _method: DeviceMethod,
-    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        Err(DeviceRefusal::Solids)
-    }
+        system: &TransportVelocity<D, Self>,
+        device: Device,
+        method: DeviceMethod,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal>;
 
     /// The stages of its steps on a device in a language.
     ///
     /// # Errors
     /// It has none.
     fn device_stages(
-        _system: &TransportVelocity<D, Self>,
-        _language: Language,
-        _method: DeviceMethod,
-    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        Err(DeviceRefusal::Solids)
-    }
+        system: &TransportVelocity<D, Self>,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal>;
 }
 
 impl<const D: usize> Common<D> {

@@ -46,6 +46,13 @@ pub(super) struct Room<const D: usize> {
     pub walls: Extent<D>,
 }
 
+impl<const D: usize> Room<D> {
+    /// That up to so many m from walls in a box.
+    pub fn around(walls: Extent<D>, margin: f64) -> Self {
+        Self { bounds: walls.widened(margin), walls }
+    }
+}
+
 /// Where a particle has escaped to.
 enum Place<const D: usize> {
     /// Out of the bounds.
@@ -137,10 +144,13 @@ impl<const D: usize> Common<D> {
 
     /// Where particles may be in `state`, if anybody asks.
     pub(super) fn room(&self, state: &[f64]) -> Option<Room<D>> {
+        Some(Room::around(self.extent_of_walls(state)?, self.margin()?))
+    }
+
+    /// How far from the box around the cells of walls particles may be in m, if anybody asks.
+    pub(super) fn margin(&self) -> Option<f64> {
         let (_, reach) = self.guard.as_ref()?;
-        let walls = self.extent_of_walls(state)?;
-        let half = 0.5 * self.particles.spacing[0];
-        Some(Room { bounds: walls.widened(reach - half), walls })
+        Some(reach - 0.5 * self.particles.spacing[0])
     }
 
     /// The box around the cells of all particles of walls in `state`.

@@ -6,15 +6,15 @@ use crate::Vector;
 /// Rates of change of a particle's density and pressure, term by term, see
 /// [`super`](crate::schemes::transport_velocity).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rates {
+pub struct Rates<T = f64> {
     /// `div u` in 1/s, or `div uhat`, as the corrections say.
-    pub divergence: f64,
+    pub divergence: T,
     /// `d . grad rho` in kg/(m^3 s).
-    pub density_transport: f64,
+    pub density_transport: T,
     /// `d . grad p` in Pa/s.
-    pub pressure_transport: f64,
+    pub pressure_transport: T,
     /// Diffusion of the pressure in Pa/s.
-    pub pressure_diffusion: f64,
+    pub pressure_diffusion: T,
 }
 
 /// Accelerations of a particle in m/s^2, term by term, and sums that the same pass gathers.

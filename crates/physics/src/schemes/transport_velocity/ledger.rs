@@ -15,8 +15,11 @@ pub(super) const ACCELERATIONS: usize = 6;
 /// Sums over particles that a kick needs, by mechanism.
 pub(super) type Kick = [Total; ACCELERATIONS];
 
-/// Sums over particles of what a drift does: by pressure, transport and a mechanism of the matter.
-pub type Drift = [Total; 3];
+/// Number of the mechanisms of a drift: pressure, transport and one of the matter.
+pub(super) const DRIFTING: usize = 3;
+
+/// Sums over particles of what a drift does, by mechanism.
+pub type Drift = [Total; DRIFTING];
 
 impl<const D: usize> Common<D> {
     /// Kinetic energy in J.

@@ -155,7 +155,8 @@ impl<const D: usize> OnDevice<D> {
             }
         }
         let acting = self.followed.act(time);
-        self.followed.listed.give(&mut self.machine)?;
+        let listed = &self.followed.listed;
+        listed.give(&mut self.machine, &listed.acceleration)?;
         Ok(acting)
     }
 

@@ -13,7 +13,9 @@ use piola_formulas::{Number, tensor};
 use super::super::Mixture;
 use crate::operators::stabilised;
 use crate::schemes::device::solid;
-use crate::schemes::device::{Recorded, are_finite, entries, one, square, take, tensor as taken};
+use crate::schemes::device::{
+    Recorded, are_finite, by_kind, entries, one, square, take, tensor as taken,
+};
 use crate::schemes::momentum::{moments, momentum_components};
 
 type Tensor<const D: usize> = SMatrix<Traced, D, D>;
@@ -166,13 +168,8 @@ impl<const D: usize> Plan<D> {
         x: &mut &[Traced],
         of: impl Fn(usize) -> [Traced; K],
     ) -> [Traced; K] {
-        let first = of(0);
-        let Some(_) = self.of_mixture() else { return first };
-        let mixture = one(x);
-        (1..self.mixtures.len()).fold(first, |before, number| {
-            let (own, is_own) = (of(number), mixture.above(number as f64 - 0.5));
-            std::array::from_fn(|k| Traced::select(is_own, own[k], before[k]))
-        })
+        let mixture = self.of_mixture().map(|_| one(x));
+        by_kind(self.mixtures.len(), mixture, of)
     }
 
     /// Displacement gradients, and what forces gather.

@@ -1,4 +1,4 @@
-//! Steps of a fluid on a device.
+//! Steps of fluids and of hypoelastic solids on a device.
 //!
 //! The passes are those of the processor, from the same pair laws: most of what a stage does there between
 //! gathers is written once more here, as laws of one particle. The columns of the state are
@@ -6,76 +6,108 @@
 //! its sums come back, chunk by chunk, and are booked as those of the processor.
 
 mod build;
+mod fluid;
+mod moving;
 mod passes;
 mod removal;
+mod solids;
 mod stages;
 mod surface;
 mod walls;
 
-use piola_device::{DeviceError, Machine};
-use piola_formulas::kernels::Kernel;
-use piola_formulas::pairs::fluid::{ForceConstants, RateConstants};
+use piola_device::{DeviceError, Dialect, Machine};
 
-use self::passes::{FIGURES, drift_terms, kick_terms};
+pub(super) use self::build::steps;
+pub(super) use self::fluid::FluidPlan;
+pub(super) use self::solids::SolidPlan;
+pub(super) use self::stages::stages;
+
+use self::moving::Moving;
+use self::passes::{Plan, drift_terms, kick_terms};
 use self::removal::Removal;
-use super::escape::Room;
-use super::fluid::{ACCELERATING, DRIFTING, Ends, LEDGER};
-use super::inspect::step_limits;
-use super::ledger::{Drift, Kick};
+use super::ledger::{DRIFTING, Drift, Kick};
 use super::shifting::Speed;
 use super::stages::{Instant, Pass};
-use super::{Continuum as _, Fluid, WeaklyCompressible};
+use super::{Continuum, TransportVelocity};
 use crate::Vector;
 use crate::boundaries::BodyForce;
 use crate::parallel::Reduce as _;
-use crate::schemes::device::{DeviceSteps, Gravity, StateColumns};
-use crate::schemes::ledger::Totals;
-use crate::schemes::look::Most;
+use crate::schemes::device::{DeviceSteps, Gravity, Room, StateColumns};
+use crate::schemes::ledger::{Total, Totals};
 use crate::schemes::momentum::momentum_components;
 use crate::schemes::stages::{Phase, Stages};
-use crate::schemes::{Health, StepLimit, StepsError};
+use crate::schemes::{Accounts, DeviceRefusal, Health, StepLimit, StepsError};
 
-/// What the passes depend on.
-struct Plan<const D: usize> {
-    kernel: Kernel,
-    smoothing_length: f64,
-    periods: [Option<[f64; 2]>; D],
-    /// What lists reach, in m.
-    reach: f64,
-    fluid: Fluid,
-    /// Whether densities are sums over masses, and whether they evolve.
-    sums_densities: bool,
-    evolves: bool,
-    /// Whether the deviation carries density and pressure.
-    carries: [bool; 2],
-    rate_constants: RateConstants,
-    rate_kind: (bool, bool, bool),
-    force_constants: ForceConstants,
-    force_kind: (u8, bool, bool),
-    /// Whether SPST sets deviations.
-    shifts: bool,
-    /// Whether free surfaces are looked for, and particles are shifted along them.
-    seeks_surfaces: bool,
-    along_surfaces: bool,
-    /// Less than half of it is few neighbours.
-    even_count: f64,
-    /// Whether there are body forces.
-    falls: bool,
-    /// Most normals of a wall particle; 0 without walls.
-    normals: usize,
-    spacing: f64,
-    /// Where particles may be, if anybody asks, and whether those that are elsewhere are taken out.
-    room: Option<Room<D>>,
-    removes: bool,
-    compliance: f64,
+/// Columns of the state that all matter has, with the names of their copies.
+const STATE: [[&str; 2]; 6] = [
+    ["position", "position_before"],
+    ["velocity", "velocity_before"],
+    ["deviation", "deviation_before"],
+    ["kick", "kick_before"],
+    ["pressure", "pressure_before"],
+    ["density", "density_before"],
+];
+
+/// What a kind of matter brings to the passes that all kinds share.
+pub(super) trait OfMatter<const D: usize>: Sized + Send + 'static {
+    /// The kind.
+    type Kind: Continuum<D>;
+
+    /// The columns of its state with the names of their copies.
+    const STATE: &'static [[&'static str; 2]];
+    /// Numbers that a look over the state takes of a particle.
+    const FIGURES: usize;
+
+    /// That of a settled case.
+    ///
+    /// # Errors
+    /// What of the case has no steps on devices.
+    fn of(system: &TransportVelocity<D, Self::Kind>) -> Result<Self, DeviceRefusal>;
+
+    /// What the passes of all matter depend on.
+    fn plan(&self) -> &Plan<D>;
+
+    /// Its columns beside those of the state and of all matter.
+    fn room(&self, system: &TransportVelocity<D, Self::Kind>) -> Room;
+
+    /// Its columns of indices.
+    fn indices(&self) -> Option<(&'static str, &[u32])> {
+        None
+    }
+
+    /// All passes.
+    fn passes(&self, dialect: Dialect) -> Vec<piola_device::Pass>;
+
+    /// Names of the passes of a stage, in their order.
+    fn passes_of(&self, stage: Pass<Own<D, Self>>) -> &'static [&'static str];
+
+    /// Sets what is prescribed of its particles at a time in s, if anything is; the work and the impulse are of walls.
+    fn prescribe(
+        &mut self,
+        _machine: &mut Machine,
+        _time: f64,
+    ) -> Result<Option<Total>, DeviceError> {
+        Ok(None)
+    }
+
+    /// What a look over this many particles has found, with the bounds on the step.
+    fn judge(
+        &self,
+        machine: &mut Machine,
+        count: usize,
+        limits: &mut Vec<StepLimit>,
+    ) -> Result<Health, DeviceError>;
 }
 
-/// A fluid on a device.
-struct OnDevice<const D: usize> {
-    plan: Plan<D>,
+/// Passes of a kind of matter alone.
+type Own<const D: usize, P> = <<P as OfMatter<D>>::Kind as Continuum<D>>::Own;
+
+/// A system on a device.
+struct OnDevice<const D: usize, P: OfMatter<D>> {
+    matter: P,
     machine: Machine,
-    drift: Stages<Pass<Ends>>,
-    accelerate: Stages<Pass<Ends>>,
+    drift: Stages<Pass<Own<D, P>>>,
+    accelerate: Stages<Pass<Own<D, P>>>,
     /// Number of particles.
     count: usize,
     state: StateColumns,
@@ -93,9 +125,13 @@ struct OnDevice<const D: usize> {
     removal: Option<Removal>,
     /// What lists reach beyond the support in m.
     skin: f64,
+    /// Walls that move.
+    moving: Option<Moving<D>>,
 }
 
-impl<const D: usize> OnDevice<D> {
+impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
+    const LEDGER: Accounts = P::Kind::DESCRIPTION.ledger;
+
     fn start(&self, pass: &str, scalars: &[(&str, f64)]) -> Result<(), DeviceError> {
         self.machine.start(pass, self.count, scalars)
     }
@@ -133,13 +169,18 @@ impl<const D: usize> OnDevice<D> {
 
     fn run(
         &mut self,
-        pass: Pass<Ends>,
+        pass: Pass<Own<D, P>>,
         Instant { time, step }: Instant,
         totals: &mut Totals,
     ) -> Result<(), DeviceError> {
         match pass {
             Pass::Remove => {
-                totals.book(WeaklyCompressible::<D>::REMOVED, &self.remove_escaped()?);
+                totals.book(P::Kind::REMOVED, &self.remove_escaped()?);
+                Ok(())
+            }
+            Pass::Prescribe => {
+                let held = self.matter.prescribe(&mut self.machine, time)?;
+                held.iter().for_each(|total| totals.book(P::Kind::WALLS, total));
                 Ok(())
             }
             Pass::Load => self.load(),
@@ -151,24 +192,29 @@ impl<const D: usize> OnDevice<D> {
             }
             Pass::Walls => {
                 self.fall(time)?;
+                if let Some(moving) = &mut self.moving {
+                    moving.write(&mut self.machine, time)?;
+                }
                 self.launch(pass, &[])
             }
             Pass::Rates => {
-                if self.plan.falls {
+                if self.matter.plan().falls {
                     self.fall(time)?;
                 }
                 self.launch(pass, &[])
             }
             Pass::Move => {
-                self.launch(pass, &[("step", step)])?;
+                self.start("advance", &[("step", step)])?;
                 self.is_picked = false;
+                self.moving.iter_mut().for_each(|moving| moving.drift(step, time));
                 let sums = self.machine.sums(drift_terms(D), self.count)?;
                 let mut drift = Drift::ZERO;
-                let (powers, impulse) = sums.split_at(DRIFTING.len());
+                let (powers, impulse) = sums.split_at(DRIFTING);
                 drift.iter_mut().zip(powers).for_each(|(total, power)| total.power = *power);
                 let [_, transport, ..] = &mut drift;
                 transport.force[..impulse.len()].copy_from_slice(impulse);
-                DRIFTING.iter().zip(&drift).for_each(|(entry, sum)| totals.book(*entry, sum));
+                let entries = P::Kind::DRIFTING;
+                entries.iter().zip(&drift).for_each(|(entry, sum)| totals.book(*entry, sum));
                 Ok(())
             }
             Pass::Forces => {
@@ -181,32 +227,39 @@ impl<const D: usize> OnDevice<D> {
             }
             Pass::Store => {
                 self.launch(pass, &[])?;
-                let sums = self.machine.sums(kick_terms(D), self.count)?;
+                let sums = self.machine.sums(kick_terms::<D, P::Kind>(), self.count)?;
                 let (mut kick, mut sums) = (Kick::ZERO, sums.into_iter());
                 let components = momentum_components(D).len();
-                for (total, entry) in kick.iter_mut().zip(ACCELERATING) {
+                for (total, entry) in kick.iter_mut().zip(P::Kind::ACCELERATING) {
                     total.power = sums.next().unwrap_or_default();
                     total.growth = sums.next().unwrap_or_default();
                     let entering = total.force.iter_mut().take(components);
-                    if entry.way.is_some() {
+                    if entry.is_some_and(|entry| entry.way.is_some()) {
                         entering.zip(&mut sums).for_each(|(force, sum)| *force = sum);
                     }
                 }
-                ACCELERATING.iter().zip(&kick).for_each(|(entry, sum)| totals.drive(*entry, sum));
+                for (entry, sum) in P::Kind::ACCELERATING.iter().zip(&kick) {
+                    entry.iter().for_each(|entry| totals.drive(*entry, sum));
+                }
                 Ok(())
             }
             _ => self.launch(pass, &[]),
         }
     }
 
+    /// Where particles may be, if that changes.
+    fn room(&self) -> Vec<(&'static str, f64)> {
+        self.moving.as_ref().map_or_else(Vec::new, Moving::room)
+    }
+
     fn kick(&mut self, duration: f64) -> Result<(), DeviceError> {
         self.start("kick_velocities", &[("duration", duration)])?;
-        LEDGER.kick(D, duration, &mut self.state.tail);
+        Self::LEDGER.kick(D, duration, &mut self.state.tail);
         Ok(())
     }
 }
 
-impl<const D: usize> DeviceSteps for OnDevice<D> {
+impl<const D: usize, P: OfMatter<D>> DeviceSteps for OnDevice<D, P> {
     #[inline(never)]
     fn put(&mut self, state: &[f64]) -> Result<(), StepsError> {
         Ok(self.take_over(state)?)
@@ -221,44 +274,34 @@ impl<const D: usize> DeviceSteps for OnDevice<D> {
         let mut stages = std::mem::take(&mut self.drift);
         let done = stages.attempt(|pass, totals| self.run(pass, middle, totals));
         self.drift = stages;
-        LEDGER.add(D, &done?, &mut self.state.tail);
+        Self::LEDGER.add(D, &done?, &mut self.state.tail);
+        if let Some(moving) = &mut self.moving {
+            moving.write(&mut self.machine, time + step)?;
+            self.start("impose", &[])?;
+        }
+        if let Some(held) = self.matter.prescribe(&mut self.machine, time + step)? {
+            let mut totals = Totals::default();
+            totals.book(P::Kind::WALLS, &held);
+            Self::LEDGER.add(D, &totals, &mut self.state.tail);
+        }
         let mut stages = std::mem::take(&mut self.accelerate);
         let done = stages.attempt(|pass, totals| self.run(pass, end, totals));
         self.accelerate = stages;
-        LEDGER.keep(D, &done?, &mut self.state.tail);
+        Self::LEDGER.keep(D, &done?, &mut self.state.tail);
         Ok(self.kick(0.5 * step)?)
     }
 
     #[inline(never)]
     fn inspect(&mut self, limits: &mut Vec<StepLimit>) -> Result<Health, StepsError> {
-        let asks = self.plan.room.is_some() && !self.plan.removes;
+        let plan = self.matter.plan();
+        let asks = plan.room.is_some() && !plan.removes;
         if asks && !self.is_picked {
             self.load()?;
         }
         self.launch_look()?;
-        let all: [(f64, usize); FIGURES] = self.machine.largest(self.count)?;
-        let [mut speed, mut acceleration, ratio, broken, escaped] = all;
-        for figure in [&mut speed, &mut acceleration] {
-            // What rests is that of the first particle.
-            *figure = if figure.0 > 0.0 { *figure } else { (0.0, 0) };
-        }
-        let fluid = &self.plan.fluid;
-        let most = |(value, particle): (f64, usize)| Most { value, particle };
-        let fastest = Most { value: speed.0.sqrt(), particle: speed.1 };
-        let signal = Most { value: fluid.wave_speed + fastest.value, ..fastest };
-        let figures = [signal, fastest, most(acceleration)];
-        let viscosity = fluid.viscosity * self.plan.force_constants.viscous.along();
-        step_limits(self.plan.smoothing_length, viscosity, figures, limits);
-        Ok(Health {
-            largest_speed: speed.0.sqrt(),
-            largest_speed_particle: speed.1,
-            largest_wave_speed: fluid.wave_speed,
-            smallest_ratio: -ratio.0,
-            smallest_ratio_particle: ratio.1,
-            first_not_finite: (broken.0 > 0.0).then_some(broken.1),
-            first_escaped: (asks && escaped.0 > 0.0 && !(broken.0 > 0.0)).then_some(escaped.1),
-            ..Health::NEUTRAL
-        })
+        let health = self.matter.judge(&mut self.machine, self.count, limits)?;
+        let is_whole = health.first_not_finite.is_none();
+        Ok(Health { first_escaped: health.first_escaped.filter(|_| asks && is_whole), ..health })
     }
 
     fn fetch(&self, state: &mut [f64]) -> Result<(), StepsError> {

@@ -1,20 +1,56 @@
-//! The passes of a step as text.
+//! The passes that all kinds of matter share, as text.
 
-use piola_device::{
-    Among, Dialect, Gather, Order, Pass, Space, Traced, local, own, spread, through,
-};
-use piola_formulas::pairs::One;
-use piola_formulas::pairs::fluid::{
-    FULL, ForceSum, Forces, MIXED, NONE, RateSum, Rates, Side, WallForces,
-};
-use piola_formulas::pairs::sums::Density;
+use piola_device::{Dialect, Pass, Space, Traced, Use, difference, local, own, spread, through};
+use piola_formulas::kernels::Kernel;
+use piola_formulas::pairs::fluid::Side;
 use piola_formulas::{Number, fluid};
 
-use super::super::fluid::{ACCELERATING, DRIFTING};
-use super::Plan;
+use super::super::escape::Room;
+use super::super::ledger::DRIFTING;
+use super::super::{AtRest, Continuum};
 use super::walls::{forces, total};
-use crate::schemes::device::{Recorded as Vector, are_finite, one, square, take};
+use crate::schemes::device::{Recorded as Vector, one, square, take};
+use crate::schemes::ledger::Entry;
 use crate::schemes::momentum::{moments, momentum_components};
+
+/// What the passes of all matter depend on.
+pub(in super::super) struct Plan<const D: usize> {
+    pub kernel: Kernel,
+    pub smoothing_length: f64,
+    pub periods: [Option<[f64; 2]>; D],
+    /// What lists reach, in m.
+    pub reach: f64,
+    /// The matter at rest, if it is the same of all bodies; otherwise it is a column.
+    pub at_rest: Option<AtRest>,
+    /// Whether densities are sums over masses.
+    pub sums_densities: bool,
+    /// Whether SPST sets deviations, except of some particles.
+    pub shifts: bool,
+    pub spares: bool,
+    /// `1 / W(dx)` in m^D.
+    pub crowding: f64,
+    /// Whether free surfaces are looked for, and particles are shifted along them.
+    pub seeks_surfaces: bool,
+    pub along_surfaces: bool,
+    /// Less than half of it is few neighbours.
+    pub even_count: f64,
+    /// Whether there are body forces.
+    pub falls: bool,
+    /// Most normals of a wall particle; 0 without walls.
+    pub normals: usize,
+    /// Whether walls move.
+    pub moves: bool,
+    pub spacing: f64,
+    /// Where particles may be, if anybody asks, and whether those that are elsewhere are taken out.
+    pub room: Option<Room<D>>,
+    pub removes: bool,
+    /// Whether there are several continua, and how far apart in m particles of one may have begun, if that matters.
+    pub are_several: bool,
+    pub farthest: Option<f64>,
+    /// Columns by number of which neighbours see copies, and the columns of these by slot.
+    pub copied: Vec<Use>,
+    pub copies: Vec<Use>,
+}
 
 /// Numbers of a side.
 pub(super) const fn side_width(dimension: usize) -> usize {
@@ -24,20 +60,21 @@ pub(super) const fn side_width(dimension: usize) -> usize {
 /// Vectors of [`Forces`](super::super::Forces).
 pub(super) const FORCES: usize = 8;
 
-/// Numbers that a look over the state takes of a particle.
-pub(super) const FIGURES: usize = 5;
-
 /// The sums of a drift: powers of its mechanisms, then the impulse of those that move across their
 /// velocity.
 pub(super) fn drift_terms(dimension: usize) -> usize {
-    DRIFTING.len() + momentum_components(dimension).len()
+    DRIFTING + momentum_components(dimension).len()
 }
 
 /// The sums of accelerations: power and growth of each mechanism, and its force if that enters.
-pub(super) fn kick_terms(dimension: usize) -> usize {
-    let components = momentum_components(dimension).len();
-    ACCELERATING.iter().map(|entry| 2 + entry.way.map_or(0, |_| components)).sum()
+pub(super) fn kick_terms<const D: usize, M: Continuum<D>>() -> usize {
+    let components = momentum_components(D).len();
+    let enters = |entry: &Option<Entry>| entry.is_some_and(|entry| entry.way.is_some());
+    M::ACCELERATING.iter().map(|entry| 2 + if enters(entry) { components } else { 0 }).sum()
 }
+
+/// The continuum of walls, by which all have them.
+pub(super) const WALL: f64 = -1.0;
 
 /// Takes a side from the front.
 pub(super) fn side<const D: usize>(numbers: &mut &[Traced]) -> Side<Traced, D> {
@@ -63,7 +100,7 @@ pub(super) fn if_fluid(wall: Traced, yes: Traced, no: Traced) -> Traced {
 }
 
 impl<const D: usize> Plan<D> {
-    /// The space in which its particles move.
+    /// The space in which particles move.
     pub(super) fn space(&self) -> Space<D> {
         Space {
             kernel: self.kernel,
@@ -73,37 +110,60 @@ impl<const D: usize> Plan<D> {
         }
     }
 
-    /// All passes of the plan.
-    pub(super) fn passes(&self, dialect: Dialect) -> Vec<Pass> {
-        let space = &self.space();
+    /// The passes that all matter has, of the kind `M`.
+    pub(super) fn passes<M: Continuum<D>>(&self, dialect: Dialect, space: &Space<D>) -> Vec<Pass> {
         let mut all = vec![
             self.load(dialect, space),
-            self.state(dialect),
-            self.rates(dialect, space),
-            self.advance(dialect),
-            self.forces(dialect, space),
             self.shift(dialect),
-            self.store(dialect),
+            self.store::<M>(dialect),
             self.kick(dialect),
-            self.look(dialect),
         ];
-        if self.sums_densities {
-            all.push(self.densities(dialect, space));
-        }
-        if self.falls {
-            all.push(self.fall(dialect));
-        }
         all.extend(self.wall_passes(dialect, space));
+        all.extend(self.moves.then(|| self.impose(dialect)));
         all.extend(self.surface_passes(dialect, space));
         all
     }
 
-    /// Half of the body force of each particle.
-    fn fall(&self, dialect: Dialect) -> Pass {
-        let (reads, writes) = ([through("numbers", "gravity", D)], [own("half_force", D)]);
-        local(dialect, "fall", &[], &reads, &writes, |x| {
-            x.iter().map(|component| *component * 0.5).collect()
-        })
+    /// Density in kg/m^3 and wave speed in m/s at rest, as a column.
+    pub(super) fn of_rest(&self) -> Option<Use> {
+        self.at_rest.is_none().then_some(through("numbers", "at_rest", 2))
+    }
+
+    /// Takes them from the front of the numbers of that column.
+    pub(super) fn rest(&self, x: &mut &[Traced]) -> [Traced; 2] {
+        match self.at_rest {
+            Some(AtRest { density, wave_speed }) => [density, wave_speed].map(Traced::from),
+            None => [one(x), one(x)],
+        }
+    }
+
+    /// What tells of which continuum a particle is, as columns.
+    pub(super) fn of_continua(&self) -> Vec<Use> {
+        let start = self.farthest.map(|_| difference("start", D));
+        self.are_several.then_some(own("continuum", 1)).into_iter().chain(start).collect()
+    }
+
+    /// Takes from the front of the numbers of these columns of a particle and of its neighbour 1 where that is of the
+    /// continuum of the particle, or of a wall, and 0 otherwise, as [`Continua::is_own`](super::super::Continua::is_own).
+    pub(super) fn owned(
+        &self,
+        space: &Space<D>,
+        me: &mut &[Traced],
+        other: &mut &[Traced],
+    ) -> Traced {
+        let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
+        if !self.are_several {
+            return yes;
+        }
+        let [mine, its] = [one(me), one(other)];
+        let mut is_same = mine.at_most(its) & its.at_most(mine);
+        if let Some(farthest) = self.farthest {
+            let [here, there]: [Vector<D>; 2] = [take(me), take(other)];
+            let way =
+                Vector::<D>::from_fn(|axis, _| space.shorter_way(axis, there[axis] - here[axis]));
+            is_same = is_same & square(&way).at_most(Traced::from(farthest * farthest));
+        }
+        Traced::select(its.below(WALL + 0.5) | is_same, yes, no)
     }
 
     /// Sides and places by slot, and how far particles are from where the list was made.
@@ -118,9 +178,11 @@ impl<const D: usize> Plan<D> {
             of("mass", 1),
             own("made_at", D),
         ];
-        let mut writes = vec![own("place", D), own("side", side_width(D)), spread("terms", 1)];
+        let reads = [&reads, &*self.copied].concat();
         let is_single = dialect.is_narrow("side");
-        writes.extend(is_single.then(|| space.counts(&[]).0));
+        let counts = is_single.then(|| space.counts(&[]).0);
+        let writes = [own("place", D), own("side", side_width(D)), spread("terms", 1)];
+        let writes = [&writes, counts.as_slice(), &*self.copies].concat();
         local(dialect, "load", &[], &reads, &writes, |mut x| {
             let position: Vector<D> = take(&mut x);
             let counts = if is_single { space.counts(position.as_slice()).1 } else { Vec::new() };
@@ -136,132 +198,41 @@ impl<const D: usize> Plan<D> {
                 let distance = space.shorter_way(axis, position[axis] - made_at[axis]);
                 way += distance * distance;
             }
-            let place = position.iter().copied();
-            place.chain(flat(&side)).chain([way]).chain(counts).collect()
+            position
+                .iter()
+                .copied()
+                .chain(flat(&side))
+                .chain([way])
+                .chain(counts)
+                .chain(x.iter().copied())
+                .collect()
         })
     }
 
-    /// Densities as sums over masses.
-    fn densities(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let columns = [own("side", side_width(D))];
-        let centre = self.kernel.value(D, 0.0, self.smoothing_length);
-        Gather::<One, _>::new(dialect, "densities", space, Among::Active, Order::Single)
-            .start(&columns, |mut x| side::<D>(&mut x).mass() * centre)
-            .term(&Density::<D>, &columns, Among::All)
-            .close(&[], &[], &[own("summed", 1)], |sum, _| vec![*sum])
+    /// Terms of a drift of `step` s with the powers of its mechanisms in J: what moves across its velocity turns, as
+    /// [`Common::add_turning`](super::super::Common::add_turning).
+    pub(super) fn drift_terms(
+        &self,
+        powers: [Traced; DRIFTING],
+        [velocity, deviation]: [&Vector<D>; 2],
+        [step, mass]: [Traced; 2],
+    ) -> Vec<Traced> {
+        let mut terms = vec![Traced::from(0.0); drift_terms(D)];
+        terms[..DRIFTING].copy_from_slice(&powers);
+        let (turned, count) = moments(deviation, &(velocity * (step * mass)));
+        terms[DRIFTING..][D..count].copy_from_slice(&turned[D..count]);
+        terms
     }
 
-    /// Densities and pressures that are functions of places or of each other, and squares of speeds.
-    fn state(&self, dialect: Dialect) -> Pass {
-        let mut reads = vec![through("numbers", "wall", 1), own("side", side_width(D))];
-        reads.extend(self.sums_densities.then_some(own("summed", 1)));
-        let writes = [own("side", side_width(D)), spread("terms", 1)];
-        local(dialect, "state", &[], &reads, &writes, |mut x| {
-            let wall = one(&mut x);
-            let before: Side<Traced, D> = side(&mut x);
-            let density = if self.sums_densities { one(&mut x) } else { before.density };
-            let pressure = before.pressure;
-            let mut after = before;
-            after.set(before.mass(), density, pressure);
-            let same = |a: Traced, b: Traced| a.at_most(b) & b.at_most(a);
-            let is_same = same(density, before.density) & same(pressure, before.pressure);
-            let kept = is_same | !wall.below(0.5);
-            let pick = |(old, new): (Traced, Traced)| Traced::select(kept, old, new);
-            let speed = if_fluid(wall, square(&before.velocity), Traced::from(0.0));
-            flat(&before).into_iter().zip(flat(&after)).map(pick).chain([speed]).collect()
-        })
-    }
-
-    /// Rates of density and pressure.
-    fn rates(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let constants = self.rate_constants;
-        let (corrects, moves, falls) = self.rate_kind;
-        let columns = [own("side", side_width(D)), own("half_force", D)];
-        let gather =
-            Gather::<RateSum<D>, _>::new(dialect, "rates", space, Among::Active, Order::Lanes);
-        macro_rules! of {
-            ($corrects:literal, $moves:literal, $falls:literal) => {{
-                let law = Rates::<D, $corrects, $moves, $falls>(constants);
-                gather.term(&law, &columns, Among::All)
-            }};
-        }
-        let gather = match (corrects, moves, falls) {
-            (true, true, true) => of!(true, true, true),
-            (true, true, false) => of!(true, true, false),
-            (true, false, true) => of!(true, false, true),
-            (true, false, false) => of!(true, false, false),
-            (false, true, true) => of!(false, true, true),
-            (false, true, false) => of!(false, true, false),
-            (false, false, true) => of!(false, false, true),
-            (false, false, false) => of!(false, false, false),
-        };
-        let kept = |is_on: bool, sum| if is_on { sum } else { Traced::from(0.0) };
-        gather.close(&[], &[], &[own("rate", 4)], |sums, _| {
-            vec![
-                sums.divergence,
-                kept(self.carries[0], sums.density_transport),
-                kept(self.carries[1], sums.pressure_transport),
-                sums.pressure_diffusion,
-            ]
-        })
-    }
-
-    /// Particles move on with their rates, and what that does to energies and momenta.
-    fn advance(&self, dialect: Dialect) -> Pass {
-        let reads = [
-            own("position", D),
-            own("velocity", D),
-            own("deviation", D),
-            own("density", 1),
-            own("pressure", 1),
-            own("mass", 1),
-            own("wall", 1),
-            through("slots", "rate", 4),
-            through("slots", "side", side_width(D)),
-        ];
-        let writes = [
-            own("position", D),
-            own("density", 1),
-            own("pressure", 1),
-            spread("terms", drift_terms(D)),
-        ];
-        local(dialect, "advance", &["step"], &reads, &writes, |mut x| {
-            let step = one(&mut x);
-            let (position, velocity): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
-            let deviation: Vector<D> = take(&mut x);
-            let (density, pressure) = (one(&mut x), one(&mut x));
-            let (mass, wall) = (one(&mut x), one(&mut x));
-            let rates = [one(&mut x), one(&mut x), one(&mut x), one(&mut x)];
-            let [divergence, density_transport, pressure_transport, pressure_diffusion] = rates;
-            let before: Side<Traced, D> = side(&mut x);
-            let zero = Traced::from(0.0);
-            let stiffness = self.fluid.wave_speed.powi(2);
-            let exchange = pressure_diffusion / Traced::from(stiffness);
-            let density_rate = density_transport - before.density * divergence + exchange;
-            let compression = -before.density * stiffness * divergence;
-            let pressure_rates = [compression, pressure_transport, pressure_diffusion];
-            let pressure_rate = compression + pressure_transport + pressure_diffusion;
-            let mut terms = vec![zero; drift_terms(D)];
-            let mean = pressure + step * 0.5 * pressure_rate;
-            for (term, rate) in terms.iter_mut().zip(pressure_rates) {
-                *term = step * mass * self.compliance * mean * rate;
-            }
-            let momentum = velocity * (step * mass);
-            let (turned, count) = moments(&deviation, &momentum);
-            terms[DRIFTING.len()..][D..count].copy_from_slice(&turned[D..count]);
-            let evolved = |is_on: bool, value: Traced, rate: Traced| match is_on {
-                true => value + step * rate,
-                false => value,
-            };
-            let next: Vector<D> = position + (velocity + deviation) * step;
-            let next = (0..D).map(|axis| (position[axis], self.wrapped(axis, next[axis])));
-            let next = next.chain([
-                (density, evolved(self.evolves, density, density_rate)),
-                (pressure, evolved(true, pressure, pressure_rate)),
-            ]);
-            let terms = terms.into_iter().map(|term| (zero, term));
-            next.chain(terms).map(|(still, moved)| if_fluid(wall, moved, still)).collect()
-        })
+    /// Where a particle is after a `step` in s.
+    pub(super) fn moved(
+        &self,
+        position: &Vector<D>,
+        velocity: &Vector<D>,
+        step: Traced,
+    ) -> Vector<D> {
+        let next = position + velocity * step;
+        Vector::from_fn(|axis, _| self.wrapped(axis, next[axis]))
     }
 
     /// A coordinate inside the bounds of its axis, of a particle that moves by less than a period.
@@ -275,61 +246,6 @@ impl<const D: usize> Plan<D> {
         Traced::select(is_inside, x, inside)
     }
 
-    /// Accelerations between particles, and what shifting needs.
-    fn forces(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let constants = self.force_constants;
-        let columns = [own("side", side_width(D))];
-        let of_walls = [own("side", side_width(D)), own("shear", D)];
-        let gather =
-            Gather::<ForceSum<D>, _>::new(dialect, "forces", space, Among::Active, Order::Lanes);
-        macro_rules! of {
-            ($kind:expr, $artificial:literal, $crowding:literal) => {{
-                let law = Forces::<D, { $kind }, $artificial, $crowding>(constants);
-                let gather = gather.term(&law, &columns, Among::Active);
-                match self.normals {
-                    0 => gather,
-                    _ => gather.term(&WallForces(law), &of_walls, Among::Passive),
-                }
-            }};
-        }
-        let (corrects, artificial, crowding) = self.force_kind;
-        let gather = match (corrects, artificial, crowding) {
-            (NONE, false, false) => of!(NONE, false, false),
-            (NONE, false, true) => of!(NONE, false, true),
-            (NONE, true, false) => of!(NONE, true, false),
-            (NONE, true, true) => of!(NONE, true, true),
-            (FULL, false, false) => of!(FULL, false, false),
-            (FULL, false, true) => of!(FULL, false, true),
-            (FULL, true, false) => of!(FULL, true, false),
-            (FULL, true, true) => of!(FULL, true, true),
-            (_, false, false) => of!(MIXED, false, false),
-            (_, false, true) => of!(MIXED, false, true),
-            (_, true, false) => of!(MIXED, true, false),
-            (_, true, true) => of!(MIXED, true, true),
-        };
-        let mut mine = columns.to_vec();
-        mine.extend(self.falls.then_some(through("numbers", "gravity", D)));
-        gather.close(&[], &mine, &[own("force", FORCES * D)], |sums, mut x| {
-            let me: Side<Traced, D> = side(&mut x);
-            let body_force = match self.falls {
-                true => take(&mut x),
-                false => Vector::<D>::repeat(Traced::from(0.0)),
-            };
-            let transport = me.velocity * sums.stretch + sums.carried;
-            let rows = [
-                sums.pressure,
-                sums.viscosity,
-                sums.artificial_viscosity,
-                transport,
-                sums.walls,
-                body_force,
-                sums.crowding,
-                -sums.volume,
-            ];
-            rows.iter().flat_map(|row| row.iter().copied()).collect()
-        })
-    }
-
     /// Deviations by SPST.
     fn shift(&self, dialect: Dialect) -> Pass {
         let mut reads = vec![
@@ -337,6 +253,7 @@ impl<const D: usize> Plan<D> {
             own("force", FORCES * D),
             own("side", side_width(D)),
         ];
+        reads.extend(self.spares.then_some(through("numbers", "unshifted", 1)));
         if self.seeks_surfaces {
             let of_surfaces =
                 [own("reach", 1), own("surface", 1), own("normal", D), own("crowd", D)];
@@ -347,11 +264,16 @@ impl<const D: usize> Plan<D> {
             let (scale, most, wall) = (one(&mut x), one(&mut x), one(&mut x));
             let crowding = forces::<D>(&mut x)[6];
             let mut me: Side<Traced, D> = side(&mut x);
+            let is_spared = self.spares.then(|| one(&mut x).above(0.5));
             let shift = match self.seeks_surfaces {
                 true => self.at_surface(crowding, x),
                 false => crowding,
             };
-            let deviation = fluid::shortened(shift * scale, most);
+            let mut deviation = fluid::shortened(shift * scale, most);
+            if let Some(is_spared) = is_spared {
+                deviation =
+                    deviation.map(|part| Traced::select(is_spared, Traced::from(0.0), part));
+            }
             for axis in 0..D {
                 me.deviation[axis] = if_fluid(wall, deviation[axis], me.deviation[axis]);
             }
@@ -377,7 +299,7 @@ impl<const D: usize> Plan<D> {
     }
 
     /// What the passes have found goes into the state, with the powers of all accelerations.
-    fn store(&self, dialect: Dialect) -> Pass {
+    fn store<M: Continuum<D>>(&self, dialect: Dialect) -> Pass {
         let reads = [
             own("position", D),
             own("velocity", D),
@@ -394,7 +316,7 @@ impl<const D: usize> Plan<D> {
             own("pressure", 1),
             own("kick", D),
             own("deviation", D),
-            spread("terms", kick_terms(D)),
+            spread("terms", kick_terms::<D, M>()),
         ];
         local(dialect, "store", &[], &reads, &writes, |mut x| {
             let (position, velocity): (Vector<D>, Vector<D>) = (take(&mut x), take(&mut x));
@@ -406,9 +328,9 @@ impl<const D: usize> Plan<D> {
             let zero = Traced::from(0.0);
             let total = total(&forces);
             let mut terms = Vec::new();
-            for (force, entry) in forces.iter().zip(ACCELERATING) {
+            for (force, entry) in forces.iter().zip(M::ACCELERATING) {
                 terms.extend([mass * force.dot(&velocity), mass * force.dot(&total)]);
-                if entry.way.is_some() {
+                if entry.is_some_and(|entry| entry.way.is_some()) {
                     let (all, count) = moments(&position, &(force * mass));
                     terms.extend_from_slice(&all[..count]);
                 }
@@ -441,41 +363,6 @@ impl<const D: usize> Plan<D> {
             let wall = one(&mut x);
             let next = |axis: usize| velocity[axis] + kick[axis] * duration;
             (0..D).map(|axis| if_fluid(wall, next(axis), velocity[axis])).collect()
-        })
-    }
-
-    /// Squares of speed and acceleration, less the volume ratio, and whether something is not finite.
-    fn look(&self, dialect: Dialect) -> Pass {
-        let reads = [
-            own("position", D),
-            own("velocity", D),
-            own("deviation", D),
-            own("kick", D),
-            own("density", 1),
-            own("pressure", 1),
-            own("wall", 1),
-            through("slots", "escaped", 1),
-        ];
-        let writes = [spread("terms", FIGURES)];
-        local(dialect, "look", &[], &reads, &writes, |mut x| {
-            let is_finite = are_finite(&x[..4 * D + 2]);
-            let _: Vector<D> = take(&mut x);
-            let velocity: Vector<D> = take(&mut x);
-            let _: Vector<D> = take(&mut x);
-            let kick: Vector<D> = take(&mut x);
-            let density = one(&mut x);
-            let _ = one(&mut x);
-            let wall = one(&mut x);
-            let least = Traced::from(f64::NEG_INFINITY);
-            let known = |value: Traced| Traced::select(is_finite, value, least);
-            let ratio = Traced::from(self.fluid.density) / density;
-            vec![
-                known(square(&velocity)),
-                known(if_fluid(wall, square(&kick), least)),
-                known(if_fluid(wall, -ratio, least)),
-                Traced::select(is_finite, least, Traced::from(1.0)),
-                if_fluid(wall, one(&mut x), Traced::from(0.0)),
-            ]
         })
     }
 }

@@ -8,8 +8,8 @@ use piola_device::{DeviceError, Dialect, local, own, spread, through};
 use super::super::escape::take_out;
 use super::super::stages::Pass;
 use super::super::{Columns, ColumnsMut, Common};
-use super::passes::if_fluid;
-use super::{OnDevice, Plan};
+use super::passes::{Plan, if_fluid};
+use super::{OfMatter, OnDevice};
 use crate::parallel::Team;
 use crate::schemes::device::one;
 use crate::schemes::ledger::Total;
@@ -18,8 +18,8 @@ use crate::schemes::ledger::Total;
 pub(super) struct Removal {
     pub(super) is_wall: Vec<bool>,
     is_removed: Vec<bool>,
-    /// Mass in kg.
-    mass: Vec<f64>,
+    /// Mass in kg and `1 / (rho0 c)^2`.
+    matter: Vec<[f64; 2]>,
 }
 
 impl Removal {
@@ -29,7 +29,9 @@ impl Removal {
         Self {
             is_wall: both.map(|(is_wall, is_removed)| *is_wall && !is_removed).collect(),
             is_removed: vec![false; common.mass.len()],
-            mass: common.mass.clone(),
+            matter: (0..common.mass.len())
+                .map(|a| [common.mass[a], common.compliance(a)])
+                .collect(),
         }
     }
 }
@@ -45,10 +47,11 @@ impl<const D: usize> Plan<D> {
     }
 }
 
-impl<const D: usize> OnDevice<D> {
+impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
     /// Takes the columns of a state over, and who has been removed in it.
     pub(super) fn take_over(&mut self, state: &[f64]) -> Result<(), DeviceError> {
         self.state.put(&mut self.machine, state)?;
+        self.moving.iter_mut().for_each(|moving| moving.put(state));
         self.is_picked = false;
         self.follow_removals(state)
     }
@@ -77,7 +80,7 @@ impl<const D: usize> OnDevice<D> {
             return Ok(Total::default());
         }
         self.load()?;
-        self.launch(Pass::Remove, &[])?;
+        self.launch(Pass::Remove, &self.room())?;
         let [(most, _)] = self.machine.largest(self.count)?;
         if most > 0.0 { self.take_out_escaped() } else { Ok(Total::default()) }
     }
@@ -95,7 +98,7 @@ impl<const D: usize> OnDevice<D> {
             return Ok(Total::default());
         }
         let escaped: Vec<usize> = (0..self.count).filter(|&number| told[number] > 0.0).collect();
-        let matter = |number: usize| [removal.mass[number], self.plan.compliance];
+        let matter = |number: usize| removal.matter[number];
         let total = Team::default().sum_in_order(take_out(&escaped, matter, &mut own));
         self.take_over(&state)?;
         Ok(total)

@@ -2,24 +2,24 @@
 
 use piola_device::{DeviceError, Language};
 
+use super::super::TransportVelocity;
 use super::super::stages::{Pass, stage_of};
-use super::super::{TransportVelocity, WeaklyCompressible};
 use super::build::LAYOUT;
-use super::{Ends, OnDevice, Plan};
+use super::passes::Plan;
+use super::{OfMatter, OnDevice, Own};
 use crate::schemes::device::staged;
 use crate::schemes::{DeviceMethod, DeviceRefusal, DeviceStage};
 
 impl<const D: usize> Plan<D> {
-    /// Names of the passes of a stage, in their order.
-    fn passes_of(&self, stage: Pass<Ends>) -> &'static [&'static str] {
+    /// Names of the passes of a stage that all matter has, in their order.
+    pub(super) fn passes_of<O>(&self, stage: Pass<O>) -> &'static [&'static str] {
         match stage {
             Pass::Remove if self.removes => &["escape", "tell_escaped"],
             Pass::Load => &["load"],
-            Pass::State if self.sums_densities => &["densities", "state"],
             Pass::State => &["state"],
             Pass::Walls => &["walls"],
-            Pass::Rates if self.falls => &["fall", "rates"],
             Pass::Rates => &["rates"],
+            Pass::Move if self.moves => &["advance", "impose"],
             Pass::Move => &["advance"],
             Pass::Forces if self.normals > 0 => &["forces", "reactions"],
             Pass::Forces => &["forces"],
@@ -45,40 +45,39 @@ impl<const D: usize> Plan<D> {
     }
 }
 
-impl<const D: usize> OnDevice<D> {
+impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
     /// Starts the passes of a stage.
     pub(super) fn launch(
         &self,
-        stage: Pass<Ends>,
+        stage: Pass<Own<D, P>>,
         scalars: &[(&str, f64)],
     ) -> Result<(), DeviceError> {
-        self.plan.passes_of(stage).iter().try_for_each(|pass| self.start(pass, scalars))
+        self.matter.passes_of(stage).iter().try_for_each(|pass| self.start(pass, scalars))
     }
 
     /// Starts those of a look over the state.
     pub(super) fn launch_look(&self) -> Result<(), DeviceError> {
-        self.plan.passes_of_look().iter().try_for_each(|pass| self.start(pass, &[]))
+        let (passes, room) = (self.matter.plan().passes_of_look(), self.room());
+        passes.iter().try_for_each(|pass| self.start(pass, &room))
     }
 }
 
-impl<const D: usize> TransportVelocity<D> {
-    /// The stages of the fluid on a device, with kicks before them and the look over the state behind them.
-    pub(in super::super) fn fluid_stages(
-        &self,
-        language: Language,
-        method: DeviceMethod,
-    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        let plan = self.device_plan()?;
-        let passes = plan.passes(method.dialect(language, LAYOUT));
-        let mut all = vec![("kick", &["kick_velocities"][..])];
-        for &stage in self.drift.passes().iter().chain(self.accelerate.passes()) {
-            let name = stage_of::<D, WeaklyCompressible<D>>(stage).name;
-            let started = plan.passes_of(stage);
-            if all.iter().all(|(known, _)| *known != name) {
-                all.push((name, started));
-            }
+/// The stages of a system on a device, with kicks before them and the look over the state behind them.
+pub(in super::super) fn stages<const D: usize, P: OfMatter<D>>(
+    system: &TransportVelocity<D, P::Kind>,
+    language: Language,
+    method: DeviceMethod,
+) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+    let matter = P::of(system)?;
+    let passes = matter.passes(method.dialect(language, LAYOUT));
+    let mut all = vec![("kick", &["kick_velocities"][..])];
+    for &stage in system.drift.passes().iter().chain(system.accelerate.passes()) {
+        let name = stage_of::<D, P::Kind>(stage).name;
+        let started = matter.passes_of(stage);
+        if all.iter().all(|(known, _)| *known != name) {
+            all.push((name, started));
         }
-        all.push(("look", plan.passes_of_look()));
-        Ok(staged(&passes, &all))
     }
+    all.push(("look", matter.plan().passes_of_look()));
+    Ok(staged(&passes, &all))
 }

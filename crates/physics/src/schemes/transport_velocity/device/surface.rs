@@ -1,13 +1,12 @@
 //! The passes of free surfaces, CTVF section 3.4.
 
-use piola_device::{Among, Dialect, Gather, Order, Pass, Space, Traced, local, own, through};
+use piola_device::{Among, Dialect, Gather, Order, Pass, Space, Traced, Use, local, own, through};
 use piola_formulas::Number;
 use piola_formulas::pairs::sums::{CrowdingWithin, SurfaceNormal};
 use piola_formulas::pairs::{Components, One, PairLaw};
 
 use super::super::surface::CONE;
-use super::Plan;
-use super::passes::{FORCES, side, side_width};
+use super::passes::{FORCES, Plan, side, side_width};
 use super::walls::forces;
 use crate::schemes::device::{Recorded as Vector, one, square, take};
 
@@ -46,12 +45,16 @@ impl<const D: usize> Plan<D> {
 
     /// Who has or sees a sharp normal, or has few neighbours. There is no surface elsewhere.
     fn see(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let mark = [own("mark", 1)];
+        let (mark, continua) = ([own("mark", 1)], self.of_continua());
+        let others = [&mark, &*continua].concat();
         let writes = [own("near", 1), own("normal", D), own("surface", 1)];
         Gather::<(One, One), _>::new(dialect, "see", space, Among::Active, Order::Lanes)
-            .fold(&[], &mark, Among::All, |meeting, (marks, count)| {
-                *marks += meeting.other[0];
-                *count += Traced::from(1.0);
+            .fold(&continua, &others, Among::All, |meeting, (marks, count)| {
+                let (mut me, mut other) = (meeting.me, meeting.other);
+                let mark = one(&mut other);
+                let own = self.owned(space, &mut me, &mut other);
+                *marks += mark * own;
+                *count += own;
             })
             .close(&[], &mark, &writes, |(marks, count), x| {
                 let few = (*count * 2.0).below(self.even_count);
@@ -65,6 +68,8 @@ impl<const D: usize> Plan<D> {
     /// Smoothed normals, and who is alone.
     fn normals(&self, dialect: Dialect, space: &Space<D>) -> Pass {
         let columns = [own("side", side_width(D)), own("sharp", D)];
+        let seen = [&columns, &*self.of_continua()].concat();
+        let rest: Vec<Use> = self.of_rest().into_iter().collect();
         type Sums<const D: usize> = (One, Components<D>);
         let law = SurfaceNormal::<D>;
         let centre = self.kernel.value(D, 0.0, self.smoothing_length);
@@ -76,38 +81,42 @@ impl<const D: usize> Plan<D> {
                 let sharp: Vector<D> = take(&mut x);
                 (me.mass() * centre, sharp * (me.volume * centre))
             })
-            .fold(&columns, &columns, Among::All, |meeting, sums| {
-                let of = |mut x: &[Traced]| {
-                    let side = side::<D>(&mut x);
-                    ((side, Traced::from(1.0)), take::<D>(&mut x))
-                };
-                law.add(&of(meeting.me), &of(meeting.other), &meeting.pair, sums);
+            .fold(&seen, &seen, Among::All, |meeting, sums| {
+                let (mut me, mut other) = (meeting.me, meeting.other);
+                let both = [&mut me, &mut other].map(|x| (side::<D>(x), take::<D>(x)));
+                let own = self.owned(space, &mut me, &mut other);
+                let [me, other] = both.map(|(side, sharp)| ((side, own), sharp));
+                law.add(&me, &other, &meeting.pair, sums);
             })
-            .close(&[], &[], &writes, |(density, normal), _| {
+            .close(&[], &rest, &writes, |(density, normal), mut x| {
                 let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
                 let square = square(normal);
                 let length = square.sqrt();
                 let unit = |component: &Traced| {
                     Traced::select(square.above(0.0), *component / length, *component)
                 };
-                let alone = Traced::select(density.below(0.5 * self.fluid.density), yes, no);
+                let [at_rest, _] = self.rest(&mut x);
+                let alone = Traced::select(density.less(at_rest * 0.5), yes, no);
                 normal.iter().map(unit).chain([alone]).collect()
             })
     }
 
     /// Who is on a surface: nobody is in front of it, or it is alone.
     fn cover(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let mine = [own("normal", D)];
+        let continua = self.of_continua();
+        let mine = [&[own("normal", D)], &*continua].concat();
         let columns = [own("normal", D), own("alone", 1)];
         let writes = [own("surface", 1)];
         Gather::<One, _>::new(dialect, "cover", space, Among::Active, Order::Lanes)
             .only("near")
-            .fold(&mine, &[], Among::All, |meeting, covering| {
-                let normal = Vector::<D>::from_column_slice(meeting.me);
+            .fold(&mine, &continua, Among::All, |meeting, covering| {
+                let (mut me, mut other) = (meeting.me, meeting.other);
+                let normal: Vector<D> = take(&mut me);
+                let own = self.owned(space, &mut me, &mut other);
                 let ahead = -meeting.pair.separation.dot(&normal);
                 let distance = meeting.pair.square.sqrt();
                 let is_in_cone = (Traced::from(CONE) * distance).less(ahead);
-                *covering += Traced::select(is_in_cone, Traced::from(1.0), Traced::from(0.0));
+                *covering += Traced::select(is_in_cone, own, Traced::from(0.0));
             })
             .close(&[], &columns, &writes, |covering, mut x| {
                 let normal: Vector<D> = take(&mut x);
@@ -119,10 +128,15 @@ impl<const D: usize> Plan<D> {
 
     /// Who sees a surface and is not on it, and how far surfaces are for all others.
     fn see_surfaces(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let surface = [own("surface", 1)];
+        let (surface, continua) = ([own("surface", 1)], self.of_continua());
+        let others = [&surface, &*continua].concat();
         let writes = [own("close_by", 1), own("reach", 1)];
         Gather::<One, _>::new(dialect, "see_surfaces", space, Among::Active, Order::Lanes)
-            .fold(&[], &surface, Among::Active, |meeting, seen| *seen += meeting.other[0])
+            .fold(&continua, &others, Among::Active, |meeting, seen| {
+                let (mut me, mut other) = (meeting.me, meeting.other);
+                let surface = one(&mut other);
+                *seen += surface * self.owned(space, &mut me, &mut other);
+            })
             .close(&[], &surface, &writes, |seen, x| {
                 let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
                 let is_free = x[0].above(0.5);
@@ -134,13 +148,16 @@ impl<const D: usize> Plan<D> {
 
     /// How far the nearest surface is, `h_b` of CTVF algorithm 1.
     fn reach(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let surface = [own("surface", 1)];
+        let continua = self.of_continua();
+        let others = [&[own("surface", 1)], &*continua].concat();
         Gather::<One, _>::new(dialect, "reach_surfaces", space, Among::Active, Order::Fold)
             .only("close_by")
             .start(&[], |_| Traced::from(f64::INFINITY))
-            .fold(&[], &surface, Among::Active, |meeting, nearest| {
+            .fold(&continua, &others, Among::Active, |meeting, nearest| {
+                let (mut me, mut other) = (meeting.me, meeting.other);
                 let square = meeting.pair.square;
-                let is_nearer = meeting.other[0].above(0.5) & square.less(*nearest);
+                let surface = one(&mut other) * self.owned(space, &mut me, &mut other);
+                let is_nearer = surface.above(0.5) & square.less(*nearest);
                 *nearest = Traced::select(is_nearer, square, *nearest);
             })
             .close(&[], &[], &[own("reach", 1)], |nearest, _| {
@@ -152,19 +169,22 @@ impl<const D: usize> Plan<D> {
 
     /// The sum of CTVF (35) with a support that ends at the surface.
     fn crowd(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let (mine, others) = ([own("reach", 1)], [own("side", side_width(D))]);
+        let continua = self.of_continua();
+        let mine = [&[own("reach", 1)], &*continua].concat();
+        let others = [&[own("side", side_width(D))], &*continua].concat();
         let law = CrowdingWithin::<D> {
             kernel: self.kernel,
             smoothing_length: self.smoothing_length,
-            crowding: self.force_constants.crowding,
+            crowding: self.crowding,
         };
         Gather::<Components<D>, _>::new(dialect, "crowd", space, Among::Active, Order::Single)
             .only("close_by")
             .fold(&mine, &others, Among::All, |meeting, sum| {
-                let mut other = meeting.other;
-                let (yes, no) = (Traced::from(1.0), Traced::from(0.0));
-                let volume = side::<D>(&mut other).volume;
-                law.add(&((no, no), meeting.me[0]), &((volume, yes), no), &meeting.pair, sum);
+                let (mut me, mut other) = (meeting.me, meeting.other);
+                let no = Traced::from(0.0);
+                let (reach, volume) = (one(&mut me), side::<D>(&mut other).volume);
+                let own = self.owned(space, &mut me, &mut other);
+                law.add(&((no, no), reach), &((volume, own), no), &meeting.pair, sum);
             })
             .close(&[], &[], &[own("crowd", D)], |sum, _| sum.iter().copied().collect())
     }

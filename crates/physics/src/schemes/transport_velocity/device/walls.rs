@@ -1,17 +1,18 @@
 //! The passes of walls.
 
-use piola_device::{Among, Dialect, Gather, Order, Pass, Space, Traced, local, own, through};
-use piola_formulas::pairs::fluid::{Side, Wall};
-use piola_formulas::pairs::wall::{Extrapolation, Surroundings};
+use piola_device::{Among, Dialect, Gather, Order, Pass, Space, Traced, Use, local, own, through};
+use piola_formulas::pairs::fluid::Side;
+use piola_formulas::pairs::wall::{Around, Ghost};
 use piola_formulas::pairs::{Components, One};
 use piola_formulas::{Number, fluid};
 
 use super::super::barrier::TOUCH;
 use super::super::escape::{Room, TOLERANCE};
-use super::super::fluid::ACCELERATING;
+use super::super::extent::Extent;
+use super::super::ledger::ACCELERATIONS;
 use super::super::walls::{BESIDE, is_in_cell};
-use super::Plan;
-use super::passes::{FORCES, flat, side, side_width};
+use super::moving::ends;
+use super::passes::{FORCES, Plan, flat, side, side_width};
 use crate::schemes::device::{Recorded as Vector, one, square, take};
 
 /// The faces of a wall particle as numbers: how many they are, whether the wall lets slip, the normal between
@@ -75,8 +76,24 @@ impl<const D: usize> Faces<D> {
     }
 }
 
+/// What a wall particle makes of the matter around it.
+pub(super) struct GhostOf<const D: usize> {
+    pub of_fluid: Ghost<Traced, D>,
+    /// Whether there is any.
+    pub is_wet: <Traced as Number>::Mask,
+    /// Whether the wall lets slip.
+    pub slips: <Traced as Number>::Mask,
+    /// The normal towards the matter.
+    pub normal: Vector<D>,
+    /// Velocity with which the wall moves, and that of its surface, in m/s.
+    motion: Vector<D>,
+    pub surface: Vector<D>,
+    mass: Traced,
+    at_rest: [Traced; 2],
+}
+
 /// One of two vectors.
-fn pick<const D: usize>(
+pub(super) fn pick<const D: usize>(
     mask: <Traced as Number>::Mask,
     yes: &Vector<D>,
     no: &Vector<D>,
@@ -94,90 +111,92 @@ impl<const D: usize> Plan<D> {
         if self.normals == 0 {
             return Vec::new();
         }
-        let mut all = vec![
-            self.walls(dialect, space),
-            self.reactions(dialect, space),
-            self.hold_off(dialect, space),
-            self.add_holds(dialect),
-            self.bear(dialect, space),
-        ];
+        let mut all =
+            vec![self.hold_off(dialect, space), self.add_holds(dialect), self.bear(dialect, space)];
         all.extend(self.room.as_ref().map(|room| self.escape(dialect, space, room)));
         all.extend(self.removes.then(|| self.tell_escaped(dialect)));
         all
     }
 
-    /// Sides of wall particles from the fluid around them.
-    fn walls(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let sides = [own("side", side_width(D))];
+    /// The columns of what a wall particle makes of the matter around it.
+    pub(super) fn of_ghosts(&self) -> Vec<Use> {
         let of = |column, width| through("numbers", column, width);
-        let faces = of("faces", self.faces_width());
-        let mut columns = vec![of("mass", 1), of("sliding", D), faces, of("gravity", D)];
+        let mut columns = vec![
+            of("mass", 1),
+            of("sliding", D),
+            of("faces", self.faces_width()),
+            of("gravity", D),
+        ];
+        if self.moves {
+            columns.extend([of("motion", D), of("motion_rate", D)]);
+        }
+        columns.extend(self.of_rest());
         // What has been removed is passive, too, and stays as it is.
-        columns.extend(self.removes.then_some(sides[0]));
-        let gather = Gather::<Surroundings<D>, _>::new(
-            dialect,
-            "walls",
-            space,
-            Among::Passive,
-            Order::Single,
-        )
-        .term(&Extrapolation::<D>, &sides, Among::Active);
-        let writes = [own("side", side_width(D)), own("shear", D)];
-        gather.close(&[], &columns, &writes, |around, mut x| {
-            let mass = one(&mut x);
-            let sliding: Vector<D> = take(&mut x);
-            let faces = Faces::<D>::take(&mut x, self.normals);
-            let gravity: Vector<D> = take(&mut x);
-            // Walls that move are refused.
-            let rest = Vector::<D>::repeat(Traced::from(0.0));
-            let normal = faces.towards(&-around.arm);
-            let ghost = around.ghost([&rest, &sliding], &gravity, &normal);
-            let shear = pick(faces.slips.above(0.5), &ghost.velocity, &ghost.dragged);
-            // Without fluid around it rests and bears no pressure.
-            let is_wet = around.weight.above(0.0);
-            let zero = Traced::from(0.0);
-            let pressure = Traced::select(is_wet, ghost.pressure, zero);
-            let mut side: Side<Traced, D> = Side {
-                velocity: pick(is_wet, &ghost.velocity, &rest),
-                deviation: pick(is_wet, &ghost.deviation, &rest),
-                density: zero,
-                pressure,
-                load: zero,
-                volume: zero,
-            };
-            let density = fluid::density(pressure, self.fluid.density, self.fluid.wave_speed);
-            side.set(mass, density, pressure);
-            let shear = pick(is_wet, &shear, &sliding);
-            let mut side = flat(&side);
-            if self.removes {
-                let before = super::passes::side::<D>(&mut x);
-                let is_out = before.density.abs().at_most(zero);
-                let pick = |(old, new): (Traced, Traced)| Traced::select(is_out, old, new);
-                side = flat(&before).into_iter().zip(side).map(pick).collect();
-            }
-            side.into_iter().chain(shear.iter().copied()).collect()
-        })
+        columns.extend(self.removes.then_some(own("side", side_width(D))));
+        columns
     }
 
-    /// What the fluid does to wall particles.
-    fn reactions(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let constants = self.force_constants;
-        let law = Wall::<D>::of(&constants);
-        let columns = [own("side", side_width(D)), own("shear", D)];
-        let writes = [own("force", FORCES * D)];
-        Gather::<Components<D>, _>::new(dialect, "reactions", space, Among::Passive, Order::Lanes)
-            .term(&law, &columns, Among::Active)
-            .close(&[], &[], &writes, |walls, _| {
-                let mut all = vec![Traced::from(0.0); FORCES * D];
-                all[4 * D..5 * D].copy_from_slice(walls.as_slice());
-                all
-            })
+    /// What it makes of that, of numbers of these columns, of which those of a side that has been removed are left.
+    pub(super) fn ghost(&self, around: &Around<Traced, D>, x: &mut &[Traced]) -> GhostOf<D> {
+        let (mass, sliding) = (one(x), take(x));
+        let faces = Faces::<D>::take(x, self.normals);
+        let gravity: Vector<D> = take(x);
+        let (motion, lift) = match self.moves {
+            true => (take(x), gravity - take(x)),
+            false => (Vector::<D>::repeat(Traced::from(0.0)), gravity),
+        };
+        let normal = faces.towards(&-around.arm);
+        GhostOf {
+            of_fluid: around.ghost([&motion, &sliding], &lift, &normal),
+            surface: if self.moves { motion + sliding } else { sliding },
+            is_wet: around.weight.above(0.0),
+            slips: faces.slips.above(0.5),
+            at_rest: self.rest(x),
+            normal,
+            motion,
+            mass,
+        }
+    }
+
+    /// The numbers of the side of a wall particle with a velocity and a deviation in m/s. Without matter around it moves with
+    /// the wall and bears no pressure.
+    pub(super) fn ghost_side(
+        &self,
+        ghost: &GhostOf<D>,
+        [velocity, deviation]: [Vector<D>; 2],
+        x: &mut &[Traced],
+    ) -> Vec<Traced> {
+        let (zero, is_wet) = (Traced::from(0.0), ghost.is_wet);
+        let rest = Vector::<D>::repeat(zero);
+        let pressure = Traced::select(is_wet, ghost.of_fluid.pressure, zero);
+        let mut side: Side<Traced, D> = Side {
+            velocity: pick(is_wet, &velocity, &ghost.motion),
+            deviation: pick(is_wet, &deviation, &rest),
+            density: zero,
+            pressure,
+            load: zero,
+            volume: zero,
+        };
+        let [density, wave_speed] = ghost.at_rest;
+        side.set(ghost.mass, fluid::density(pressure, density, wave_speed), pressure);
+        let side = flat(&side);
+        match self.removes {
+            true => {
+                let before = super::passes::side::<D>(x);
+                let is_out = before.density.abs().at_most(zero);
+                let pick = |(old, new): (Traced, Traced)| Traced::select(is_out, old, new);
+                flat(&before).into_iter().zip(side).map(pick).collect()
+            }
+            false => side,
+        }
     }
 
     /// What walls do to fluid that touches them, theory (80).
     fn hold_off(&self, dialect: Dialect, space: &Space<D>) -> Pass {
-        let mine = [own("side", side_width(D)), own("force", FORCES * D)];
-        let others = [through("numbers", "faces", self.faces_width())];
+        let mut mine = vec![own("side", side_width(D)), own("force", FORCES * D)];
+        mine.extend(self.of_rest());
+        let mut others = vec![through("numbers", "faces", self.faces_width())];
+        others.extend(self.moves.then_some(through("numbers", "motion", D)));
         let spacing = self.spacing;
         let writes = [own("hold", 2 * D + 1), own("side", side_width(D))];
         type Holds<const D: usize> = ((Components<D>, Components<D>), One);
@@ -198,13 +217,18 @@ impl<const D: usize> Plan<D> {
                     & height.below(TOUCH * spacing);
                 let shift = (me.deviation - *deviation).dot(&normal);
                 let shift = Traced::select(shift.below(0.0), shift, Traced::from(0.0));
-                let mut approach = me.velocity.dot(&normal);
+                let relative = match self.moves {
+                    true => me.velocity - take::<D>(&mut other),
+                    false => me.velocity,
+                };
+                let mut approach = relative.dot(&normal);
                 if self.shifts {
                     *deviation = pick(touches, &(*deviation + normal * shift), deviation);
                 } else {
                     approach += shift;
                 }
-                let rate = self.fluid.wave_speed / spacing;
+                let [_, wave_speed] = self.rest(&mut mine);
+                let rate = wave_speed / spacing;
                 let push = -(load + *acceleration).dot(&normal) - approach * rate;
                 let acts = touches & push.above(0.0);
                 *acceleration = pick(acts, &(*acceleration + normal * push), acceleration);
@@ -269,6 +293,7 @@ impl<const D: usize> Plan<D> {
     /// Which particles have gone through a wall, or out of the box around everything.
     fn escape(&self, dialect: Dialect, space: &Space<D>, room: &Room<D>) -> Pass {
         let others = [through("numbers", "faces", self.faces_width())];
+        let ends = if self.moves { ends::<D>() } else { Vec::new() };
         let spacing = self.spacing;
         Gather::<(One, One), _>::new(dialect, "escape", space, Among::Active, Order::Fold)
             .start(&[], |_| (Traced::from(f64::INFINITY), Traced::from(0.0)))
@@ -286,11 +311,17 @@ impl<const D: usize> Plan<D> {
                     Traced::select(is_nearer, Traced::select(passed, yes, no), *is_through);
                 *nearest = Traced::select(is_nearer, meeting.pair.square, *nearest);
             })
-            .close(&[], &[own("place", D)], &[own("escaped", 1)], |(_, is_through), x| {
+            .close(&ends, &[own("place", D)], &[own("escaped", 1)], |(_, is_through), mut x| {
+                let fixed =
+                    |extent: &Extent<D>| [extent.low, extent.high].map(|end| end.map(Traced::from));
+                let extents: [[Vector<D>; 2]; 2] = match self.moves {
+                    true => [[take(&mut x), take(&mut x)], [take(&mut x), take(&mut x)]],
+                    false => [fixed(&room.walls), fixed(&room.bounds)],
+                };
                 let mut escaped = *is_through;
-                for (extent, outside) in [(&room.walls, 0.0), (&room.bounds, 1.0)] {
+                for ([low, high], outside) in extents.into_iter().zip([0.0, 1.0]) {
                     for axis in (0..D).filter(|axis| self.periods[*axis].is_none()) {
-                        let [low, high] = [extent.low[axis], extent.high[axis]].map(Traced::from);
+                        let [low, high] = [low[axis], high[axis]];
                         let is_inside = low.at_most(x[axis]) & x[axis].at_most(high);
                         escaped = Traced::select(is_inside, escaped, Traced::from(outside));
                     }
@@ -308,5 +339,5 @@ pub(super) fn forces<const D: usize>(numbers: &mut &[Traced]) -> [Vector<D>; FOR
 /// The acceleration by all mechanisms.
 pub(super) fn total<const D: usize>(forces: &[Vector<D>; FORCES]) -> Vector<D> {
     let nothing = Vector::<D>::repeat(Traced::from(0.0));
-    forces[..ACCELERATING.len()].iter().fold(nothing, |sum, force| sum + force)
+    forces[..ACCELERATIONS].iter().fold(nothing, |sum, force| sum + force)
 }

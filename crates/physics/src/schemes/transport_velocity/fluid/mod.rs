@@ -14,6 +14,7 @@ use piola_formulas::pairs::Record as _;
 use piola_formulas::pairs::fluid::FluidSide;
 use piola_formulas::pairs::sums::Density;
 
+use super::device::{self, FluidPlan};
 use super::fields::Made;
 use super::ledger::{ACCELERATIONS, Drift};
 use super::stages::{Instant, Pass, stage};
@@ -445,7 +446,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         device: Device,
         method: DeviceMethod,
     ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
-        system.fluid_to_device(device, method)
+        device::steps::<D, FluidPlan<D>>(system, device, method)
     }
 
     fn device_stages(
@@ -453,7 +454,7 @@ impl<const D: usize> Continuum<D> for WeaklyCompressible<D> {
         language: Language,
         method: DeviceMethod,
     ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
-        system.fluid_stages(language, method)
+        device::stages::<D, FluidPlan<D>>(system, language, method)
     }
 }
 

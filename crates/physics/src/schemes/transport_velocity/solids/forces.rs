@@ -12,9 +12,8 @@ use crate::operators::{Among, Same, Source, Term, gather};
 use crate::schemes::transport_velocity::{Forces, Shifting};
 
 impl<const D: usize> Hypoelastic<D> {
-    /// Fills the accelerations of solids, without body forces: theory (73) to (75).
-    pub(super) fn force_pass(&self, common: &mut Common<D>) {
-        let mut forces = std::mem::take(&mut common.forces);
+    /// The constants of the law of forces, and which law it is: whether it is plain, and what bodies do to each other.
+    pub(in super::super) fn force_law(&self, common: &Common<D>) -> (ForceConstants, (bool, u8)) {
         let h = common.support.smoothing_length();
         let spacing = common.particles.spacing[0];
         let artificial = common.settings.artificial_viscosity * h;
@@ -42,6 +41,13 @@ impl<const D: usize> Hypoelastic<D> {
             _ => ONE,
         };
         let is_plain = self.corrections.is_empty() && self.is_uniform();
+        (constants, (is_plain, contact))
+    }
+
+    /// Fills the accelerations of solids, without body forces: theory (73) to (75).
+    pub(super) fn force_pass(&self, common: &mut Common<D>) {
+        let mut forces = std::mem::take(&mut common.forces);
+        let (constants, (is_plain, contact)) = self.force_law(common);
         let own = &common.continua;
         match (is_plain, contact) {
             (true, ONE) => self.stress::<true, ONE>(common, constants, Same(1.0), &mut forces),
@@ -68,11 +74,11 @@ impl<const D: usize> Hypoelastic<D> {
         let walls = Term { law: WallForces(law), source, among: Among::Passive };
         let close = |place: usize, sums: &ForceSums<f64, D>, row: &mut _| {
             let (side, share) = (&common.sides[place], self.tensions[place].share);
-            let contact = if constants.penalty > 0.0 { 1.0 / side.mass() } else { 1.0 };
+            let [pressure, walls] = sums.accelerations(share, side.mass(), &constants);
             *row = Forces {
-                pressure: sums.stress * share + sums.contact * contact,
+                pressure,
                 artificial_viscosity: sums.artificial,
-                walls: sums.walls * share,
+                walls,
                 crowding: sums.crowding,
                 opening: -sums.volume,
                 ..Forces::default()

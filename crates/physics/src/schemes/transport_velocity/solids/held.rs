@@ -2,7 +2,7 @@
 
 use super::{Common, Hypoelastic};
 use crate::Vector;
-use crate::boundaries::prescribed::Entry;
+use crate::boundaries::prescribed::PrescribedComponents;
 use crate::schemes::ledger::Total;
 use crate::schemes::momentum::add_moments;
 
@@ -19,22 +19,9 @@ impl<const D: usize> Hypoelastic<D> {
             return Total::default();
         }
         let (own, _) = common.parts(state);
-        let hold = |entry: &Entry| {
-            let row = common.row(entry.particle)?;
-            let velocity = &mut own.velocity[row][entry.component];
-            let (mass, old) = (common.mass[entry.particle], *velocity);
-            let new = entry.at(time);
-            if new == old {
-                return None;
-            }
-            *velocity = new;
-            let mut total = Total::of(0.5 * mass * (new - old) * (new + old));
-            let mut momentum = Vector::zeros();
-            momentum[entry.component] = mass * (new - old);
-            add_moments(&own.position[row], &momentum, &mut total.force);
-            Some(total)
-        };
-        common.team().sum_in_order(self.held.iter().filter_map(hold))
+        let row = |number: usize| Some((common.row(number)?, common.mass[number]));
+        let totals = hold(&self.held, time, row, own.position, own.velocity);
+        common.team().sum_in_order(totals)
     }
 
     /// Takes from the accelerations what prescribed velocities do not follow: the reaction, which
@@ -48,4 +35,29 @@ impl<const D: usize> Hypoelastic<D> {
             forces.walls[entry.component] -= total;
         }
     }
+}
+
+/// Sets prescribed velocities at a time in s, of rows of positions and velocities, and tells what each change takes. `row`
+/// has the row of a particle and its mass in kg, if it is there.
+pub(in super::super) fn hold<const D: usize>(
+    held: &PrescribedComponents,
+    time: f64,
+    row: impl Fn(usize) -> Option<(usize, f64)>,
+    position: &[Vector<D>],
+    velocity: &mut [Vector<D>],
+) -> impl Iterator<Item = Total> {
+    held.iter().filter_map(move |entry| {
+        let (row, mass) = row(entry.particle)?;
+        let velocity = &mut velocity[row][entry.component];
+        let (new, old) = (entry.at(time), *velocity);
+        if new == old {
+            return None;
+        }
+        *velocity = new;
+        let mut total = Total::of(0.5 * mass * (new - old) * (new + old));
+        let mut momentum = Vector::zeros();
+        momentum[entry.component] = mass * (new - old);
+        add_moments(&position[row], &momentum, &mut total.force);
+        Some(total)
+    })
 }

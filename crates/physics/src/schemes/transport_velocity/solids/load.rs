@@ -1,12 +1,10 @@
 //! What solids take from a state and put into it: matter by place, pressures, stresses.
 
-use piola_formulas::hypoelastic::shear_energy;
 use piola_formulas::pairs::solid::SolidTension;
 
-use super::{Common, ENERGY, Hypoelastic, Matter, Solid, Stored, entry, full};
-use crate::parallel;
+use super::{Common, ENERGY, Hypoelastic, Matter, Stored, cauchy_stress, mirrored};
 use crate::schemes::transport_velocity::Side;
-use crate::{Tensor, Vector};
+use crate::{Vector, parallel};
 
 impl<const D: usize> Hypoelastic<D> {
     /// Fills what neighbours see of solids, by place, from a state whose neighbours are known.
@@ -83,48 +81,21 @@ impl<const D: usize> Hypoelastic<D> {
             for (offset, row) in rows.iter_mut().enumerate() {
                 let place = first + offset;
                 let (side, matter) = (&sides[place], &matter[place]);
-                let stress = Tensor::<D>::from_fn(|i, j| {
-                    matter[entry(i, j)] - if i == j { side.pressure } else { 0.0 }
-                });
-                let (tensor, weight, share) = match corrections.get(place) {
-                    Some(correction) => (stress * correction, side.volume, 1.0 / side.density),
-                    None => (stress / (side.density * side.density), side.mass(), 1.0),
-                };
-                (row.tensor, row.weight, row.share) = (tensor, weight, share);
+                let stress = cauchy_stress(side.pressure, matter);
+                row.set(&stress, side, corrections.get(place));
             }
         });
         common.team().refresh_records::<SolidTension<D>>(&mut self.tensions, owned);
     }
 
-    /// Gives the wall particle at a place its deviatoric stress. Of a wall that lets slide it is the
-    /// mirror image across the normal, so that there is no shear at its face.
+    /// Gives the wall particle at a place its deviatoric stress, that of a wall that lets slide [`mirrored`].
     pub(super) fn set_deviator(
         &mut self,
         place: usize,
         deviator: &[f64; 6],
         mirror: Option<&Vector<D>>,
     ) {
-        let stored = &mut self.matter[place][..6];
-        match mirror {
-            None => stored.copy_from_slice(deviator),
-            Some(normal) => {
-                let normal = super::padded(normal);
-                let mirror = Tensor::<3>::identity() - normal * normal.transpose() * 2.0;
-                super::store(&(mirror * full(deviator) * mirror), stored);
-            }
-        }
-    }
-}
-
-impl Solid {
-    /// Square of the speed in m^2/s^2 that a particle would have if all of its elastic energy were
-    /// kinetic: `|u|^2 + (p / (rho0 c))^2 + s : s / (2 G rho0)`, theory (76). CTVF (35) has `|u|^2`, which
-    /// vanishes where a body turns round and is pulled most.
-    #[inline]
-    pub(super) fn speed_squared<const D: usize>(&self, side: &Side<D>, matter: &Matter) -> f64 {
-        let (density, wave_speed) = (self.state.density, self.state.wave_speed);
-        let compression = side.pressure / (density * wave_speed);
-        let shear = shear_energy(&full(matter), self.shear_modulus, density);
-        side.velocity.norm_squared() + compression * compression + 2.0 * shear
+        let deviator = mirror.map_or(*deviator, |normal| mirrored(deviator, normal));
+        self.matter[place][..6].copy_from_slice(&deviator);
     }
 }

@@ -20,58 +20,31 @@ mod forces;
 mod fracture;
 mod held;
 mod load;
+mod material;
 mod rates;
 mod system;
 
-use piola_formulas::hypoelastic::{EquationOfState, Strength};
+use nalgebra::SMatrix;
+use piola_formulas::Number;
+use piola_formulas::hypoelastic::Strength;
 pub(super) use piola_formulas::pairs::solid::MATTER;
 
 use super::{Common, TransportVelocity};
+use crate::Tensor;
 use crate::boundaries::PrescribedVelocity;
 use crate::boundaries::prescribed::PrescribedComponents;
-use crate::{Tensor, Vector};
 
+pub use material::{Heat, Solid};
 pub use rates::SolidRates;
 pub use system::DESCRIPTION;
 
+pub(super) use held::hold;
+pub(super) use material::{Moved, Step};
+pub(super) use rates::Counted;
+pub(super) use system::Stress;
+
 use fracture::Bonds;
 use system::{Stored, StoredMut};
-
-/// The material of one body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solid {
-    /// Pressure, with the density in kg/m^3 and the bulk wave speed in m/s at rest.
-    pub state: EquationOfState,
-    /// Shear modulus in Pa.
-    pub shear_modulus: f64,
-    /// When it flows.
-    pub strength: Strength,
-    /// What plastic work does to the temperature.
-    pub heat: Heat,
-}
-
-/// How plastic work heats a solid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heat {
-    /// Temperature at the start in K.
-    pub temperature: f64,
-    /// Specific heat in J/(kg K).
-    pub specific_heat: f64,
-    /// Share of the plastic work that becomes heat.
-    pub share: f64,
-}
-
-impl Heat {
-    /// Room temperature and a solid that does not warm up.
-    pub const NONE: Self = Self { temperature: 293.15, specific_heat: 1.0, share: 0.0 };
-}
-
-impl Solid {
-    /// Bulk modulus at rest in Pa.
-    pub fn bulk_modulus(&self) -> f64 {
-        self.state.density * self.state.wave_speed * self.state.wave_speed
-    }
-}
 
 /// What particles of different bodies do to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +81,6 @@ pub struct SolidsInput {
 /// specific internal energy in J/kg.
 pub(super) type Matter = [f64; MATTER];
 
-const ZZ: usize = 2;
 const PLASTIC: usize = 6;
 const TEMPERATURE: usize = 7;
 const ENERGY: usize = 8;
@@ -145,6 +117,21 @@ impl<const D: usize> Hypoelastic<D> {
         self.materials.iter().all(is_elastic)
     }
 
+    /// The material of each body.
+    pub(super) fn materials(&self) -> &[Solid] {
+        &self.materials
+    }
+
+    /// The prescribed velocities.
+    pub(super) fn held(&self) -> &PrescribedComponents {
+        &self.held
+    }
+
+    /// Whether velocity gradients are corrected.
+    pub(super) fn corrects(&self) -> bool {
+        !self.corrections.is_empty()
+    }
+
     /// The solid that a particle (number) is of.
     fn solid(&self, common: &Common<D>, number: usize) -> &Solid {
         &self.materials[common.particles.body[number] as usize]
@@ -168,19 +155,40 @@ fn entry(i: usize, j: usize) -> usize {
 
 /// A stored tensor as a matrix.
 #[inline]
-fn full(stored: &[f64]) -> Tensor<3> {
-    Tensor::<3>::from_fn(|i, j| stored[entry(i, j)])
+fn full<T: Number>(stored: &[T]) -> SMatrix<T, 3, 3> {
+    SMatrix::from_fn(|i, j| stored[entry(i, j)])
 }
 
 /// Stores a symmetric matrix.
 #[inline]
-fn store(tensor: &Tensor<3>, stored: &mut [f64]) {
+fn store<T: Number>(tensor: &SMatrix<T, 3, 3>, stored: &mut [T]) {
     for (i, j) in [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)] {
         stored[entry(i, j)] = tensor[(i, j)];
     }
 }
 
-/// The normal of a plane in three dimensions.
-fn padded<const D: usize>(vector: &Vector<D>) -> Vector<3> {
-    Vector::<3>::from_fn(|i, _| if i < D { vector[i] } else { 0.0 })
+/// The Cauchy stress in Pa of a pressure in Pa and a material state.
+#[inline]
+pub(super) fn cauchy_stress<T: Number, const D: usize>(
+    pressure: T,
+    matter: &[T; MATTER],
+) -> SMatrix<T, D, D> {
+    SMatrix::from_fn(|i, j| {
+        let deviator = matter[entry(i, j)];
+        if i == j { deviator - pressure } else { deviator }
+    })
+}
+
+/// The mirror image of a stored deviatoric stress across the plane with a normal: of a wall that lets slide it is the
+/// stress behind its face, so that there is no shear at that.
+#[inline]
+pub(super) fn mirrored<T: Number, const D: usize>(
+    deviator: &[T; 6],
+    normal: &SMatrix<T, D, 1>,
+) -> [T; 6] {
+    let normal = SMatrix::<T, 3, 1>::from_fn(|i, _| if i < D { normal[i] } else { T::zero() });
+    let mirror = SMatrix::<T, 3, 3>::identity() - normal * normal.transpose() * T::from(2.0);
+    let mut image = [T::zero(); 6];
+    store(&(mirror * full(deviator) * mirror), &mut image);
+    image
 }

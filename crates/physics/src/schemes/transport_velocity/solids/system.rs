@@ -1,5 +1,6 @@
 //! Solids as a system of the formulation.
 
+use piola_device::{Device, Language};
 use piola_formulas::hypoelastic::von_mises;
 use piola_formulas::pairs::Record;
 use piola_formulas::pairs::solid::{MATTER, SolidTension};
@@ -8,7 +9,7 @@ use piola_formulas::pairs::wall::{Around, Ghost, StressExtrapolation, Surroundin
 use super::fracture::{Bonds, piece_count};
 use super::{
     Contact, ENERGY, Hypoelastic, Matter, PLASTIC, Solid, SolidRates, SolidsInput, TEMPERATURE,
-    Tension, entry, full,
+    Tension, cauchy_stress, full,
 };
 use crate::boundaries::prescribed::PrescribedComponents;
 use crate::fields::{FieldDescription, columns};
@@ -16,14 +17,18 @@ use crate::operators::{Among, NeighborBlock, Term, add_at};
 use crate::schemes::input::{check_index, check_selected};
 use crate::schemes::ledger::{Entry, Total, Totals};
 use crate::schemes::stages::Stage;
+use crate::schemes::transport_velocity::device::{self, SolidPlan};
 use crate::schemes::transport_velocity::fields::Made;
 use crate::schemes::transport_velocity::ledger::{ACCELERATIONS, Drift};
 use crate::schemes::transport_velocity::stages::{Instant, Pass, stage};
 use crate::schemes::transport_velocity::walls::WallValues;
 use crate::schemes::transport_velocity::{
-    AtRest, Columns, Common, Continua, Continuum, NAME, Rates, Slip, TransportVelocityError,
+    AtRest, Columns, Common, Continua, Continuum, NAME, Rates, Slip, TransportVelocity,
+    TransportVelocityError,
 };
-use crate::schemes::{Accounts, Capability, SchemeDescription};
+use crate::schemes::{
+    Accounts, Capability, DeviceMethod, DeviceRefusal, DeviceStage, DeviceSteps, SchemeDescription,
+};
 use crate::{Tensor, Vector};
 
 columns! {
@@ -308,8 +313,7 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
         }
         let solid = self.solid(common, common.first() + row);
         let density = common.columns(state).density[row];
-        let bulk = solid.state.wave_speed_squared(density, matter[ENERGY]);
-        Some((bulk + 4.0 / 3.0 * solid.shear_modulus / density).sqrt())
+        Some(solid.longitudinal_speed(density, matter[ENERGY]))
     }
 
     fn energies(&self, common: &Common<D>, state: &[f64], energies: &mut [f64]) {
@@ -335,10 +339,9 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
                 let way = common.support.list().domain().separation(start, end);
                 values.extend_from_slice(way.as_slice());
             }
-            Some(Own::cauchy_stress) => values.extend((0..D * D).map(|k| {
-                let (i, j) = (k / D, k % D);
-                matter[entry(i, j)] - if i == j { pressure } else { 0.0 }
-            })),
+            Some(Own::cauchy_stress) => {
+                values.extend_from_slice(cauchy_stress::<_, D>(pressure, &matter).as_slice());
+            }
             Some(Own::von_mises) => values.push(von_mises(&full(&matter))),
             None => {}
         }
@@ -346,6 +349,22 @@ impl<const D: usize> Continuum<D> for Hypoelastic<D> {
 
     fn memory() -> usize {
         size_of::<SolidRates<D>>() + size_of::<Tension<D>>() + size_of::<Matter>()
+    }
+
+    fn to_device(
+        system: &TransportVelocity<D, Self>,
+        device: Device,
+        method: DeviceMethod,
+    ) -> Result<Box<dyn DeviceSteps>, DeviceRefusal> {
+        device::steps::<D, SolidPlan<D>>(system, device, method)
+    }
+
+    fn device_stages(
+        system: &TransportVelocity<D, Self>,
+        language: Language,
+        method: DeviceMethod,
+    ) -> Result<Vec<DeviceStage>, DeviceRefusal> {
+        device::stages::<D, SolidPlan<D>>(system, language, method)
     }
 }
 

@@ -92,7 +92,7 @@ impl<const D: usize> OnDevice<D> {
             listed.velocity[row] = velocity;
         }
         let acting = listed.act(time);
-        listed.give(&mut self.machine)?;
+        listed.give(&mut self.machine, &listed.acceleration)?;
         totals.drive(TRACTION, &acting.traction);
         totals.drive(BOUNDARY_MOTION, &acting.motion);
         Ok(())
