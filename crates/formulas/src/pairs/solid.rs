@@ -34,7 +34,7 @@ record! {
 
 impl<T: Number, const D: usize> Tension<T, D> {
     /// Sets what follows from the stress in Pa of a particle and, with corrected gradients, from its
-    /// [`correction`].
+    /// [`correction`]. Of what has been removed, and has no density, there is no share.
     #[inline(always)]
     pub fn set(
         &mut self,
@@ -43,7 +43,11 @@ impl<T: Number, const D: usize> Tension<T, D> {
         correction: Option<&Of<Square<D>, T>>,
     ) {
         (self.tensor, self.weight, self.share) = match correction {
-            Some(correction) => (stress * *correction, side.volume, side.density.recip()),
+            Some(correction) => {
+                let is_there = side.density.abs().above(0.0);
+                let share = T::select(is_there, side.density.recip(), T::zero());
+                (stress * *correction, side.volume, share)
+            }
             None => (stress / (side.density * side.density), side.mass(), T::one()),
         };
     }

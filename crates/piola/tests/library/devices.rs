@@ -41,8 +41,8 @@ pub(super) fn tables(finished: &Finished) -> Vec<u64> {
     numbers.map(|number| number.to_bits()).collect()
 }
 
-/// Fluids in periodic boxes, between walls, with free surfaces and body forces, in 2D and 3D.
-const CASES: [(&str, &[&str]); 13] = [
+/// Fluids in periodic boxes, between walls at rest and in motion, with free surfaces and body forces, in 2D and 3D.
+const CASES: [(&str, &[&str]); 14] = [
     ("ctvf/taylor-green", &["time.end=0.1", "output.table_every=0.01"]),
     (
         "ctvf/taylor-green",
@@ -63,6 +63,14 @@ const CASES: [(&str, &[&str]); 13] = [
     (
         "ctvf/still-water",
         &["time.end=0.05", "load+={ kind = 'body_force', acceleration = ['sin(50 * t)', '0'] }"],
+    ),
+    (
+        "ctvf/still-water",
+        &[
+            "time.end=0.05",
+            "scheme.escaped='remove'",
+            "boundary+={ name = 'shake', body = 'tank', where = { kind = 'all' }, velocity = { x = '0.3 * sin(30 * t)', y = '0.1' } }",
+        ],
     ),
     ("ctvf/taylor-green-3d", &["time.end=0.05", "scheme.density='continuity'"]),
     ("ctvf/cavity", &["time.end=0.2", "output.table_every=0.05"]),
