@@ -22,24 +22,27 @@ nproc
 
 # speed LABEL CASE STEPS ...: milliseconds a step over the last three quarters of the steps.
 speed() { python3 "$scripts/speed.py" "$piola" "$@"; }
+# With this each pass waits for the one before it, so that its own time shows.
+by_pass() { CUDA_LAUNCH_BLOCKING=1 speed "$@"; }
 quiet=(--set time.end=5 --set output.every=5 --set output.table_every=5)
 box=(cases/ctvf/taylor-green-3d/case.toml)
 large=("${quiet[@]}" --set parameters.side=100 --set parameters.layers=100)
+# Supports of 2.7 spacings in place of 3.
+few=("${large[@]}" --set scheme.smoothing_length=0.9)
 dam=(cases/ctvf/dam-break-3d/case.toml)
 wet=("${quiet[@]}" --set parameters.dx=0.0125)
 block=$scripts/block.toml
 for precision in double single; do
     on=(--device "$device" --precision "$precision")
+    by_pass "taylor-green-3d, few neighbours, by pass, $precision" "${box[@]}" 200 "${few[@]}" "${on[@]}"
+    by_pass "taylor-green-3d by pass, $precision" "${box[@]}" 200 "${large[@]}" "${on[@]}"
+    by_pass "block by pass, $precision" "$block" 300 "${on[@]}"
     speed "taylor-green-3d, $precision" "${box[@]}" 400 "${large[@]}" "${on[@]}"
-    # Each pass waits for the one before it here, so that its own time shows.
-    CUDA_LAUNCH_BLOCKING=1 speed "taylor-green-3d by pass, $precision" "${box[@]}" 200 "${large[@]}" "${on[@]}"
-    speed "dam-break-3d, $precision" "${dam[@]}" 400 "${wet[@]}" "${on[@]}"
-    speed "block, $precision" "$block" 2000 "${on[@]}"
-    CUDA_LAUNCH_BLOCKING=1 speed "block by pass, $precision" "$block" 400 --set parameters.n=80 "${on[@]}"
-    CUDA_LAUNCH_BLOCKING=1 speed "small block by pass, $precision" "$block" 400 --set parameters.n=50 "${on[@]}"
-    speed "column-impact-3d (upwind), $precision" cases/upwind/column-impact-3d/case.toml 1000 "${quiet[@]}" --set body.column.spacing=0.05 --set scheme.smoothing_length=0.13 "${on[@]}"
+    speed "block, $precision" "$block" 1000 "${on[@]}"
 done
-speed "taylor-green-3d, 16 threads" "${box[@]}" 12 "${large[@]}"
-speed "small block, 16 threads" "$block" 40 --set parameters.n=50
-speed "small block, one core" "$block" 12 --set parameters.n=50 --threads 1
-speed "taylor-green-3d, one core" "${box[@]}" 4 "${large[@]}" --threads 1
+small=("${quiet[@]}" --set parameters.side=50 --set parameters.layers=50)
+speed "taylor-green-3d, 125000 particles, one core" "${box[@]}" 8 "${small[@]}" --threads 1
+speed "block, 132651 particles, one core" "$block" 12 --set parameters.n=50 --threads 1
+speed "taylor-green-3d, 16 threads" "${box[@]}" 12 "${large[@]}" --threads 16
+speed "column-impact-3d (upwind)" cases/upwind/column-impact-3d/case.toml 1000 "${quiet[@]}" --set body.column.spacing=0.05 --set scheme.smoothing_length=0.13 --device "$device"
+speed "dam-break-3d" "${dam[@]}" 400 "${wet[@]}" --device "$device"
