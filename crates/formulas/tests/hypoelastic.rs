@@ -184,7 +184,7 @@ fn the_wave_speed_is_the_slope_of_the_pressure_at_constant_entropy() {
             let slope = by_density.eps + by_energy.eps * pressure / (density * density);
             let square = state.wave_speed_squared(density, energy);
             assert!((slope / square - 1.0).abs() < 1e-12, "{law:?} at {ratio}");
-            let rest = state.wave_speed_squared(2785.0, 0.0);
+            let rest: f64 = state.wave_speed_squared(2785.0, 0.0);
             assert!((rest / (5328.0 * 5328.0) - 1.0).abs() < 1e-12);
         }
     }
