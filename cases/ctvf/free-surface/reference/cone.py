@@ -83,8 +83,16 @@ square = lattice(-1.0, 1.0, 1.0, 3.0)
 cut = lattice(6.0, 11.0, -0.5, 4.5, lambda x, y: 0.95 <= math.hypot(x - 8.5, y - 2) <= 2.05)
 patch = lattice(12.0, 14.0, 0.0, 1.0)
 floor = lattice(11.0, 15.0, -3 * DX, 0.0)
-with open("../rings.csv") as file:
-    rings = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
+tank = lattice(3.0 - 3 * DX, 11.0 + 3 * DX, -6.0 - 3 * DX, -2.0,
+               lambda x, y: not (3.0 < x < 11.0 and y > -6.0))
+
+
+def read(name):
+    with open(name) as file:
+        return [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
+
+
+rings, dam = read("../rings.csv"), read("../dam.csv")
 
 
 def exact(p):
@@ -98,3 +106,4 @@ print("rings", found(rings), "of", len(rings))
 print("cut", found(cut), "of", len(cut), "- with the exact normals",
       sum(is_open(p, exact(p), cut) for p in cut))
 print("patch", found(patch, floor), "of", len(patch))
+print("dam", found(dam, tank), "of", len(dam))

@@ -75,6 +75,7 @@ pub(super) fn case(
         names: Names::default(),
         late: Late::default(),
         surfaces: Vec::new(),
+        missing: HashSet::new(),
     };
     reader.collect_names(record);
     // Without a scheme nothing is known of what the rest of the case may say.
@@ -218,6 +219,8 @@ struct Reader<'r, 'c> {
     late: Late,
     /// Surfaces from files: the same one is read once.
     surfaces: Vec<super::model::Surface>,
+    /// Files that are not there: of each it is said once.
+    missing: HashSet<PathBuf>,
 }
 
 /// What a run is too short for.
@@ -321,6 +324,9 @@ impl Reader<'_, '_> {
         let path = folder.join(&name.value);
         if !path.is_file() {
             let message = format!("there is no file {}", path.display());
+            if !self.missing.insert(path) {
+                return None;
+            }
             let problem = Problem::new(name.place, message, "not found");
             return self.refuse(problem.help("paths are relative to the folder of the case file"));
         }

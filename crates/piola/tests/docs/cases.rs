@@ -1,7 +1,9 @@
 //! The gallery of cases, the page of each case, and the case files that pages show.
 
 use std::collections::BTreeSet;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
 
 use piola::case::{LoadOptions, Session, parse};
 
@@ -9,6 +11,12 @@ use super::pages::{Page, all, below, page, root};
 
 /// Largest picture beside a case in bytes: clones stay small.
 const LARGEST_PICTURE: u64 = 200_000;
+/// Width of charts in pixels, which have no colour bar.
+const CHART: usize = 1200;
+/// How many colours follow one another on a colour bar at least, and by how much of 255 neighbours may differ: fewer and
+/// larger steps are seen as bands.
+const COLOURS: usize = 100;
+const STEP: u8 = 8;
 
 /// The folder of each case with its id.
 fn cases() -> BTreeSet<(String, String)> {
@@ -53,9 +61,67 @@ fn each_case_has_a_page_with_its_command_and_picture() {
         let command = format!("cargo run --release -- run {folder}/case.toml");
         assert!(page.text.contains(&command), "{} lacks `{command}`", page.name);
         assert!(page.text.contains("](picture.png)"), "{} shows no picture", page.name);
-        let picture = root().join(&folder).join("picture.png");
-        let size = fs::metadata(picture).expect("each case has its picture").len();
-        assert!(size < LARGEST_PICTURE, "{folder}/picture.png has {size} bytes");
+        assert!(root().join(&folder).join("picture.png").is_file(), "{folder} has no picture");
+    }
+}
+
+/// The pictures beside the cases.
+fn pictures() -> Vec<String> {
+    let names = |folder: String| {
+        let files = fs::read_dir(root().join(&folder)).expect("a case lies in a folder");
+        let names = files.map(|file| file.expect("it can be read").file_name());
+        let names = names.filter_map(|name| name.into_string().ok());
+        let names = names.filter(|name| name.ends_with(".png"));
+        names.map(move |name| format!("{folder}/{name}")).collect::<Vec<_>>()
+    };
+    cases().into_iter().flat_map(|(folder, _)| names(folder)).collect()
+}
+
+/// The width of a picture and its pixels, row by row.
+fn pixels(path: &Path) -> (usize, Vec<[u8; 3]>) {
+    let file = File::open(path).expect("it can be read");
+    let mut decoder = png::Decoder::new(BufReader::new(file));
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().expect("it is a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("it fits into memory")];
+    let info = reader.next_frame(&mut bytes).expect("it is a PNG");
+    let samples = info.color_type.samples();
+    assert!(samples >= 3, "{} is not in colour", path.display());
+    let pixels = bytes[..info.buffer_size()].chunks_exact(samples);
+    (info.width as usize, pixels.map(|part| [part[0], part[1], part[2]]).collect())
+}
+
+/// The most changes of colour along a line of pixels none of which is larger than `STEP`.
+fn small_changes<'a>(mut line: impl Iterator<Item = &'a [u8; 3]>) -> usize {
+    let Some(mut before) = line.next() else { return 0 };
+    let (mut most, mut count) = (0, 0);
+    for pixel in line {
+        let change = pixel.iter().zip(before).map(|(one, other)| one.abs_diff(*other)).max();
+        count = match change {
+            Some(0) => count,
+            Some(change) if change <= STEP => count + 1,
+            _ => 0,
+        };
+        most = most.max(count);
+        before = pixel;
+    }
+    most
+}
+
+#[test]
+fn pictures_of_cases_are_small_and_have_smooth_colours() {
+    for name in pictures() {
+        let path = root().join(&name);
+        let size = fs::metadata(&path).expect("it is there").len();
+        assert!(size < LARGEST_PICTURE, "{name} has {size} bytes");
+        let (width, pixels) = pixels(&path);
+        if width == CHART {
+            continue;
+        }
+        let rows = pixels.chunks_exact(width).map(|row| small_changes(row.iter()));
+        let columns = (0..width).map(|x| small_changes(pixels.iter().skip(x).step_by(width)));
+        let most = rows.chain(columns).max().unwrap_or_default();
+        assert!(most >= COLOURS, "the colour bar of {name} has bands: {most} colours in a row");
     }
 }
 

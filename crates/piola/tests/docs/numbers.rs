@@ -1,5 +1,5 @@
 //! No number in a README of a case or in the gallery, whole ones in tables and others anywhere, that neither the results nor
-//! the files of the case hold, and that has no command beside it.
+//! the files of the case hold, and whose sentence has no command and no source.
 
 use piola::case::page::CaseResults;
 
@@ -97,8 +97,19 @@ fn unheld(text: &str, case: &CaseResults, folder: &str) -> Vec<String> {
     numbers.filter(|number| !held(number)).collect()
 }
 
-/// Text that says by which command its numbers came about.
+/// Text that says by which command the numbers of a sentence came about.
 const COMMANDS: [&str; 4] = ["`--", "`piola ", ".py`", "`parameters."];
+
+/// Whether a sentence says where its numbers are from: a command, or a publication with its year, as `(1990)`.
+fn says_where(sentence: &str) -> bool {
+    let is_year = |word: &str| {
+        let word = word.trim_end_matches(['.', ',', ';', ':']).strip_suffix(')');
+        let year = word.and_then(|word| word.trim_start_matches('(').parse().ok());
+        year.is_some_and(|year: u32| (1900..2100).contains(&year))
+    };
+    COMMANDS.iter().any(|command| sentence.contains(command))
+        || sentence.split_whitespace().any(is_year)
+}
 
 /// Whether `word` is the number of an equation of a paper, as `(3.38)` is.
 fn is_equation(word: &str) -> bool {
@@ -109,16 +120,20 @@ fn is_equation(word: &str) -> bool {
     parts.is_some_and(|(chapter, equation)| counts(chapter) && counts(equation))
 }
 
-/// What `text` claims: its tables, and its paragraphs and items but for those that say how to get their numbers; no blocks
-/// of code, places in papers, and what links lead to.
+/// What `text` claims: its tables, and the sentences of the rest but for those that say where their numbers are from; no
+/// blocks of code, places in papers, and what links lead to.
 fn claims(text: &str) -> String {
     let outside = text.split("```").step_by(2);
     let blocks = outside.flat_map(|part| part.split("\n\n")).flat_map(|block| block.split("\n- "));
-    let is_open = |block: &&str| {
+    let sentences = blocks.flat_map(|block| {
         let is_table = block.lines().any(|line| line.starts_with('|'));
-        is_table || !COMMANDS.iter().any(|command| block.contains(command))
-    };
-    let words = blocks.filter(is_open).flat_map(|block| {
+        let ends: &[&str] = if is_table { &[] } else { &[". ", ".\n"] };
+        let pieces = ends.iter().fold(vec![block], |pieces, end| {
+            pieces.into_iter().flat_map(|piece| piece.split(*end)).collect()
+        });
+        pieces.into_iter().filter(move |piece| is_table || !says_where(piece))
+    });
+    let words = sentences.flat_map(|block| {
         let (mut is_place, mut was_place) = (false, false);
         block.split_whitespace().filter(move |word| {
             let of_place = is_place;
@@ -163,7 +178,7 @@ fn numbers_of_cases_are_those_of_the_results() {
     }
     assert!(
         wrong.is_empty(),
-        "neither results nor files of the case hold, and no command is beside:\n{}",
+        "neither results nor files of the case hold, and their sentences have no command:\n{}",
         wrong.join("\n")
     );
 }
@@ -173,6 +188,9 @@ fn numbers_are_compared_with_the_digits_they_have() {
     assert_eq!(written("| 0.008 | -1.5e-3 m, 25 | v1.2.3 |"), ["0.008", "1.5e-3"]);
     let text = "In figures 4.1, 4.2 and 4.3 it is 0.5.\n- `--set a=1` gives 0.7\n- and 0.8\n```\n0.9\n```\n";
     assert_eq!(written(&claims(text)), ["0.5", "0.8"]);
+    let text =
+        "`--set a=1` gives 0.7. It is\n0.8. Liu (1998) has 0.9, Ng (A 2020) 1.1. Of 1998 are 1.2.";
+    assert_eq!(written(&claims(text)), ["0.8", "1.2"]);
     assert_eq!(written(&claims("| `--set a=1` | 0.7 |\n| 2 | 0.8 |")), ["0.7", "0.8"]);
     let text = "from (3.38), (3.41); it is (0.5): ![at 0.6 s](at-0.7.png) [a 1.5](b-1.6.png).";
     assert_eq!(written(&claims(text)), ["0.5", "0.6", "1.5"]);

@@ -166,3 +166,16 @@ fn files_are_found_beside_the_case() {
         .unwrap_or_else(|problems| panic!("{problems}"));
     assert_eq!(case.files()[0].value, folder.path().join("cloud.csv"));
 }
+
+#[test]
+fn of_a_missing_file_it_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.toml");
+    fs::write(folder.path().join("cloud.csv"), "x,y,volume\n").unwrap();
+    let check = FULL.rsplit("[[check]]").find(|check| check.contains("curve.csv")).unwrap();
+    let check = check.split("\n\n").next().unwrap();
+    fs::write(&path, format!("{FULL}\n[[check]]{check}\n\n[[check]]{check}\n")).unwrap();
+    let said = load(&path, &LoadOptions::default()).unwrap_err().to_string();
+    assert_eq!(said.matches("error:").count(), 1, "{said}");
+    assert!(said.contains("there is no file") && said.contains("curve.csv"), "{said}");
+}
