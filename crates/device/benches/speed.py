@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Milliseconds a step over the last three quarters of a run, from its progress; with CUDA_LAUNCH_BLOCKING those of its
-passes, over all steps. Arguments: the program piola, a label, the case, the steps, and more for `piola run`."""
+"""Milliseconds a step over the last three quarters of a run, from its progress; with CUDA_LAUNCH_BLOCKING the times of its
+passes, from two runs. Arguments: the program piola, a label, the case, the steps, and more for `piola run`."""
 
 import json
 import os
@@ -30,12 +30,19 @@ def run(steps, folder):
         sys.exit(f"{LABEL}: {said}")
 
 
+def passes(record):
+    return {entry["name"]: entry["seconds"] for entry in record["passes"]}
+
+
 with tempfile.TemporaryDirectory() as folder:
     begin = time.time()
     record, points = run(STEPS, folder)
     if os.environ.get("CUDA_LAUNCH_BLOCKING"):
-        times = {entry["name"]: 1e3 * entry["seconds"] / record["steps"] for entry in record["passes"]}
-        parts = ", ".join(f"{name} {spent:.3f}" for name, spent in times.items() if spent > 0.005)
+        first, _ = run(STEPS // 4, folder)
+        before, after = passes(first), passes(record)
+        steps = record["steps"] - first["steps"]
+        times = {name: 1e3 * (after[name] - before.get(name, 0.0)) / steps for name in after}
+        parts = ", ".join(f"{name} {spent:.2f}" for name, spent in times.items() if spent > 0.005)
         print(f"{LABEL}: {sum(times.values()):.2f} ms a step without the look: {parts}", flush=True)
     else:
         late = [point for point in points if point[1] >= STEPS / 4]

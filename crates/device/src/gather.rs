@@ -1,8 +1,8 @@
 //! The loop over neighbours as text.
 //!
 //! A gather sums pair laws over neighbours in the order of the processor's: eight lanes side by side,
-//! neighbour k in lane k mod 8, added by halves, or one after the other. On a GPU eight threads work on
-//! a particle, elsewhere one.
+//! neighbour k in lane k mod 8, added by halves, or one after the other. With CUDA eight threads work on
+//! a particle, except where a term depends on the sums so far; elsewhere one.
 
 use std::marker::PhantomData;
 
@@ -60,7 +60,7 @@ impl<const D: usize> Space<D> {
     }
 
     /// The column of counts that gathers in single precision read, and its numbers of a position in m: see
-    /// [`unit`](Self::unit).
+    /// [`unit`](Self::unit). A position that is no number counts as any: lists have no neighbours of it.
     pub fn counts(&self, position: &[Traced]) -> (Use, Vec<Traced>) {
         let column = counts(loops::COUNTS, loops::counted(D));
         let count = |axis: usize| match position.get(axis) {

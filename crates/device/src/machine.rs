@@ -9,10 +9,7 @@ use crate::error::DeviceError;
 use crate::lists::Lists;
 use crate::pass::{Ask, Pass};
 use crate::reduce;
-use crate::text::{Dialect, Layout, Precision};
-
-/// Threads a block.
-const BLOCK: u32 = 128;
+use crate::text::{BLOCK, Dialect, Layout, Precision};
 
 /// Numbers in single precision.
 fn singles(numbers: &[f64]) -> Vec<f32> {

@@ -91,11 +91,11 @@ const OPEN_CL: &str = "#pragma OPENCL FP_CONTRACT OFF
 #define p_whole(x) as_uint(x)
 ";
 
-/// With pairs in single precision registers suffice for eight blocks of 128 threads on a multiprocessor; with fewer of them
-/// more time goes by until neighbours are read.
+/// Threads a block; a multiple of those of a warp.
+pub(crate) const BLOCK: u32 = 128;
+
 const CUDA: &str = "#define LAW static __device__ __forceinline__
-#define ALL 0xffffffffu
-#define CROWDED __launch_bounds__(128, 8)
+#define WHOLE_WARP 0xffffffffu
 #define KERNEL extern \"C\" __global__
 #define GLOBAL
 #define EACH(a, n) const int a = blockIdx.x * blockDim.x + threadIdx.x; if (a < (n))
@@ -161,6 +161,13 @@ pub struct Layout {
     /// Those of which rows are cut into pieces of 16 bytes, and smaller ones at the end; the first pieces of all rows stand side
     /// by side, then the second ones. Neighbours that are close in memory then share lines of the cache.
     pub planes: &'static [&'static str],
+}
+
+impl Layout {
+    /// The precision of what is computed of pairs.
+    pub fn of_pairs(self) -> Precision {
+        if self.narrow.is_empty() { Precision::Double } else { Precision::Single }
+    }
 }
 
 impl From<&'static [&'static str]> for Layout {
@@ -231,7 +238,7 @@ impl Dialect {
         let place = self.place(column, width, row, [from, size]);
         match size {
             1 => format!("{column}[{place}]"),
-            _ => format!("{column}[({place}) * {size} + {}]", i - from),
+            _ => format!("{column}[(size_t)({place}) * {size} + {}]", i - from),
         }
     }
 
@@ -266,8 +273,8 @@ impl Dialect {
     }
 
     /// The precision of pairs.
-    pub(crate) fn of_pairs(&self) -> Precision {
-        if self.layout.narrow.is_empty() { Precision::Double } else { Precision::Single }
+    pub fn of_pairs(&self) -> Precision {
+        self.layout.of_pairs()
     }
 
     /// The name of the numbers of a column.
@@ -293,6 +300,11 @@ impl Language {
             Self::Cuda => CUDA,
         }
         .to_string();
+        if self == Self::Cuda {
+            // With pairs of moving particles in single precision, registers suffice for so many blocks on a multiprocessor;
+            // with fewer of them more time goes by until neighbours are read.
+            let _ = writeln!(text, "#define EIGHT_BLOCKS __launch_bounds__({BLOCK}, 8)");
+        }
         let _ = writeln!(
             text,
             "typedef {} real;\ntypedef float work;\ntypedef struct ALIGNED(16) {{ real x, y; }} Pair;\n\

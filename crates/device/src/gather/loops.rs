@@ -1,5 +1,7 @@
 //! A loop over neighbours with its laws.
 
+use std::ops::Range;
+
 use super::{Among, Order, Rows};
 use crate::law::{Function, Law};
 use crate::pass::{Pass, Use, own};
@@ -99,6 +101,17 @@ impl Term {
         let before: usize = self.mine[..column].iter().map(|column| column.width).sum();
         let numbers = self.first + before..self.first + before + self.mine[column].width;
         numbers.into_iter().any(|number| self.law.takes(number))
+    }
+
+    /// Where the numbers of a column stand among those of a neighbour.
+    ///
+    /// # Panics
+    /// When the neighbour does not show it: that is a fault of whoever declared a difference.
+    pub fn other(&self, column: &Use) -> Range<usize> {
+        let place = self.others.iter().position(|other| other.is_of(column));
+        let place = place.expect("a difference is one of both particles of a pair");
+        let first: usize = self.others[..place].iter().map(|other| other.width).sum();
+        first..first + column.width
     }
 
     /// Whether it adds nothing to a sum.

@@ -48,7 +48,7 @@ impl Loop {
         let is_moving = matches!(self.pairs, Pairs::Moving { .. });
         let is_single = self.dialect.of_pairs() == Precision::Single;
         let is_crowded = self.has_lanes() && is_single && is_moving;
-        let bounds = if is_crowded { "CROWDED " } else { "" };
+        let bounds = if is_crowded { "EIGHT_BLOCKS " } else { "" };
         let _ = writeln!(text, "KERNEL void {bounds}{name}({})\n{{", arguments.text());
         self.write_head(&mut text);
         self.write_sums(&mut text);
@@ -198,9 +198,9 @@ impl Loop {
                 ),
                 (false, Order::Lanes) => writeln!(
                     text,
-                    "    {sum} += __shfl_down_sync(ALL, {sum}, 4, 8);\n    \
-                     {sum} += __shfl_down_sync(ALL, {sum}, 2, 8);\n    \
-                     {sum} += __shfl_down_sync(ALL, {sum}, 1, 8);"
+                    "    {sum} += __shfl_down_sync(WHOLE_WARP, {sum}, 4, 8);\n    \
+                     {sum} += __shfl_down_sync(WHOLE_WARP, {sum}, 2, 8);\n    \
+                     {sum} += __shfl_down_sync(WHOLE_WARP, {sum}, 1, 8);"
                 ),
                 (false, Order::Single | Order::Fold) => Ok(()),
             };
@@ -247,6 +247,10 @@ impl Loop {
 
     /// What is known of the pair of a particle and its neighbour `b`, number `k` of its row.
     fn write_pair(&self, text: &mut String) {
+        // Some threads go on beyond the end of their row, see `write_term`.
+        let is_beyond = self.has_lanes() && self.order == Order::Single;
+        let guard =
+            |value: String| if is_beyond { format!("k < end ? {value} : 0") } else { value };
         match &self.pairs {
             Pairs::Moving { dimension, units, .. }
                 if self.dialect.of_pairs() == Precision::Single =>
@@ -284,13 +288,11 @@ impl Loop {
                 text.push_str("        const unsigned block = from + k / 8;\n");
                 for (number, place) in kept.iter().enumerate() {
                     let _ = match place {
-                        Some(place) => writeln!(
-                            text,
-                            "        const {real} pair_{number} = \
-                             {numbers}[(size_t)block * {} + {} + k % 8];",
-                            8 * width,
-                            8 * place
-                        ),
+                        Some(place) => {
+                            let (row, first) = (8 * width, 8 * place);
+                            let at = format!("{numbers}[(size_t)block * {row} + {first} + k % 8]");
+                            writeln!(text, "        const {real} pair_{number} = {};", guard(at))
+                        }
                         None => writeln!(text, "        const {real} pair_{number} = 0;"),
                     };
                 }
@@ -322,7 +324,7 @@ impl Loop {
             // All threads of a warp go on until the longest of its rows has ended.
             (true, Order::Single) => writeln!(
                 text,
-                "    for (unsigned row = 0; __any_sync(ALL, row < end); row += 8) {{\n        \
+                "    for (unsigned row = 0; __any_sync(WHOLE_WARP, row < end); row += 8) {{\n        \
                  const unsigned k = row + lane;"
             ),
             (_, _) => writeln!(text, "    for (unsigned k = 0; k < end; ++k) {{"),
@@ -372,7 +374,7 @@ impl Loop {
                 }
                 let _ = writeln!(
                     text,
-                    "            {{ const {work} t = __shfl_sync(ALL, {given}, j, 8); \
+                    "            {{ const {work} t = __shfl_sync(WHOLE_WARP, {given}, j, 8); \
                      if (row + j < end) {sum} += t; }}"
                 );
             }
@@ -393,21 +395,21 @@ impl Loop {
     /// What both particles of a pair show to a law. In single precision [differences](crate::pass::difference) of columns in
     /// double precision are taken before, so that those of the particle itself are zero.
     fn shown(&self, term: &Term) -> [Vec<String>; 2] {
-        let all = term.shown();
-        if self.dialect.of_pairs() == Precision::Double || term.mine != term.others {
-            return all;
+        let [mut mine, mut others] = term.shown();
+        if self.dialect.of_pairs() == Precision::Double {
+            return [mine, others];
         }
-        let is_wide = term.mine.iter().flat_map(|column| {
-            let is_wide = column.is_difference && !self.dialect.is_narrow(column.column);
-            std::iter::repeat_n(is_wide, column.width)
-        });
-        let [mine, others] = all;
-        let both = mine.into_iter().zip(others).zip(is_wide);
-        let shown = both.map(|((my, its), is_wide)| match is_wide {
-            true => ("0".to_string(), format!("(work)({its} - {my})")),
-            false => (my, its),
-        });
-        let (mine, others) = shown.unzip();
+        let mut first = 0;
+        for column in &term.mine {
+            if column.is_difference && !self.dialect.is_narrow(column.column) {
+                let own = &mut mine[first..first + column.width];
+                for (my, i) in own.iter_mut().zip(term.other(column)) {
+                    others[i] = format!("(work)({} - {my})", others[i]);
+                    *my = "0".into();
+                }
+            }
+            first += column.width;
+        }
         [mine, others]
     }
 }

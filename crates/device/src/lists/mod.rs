@@ -8,12 +8,9 @@ use scan::Scan;
 
 use crate::device::{Argument, Column, Device, Kernel, Program};
 use crate::error::DeviceError;
-use crate::text::{Dialect, Language, Layout, Precision};
+use crate::text::{BLOCK, Dialect, Language, Layout, Precision};
 
 type Outcome<T> = Result<T, DeviceError>;
-
-/// Threads a block; a multiple of the threads that share a row.
-const BLOCK: u32 = 128;
 
 /// The bit of a particle that is passive.
 const PASSIVE: u32 = 1 << 31;

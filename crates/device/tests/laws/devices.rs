@@ -74,7 +74,7 @@ fn single_precision_compiles_on_a_device() {
     let Some(device) = device() else { return };
     let mut text = device.language().prologue(Precision::Single);
     laws::all().iter().for_each(|law| text += &law.text(device.language(), Precision::Single));
-    device.compile(&text, Precision::Double).unwrap_or_else(|error| panic!("{error}"));
+    device.compile(&text, Precision::Single).unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]

@@ -36,8 +36,9 @@ fn the_text_of_laws_is_the_stored_one() {
 const SINGLE: Layout =
     Layout { narrow: &["side", "numbers", "spot"], planes: &["place", "side", "spot"] };
 
-/// Sums of density, one after the other, and of forces in lanes, in 2D with one periodic axis.
-fn gathers(dialect: Dialect) -> [Pass; 3] {
+/// Sums of density, one after the other, and of forces in lanes, in 2D with one periodic axis; sums over rows that do not
+/// change in both orders.
+fn gathers(dialect: Dialect) -> [Pass; 4] {
     let periods = [Some(2.0), None];
     let space = Space { kernel: Kernel::WendlandC2, smoothing_length: 0.1, periods, reach: 0.23 };
     let side = [own("side", 8)];
@@ -68,24 +69,29 @@ fn gathers(dialect: Dialect) -> [Pass; 3] {
         kept: vec![Some(0), Some(1)],
     };
     let rows = Frozen::<Each<Components<2>, 1>>::new(rows);
-    let gradients =
-        Gather::<Each<Square<2>, 1>, _>::new(dialect, "gradients", &rows, Among::All, Order::Lanes);
-    let gradients =
-        gradients.term(&Gradients::<2, 1>, &[difference("displacement", 2)], Among::All);
-    let gradients = gradients
-        .close(&[], &[], &[own("gradient", 4)], |sums, _| sums[0].transpose().as_slice().to_vec());
-    [density, forces, gradients]
+    let gradients = |name, order| {
+        Gather::<Each<Square<2>, 1>, _>::new(dialect, name, &rows, Among::All, order)
+            .term(&Gradients::<2, 1>, &[difference("displacement", 2)], Among::All)
+            .close(&[], &[], &[own("gradient", 4)], |sums, _| {
+                sums[0].transpose().as_slice().to_vec()
+            })
+    };
+    let [in_lanes, in_order] = [("gradients", Order::Lanes), ("in_order", Order::Single)]
+        .map(|(name, of)| gradients(name, of));
+    [density, forces, in_lanes, in_order]
 }
 
 #[test]
 fn the_text_of_gathers_is_the_stored_one() {
     let [density, ..] = gathers(Language::OpenCl.into());
     compare("density.cl", &density.text);
-    let [_, forces, gradients] = gathers(Language::Cuda.into());
+    let [density, forces, gradients, in_order] = gathers(Language::Cuda.into());
+    compare("density.cu", &density.text);
     compare("forces.cu", &forces.text);
     compare("gradients.cu", &gradients.text);
+    compare("in_order.cu", &in_order.text);
     let single = Dialect { language: Language::Cuda, layout: SINGLE };
-    let [_, forces, gradients] = gathers(single);
+    let [_, forces, gradients, _] = gathers(single);
     compare("forces_single.cu", &forces.text);
     compare("gradients_single.cu", &gradients.text);
 }
@@ -129,5 +135,30 @@ fn all_cuda_text_compiles() {
         // The exponentials of the machine, which single precision uses, are made of fused operations.
         let is_fused = precision == Precision::Double && module.text().contains("fma.");
         assert!(!is_fused, "an operation is fused");
+    }
+}
+
+/// Counts of places differ by the shorter way round a periodic axis, whatever its length, and by no more than half a unit each.
+#[test]
+fn counts_tell_ways_between_places() {
+    let reach = 0.3;
+    for period in [None, Some(0.7), Some(1.5), Some(40.0), Some(123.4)] {
+        let periods = [period, None];
+        let space = Space { kernel: Kernel::WendlandC2, smoothing_length: 0.1, periods, reach };
+        let unit = space.unit(0);
+        let finest = period.map_or(4.0 * reach, |period| period.min(8.0 * reach));
+        assert!(unit * 2.0_f64.powi(32) <= finest, "{period:?}: {unit:e} m");
+        let count = |x: f64| (x / unit).round_ties_even() as i64 as u32;
+        for (here, way) in [(0.01, 0.29), (-3e3, -0.3), (0.5, -0.2), (7e5, 0.123), (0.0, 0.3)] {
+            // Inside the bounds of a periodic axis.
+            let inside = |x: f64| period.map_or(x, |period| x.rem_euclid(period));
+            let (from, to) = (inside(here), inside(here + way));
+            let apart = f64::from(count(to).wrapping_sub(count(from)) as i32) * unit;
+            let rounding = f64::EPSILON * here.abs().max(1.0);
+            assert!(
+                (apart - way).abs() <= unit + 4.0 * rounding,
+                "{period:?}: {apart} for {way} m"
+            );
+        }
     }
 }

@@ -103,7 +103,7 @@ LAW void forces_close(real s_pressure_x, real s_pressure_y, real s_viscosity_x, 
     *new_force_0 = t18;
     *new_force_1 = t20;
 }
-KERNEL void CROWDED forces(const int n, const real scale, GLOBAL const unsigned *__restrict__ numbers, GLOBAL const unsigned *__restrict__ passive, GLOBAL const unsigned *__restrict__ entries, GLOBAL const unsigned *__restrict__ first, GLOBAL const unsigned *__restrict__ active, const int spot_rows, GLOBAL const work *__restrict__ spot, const int side_rows, GLOBAL const work *__restrict__ side, GLOBAL const real *__restrict__ near, GLOBAL real *__restrict__ force)
+KERNEL void EIGHT_BLOCKS forces(const int n, const real scale, GLOBAL const unsigned *__restrict__ numbers, GLOBAL const unsigned *__restrict__ passive, GLOBAL const unsigned *__restrict__ entries, GLOBAL const unsigned *__restrict__ first, GLOBAL const unsigned *__restrict__ active, const int spot_rows, GLOBAL const work *__restrict__ spot, const int side_rows, GLOBAL const work *__restrict__ side, GLOBAL const real *__restrict__ near, GLOBAL real *__restrict__ force)
 {
     const int thread = blockIdx.x * blockDim.x + threadIdx.x;
     const int lane = thread % 8;
@@ -147,39 +147,39 @@ KERNEL void CROWDED forces(const int n, const real scale, GLOBAL const unsigned 
         forces_pair_0(way_0, way_1, (real)a, (real)b, my_side_0, my_side_1, my_side_2, my_side_3, my_side_4, my_side_5, my_side_6, my_side_7, its_side_0, its_side_1, its_side_2, its_side_3, its_side_4, its_side_5, its_side_6, its_side_7, s_pressure_x, s_pressure_y, s_viscosity_x, s_viscosity_y, s_artificial_viscosity_x, s_artificial_viscosity_y, s_walls_x, s_walls_y, s_carried_x, s_carried_y, s_stretch, s_volume_x, s_volume_y, s_crowding_x, s_crowding_y, &s_pressure_x, &s_pressure_y, &s_viscosity_x, &s_viscosity_y, &s_artificial_viscosity_x, &s_artificial_viscosity_y, &s_walls_x, &s_walls_y, &s_carried_x, &s_carried_y, &s_stretch, &s_volume_x, &s_volume_y, &s_crowding_x, &s_crowding_y);
     }
     }
-    s_pressure_x += __shfl_down_sync(ALL, s_pressure_x, 4, 8);
-    s_pressure_x += __shfl_down_sync(ALL, s_pressure_x, 2, 8);
-    s_pressure_x += __shfl_down_sync(ALL, s_pressure_x, 1, 8);
-    s_pressure_y += __shfl_down_sync(ALL, s_pressure_y, 4, 8);
-    s_pressure_y += __shfl_down_sync(ALL, s_pressure_y, 2, 8);
-    s_pressure_y += __shfl_down_sync(ALL, s_pressure_y, 1, 8);
-    s_viscosity_x += __shfl_down_sync(ALL, s_viscosity_x, 4, 8);
-    s_viscosity_x += __shfl_down_sync(ALL, s_viscosity_x, 2, 8);
-    s_viscosity_x += __shfl_down_sync(ALL, s_viscosity_x, 1, 8);
-    s_viscosity_y += __shfl_down_sync(ALL, s_viscosity_y, 4, 8);
-    s_viscosity_y += __shfl_down_sync(ALL, s_viscosity_y, 2, 8);
-    s_viscosity_y += __shfl_down_sync(ALL, s_viscosity_y, 1, 8);
-    s_carried_x += __shfl_down_sync(ALL, s_carried_x, 4, 8);
-    s_carried_x += __shfl_down_sync(ALL, s_carried_x, 2, 8);
-    s_carried_x += __shfl_down_sync(ALL, s_carried_x, 1, 8);
-    s_carried_y += __shfl_down_sync(ALL, s_carried_y, 4, 8);
-    s_carried_y += __shfl_down_sync(ALL, s_carried_y, 2, 8);
-    s_carried_y += __shfl_down_sync(ALL, s_carried_y, 1, 8);
-    s_stretch += __shfl_down_sync(ALL, s_stretch, 4, 8);
-    s_stretch += __shfl_down_sync(ALL, s_stretch, 2, 8);
-    s_stretch += __shfl_down_sync(ALL, s_stretch, 1, 8);
-    s_volume_x += __shfl_down_sync(ALL, s_volume_x, 4, 8);
-    s_volume_x += __shfl_down_sync(ALL, s_volume_x, 2, 8);
-    s_volume_x += __shfl_down_sync(ALL, s_volume_x, 1, 8);
-    s_volume_y += __shfl_down_sync(ALL, s_volume_y, 4, 8);
-    s_volume_y += __shfl_down_sync(ALL, s_volume_y, 2, 8);
-    s_volume_y += __shfl_down_sync(ALL, s_volume_y, 1, 8);
-    s_crowding_x += __shfl_down_sync(ALL, s_crowding_x, 4, 8);
-    s_crowding_x += __shfl_down_sync(ALL, s_crowding_x, 2, 8);
-    s_crowding_x += __shfl_down_sync(ALL, s_crowding_x, 1, 8);
-    s_crowding_y += __shfl_down_sync(ALL, s_crowding_y, 4, 8);
-    s_crowding_y += __shfl_down_sync(ALL, s_crowding_y, 2, 8);
-    s_crowding_y += __shfl_down_sync(ALL, s_crowding_y, 1, 8);
+    s_pressure_x += __shfl_down_sync(WHOLE_WARP, s_pressure_x, 4, 8);
+    s_pressure_x += __shfl_down_sync(WHOLE_WARP, s_pressure_x, 2, 8);
+    s_pressure_x += __shfl_down_sync(WHOLE_WARP, s_pressure_x, 1, 8);
+    s_pressure_y += __shfl_down_sync(WHOLE_WARP, s_pressure_y, 4, 8);
+    s_pressure_y += __shfl_down_sync(WHOLE_WARP, s_pressure_y, 2, 8);
+    s_pressure_y += __shfl_down_sync(WHOLE_WARP, s_pressure_y, 1, 8);
+    s_viscosity_x += __shfl_down_sync(WHOLE_WARP, s_viscosity_x, 4, 8);
+    s_viscosity_x += __shfl_down_sync(WHOLE_WARP, s_viscosity_x, 2, 8);
+    s_viscosity_x += __shfl_down_sync(WHOLE_WARP, s_viscosity_x, 1, 8);
+    s_viscosity_y += __shfl_down_sync(WHOLE_WARP, s_viscosity_y, 4, 8);
+    s_viscosity_y += __shfl_down_sync(WHOLE_WARP, s_viscosity_y, 2, 8);
+    s_viscosity_y += __shfl_down_sync(WHOLE_WARP, s_viscosity_y, 1, 8);
+    s_carried_x += __shfl_down_sync(WHOLE_WARP, s_carried_x, 4, 8);
+    s_carried_x += __shfl_down_sync(WHOLE_WARP, s_carried_x, 2, 8);
+    s_carried_x += __shfl_down_sync(WHOLE_WARP, s_carried_x, 1, 8);
+    s_carried_y += __shfl_down_sync(WHOLE_WARP, s_carried_y, 4, 8);
+    s_carried_y += __shfl_down_sync(WHOLE_WARP, s_carried_y, 2, 8);
+    s_carried_y += __shfl_down_sync(WHOLE_WARP, s_carried_y, 1, 8);
+    s_stretch += __shfl_down_sync(WHOLE_WARP, s_stretch, 4, 8);
+    s_stretch += __shfl_down_sync(WHOLE_WARP, s_stretch, 2, 8);
+    s_stretch += __shfl_down_sync(WHOLE_WARP, s_stretch, 1, 8);
+    s_volume_x += __shfl_down_sync(WHOLE_WARP, s_volume_x, 4, 8);
+    s_volume_x += __shfl_down_sync(WHOLE_WARP, s_volume_x, 2, 8);
+    s_volume_x += __shfl_down_sync(WHOLE_WARP, s_volume_x, 1, 8);
+    s_volume_y += __shfl_down_sync(WHOLE_WARP, s_volume_y, 4, 8);
+    s_volume_y += __shfl_down_sync(WHOLE_WARP, s_volume_y, 2, 8);
+    s_volume_y += __shfl_down_sync(WHOLE_WARP, s_volume_y, 1, 8);
+    s_crowding_x += __shfl_down_sync(WHOLE_WARP, s_crowding_x, 4, 8);
+    s_crowding_x += __shfl_down_sync(WHOLE_WARP, s_crowding_x, 2, 8);
+    s_crowding_x += __shfl_down_sync(WHOLE_WARP, s_crowding_x, 1, 8);
+    s_crowding_y += __shfl_down_sync(WHOLE_WARP, s_crowding_y, 4, 8);
+    s_crowding_y += __shfl_down_sync(WHOLE_WARP, s_crowding_y, 2, 8);
+    s_crowding_y += __shfl_down_sync(WHOLE_WARP, s_crowding_y, 1, 8);
     if (!is_on || lane > 0) return;
     real new_force_0, new_force_1;
     forces_close(s_pressure_x, s_pressure_y, s_viscosity_x, s_viscosity_y, s_artificial_viscosity_x, s_artificial_viscosity_y, s_walls_x, s_walls_y, s_carried_x, s_carried_y, s_stretch, s_volume_x, s_volume_y, s_crowding_x, s_crowding_y, scale, &new_force_0, &new_force_1);

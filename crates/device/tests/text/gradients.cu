@@ -50,18 +50,18 @@ KERNEL void gradients(const int n, GLOBAL const unsigned *__restrict__ row, GLOB
         gradients_pair_0(pair_0, pair_1, (real)a, (real)b, my_displacement_0, my_displacement_1, its_displacement_0, its_displacement_1, s_0_xx, s_0_xy, s_0_yx, s_0_yy, &s_0_xx, &s_0_xy, &s_0_yx, &s_0_yy);
     }
     }
-    s_0_xx += __shfl_down_sync(ALL, s_0_xx, 4, 8);
-    s_0_xx += __shfl_down_sync(ALL, s_0_xx, 2, 8);
-    s_0_xx += __shfl_down_sync(ALL, s_0_xx, 1, 8);
-    s_0_xy += __shfl_down_sync(ALL, s_0_xy, 4, 8);
-    s_0_xy += __shfl_down_sync(ALL, s_0_xy, 2, 8);
-    s_0_xy += __shfl_down_sync(ALL, s_0_xy, 1, 8);
-    s_0_yx += __shfl_down_sync(ALL, s_0_yx, 4, 8);
-    s_0_yx += __shfl_down_sync(ALL, s_0_yx, 2, 8);
-    s_0_yx += __shfl_down_sync(ALL, s_0_yx, 1, 8);
-    s_0_yy += __shfl_down_sync(ALL, s_0_yy, 4, 8);
-    s_0_yy += __shfl_down_sync(ALL, s_0_yy, 2, 8);
-    s_0_yy += __shfl_down_sync(ALL, s_0_yy, 1, 8);
+    s_0_xx += __shfl_down_sync(WHOLE_WARP, s_0_xx, 4, 8);
+    s_0_xx += __shfl_down_sync(WHOLE_WARP, s_0_xx, 2, 8);
+    s_0_xx += __shfl_down_sync(WHOLE_WARP, s_0_xx, 1, 8);
+    s_0_xy += __shfl_down_sync(WHOLE_WARP, s_0_xy, 4, 8);
+    s_0_xy += __shfl_down_sync(WHOLE_WARP, s_0_xy, 2, 8);
+    s_0_xy += __shfl_down_sync(WHOLE_WARP, s_0_xy, 1, 8);
+    s_0_yx += __shfl_down_sync(WHOLE_WARP, s_0_yx, 4, 8);
+    s_0_yx += __shfl_down_sync(WHOLE_WARP, s_0_yx, 2, 8);
+    s_0_yx += __shfl_down_sync(WHOLE_WARP, s_0_yx, 1, 8);
+    s_0_yy += __shfl_down_sync(WHOLE_WARP, s_0_yy, 4, 8);
+    s_0_yy += __shfl_down_sync(WHOLE_WARP, s_0_yy, 2, 8);
+    s_0_yy += __shfl_down_sync(WHOLE_WARP, s_0_yy, 1, 8);
     if (!is_on || lane > 0) return;
     real new_gradient_0, new_gradient_1, new_gradient_2, new_gradient_3;
     gradients_close(s_0_xx, s_0_xy, s_0_yx, s_0_yy, &new_gradient_0, &new_gradient_1, &new_gradient_2, &new_gradient_3);

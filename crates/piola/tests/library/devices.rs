@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use piola::case::{self, Case, Finished, Level, LoadOptions, Problems, Session};
 use piola::time::{Failure, Outcome};
+use piola_device::{Language, Precision, cuda};
 
 use super::device::device;
 
@@ -195,6 +196,11 @@ fn what_a_device_cannot_do_is_refused_by_name() {
             "the stage `push` does not run on devices",
         ),
         (
+            "ctvf/still-water",
+            &["load=[{ kind = 'body_force', acceleration = ['0', '-9.81 * (1 + x)'] }]"],
+            "a body force that depends on position does not run on devices yet: use one that is the same everywhere",
+        ),
+        (
             "ctvf/couette",
             &[],
             "a wall that moves along a periodic axis does not run on devices yet: let it slide",
@@ -208,5 +214,45 @@ fn what_a_device_cannot_do_is_refused_by_name() {
     ] {
         let text = refusal(name, set, &device);
         assert!(text.contains(what), "{name}: {text}");
+    }
+}
+
+/// The text of all passes of a case for CUDA.
+fn cuda_text(name: &str, set: &[&str], of_pairs: Precision) -> String {
+    let mut case = load(name, set, "processor");
+    case.precision = of_pairs;
+    let stages = session(&case).device_stages(Language::Cuda).unwrap_or_else(|e| panic!("{e}"));
+    let mut passes: Vec<_> = stages.into_iter().flat_map(|stage| stage.passes).collect();
+    passes.sort_by_key(|pass| pass.name);
+    passes.dedup_by_key(|pass| pass.name);
+    let text: String = passes.into_iter().map(|pass| pass.text).collect();
+    Language::Cuda.prologue(Precision::Double) + &text
+}
+
+/// No GPU is needed for that. In double precision no products and sums are contracted.
+#[test]
+fn all_passes_of_all_formulations_compile_for_cuda() {
+    if !cuda::has_compiler() {
+        assert!(std::env::var_os("PIOLA_NVRTC_REQUIRED").is_none(), "there is no NVRTC");
+        eprintln!("NOT RUN: there is no NVRTC on this machine");
+        return;
+    }
+    let cases: [(&str, &[&str]); 7] = [
+        ("ctvf/taylor-green", &[]),
+        ("ctvf/dam-break-3d", &["scheme.escaped='remove'"]),
+        ("ctvf/rings", &["scheme.self_contact=10.0"]),
+        ("ctvf/compression", &[]),
+        ("total-lagrangian/presets", &["scheme.artificial_viscosity=[1, 2]", "scheme.damping=0.1"]),
+        ("elastodynamics/wave-3d", &[]),
+        ("upwind/column-impact", &["scheme.reconstruction=true"]),
+    ];
+    for (name, set) in cases {
+        for precision in [Precision::Double, Precision::Single] {
+            let text = cuda_text(name, set, precision);
+            let module = cuda::compile(&text, precision, "compute_80");
+            let module = module.unwrap_or_else(|error| panic!("{name} {precision:?}: {error}"));
+            let is_fused = module.text().contains("fma.");
+            assert!(precision == Precision::Single || !is_fused, "{name}: an operation is fused");
+        }
     }
 }

@@ -26,6 +26,19 @@ fn far_away(distance: f64) -> [String; 3] {
     [body, plane("wall"), plane("gate")]
 }
 
+/// Two rings that touch each other and themselves, moved by this in m along x, with the particles that are looked at.
+fn rings_far_away(distance: f64) -> Vec<String> {
+    let [left, right, hit] = [-0.0405, 0.0405, -0.001].map(|x| distance + x);
+    let ring = |name: &str, x: f64| {
+        let shape =
+            format!("{{ kind = 'annulus', center = [{x}, 0], inner = 0.03, outer = 0.04 }}");
+        [format!("body.{name}.spacing='dx'"), format!("body.{name}.shape={shape}")]
+    };
+    let probes = [format!("probe.A.at=[{hit}, 0.0]"), format!("probe.B.at=[{left}, 0.04]")];
+    let set = ["parameters.dx=0.0025", "scheme.self_contact=10.0"].map(String::from);
+    [ring("left", left), ring("right", right), probes, set].concat()
+}
+
 /// The largest difference of a column, and the largest of its numbers.
 fn difference(sessions: &mut [Session; 2], column: &str) -> [f64; 2] {
     let [single, double] =
@@ -78,6 +91,12 @@ fn where_a_body_stands_costs_no_digits() {
         far.iter().map(String::as_str).chain(["probe.top.at=[1000.0, 'L']"]).collect();
     let [near, far] = [&[][..], &far].map(|set| apart("upwind/dam-break", set, &device)[0]);
     assert!(far <= 2.0 * near, "{far:e} m/s 1 km away, {near:e} m/s at the origin");
+    let [near, far] = [0.0, 1000.0].map(|distance| {
+        let set = rings_far_away(distance);
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        apart("ctvf/rings", &set, &device)[0]
+    });
+    assert!(far <= 2.0 * near, "rings: {far:e} m/s 1 km away, {near:e} m/s at the origin");
 }
 
 #[test]

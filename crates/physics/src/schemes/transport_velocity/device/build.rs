@@ -16,8 +16,8 @@ use crate::schemes::device::{
     DeviceMethod, DeviceRefusal, DeviceSteps, Gravity, Room, StateColumn, StateColumns, fits,
 };
 
-/// Columns that may be in single precision: what neighbours see, and what is summed over them; and what neighbours read
-/// most of.
+/// Columns that may be in single precision: what particles show to their neighbours, and sums over these. Most of what
+/// they show is in planes.
 #[rustfmt::skip]
 pub(super) const LAYOUT: Layout = Layout {
     narrow: &[
@@ -97,11 +97,7 @@ impl<const D: usize, M: Continuum<D>> TransportVelocity<D, M> {
     }
 
     /// The columns of all matter beside those of the state.
-    fn device_room<P: OfMatter<D, Kind = M>>(
-        &self,
-        plan: &Plan<D>,
-        of_pairs: Precision,
-    ) -> Room {
+    fn device_room<P: OfMatter<D, Kind = M>>(&self, plan: &Plan<D>, of_pairs: Precision) -> Room {
         let (common, count) = (&self.common, self.common.particles.len());
         let mut all = vec![
             ("place", D),

@@ -1,6 +1,8 @@
 //! The passes that all kinds of matter share, as text.
 
-use piola_device::{Dialect, Pass, Space, Traced, Use, difference, local, own, spread, through};
+use piola_device::{
+    Dialect, Pass, Precision, Space, Traced, Use, difference, local, own, spread, through,
+};
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::fluid::Side;
 use piola_formulas::{Number, fluid};
@@ -179,7 +181,7 @@ impl<const D: usize> Plan<D> {
             own("made_at", D),
         ];
         let reads = [&reads, &*self.copied].concat();
-        let is_single = dialect.is_narrow("side");
+        let is_single = dialect.of_pairs() == Precision::Single;
         let counts = is_single.then(|| space.counts(&[]).0);
         let writes = [own("place", D), own("side", side_width(D)), spread("terms", 1)];
         let writes = [&writes, counts.as_slice(), &*self.copies].concat();

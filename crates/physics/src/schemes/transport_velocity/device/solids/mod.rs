@@ -85,8 +85,8 @@ impl<const D: usize> OfMatter<D> for SolidPlan<D> {
         let material_of = matter.materials().iter().zip(is_solid).map(&mut find).collect();
         if materials.len() > MOST_MATERIALS {
             return Err(DeviceRefusal::Stage {
-                what: "a case with more than 16 materials".into(),
-                instead: "give bodies the same material",
+                what: "a case with more than 16 different materials of solids".into(),
+                instead: "let some bodies share a material",
             });
         }
         let mut plan = system.device_plan()?;
