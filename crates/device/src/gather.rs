@@ -128,7 +128,8 @@ impl<const D: usize> Meets for Space<D> {
             (0..D).map(|axis| (format!("way_{axis}"), apart(axis))).collect()
         };
         let axes = |of: &'static str| (0..D).map(move |axis| format!("{of}_{axis}"));
-        let separation = Law::record("separation", axes("here").chain(axes("there")), way);
+        let separation =
+            Box::new(Law::record("separation", axes("here").chain(axes("there")), way));
         let halves = self.periods.iter().map(|period| Some(0.5 * (*period)?)).collect();
         let units = (0..D).map(|axis| self.unit(axis)).collect();
         Pairs::Moving { dimension: D, over, separation, halves, units }

@@ -206,7 +206,8 @@ impl Dialect {
         let (mut pieces, mut from, mut size) = (Vec::new(), 0, most);
         while from < width {
             // Row by row pieces are aligned if rows are made of whole ones.
-            let fits = from + size <= width && (self.is_in_planes(column) || width % size == 0);
+            let fits =
+                from + size <= width && (self.is_in_planes(column) || width.is_multiple_of(size));
             if fits {
                 pieces.push([from, size]);
                 from += size;

@@ -28,7 +28,7 @@ pub enum Pairs {
         /// The particles that have sums.
         over: Among,
         /// What is between two of them, of the places of both.
-        separation: Law,
+        separation: Box<Law>,
         /// Half of the lengths of periodic axes in m.
         halves: Vec<Option<f64>>,
         /// The lengths in m in which axes are [counted](super::Space::unit).

@@ -110,7 +110,7 @@ impl Loop {
         if let (Pairs::Moving { separation, .. }, Precision::Double) =
             (&self.pairs, dialect.of_pairs())
         {
-            let own = Law { name: format!("{name}_separation"), ..separation.clone() };
+            let own = Law { name: format!("{name}_separation"), ..(**separation).clone() };
             text += &own.text(dialect.language, Precision::Double);
         }
         text
