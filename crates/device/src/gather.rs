@@ -10,10 +10,10 @@ use piola_formulas::Number;
 use piola_formulas::kernels::Kernel;
 use piola_formulas::pairs::{self, Moving, MovingPair, Of, PairLaw, Record};
 
+use crate::dialect::Dialect;
 use crate::law::Law;
 use crate::pass::{Pass, Use, counts, filled, flat, width};
 use crate::record::Traced;
-use crate::text::Dialect;
 
 mod loops;
 mod text;

@@ -15,6 +15,7 @@
 
 pub mod cuda;
 mod device;
+mod dialect;
 mod error;
 mod gather;
 mod law;
@@ -30,11 +31,12 @@ mod text;
 mod work;
 
 pub use device::{Argument, Column, Device, Element, Found, Kernel, Program, devices, missing};
+pub use dialect::{Dialect, Layout};
 pub use error::DeviceError;
 pub use gather::{Among, Frozen, Gather, Meeting, Meets, Order, Rows, Space};
 pub use law::{Law, Outputs};
 pub use machine::Machine;
 pub use pass::{Ask, At, Pass, Use, difference, filled, flat, local, own, spread, through};
 pub use record::{Traced, Truth};
-pub use text::{Dialect, Language, Layout, Precision};
+pub use text::{Language, Precision};
 pub use work::Work;

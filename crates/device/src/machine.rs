@@ -5,11 +5,12 @@ use std::collections::HashMap;
 use piola_ranks::Exact;
 
 use crate::device::{Argument, Column, Device, Kernel};
+use crate::dialect::{Dialect, Layout};
 use crate::error::DeviceError;
 use crate::lists::Lists;
 use crate::pass::{Ask, Pass};
 use crate::reduce;
-use crate::text::{BLOCK, Dialect, Layout, Precision};
+use crate::text::{BLOCK, Precision};
 
 /// Numbers in single precision.
 fn singles(numbers: &[f64]) -> Vec<f32> {

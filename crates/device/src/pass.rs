@@ -5,9 +5,10 @@ use std::fmt::Write;
 
 use piola_formulas::pairs::{Of, Record};
 
+use crate::dialect::Dialect;
 use crate::law::{Function, Law};
 use crate::record::Traced;
-use crate::text::{Dialect, Language, Precision};
+use crate::text::{Language, Precision};
 use crate::work::{self, Work};
 
 /// What a kernel is called with, in the order of its parameters.

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::{Among, Order, Rows};
+use crate::dialect::Dialect;
 use crate::law::{Function, Law};
 use crate::pass::{Pass, Use, own};
 use crate::record::Traced;
-use crate::text::Dialect;
 use crate::work::{self, Work};
 
 /// The column of positions by slot.

@@ -7,8 +7,9 @@ use grid::{Grid, PARTS};
 use scan::Scan;
 
 use crate::device::{Argument, Column, Device, Kernel, Program};
+use crate::dialect::{Dialect, Layout};
 use crate::error::DeviceError;
-use crate::text::{BLOCK, Dialect, Language, Layout, Precision};
+use crate::text::{BLOCK, Language, Precision};
 
 type Outcome<T> = Result<T, DeviceError>;
 
