@@ -226,6 +226,8 @@ pub(in super::super) fn steps<const D: usize, P: OfMatter<D>>(
     if let Some((name, indices)) = matter.indices() {
         machine.add_indices(name, indices)?;
     }
+    let moving = Moving::of(common);
+    moving.iter().try_for_each(|moving| moving.add(&mut machine))?;
     Ok(Box::new(OnDevice {
         matter,
         machine,
@@ -242,6 +244,6 @@ pub(in super::super) fn steps<const D: usize, P: OfMatter<D>>(
         gravity: Gravity::default(),
         removal,
         skin,
-        moving: Moving::of(common),
+        moving,
     }))
 }

@@ -198,7 +198,7 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
                 if let Some(moving) = &mut self.moving {
                     moving.write(&mut self.machine, time)?;
                 }
-                self.launch(pass, &[])
+                self.start("walls", &[])
             }
             Pass::Rates => {
                 if self.matter.plan().falls {

@@ -1,6 +1,6 @@
 //! Walls that move as prescribed.
 
-use piola_device::{DeviceError, Dialect, Machine, Pass, Traced, Use, local, own};
+use piola_device::{DeviceError, Dialect, Machine, Pass, Traced, Use, local, own, through};
 use piola_formulas::Number;
 
 use super::super::escape::Room;
@@ -33,11 +33,13 @@ pub(super) struct Moving<const D: usize> {
     /// Velocities, by index of the wall particle.
     motion: PrescribedComponents,
     numbers: Vec<u32>,
+    /// The particles that move, by number.
+    driven: Vec<u32>,
     position: Vec<Vector<D>>,
     /// Half of a spacing, and how far from walls particles may be, both in m, if anybody asks.
     half: f64,
     margin: Option<f64>,
-    /// Number of particles.
+    /// Number of particles of the system.
     count: usize,
     /// The time in s of which the columns are.
     of: Option<f64>,
@@ -49,9 +51,15 @@ impl<const D: usize> Moving<D> {
         if common.motion.is_empty() {
             return None;
         }
+        let numbers: Vec<u32> = common.walls.iter().map(|wall| wall.number).collect();
+        // Entries stand particle by particle.
+        let mut driven: Vec<u32> =
+            common.motion.iter().map(|entry| numbers[entry.particle]).collect();
+        driven.dedup();
         Some(Self {
             motion: common.motion.clone(),
-            numbers: common.walls.iter().map(|wall| wall.number).collect(),
+            numbers,
+            driven,
             position: vec![Vector::zeros(); common.walls.len()],
             half: 0.5 * common.particles.spacing[0],
             margin: common.margin(),
@@ -77,20 +85,29 @@ impl<const D: usize> Moving<D> {
         driven
     }
 
-    /// Writes velocities and accelerations of a time in s, where they are not there yet.
+    /// Makes the columns of what is sent: the particles that move, and their velocities and accelerations.
+    pub fn add(&self, machine: &mut Machine) -> Result<(), DeviceError> {
+        machine.add_indices("moving", &self.driven)?;
+        machine.add_zeros("given_motion", 2 * D * self.driven.len())
+    }
+
+    /// Sends velocities and accelerations of a time in s, where they are not there yet.
     pub fn write(&mut self, machine: &mut Machine, time: f64) -> Result<(), DeviceError> {
         let is_steady = self.motion.iter().all(|entry| entry.is_steady());
         if self.of.is_some_and(|of| is_steady || of == time) {
             return Ok(());
         }
         self.of = Some(time);
-        let [mut motion, mut rate] = [self.count * D; 2].map(|length| vec![0.0; length]);
+        let mut given = vec![0.0; 2 * D * self.driven.len()];
+        let (mut row, mut last) = (0, None);
         for entry in self.motion.iter() {
-            let place = self.numbers[entry.particle] as usize * D + entry.component;
-            (motion[place], rate[place]) = (entry.at(time), entry.rate(time));
+            row += usize::from(last.is_some_and(|last| last != entry.particle));
+            last = Some(entry.particle);
+            let place = 2 * D * row + entry.component;
+            (given[place], given[place + D]) = (entry.at(time), entry.rate(time));
         }
-        machine.write("motion", &motion)?;
-        machine.write("motion_rate", &rate)
+        machine.write("given_motion", &given)?;
+        machine.start("drive", self.driven.len(), &[])
     }
 
     /// Moves walls as [`Common::move_walls`] does.
@@ -132,6 +149,12 @@ impl<const D: usize> Plan<D> {
             let next = position[axis] + step * motion[axis];
             Traced::select(driven[axis].above(0.5), next, position[axis])
         })
+    }
+
+    /// Velocities and accelerations that were sent go to the particles that move.
+    pub(super) fn drive(&self, dialect: Dialect) -> Pass {
+        let writes = ["motion", "motion_rate"].map(|column| through("moving", column, D));
+        local(dialect, "drive", &[], &[own("given_motion", 2 * D)], &writes, |x| x.to_vec())
     }
 
     /// Velocities of walls are the prescribed ones.

@@ -121,7 +121,9 @@ impl<const D: usize> Plan<D> {
             self.kick(dialect),
         ];
         all.extend(self.wall_passes(dialect, space));
-        all.extend(self.moves.then(|| self.impose(dialect)));
+        if self.moves {
+            all.extend([self.drive(dialect), self.impose(dialect)]);
+        }
         all.extend(self.surface_passes(dialect, space));
         all
     }

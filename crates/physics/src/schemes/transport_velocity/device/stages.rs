@@ -17,6 +17,8 @@ impl<const D: usize> Plan<D> {
             Pass::Remove if self.removes => &["escape", "tell_escaped"],
             Pass::Load => &["load"],
             Pass::State => &["state"],
+            // What moves walls is started where it changes, and what imposes it after the drift.
+            Pass::Walls if self.moves => &["drive", "walls"],
             Pass::Walls => &["walls"],
             Pass::Rates => &["rates"],
             Pass::Move if self.moves => &["advance", "impose"],
