@@ -15,16 +15,14 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// Whether a column is in single precision.
+    pub fn is_narrow(self, column: &str) -> bool {
+        self.narrow.contains(&column)
+    }
+
     /// The precision of what is computed of pairs.
     pub fn of_pairs(self) -> Precision {
         if self.narrow.is_empty() { Precision::Double } else { Precision::Single }
-    }
-}
-
-impl From<&'static [&'static str]> for Layout {
-    /// Some columns in single precision, all row by row.
-    fn from(narrow: &'static [&'static str]) -> Self {
-        Self { narrow, planes: &[] }
     }
 }
 
@@ -42,8 +40,8 @@ pub(crate) type Piece = [usize; 2];
 
 impl Dialect {
     /// Whether a column is in single precision.
-    pub fn is_narrow(&self, column: &str) -> bool {
-        self.layout.narrow.contains(&column)
+    pub(crate) fn is_narrow(&self, column: &str) -> bool {
+        self.layout.is_narrow(column)
     }
 
     /// Whether a column is stored in planes.

@@ -44,20 +44,17 @@ impl Machine {
     pub fn new(
         device: Device,
         lists: Option<Lists>,
-        layout: impl Into<Layout>,
+        layout: Layout,
         passes: impl FnOnce(Dialect) -> Vec<Pass>,
         chunk: usize,
     ) -> Result<Self, DeviceError> {
-        let layout = layout.into();
         let passes = passes(Dialect { language: device.language(), layout })
             .into_iter()
             .chain(reduce::passes(chunk));
         let passes: Vec<Pass> = passes.collect();
         let mut text = device.language().prologue(Precision::Double);
         passes.iter().for_each(|pass| text += &pass.text);
-        let precision =
-            if layout.narrow.is_empty() { Precision::Double } else { Precision::Single };
-        let program = device.compile(&text, precision)?;
+        let program = device.compile(&text, layout.of_pairs())?;
         let mut kernels = HashMap::new();
         for pass in passes {
             kernels.insert(pass.name, (program.kernel(pass.name)?, pass));
@@ -76,7 +73,7 @@ impl Machine {
     /// # Errors
     /// When the memory does not suffice.
     pub fn add(&mut self, name: &'static str, numbers: &[f64]) -> Result<(), DeviceError> {
-        match self.layout.narrow.contains(&name) {
+        match self.layout.is_narrow(name) {
             true => drop(self.singles.insert(name, self.device.upload(&singles(numbers))?)),
             false => drop(self.numbers.insert(name, self.device.upload(numbers)?)),
         }
@@ -97,7 +94,7 @@ impl Machine {
     /// # Errors
     /// When the memory does not suffice.
     pub fn add_zeros(&mut self, name: &'static str, length: usize) -> Result<(), DeviceError> {
-        match self.layout.narrow.contains(&name) {
+        match self.layout.is_narrow(name) {
             true => drop(self.singles.insert(name, self.device.zeros(length)?)),
             false => drop(self.numbers.insert(name, self.device.zeros(length)?)),
         }
@@ -196,7 +193,7 @@ impl Machine {
                 Argument::Doubles(column.unwrap_or_else(|| missing(name)))
             }
             Ask::Height(name, width) => {
-                let length = match self.layout.narrow.contains(&name) {
+                let length = match self.layout.is_narrow(name) {
                     true => self.singles.get(name).map(Column::len),
                     false => self.numbers.get(name).map(Column::len),
                 };

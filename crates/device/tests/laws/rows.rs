@@ -1,6 +1,6 @@
 //! Sums over rows that do not change, on a device.
 
-use piola_device::{Among, Frozen, Gather, Machine, Order, Rows, difference, own};
+use piola_device::{Among, Frozen, Gather, Layout, Machine, Order, Rows, difference, own};
 use piola_formulas::pairs::total_lagrangian::Gradients;
 use piola_formulas::pairs::{Components, Each, Square};
 
@@ -77,7 +77,8 @@ fn on_device(narrow: &'static [&'static str], field: &[f64]) -> Option<Vec<f64>>
         };
         vec![gather.close(&[], &[], &writes, |sums, _| entries(sums))]
     };
-    let mut machine = Machine::new(device()?, None, narrow, passes, 16).unwrap();
+    let mut machine =
+        Machine::new(device()?, None, Layout { narrow, planes: &[] }, passes, 16).unwrap();
     machine.add_indices("first", &first).unwrap();
     machine.add_indices("count", &count).unwrap();
     machine.add_indices("neighbors", &neighbors).unwrap();

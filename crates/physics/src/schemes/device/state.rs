@@ -16,11 +16,6 @@ pub(crate) struct Gravity {
 }
 
 impl Gravity {
-    /// Whether that of a time in s is there.
-    pub fn holds<const D: usize>(&self, time: f64, forces: &[BodyForce<D>]) -> bool {
-        self.of.is_some_and(|of| of == time || forces.iter().all(BodyForce::is_steady))
-    }
-
     /// Writes that of a time in s, where it is not there yet.
     pub fn write<const D: usize>(
         &mut self,
@@ -29,7 +24,8 @@ impl Gravity {
         count: usize,
         acceleration: impl Fn(usize) -> Vector<D> + Sync,
     ) -> Result<(), DeviceError> {
-        if self.holds(time, forces) {
+        let is_steady = forces.iter().all(BodyForce::is_steady);
+        if self.of.is_some_and(|of| is_steady || of == time) {
             return Ok(());
         }
         self.of = Some(time);

@@ -159,14 +159,8 @@ impl<const D: usize, P: OfMatter<D>> OnDevice<D, P> {
     /// Sets the body force of each particle, where it changes.
     fn fall(&mut self, time: f64) -> Result<(), DeviceError> {
         let (forces, bodies) = (&self.body_forces, &self.bodies);
-        if self.gravity.holds(time, forces) {
-            return Ok(());
-        }
         // Forces are uniform.
-        let most = bodies.iter().max().map_or(0, |most| most + 1);
-        let at = |body: u32| BodyForce::sum(forces, body, &Vector::<D>::zeros(), time);
-        let each: Vec<Vector<D>> = (0..most).map(at).collect();
-        let each = |a: usize| each[bodies[a] as usize];
+        let each = |a: usize| BodyForce::sum(forces, bodies[a], &Vector::<D>::zeros(), time);
         self.gravity.write(&mut self.machine, (time, forces), bodies.len(), each)
     }
 
