@@ -192,6 +192,16 @@ impl Number for Lanes4 {
         Self([a, b, c, d])
     }
 
+    /// Computes both only where lanes differ.
+    #[inline(always)]
+    fn choose(mask: Mask4, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
+        if mask.0 == [false; WIDTH] {
+            return no();
+        }
+        let yes = yes();
+        if mask.0 == [true; WIDTH] { yes } else { Self::select(mask, yes, no()) }
+    }
+
     /// A lane that has done keeps its numbers while others go on.
     #[inline(always)]
     fn repeat<const N: usize>(

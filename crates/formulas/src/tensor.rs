@@ -2,9 +2,43 @@
 //!
 //! Closed forms only: no iteration, no allocation, the same body for `f64` and dual numbers.
 
-use nalgebra::SMatrix;
+use std::f64::consts::FRAC_PI_3;
+
+use nalgebra::{ArrayStorage, SMatrix};
 
 use crate::{Number, Scalar};
+
+/// A matrix of these entries. In vector registers: what is not inlined is not compiled for the widest.
+#[inline(always)]
+pub(crate) fn of_entries<T: Number, const D: usize>(
+    entry: impl Fn(usize, usize) -> T,
+) -> SMatrix<T, D, D> {
+    let mut all = [[T::zero(); D]; D];
+    for (j, column) in all.iter_mut().enumerate() {
+        for (i, own) in column.iter_mut().enumerate() {
+            *own = entry(i, j);
+        }
+    }
+    SMatrix::from_array_storage(ArrayStorage(all))
+}
+
+/// `a b`, summed up in the order of nalgebra.
+#[inline(always)]
+pub(crate) fn product<T: Number, const D: usize>(
+    a: &SMatrix<T, D, D>,
+    b: &SMatrix<T, D, D>,
+) -> SMatrix<T, D, D> {
+    of_entries(|i, j| (1..D).fold(a[(i, 0)] * b[(0, j)], |sum, k| sum + a[(i, k)] * b[(k, j)]))
+}
+
+/// `a^T b`, likewise.
+#[inline(always)]
+pub(crate) fn transposed_product<T: Number, const D: usize>(
+    a: &SMatrix<T, D, D>,
+    b: &SMatrix<T, D, D>,
+) -> SMatrix<T, D, D> {
+    of_entries(|i, j| (1..D).fold(a[(0, i)] * b[(0, j)], |sum, k| sum + a[(k, i)] * b[(k, j)]))
+}
 
 /// Determinant of `a`.
 ///
@@ -12,7 +46,7 @@ use crate::{Number, Scalar};
 /// use nalgebra::Matrix2;
 /// assert_eq!(piola_formulas::tensor::determinant(&Matrix2::new(2.0, 1.0, 4.0, 3.0)), 2.0);
 /// ```
-#[inline]
+#[inline(always)]
 pub fn determinant<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> T {
     const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
     match D {
@@ -30,10 +64,10 @@ pub fn determinant<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> T {
 ///
 /// It is a polynomial of the entries and so defined for singular matrices too. Of a deformation
 /// gradient it is `H` of Upwind (3.2), which maps reference to current areas.
-#[inline]
+#[inline(always)]
 pub fn cofactor<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
     const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
-    SMatrix::from_fn(|i, j| match D {
+    of_entries(|i, j| match D {
         1 => T::one(),
         2 if i == j => a[(1 - i, 1 - j)],
         2 => -a[(1 - i, 1 - j)],
@@ -66,11 +100,11 @@ fn inverse_of_scaled<T: Scalar, const D: usize>(a: &SMatrix<T, D, D>) -> Option<
 }
 
 /// Right Cauchy-Green tensor `C = F^T F`, Upwind (3.55).
-#[inline]
+#[inline(always)]
 pub fn right_cauchy_green<T: Number, const D: usize>(
     deformation_gradient: &SMatrix<T, D, D>,
 ) -> SMatrix<T, D, D> {
-    deformation_gradient.tr_mul(deformation_gradient)
+    transposed_product(deformation_gradient, deformation_gradient)
 }
 
 /// Smallest eigenvalue of the symmetric matrix `a`, Upwind (3.56).
@@ -79,19 +113,36 @@ pub fn right_cauchy_green<T: Number, const D: usize>(
 /// the largest entry, for equal eigenvalues too, and the result is never NaN for finite entries.
 /// Dual numbers carry the exact derivative of a simple eigenvalue; where eigenvalues coincide,
 /// and so have none, they carry the derivative of the mean of those that coincide.
-#[inline]
+#[inline(always)]
 pub fn smallest_eigenvalue<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> T {
     extreme_eigenvalue(a, Extreme::Smallest)
 }
 
 /// Largest eigenvalue of the symmetric matrix `a`; the remarks on [`smallest_eigenvalue`] hold.
-#[inline]
+#[inline(always)]
 pub fn largest_eigenvalue<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> T {
     extreme_eigenvalue(a, Extreme::Largest)
 }
 
+/// Both at once: the smallest eigenvalue and the largest.
+#[inline(always)]
+pub fn extreme_eigenvalues<T: Number, const D: usize>(a: &SMatrix<T, D, D>) -> [T; 2] {
+    const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
+    if D == 1 {
+        return [a[(0, 0)]; 2];
+    }
+    let parts = Parts::of(a);
+    let (polar, is_safe) = (parts.polar(), parts.is_safe());
+    let least = parts.eigenvalue(polar, Extreme::Smallest);
+    let most = parts.eigenvalue(polar, Extreme::Largest);
+    [
+        T::choose(is_safe, || least, || of_scaled(a, Extreme::Smallest)),
+        T::choose(is_safe, || most, || of_scaled(a, Extreme::Largest)),
+    ]
+}
+
 /// Determinant of the 2 x 2 block of rows `i`, `k` and columns `j`, `l`.
-#[inline]
+#[inline(always)]
 fn minor<T: Number, const D: usize>(
     a: &SMatrix<T, D, D>,
     i: usize,
@@ -111,14 +162,18 @@ enum Extreme {
 /// Below this, the sine of three times the angle is rounding: two eigenvalues coincide.
 const COINCIDENT: f64 = 16.0 * f64::EPSILON;
 
-#[inline]
+#[inline(always)]
 fn extreme_eigenvalue<T: Number, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) -> T {
     const { assert!(D >= 1 && D <= 3, "piola works in 1, 2 or 3 dimensions") };
     if D == 1 {
         return a[(0, 0)];
     }
     let parts = Parts::of(a);
-    T::choose(parts.is_safe(), || parts.eigenvalue(extreme), || of_scaled(a, extreme))
+    T::choose(
+        parts.is_safe(),
+        || parts.eigenvalue(parts.polar(), extreme),
+        || of_scaled(a, extreme),
+    )
 }
 
 /// The eigenvalue of a matrix whose deviator is too large or small to be squared, or zero. Scaling by
@@ -142,7 +197,7 @@ fn of_scaled<T: Number, const D: usize>(a: &SMatrix<T, D, D>, extreme: Extreme) 
     let (to, back) = (of(two_to_700, 1.0 / two_to_700), of(1.0 / two_to_700, two_to_700));
     let parts = Parts::of(&a.map(|entry| entry * to));
     let coincide = parts.square.abs().at_most(T::zero());
-    T::choose(coincide, || parts.mean, || parts.eigenvalue(extreme)) * back
+    T::choose(coincide, || parts.mean, || parts.eigenvalue(parts.polar(), extreme)) * back
 }
 
 /// A symmetric matrix by its mean and its deviator.
@@ -156,7 +211,7 @@ struct Parts<T, const D: usize> {
 }
 
 impl<T: Number, const D: usize> Parts<T, D> {
-    #[inline]
+    #[inline(always)]
     fn of(a: &SMatrix<T, D, D>) -> Self {
         let zero = T::zero();
         if D == 2 {
@@ -172,30 +227,35 @@ impl<T: Number, const D: usize> Parts<T, D> {
     }
 
     /// Whether the square is the sum of squares that have not overflowed or lost digits.
-    #[inline]
+    #[inline(always)]
     fn is_safe(&self) -> T::Mask {
         T::from(1e-240).at_most(self.square) & self.square.at_most(T::from(1e240))
     }
 
-    /// The eigenvalue where the square is not zero.
-    #[inline]
-    fn eigenvalue(&self, extreme: Extreme) -> T {
+    /// An eigenvalue where the square is not zero, of what [`Self::polar`] gives.
+    #[inline(always)]
+    fn eigenvalue(&self, [p, phi]: [T; 2], extreme: Extreme) -> T {
         match (D, extreme) {
-            (2, Extreme::Smallest) => self.mean - self.square.sqrt(),
-            (2, Extreme::Largest) => self.mean + self.square.sqrt(),
-            _ => self.by_angle(extreme),
+            (2, Extreme::Smallest) => self.mean - p,
+            (2, Extreme::Largest) => self.mean + p,
+            (_, Extreme::Smallest) => self.mean + p * -(-phi + FRAC_PI_3).cos() * 2.0,
+            (_, Extreme::Largest) => self.mean + p * phi.cos() * 2.0,
         }
     }
 
-    /// The trigonometric form: `mean + 2 p cos phi` is the largest eigenvalue and
+    /// The root of the square, and in 3D the angle of the trigonometric form:
+    /// `mean + 2 p cos phi` is the largest eigenvalue and
     /// `mean - 2 p cos(pi/3 - phi)` the smallest, with `0 <= phi <= pi/3`.
     ///
     /// With `B = (a - mean I) / p` scaled to `B : B = 6`, and `Q = B^2 - 2 I` its deviatoric square,
     /// `cos 3 phi = B : Q / 6` and `sin 3 phi = |Q - cos(3 phi) B| / sqrt 6`. Taking the angle from
     /// both keeps full accuracy where eigenvalues meet; the arc cosine alone loses half the digits.
-    #[inline]
-    fn by_angle(&self, extreme: Extreme) -> T {
+    #[inline(always)]
+    fn polar(&self) -> [T; 2] {
         let p = self.square.sqrt();
+        if D == 2 {
+            return [p, T::zero()];
+        }
         let p_inverse = p.recip();
         let b = self.deviator.map(|entry| entry * p_inverse);
         let [xx, yy, zz, yz, xz, xy] = b;
@@ -212,17 +272,12 @@ impl<T: Number, const D: usize> Parts<T, D> {
         let sine_squared = contract(&normal, &normal) * (1.0 / 6.0);
         let distinct = sine_squared.above(COINCIDENT * COINCIDENT);
         let sine = T::choose(distinct, || sine_squared.sqrt(), T::zero);
-        let phi = sine.atan2(cosine) * (1.0 / 3.0);
-        let cosine_of_extreme = match extreme {
-            Extreme::Smallest => -(-phi + std::f64::consts::FRAC_PI_3).cos(),
-            Extreme::Largest => phi.cos(),
-        };
-        self.mean + p * cosine_of_extreme * 2.0
+        [p, sine.atan2(cosine) * (1.0 / 3.0)]
     }
 }
 
 /// Double contraction of symmetric tensors stored as (xx, yy, zz, yz, xz, xy).
-#[inline]
+#[inline(always)]
 fn contract<T: Number>(a: &[T; 6], b: &[T; 6]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]) * 2.0
 }

@@ -18,9 +18,10 @@ pub(super) struct Kinematics<T> {
 }
 
 impl<T: Number> Kinematics<T> {
-    #[inline]
+    #[inline(always)]
     pub fn new(a: &Matrix3<T>) -> Self {
-        let strain = (a + a.transpose() + a.tr_mul(a)).map(|entry| entry * 0.5);
+        let square = tensor::transposed_product(a, a);
+        let strain = tensor::of_entries(|i, j| (a[(i, j)] + a[(j, i)] + square[(i, j)]) * 0.5);
         // det(I + A) = 1 + tr A + tr(cof A) + det A.
         let volume_strain = trace(a) + trace(&tensor::cofactor(a)) + tensor::determinant(a);
         Self {
@@ -32,37 +33,37 @@ impl<T: Number> Kinematics<T> {
     }
 
     /// `F^-T = cof(F)/J`.
-    #[inline]
+    #[inline(always)]
     pub fn inverse_transpose(&self) -> Matrix3<T> {
         let factor = (self.volume_strain + 1.0).recip();
         scaled(&tensor::cofactor(&self.gradient), factor)
     }
 
     /// `J^exponent`.
-    #[inline]
+    #[inline(always)]
     pub fn volume_power(&self, exponent: f64) -> T {
         (self.log_volume * exponent).exp()
     }
 
     /// `J^exponent - 1`.
-    #[inline]
+    #[inline(always)]
     pub fn volume_power_less_one(&self, exponent: f64) -> T {
         (self.log_volume * exponent).exp_m1()
     }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn trace<T: Number>(a: &Matrix3<T>) -> T {
     a[(0, 0)] + a[(1, 1)] + a[(2, 2)]
 }
 
 /// `a : a`.
-#[inline]
+#[inline(always)]
 pub(super) fn square<T: Number>(a: &Matrix3<T>) -> T {
     a.iter().fold(T::zero(), |sum, &entry| sum + entry * entry)
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn scaled<T: Number>(a: &Matrix3<T>, factor: T) -> Matrix3<T> {
-    a.map(|entry| entry * factor)
+    tensor::of_entries(|i, j| a[(i, j)] * factor)
 }

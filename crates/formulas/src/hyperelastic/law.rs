@@ -153,7 +153,7 @@ impl HyperelasticResponse for HyperelasticLaw {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         match self {
             Self::LinearElastic(law) => law.stress(a),

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::kinematics::{Kinematics, scaled, square, trace};
 use super::{HyperelasticResponse, LameConstants};
-use crate::Number;
+use crate::{Number, tensor};
 
 /// Hooke's law, `psi = lambda/2 (tr eps)^2 + mu eps : eps` with the small strain
 /// `eps = (F + F^T)/2 - I`: theory (37), Dual-support (44), Elastodynamics (3.54).
@@ -29,15 +29,15 @@ fn quadratic<T: Number>(constants: &LameConstants, strain: &Matrix3<T>) -> T {
 }
 
 /// `lambda (tr strain) I + 2 mu strain`.
-#[inline]
+#[inline(always)]
 fn derivative<T: Number>(constants: &LameConstants, strain: &Matrix3<T>) -> Matrix3<T> {
     let pressure = scaled(&Matrix3::identity(), trace(strain) * constants.lambda);
-    pressure + strain.map(|entry| entry * (2.0 * constants.mu))
+    tensor::of_entries(|i, j| pressure[(i, j)] + strain[(i, j)] * (2.0 * constants.mu))
 }
 
-#[inline]
+#[inline(always)]
 fn small_strain<T: Number>(a: &Matrix3<T>) -> Matrix3<T> {
-    (a + a.transpose()).map(|entry| entry * 0.5)
+    tensor::of_entries(|i, j| (a[(i, j)] + a[(j, i)]) * 0.5)
 }
 
 impl HyperelasticResponse for LinearElastic {
@@ -46,7 +46,7 @@ impl HyperelasticResponse for LinearElastic {
         quadratic(&self.0, &small_strain(a))
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         derivative(&self.0, &small_strain(a))
     }
@@ -58,9 +58,9 @@ impl HyperelasticResponse for SaintVenantKirchhoff {
         quadratic(&self.0, &Kinematics::new(a).strain)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         let Kinematics { gradient, strain, .. } = Kinematics::new(a);
-        gradient * derivative(&self.0, &strain)
+        tensor::product(&gradient, &derivative(&self.0, &strain))
     }
 }

@@ -18,6 +18,7 @@ mod energy;
 mod kinematics;
 mod law;
 mod linear;
+mod many;
 mod mooney_rivlin;
 mod neo_hookean;
 mod ogden;

@@ -37,7 +37,7 @@ impl HyperelasticResponse for MooneyRivlin {
         first * self.c10 + second * self.c01 + volume * volume * (0.5 * self.bulk_modulus)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         let kinematics = Kinematics::new(a);
         let gradient = &kinematics.gradient;
@@ -48,8 +48,9 @@ impl HyperelasticResponse for MooneyRivlin {
         if self.c01 != 0.0 {
             let right = tensor::right_cauchy_green(gradient);
             let second = (first * first - square(&right)) * 0.5;
-            let slope =
-                scaled(gradient, first) - gradient * right - scaled(&inverse, second * (2.0 / 3.0));
+            let slope = scaled(gradient, first)
+                - tensor::product(gradient, &right)
+                - scaled(&inverse, second * (2.0 / 3.0));
             let volume = kinematics.volume_power(-4.0 / 3.0) * (2.0 * self.c01);
             stress += scaled(&slope, volume);
         }

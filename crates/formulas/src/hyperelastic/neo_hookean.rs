@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix};
 
-use super::kinematics::{Kinematics, scaled, trace};
+use super::kinematics::{Kinematics, trace};
 use super::reduced::{larger, smaller};
 use super::{HyperelasticResponse, LameConstants, MooneyRivlin};
 use crate::{Number, tensor};
@@ -25,7 +25,7 @@ impl HyperelasticResponse for NeoHookean {
         self.as_mooney_rivlin().energy(a)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         self.as_mooney_rivlin().stress(a)
     }
@@ -45,13 +45,13 @@ impl NeoHookeanLogarithmic {
     ///
     /// With `m = F^-T N` the acoustic tensor of direction N is
     /// `mu I + (mu + lambda - lambda ln J) m (x) m`, and `|m|` is one over the principal stretch.
+    #[inline(always)]
     pub fn wave_moduli<T: Number, const D: usize>(&self, gradient: &SMatrix<T, D, D>) -> [T; 2] {
         let LameConstants { lambda, mu } = self.0;
         let deformation = gradient + SMatrix::identity();
         let strain = tensor::right_cauchy_green(&deformation);
         let factor = -(tensor::determinant(&deformation).ln() * lambda) + (mu + lambda);
-        let along = [tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain)]
-            .map(|square| factor / square + mu);
+        let along = tensor::extreme_eigenvalues(&strain).map(|square| factor / square + mu);
         // Across a direction there is nothing but shear.
         let across = if D > 1 { T::from(mu) } else { along[0] };
         let [one, other] = along;
@@ -69,12 +69,12 @@ impl HyperelasticResponse for NeoHookeanLogarithmic {
         (trace(&kinematics.strain) - log) * mu + log * log * (0.5 * lambda)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress<T: Number>(&self, a: &Matrix3<T>) -> Matrix3<T> {
         let LameConstants { lambda, mu } = self.0;
         let kinematics = Kinematics::new(a);
         let volume = kinematics.log_volume * lambda - mu;
-        kinematics.gradient.map(|entry| entry * mu)
-            + scaled(&kinematics.inverse_transpose(), volume)
+        let inverse = kinematics.inverse_transpose();
+        tensor::of_entries(|i, j| kinematics.gradient[(i, j)] * mu + inverse[(i, j)] * volume)
     }
 }

@@ -120,12 +120,13 @@ impl<const D: usize> Reduced<D> {
     }
 
     /// The stress where the law [is held](Self::is_held), in numbers of any type.
+    #[inline(always)]
     pub fn held_stress<T: Number>(
         &self,
         displacement_gradient: &SMatrix<T, D, D>,
     ) -> SMatrix<T, D, D> {
         let stress = self.law.stress(&self.embedded(displacement_gradient, T::zero()));
-        SMatrix::from_fn(|i, j| stress[(i, j)])
+        tensor::of_entries(|i, j| stress[(i, j)])
     }
 
     /// Smallest and largest modulus of plane waves that travel in the principal directions, Pa: eigenvalues
@@ -136,46 +137,29 @@ impl<const D: usize> Reduced<D> {
     /// `W_ii` along, and across `(l_i W_i - l_j W_j)/(l_i^2 - l_j^2)`, which for equal stretches is
     /// `(W_ii - W_ij + W_i/l_i)/2`.
     pub fn wave_moduli(&self, displacement_gradient: &SMatrix<f64, D, D>) -> [f64; 2] {
-        self.moduli_by(displacement_gradient, |gradient| self.stress(gradient))
+        if self.is_held() {
+            return self.held_wave_moduli(displacement_gradient);
+        }
+        let stretches = principal_stretches(displacement_gradient);
+        let mut slopes = [SMatrix::zeros(); D];
+        for (axis, own) in slopes.iter_mut().enumerate() {
+            *own = self.stress(&stretched(&stretches, axis));
+        }
+        moduli_of(&stretches, &slopes)
     }
 
     /// The same where the law [is held](Self::is_held), in numbers of any type.
+    #[inline(always)]
     pub fn held_wave_moduli<T: Number>(&self, displacement_gradient: &SMatrix<T, D, D>) -> [T; 2] {
-        self.moduli_by(displacement_gradient, |gradient| self.held_stress(gradient))
-    }
-
-    fn moduli_by<T: Number>(
-        &self,
-        displacement_gradient: &SMatrix<T, D, D>,
-        stress: impl Fn(&SMatrix<Slope<T>, D, D>) -> SMatrix<Slope<T>, D, D>,
-    ) -> [T; 2] {
-        if let (HyperelasticLaw::NeoHookeanLogarithmic(own), true) = (&self.law, self.is_held()) {
+        if let HyperelasticLaw::NeoHookeanLogarithmic(own) = &self.law {
             return own.wave_moduli(displacement_gradient);
         }
         let stretches = principal_stretches(displacement_gradient);
-        let mut moduli = [f64::INFINITY, f64::NEG_INFINITY].map(T::from);
-        let mut see =
-            |modulus: T| moduli = [smaller(modulus, moduli[0]), larger(modulus, moduli[1])];
-        let slopes: [SMatrix<Slope<T>, D, D>; D] = std::array::from_fn(|i| {
-            let of = |k: usize| match k == i {
-                true => Slope::variable(stretches[k] - 1.0),
-                false => Slope::constant(stretches[k] - 1.0),
-            };
-            stress(&SMatrix::from_fn(|k, l| if k == l { of(k) } else { Slope::zero() }))
-        });
-        for i in 0..D {
-            see(slopes[i][(i, i)].slope);
-            for j in 0..i {
-                let (along, across) = (slopes[i][(i, i)], slopes[j][(j, j)]);
-                let [one, other] = [stretches[i], stretches[j]];
-                see(T::choose(
-                    (one * SAME_STRETCH).less((one - other).abs()),
-                    || (one * along.value - other * across.value) / (one * one - other * other),
-                    || (along.slope - slopes[i][(j, j)].slope + along.value / one) * 0.5,
-                ));
-            }
+        let mut slopes = [SMatrix::zeros(); D];
+        for (axis, own) in slopes.iter_mut().enumerate() {
+            *own = self.held_stress(&stretched(&stretches, axis));
         }
-        moduli
+        moduli_of(&stretches, &slopes)
     }
 
     /// The displacement gradient in all three dimensions.
@@ -198,8 +182,9 @@ impl<const D: usize> Reduced<D> {
         self.embedded(resolved, across)
     }
 
+    #[inline(always)]
     fn embedded<T: Number>(&self, resolved: &SMatrix<T, D, D>, across: T) -> Matrix3<T> {
-        Matrix3::from_fn(|i, j| match (i < D && j < D, i == j) {
+        tensor::of_entries(|i, j| match (i < D && j < D, i == j) {
             (true, _) => resolved[(i, j)],
             (false, true) => across,
             (false, false) => T::zero(),
@@ -269,23 +254,62 @@ impl<const D: usize> Reduced<D> {
     }
 }
 
+/// The displacement gradient of principal stretches, with its derivative by one of them.
+#[inline(always)]
+fn stretched<T: Number, const D: usize>(
+    stretches: &[T; D],
+    axis: usize,
+) -> SMatrix<Slope<T>, D, D> {
+    tensor::of_entries(|k, l| match (k == l, k == axis) {
+        (true, true) => Slope::variable(stretches[k] - 1.0),
+        (true, false) => Slope::constant(stretches[k] - 1.0),
+        _ => Slope::zero(),
+    })
+}
+
+/// The extreme wave moduli at principal stretches, of the stresses with their derivatives by each of them.
+#[inline(always)]
+fn moduli_of<T: Number, const D: usize>(
+    stretches: &[T; D],
+    slopes: &[SMatrix<Slope<T>, D, D>; D],
+) -> [T; 2] {
+    let mut moduli = [f64::INFINITY, f64::NEG_INFINITY].map(T::from);
+    let mut see = |modulus: T| moduli = [smaller(modulus, moduli[0]), larger(modulus, moduli[1])];
+    for i in 0..D {
+        see(slopes[i][(i, i)].slope);
+        for j in 0..i {
+            let (along, across) = (slopes[i][(i, i)], slopes[j][(j, j)]);
+            let [one, other] = [stretches[i], stretches[j]];
+            see(T::choose(
+                (one * SAME_STRETCH).less((one - other).abs()),
+                || (one * along.value - other * across.value) / (one * one - other * other),
+                || (along.slope - slopes[i][(j, j)].slope + along.value / one) * 0.5,
+            ));
+        }
+    }
+    moduli
+}
+
 /// Stretches closer than this share are one: the difference of stresses is rounding.
 const SAME_STRETCH: f64 = 1e-6;
 
 /// Principal stretches of a displacement gradient.
+#[inline(always)]
 fn principal_stretches<T: Number, const D: usize>(gradient: &SMatrix<T, D, D>) -> [T; D] {
     let strain = tensor::right_cauchy_green(&(gradient + SMatrix::identity()));
-    let (least, most) = (tensor::smallest_eigenvalue(&strain), tensor::largest_eigenvalue(&strain));
+    let [least, most] = tensor::extreme_eigenvalues(&strain);
     let squares = [least, most, strain.trace() - least - most];
     std::array::from_fn(|i| larger(squares[i], T::zero()).sqrt())
 }
 
 /// The smaller of two numbers; the second one where the first is none.
+#[inline(always)]
 pub(super) fn smaller<T: Number>(one: T, other: T) -> T {
     T::select(one.less(other), one, other)
 }
 
 /// The larger of two numbers; the second one where the first is none.
+#[inline(always)]
 pub(super) fn larger<T: Number>(one: T, other: T) -> T {
     T::select(other.less(one), one, other)
 }

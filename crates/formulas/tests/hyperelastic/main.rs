@@ -11,6 +11,7 @@ use proptest::prelude::*;
 
 mod derivatives;
 mod energies;
+mod many;
 
 const YOUNG: f64 = 2.5e6;
 const POISSON: f64 = 0.3;

@@ -87,19 +87,21 @@ impl<const D: usize, const N: usize> AdjointPairs<D, N> {
         N
     }
 
-    /// Shows `close` the sums of each particle: its number and that of its row in `out`.
+    /// Shows `close` the sums of each particle: its number and that of its row in `out`. `finish` goes over the rows of some
+    /// particles when they are filled.
     pub fn sum<O: Parts>(
         &self,
         field: &[Vector<D>],
         out: O,
         close: impl Fn([usize; 2], &[Tensor<D>; N], &mut O) + Sync,
+        finish: impl Fn(Range<usize>, &mut O) + Sync,
     ) {
         let sum = Term { law: Gradients::<D, N>, source: field, among: Among::All };
         let count = self.gradients.count();
         let (alone, rows) = (Team::default(), (&self.gradients, &sum));
-        let _: [f64; 0] = gather_parts(&alone, rows, (count, out), |rows, sums, out, _| {
-            close(rows, sums, out);
-        });
+        let close =
+            |rows, sums: &[Tensor<D>; N], out: &mut O, _: &mut [f64; 0]| close(rows, sums, out);
+        let _: [f64; 0] = gather_parts(&alone, rows, (count, out), close, finish);
     }
 
     /// The sums of one particle, in numbers of any type.

@@ -8,6 +8,8 @@
 //! order of sums is the same on every machine and for every number of threads. Registers hold half of
 //! the lanes: a block of neighbours is gone through twice.
 
+use std::ops::Range;
+
 use multiversion::multiversion;
 use piola_formulas::kernels::Needs;
 use piola_formulas::pairs::{Of, One, PairLaw, Record};
@@ -301,19 +303,22 @@ pub fn gather<P: Pairs, M: Sum<P>, O: Send>(
 }
 
 /// As [`gather`], of the first `count` slots, for arrays beside each other and with totals of all
-/// particles of a team: `close([slot, k], sums, out, totals)` fills in row `k` of the part `out`.
+/// particles of a team: `close([slot, k], sums, out, totals)` fills in row `k` of the part `out`, and
+/// `finish(slots, out)` goes over the rows of a part that are filled.
 pub fn gather_parts<P: Pairs, M: Sum<P>, O: Parts, T: Sums>(
     team: &Team,
     (pairs, sum): (&P, &M),
     (count, out): (usize, O),
     close: impl Fn([usize; 2], &Of<M::Sums, f64>, &mut O, &mut T) + Sync,
+    finish: impl Fn(Range<usize>, &mut O) + Sync,
 ) -> T {
     let chunk = team.chunk(count);
     team.sums_over_parts(count, out, |first, mut out, totals| {
         let slots = first..(first + chunk).min(count);
-        rows(pairs, sum, slots, &Some, &mut |slot, k, sums| {
+        rows(pairs, sum, slots.clone(), &Some, &mut |slot, k, sums| {
             close([slot, k], sums, &mut out, totals);
         });
+        finish(slots, &mut out);
     })
 }
 
@@ -321,7 +326,7 @@ pub fn gather_parts<P: Pairs, M: Sum<P>, O: Parts, T: Sums>(
 fn rows<P: Pairs, M: Sum<P>>(
     pairs: &P,
     sum: &M,
-    range: std::ops::Range<usize>,
+    range: Range<usize>,
     slot: &impl Fn(usize) -> Option<usize>,
     close: &mut impl FnMut(usize, usize, &Of<M::Sums, f64>),
 ) {

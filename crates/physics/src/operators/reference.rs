@@ -3,14 +3,15 @@
 use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector};
+use piola_formulas::Scalar;
 use piola_formulas::kernels::Kernel;
-use piola_formulas::{Number, Scalar};
 
 use super::adjoint::AdjointPairs;
 use super::directed::DirectedSupport;
 use super::dual_gradient::DualGradient;
 use super::images::Image;
 use super::slots::Slots;
+use super::strained::{Strained, stabilised};
 use crate::geometry::Particles;
 use crate::neighbors::{Domain, NeighborList};
 use crate::parallel::Team;
@@ -72,21 +73,8 @@ struct Center<const D: usize> {
     shape: Tensor<D>,
 }
 
-/// Scratch of [`ReferenceGradient::strain`].
-#[derive(Clone, Debug)]
-pub struct Strained<const D: usize> {
-    /// Displacement gradients A.
-    pub gradient: Vec<Tensor<D>>,
-    /// Derivatives of the energy by the sums of a particle, in J, and behind them zeros for images.
-    pub tension: Vec<Tensor<D>>,
-}
-
-impl<const D: usize> Strained<D> {
-    /// Bytes of it.
-    pub fn memory(&self) -> usize {
-        size_of_val(self.gradient.as_slice()) + size_of_val(self.tension.as_slice())
-    }
-}
+/// Particles whose tensions are found together.
+const BLOCK: usize = 32;
 
 impl<const D: usize> ReferenceGradient<D> {
     /// The gradient of `gradient` on its support, with hourglass coefficients in J.
@@ -335,17 +323,18 @@ impl<const D: usize> ReferenceGradient<D> {
     /// The gradients of a field.
     pub fn gradients(&self, field: &[Vector<D>], gradient: &mut [Tensor<D>]) {
         on_pairs!(&self.pairs, pairs => {
-            pairs.sum(field, gradient, |[_, k], sums, gradient| gradient[k] = sums[0]);
+            pairs.sum(field, gradient, |[_, k], sums, gradient| gradient[k] = sums[0], |_, _| {});
         });
     }
 
-    /// Gradients of displacements, and with the `tension` in J, stress times volume, that a particle has at
-    /// its gradient, the derivatives of its energy.
+    /// Gradients of displacements, and with the `tension` in J, stress times volume, that particles have at
+    /// their gradients, the derivatives of their energy: `tension(first, gradients, tensions)` fills in those
+    /// of some particles that follow each other.
     pub fn strain(
         &self,
         displacement: &[Vector<D>],
         strained: &mut Strained<D>,
-        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
+        tension: impl Fn(usize, &[Tensor<D>], &mut [Tensor<D>]) + Sync,
     ) {
         self.strain_with(1.0, displacement, strained, tension);
     }
@@ -356,16 +345,38 @@ impl<const D: usize> ReferenceGradient<D> {
         share: f64,
         displacement: &[Vector<D>],
         strained: &mut Strained<D>,
-        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
+        tension: impl Fn(usize, &[Tensor<D>], &mut [Tensor<D>]) + Sync,
     ) {
         on_pairs!(&self.pairs, pairs => {
             let out = (&mut *strained.gradient, strained.tension.as_chunks_mut().0);
-            pairs.sum(displacement, out, |[a, k], sums, (gradient, derivatives)| {
-                gradient[k] = sums[0];
-                let stiffness = 2.0 * share * self.hourglass[a];
-                derivatives[k] = self.derivatives(a, sums, tension(a, &sums[0]), stiffness);
+            pairs.sum(displacement, out, |[_, k], sums, (gradient, derivatives)| {
+                (gradient[k], derivatives[k]) = (sums[0], *sums);
+            }, |own, (gradient, derivatives)| {
+                self.derive(share, own.start, gradient, derivatives, &tension);
             });
         });
+    }
+
+    /// Turns sums of particles from `first` on, of which the first are their gradients, into the derivatives of their energy
+    /// by them.
+    fn derive<const N: usize>(
+        &self,
+        share: f64,
+        first: usize,
+        gradient: &[Tensor<D>],
+        sums: &mut [[Tensor<D>; N]],
+        tension: &impl Fn(usize, &[Tensor<D>], &mut [Tensor<D>]),
+    ) {
+        let mut tensions = [Tensor::zeros(); BLOCK];
+        let blocks = gradient.chunks(BLOCK).zip(sums.chunks_mut(BLOCK));
+        for (first, (gradient, sums)) in (first..).step_by(BLOCK).zip(blocks) {
+            let tensions = &mut tensions[..gradient.len()];
+            tension(first, gradient, tensions);
+            for ((a, sums), tension) in (first..).zip(sums).zip(tensions) {
+                let stiffness = 2.0 * share * self.hourglass[a];
+                *sums = self.derivatives(a, sums, *tension, stiffness);
+            }
+        }
     }
 
     /// The derivatives of the energy of a particle by its sums.
@@ -444,26 +455,4 @@ impl<const D: usize> ReferenceGradient<D> {
             + size_of_val(self.images.as_slice())
             + size_of_val(self.centers.as_slice())
     }
-}
-
-/// The derivatives by the sums of a particle of the energy of its material, which has the `tension`, and of its hourglass
-/// energy with the stiffness 2 c: `T + 2 c (A S - M)` and `- 2 c A`, or of the only sum, where M is `A S`, `T - 2 c A S`.
-#[inline]
-pub(crate) fn stabilised<T: Number, const D: usize, const N: usize>(
-    sums: &[SMatrix<T, D, D>; N],
-    tension: SMatrix<T, D, D>,
-    shape: &SMatrix<T, D, D>,
-    stiffness: T,
-) -> [SMatrix<T, D, D>; N] {
-    let moment = sums[0] * shape;
-    let mut derivatives = [tension; N];
-    match derivatives.as_mut_slice() {
-        [of_gradient, of_moment] => {
-            *of_gradient += (moment - sums[1]).map(|entry| entry * stiffness);
-            *of_moment = sums[0].map(|entry| entry * -stiffness);
-        }
-        // The moment is the product itself.
-        all => all[0] -= moment.map(|entry| entry * stiffness),
-    }
-    derivatives
 }

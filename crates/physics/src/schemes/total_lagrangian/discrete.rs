@@ -150,10 +150,16 @@ impl<const D: usize> Discrete<D> {
         -self.operator.plane_power(&Team::default(), force, &along)
     }
 
-    /// Stress times volume of particle a at a displacement gradient, in J.
-    #[inline]
-    pub(super) fn tension(&self, a: usize, gradient: &Tensor<D>) -> Tensor<D> {
-        self.solid.mixture(a).stress(gradient) * self.solid.particles.volume[a]
+    /// Writes stress times volume in J of particles from `first` on at their displacement gradients.
+    pub(super) fn tensions(
+        &self,
+        first: usize,
+        gradients: &[Tensor<D>],
+        tensions: &mut [Tensor<D>],
+    ) {
+        self.solid.stresses(first, gradients, tensions);
+        let volumes = &self.solid.particles.volume[first..];
+        tensions.iter_mut().zip(volumes).for_each(|(tension, volume)| *tension *= *volume);
     }
 
     /// Internal forces on all particles in N, theory (49), Dual-support (28) with the sign of its (27) turned
@@ -165,7 +171,10 @@ impl<const D: usize> Discrete<D> {
         strained: &mut Strained<D>,
         force: &mut [Vector<D>],
     ) {
-        self.operator.strain(displacement, strained, |a, gradient| self.tension(a, gradient));
+        let tensions = |first: usize, gradients: &[_], tensions: &mut [_]| {
+            self.tensions(first, gradients, tensions);
+        };
+        self.operator.strain(displacement, strained, tensions);
         self.operator.forces(displacement, &strained.tension, force);
         self.fold(force);
     }

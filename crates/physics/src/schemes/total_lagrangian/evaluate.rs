@@ -51,13 +51,19 @@ impl<const D: usize> TotalLagrangian<D> {
         let Matrices::Adjoint(discrete) = &self.matrices else { return };
         let (solid, dissipation, rates) = (&*self.solid, self.dissipation, &self.gradient_rate);
         let is_viscous = dissipation.is_viscous();
-        discrete.operator.strain(&self.displacement, &mut self.strained, |a, gradient| {
-            let mut stress = solid.mixture(a).stress(gradient);
-            if is_viscous {
-                stress += dissipation.at(solid, a).stress(gradient, &rates[a]);
-            }
-            stress * solid.particles.volume[a]
-        });
+        discrete.operator.strain(
+            &self.displacement,
+            &mut self.strained,
+            |first, gradients, stresses| {
+                solid.stresses(first, gradients, stresses);
+                for ((a, gradient), stress) in (first..).zip(gradients).zip(stresses) {
+                    if is_viscous {
+                        *stress += dissipation.at(solid, a).stress(gradient, &rates[a]);
+                    }
+                    *stress *= solid.particles.volume[a];
+                }
+            },
+        );
         let width = discrete.operator.tensions();
         self.team.refresh(&mut self.strained.tension, discrete.operator.owned(), width);
     }

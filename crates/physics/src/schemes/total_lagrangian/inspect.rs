@@ -7,7 +7,7 @@ use super::fields::Columns;
 use crate::coordinates;
 use crate::schemes::look::{Most, Seen, look};
 use crate::schemes::{Health, Particle, StepLimit};
-use crate::{Tensor, Vector};
+use crate::{Tensor, Vector, parallel};
 
 impl<const D: usize> TotalLagrangian<D> {
     /// The health of `state` and the bound on the step, theory (50) and (67), of the body as it is
@@ -24,6 +24,10 @@ impl<const D: usize> TotalLagrangian<D> {
         if !is_known {
             self.matrices.gradients(&self.displacement, &mut self.strained.gradient);
         }
+        let (solid, gradient) = (&self.solid, &self.strained.gradient);
+        parallel::for_each_chunk(&mut self.moduli, |first, moduli| {
+            solid.wave_moduli(first, &gradient[first..][..moduli.len()], moduli);
+        });
         let (health, [stiffening, thickening], soft) = self.look_at_solid(&at);
         if let Some(a) = soft.and_then(|number| self.team.own(number, self.solid.len())) {
             self.not_convex = Some((a, self.strained.gradient[a]));
@@ -60,10 +64,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 let gradient = &self.strained.gradient[a];
                 let mixture = solid.mixture(a);
                 let at_rest = solid.moduli_at_rest(a);
-                let moduli = match mixture.is_linear() {
-                    true => at_rest,
-                    false => mixture.wave_moduli(gradient),
-                };
+                let moduli = self.moduli.get(a).copied().unwrap_or(at_rest);
                 let thickening = self.thickening_at(a, gradient, velocity);
                 Seen {
                     velocity: at.velocity[a],

@@ -59,6 +59,14 @@ impl<const D: usize> Mixture<D> {
         self.0.iter().map(|(material, share)| material.law.stress(gradient) * *share).sum()
     }
 
+    /// The [stresses](Self::stress) of many displacement gradients.
+    pub fn stresses(&self, gradients: &[Tensor<D>], stresses: &mut [Tensor<D>]) {
+        stresses.fill(Tensor::zeros());
+        for (material, share) in &self.0 {
+            material.law.add_stresses(*share, gradients, stresses);
+        }
+    }
+
     /// Strain energy per volume of a displacement gradient, J/m^3.
     pub fn energy<T: Scalar>(&self, gradient: &SMatrix<T, D, D>) -> T {
         let all = self.0.iter();
@@ -77,6 +85,23 @@ impl<const D: usize> Mixture<D> {
             sums.iter_mut().zip(moduli).for_each(|(sum, modulus)| *sum += share * modulus);
         }
         sums
+    }
+
+    /// The [wave moduli](Self::wave_moduli) at many displacement gradients.
+    pub fn all_wave_moduli(&self, gradients: &[Tensor<D>], moduli: &mut [[f64; 2]]) {
+        moduli.fill([0.0; 2]);
+        for (material, share) in &self.0 {
+            match material.law.law().is_objective() {
+                true => material.law.add_wave_moduli(*share, gradients, moduli),
+                false => {
+                    let [least, most] = material.law.wave_moduli(&Tensor::zeros());
+                    for sums in &mut *moduli {
+                        sums[0] += share * least;
+                        sums[1] += share * most;
+                    }
+                }
+            }
+        }
     }
 
     /// Whether no stretch across has to be found in any of its materials.

@@ -301,6 +301,7 @@ impl<const D: usize> Scheme for TotalLagrangian<D> {
             + vectors.into_iter().map(|it| size_of_val(it.as_slice())).sum::<usize>()
             + size_of_val(self.gradient_rate.as_slice())
             + size_of_val(self.stress.as_slice())
+            + size_of_val(self.moduli.as_slice())
             + 2 * size_of_val(self.rate.as_slice())
     }
 }

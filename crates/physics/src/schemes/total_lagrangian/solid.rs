@@ -86,6 +86,34 @@ impl<const D: usize> Solid<D> {
         &self.mixtures[self.mixture[a] as usize]
     }
 
+    /// Particles that follow each other from `first` on and are made of one mixture: it, and which of the `count` they are.
+    fn runs(
+        &self,
+        first: usize,
+        count: usize,
+    ) -> impl Iterator<Item = (&Mixture<D>, Range<usize>)> {
+        let runs = self.mixture[first..first + count].chunk_by(|one, other| one == other);
+        runs.scan(0, |end, run| {
+            let begin = std::mem::replace(end, *end + run.len());
+            Some((&self.mixtures[run[0] as usize], begin..*end))
+        })
+    }
+
+    /// Writes the stresses in Pa of particles from `first` on at their displacement gradients.
+    pub fn stresses(&self, first: usize, gradients: &[Tensor<D>], stresses: &mut [Tensor<D>]) {
+        for (mixture, own) in self.runs(first, gradients.len()) {
+            mixture.stresses(&gradients[own.clone()], &mut stresses[own]);
+        }
+    }
+
+    /// Writes the smallest and the largest modulus of a wave in Pa at particles from `first` on at their displacement
+    /// gradients.
+    pub fn wave_moduli(&self, first: usize, gradients: &[Tensor<D>], moduli: &mut [[f64; 2]]) {
+        for (mixture, own) in self.runs(first, gradients.len()) {
+            mixture.all_wave_moduli(&gradients[own.clone()], &mut moduli[own]);
+        }
+    }
+
     /// Whether the material of every particle is one of small strains.
     pub fn is_linear(&self) -> bool {
         self.mixtures.iter().all(Mixture::is_linear)

@@ -1,6 +1,7 @@
 //! The largest step of central differences, of the body as it is deformed.
 
 use super::{Matrices, Mixture, TotalLagrangian};
+use crate::operators::one_by_one;
 use crate::schemes::StepLimit;
 use crate::schemes::look::Most;
 use crate::solve::largest_mode;
@@ -114,7 +115,7 @@ impl<const D: usize> TotalLagrangian<D> {
                     discrete.continue_field(&mut field);
                     // The hourglass force is elastic.
                     let (share, seen) = if is_elastic { (1.0, &field) } else { (0.0, &still) };
-                    operator.strain_with(share, &field, &mut strained, tension);
+                    operator.strain_with(share, &field, &mut strained, one_by_one(tension));
                     operator.forces(seen, &strained.tension, &mut all);
                     operator.fold(&mut all);
                 }

@@ -61,9 +61,10 @@ impl<const D: usize> Upwind<D> {
         let count = self.particles.len();
         let (own, _) = ColumnsMut::<D>::of(rate, count);
         let pairs = (&self.areas.pairs, sum);
-        let found = gather_parts(&self.team, pairs, (count, own), |row, sums, own, found| {
+        let close = |row, sums: &ExchangeSums<f64, D>, own: &mut _, found: &mut _| {
             self.write_row(row, sums, own, found);
-        });
+        };
+        let found = gather_parts(&self.team, pairs, (count, own), close, |_, _| {});
         MECHANISMS.iter().zip(&found).for_each(|(entry, sum)| totals.drive(*entry, sum));
     }
 

@@ -26,8 +26,10 @@ impl<const D: usize> Statics<D> {
     /// Internal forces at the displacements at hand, into `left`.
     fn fill_internal(&mut self) {
         let Self { discrete, displacement, passes, internal, left, .. } = self;
-        let tension = |a: usize, gradient: &Tensor<D>| discrete.tension(a, gradient);
-        passes.forces(&discrete.operator, displacement, tension, internal);
+        let tensions = |first: usize, gradients: &[_], tensions: &mut [_]| {
+            discrete.tensions(first, gradients, tensions);
+        };
+        passes.forces(&discrete.operator, displacement, tensions, internal);
         discrete.fold(internal);
         let count = left.len();
         left.copy_from_slice(&internal[..count]);

@@ -61,13 +61,13 @@ impl<const D: usize> Passes<D> {
         Ok((Self { strained: whole.strained(), rows: Some(Box::new(rows)) }, team))
     }
 
-    /// Writes the forces in N on particles and images of a field, of which a particle with a displacement gradient has a
-    /// `tension` in J, as [`ReferenceGradient::strain`] and [`ReferenceGradient::forces`].
+    /// Writes the forces in N on particles and images of a field, of which particles with displacement gradients have
+    /// tensions in J, as [`ReferenceGradient::strain`] and [`ReferenceGradient::forces`].
     pub fn forces(
         &mut self,
         operator: &ReferenceGradient<D>,
         field: &[Vector<D>],
-        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
+        tension: impl Fn(usize, &[Tensor<D>], &mut [Tensor<D>]) + Sync,
         force: &mut [Vector<D>],
     ) {
         match &mut self.rows {
@@ -105,7 +105,7 @@ impl<const D: usize> Rows<D> {
     fn forces(
         &mut self,
         field: &[Vector<D>],
-        tension: impl Fn(usize, &Tensor<D>) -> Tensor<D> + Sync,
+        tension: impl Fn(usize, &[Tensor<D>], &mut [Tensor<D>]) + Sync,
         force: &mut [Vector<D>],
     ) {
         let Self { team, slots, images, operator, strained, .. } = self;
@@ -113,7 +113,10 @@ impl<const D: usize> Rows<D> {
         for (own, slot) in self.field.iter_mut().zip(slots.iter()) {
             *own = field[slot];
         }
-        operator.strain(&self.field, strained, |a, gradient| tension(first + a, gradient));
+        let tension = |own: usize, gradients: &[_], tensions: &mut [_]| {
+            tension(first + own, gradients, tensions);
+        };
+        operator.strain(&self.field, strained, tension);
         team.refresh(&mut strained.tension, owned, operator.tensions());
         operator.forces(&self.field, &strained.tension, &mut self.force);
         let (own, behind) = self.force.split_at(slots.own.len());

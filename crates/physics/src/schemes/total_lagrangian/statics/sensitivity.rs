@@ -3,6 +3,7 @@
 use piola_formulas::hyperelastic::HyperelasticLaw;
 
 use super::Statics;
+use crate::operators::one_by_one;
 use crate::schemes::NoSensitivity;
 use crate::solve::{Equations, Tangent};
 use crate::{Tensor, Vector, parallel};
@@ -80,14 +81,13 @@ impl<const D: usize> Statics<D> {
         let hourglass = (0..solid.len()).map(hourglass).collect();
         let operator = discrete.operator.with_hourglass(&solid.particles, hourglass);
         let mut strained = operator.strained();
-        operator.strain(&self.displacement, &mut strained, |a, gradient: &Tensor<D>| {
-            match solid.mixture(a).0.first() {
-                Some((material, _)) if is_own(a) => {
-                    material.law.stress_derivative(gradient, law) * solid.particles.volume[a]
-                }
-                _ => Tensor::zeros(),
+        let tension = |a: usize, gradient: &Tensor<D>| match solid.mixture(a).0.first() {
+            Some((material, _)) if is_own(a) => {
+                material.law.stress_derivative(gradient, law) * solid.particles.volume[a]
             }
-        });
+            _ => Tensor::zeros(),
+        };
+        operator.strain(&self.displacement, &mut strained, one_by_one(tension));
         let mut force = vec![Vector::zeros(); self.displacement.len()];
         operator.forces(&self.displacement, &strained.tension, &mut force);
         discrete.fold(&mut force);

@@ -9,7 +9,7 @@ use piola_formulas::tensor;
 use super::super::Discrete;
 use super::faces::Spring;
 use super::passes::Passes;
-use crate::operators::{DirectedSupport, DualGradient, dual_row};
+use crate::operators::{DirectedSupport, DualGradient, dual_row, one_by_one};
 use crate::parallel::Team;
 use crate::solve::Tangent;
 use crate::{Tensor, Vector, parallel};
@@ -354,7 +354,7 @@ impl<const D: usize> Tangent<D> for Stiffness<D> {
         let count = direction.len();
         parallel::copy(&mut self.field[..count], direction);
         discrete.continue_field(&mut self.field);
-        passes.forces(&discrete.operator, &self.field, tension, &mut self.product);
+        passes.forces(&discrete.operator, &self.field, one_by_one(tension), &mut self.product);
         discrete.fold(&mut self.product);
         parallel::copy(product, &self.product[..count]);
         let (pressed, inertia) = (&self.pressed, self.inertia);

@@ -43,9 +43,7 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(super) fn fill_stresses(&mut self) {
         let (solid, gradient) = (&*self.solid, &self.strained.gradient);
         parallel::for_each_chunk(&mut self.stress, |first, rows| {
-            for (a, stress) in (first..).zip(rows) {
-                *stress = solid.mixture(a).stress(&gradient[a]);
-            }
+            solid.stresses(first, &gradient[first..][..rows.len()], rows);
         });
         if let Matrices::Strong(edges) = &self.matrices {
             edges.overwrite(&mut self.stress, |_| 1.0);
