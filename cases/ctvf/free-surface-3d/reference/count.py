@@ -94,10 +94,11 @@ BODIES = {"cube": (lattice(12), 12**3 - 10**3), "ball": (spheres(8), round(4 * m
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["write"]:
-        for name, file_name, to_the_right in (("ball", "spheres.csv", 0.0), ("cut", "cut.csv", 2.4)):
+        for name, file_name, shift in (("ball", "spheres.csv", 0.0), ("cut", "cut.csv", 2.4)):
+            points = BODIES[name][0] + [shift, 0.0, 0.0]
             with open(f"../{file_name}", "w") as file:
                 file.write("x,y,z,volume\n")
-                file.writelines(f"{x + to_the_right:.6g},{y:.6g},{z:.6g},{DX**3:g}\n" for x, y, z in BODIES[name][0] + 0.0)
+                file.writelines(f"{x:.6g},{y:.6g},{z:.6g},{DX**3:g}\n" for x, y, z in points)
         sys.exit()
     for name, (points, outer) in BODIES.items():
         print(name, len(points), "particles, by construction", outer, "exposed", exposed(points), "found", found(points))
