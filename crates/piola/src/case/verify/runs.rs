@@ -105,7 +105,7 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
         }
         let mut row = self.blank(index, check, run, names);
         let verdict = found.and_then(|run| {
-            let unit = unit(run, check);
+            let unit = unit_of(run, check);
             (row.expected, row.tolerance) = format::expectation(&check.expectation, &unit);
             let got = measure(run, check)?;
             row.got = Some(got.clone());
@@ -299,7 +299,7 @@ impl Line<'_> {
 
 /// The unit of what the run gives for `check`, also where it gives nothing, such as the time of a zero that is not
 /// reached.
-fn unit<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> String {
+fn unit_of<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> String {
     match run.run.quantity(&check.quantity.name()) {
         Some(Series::Number { unit, .. }) => unit.to_owned(),
         Some(Series::Curve { unit, .. }) => check.reduce.unit(&unit),
