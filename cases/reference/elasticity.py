@@ -54,7 +54,8 @@ def hole(n=32):
         f, nominal = solid.at(u, 0, radius)
         stress = nominal @ f.T / np.linalg.det(f)
         u = u.reshape(-1, 2)
-        show(top_stress=np.linalg.eigvalsh(stress)[-1], side_ux=u[solid.node(radius, 0), 0],
+        show(top_stress=np.linalg.eigvalsh(stress)[-1], top_uy=u[solid.node(0, radius), 1],
+             side_ux=u[solid.node(radius, 0), 0],
              corner_ux=u[solid.node(side, side), 0], corner_uy=u[solid.node(side, side), 1],
              end_ux=u[solid.node(side, 0), 0], above_uy=u[solid.node(0, side), 1])
 

@@ -6,8 +6,8 @@ use piola::case::page::CaseResults;
 use super::pages::{below, page, root};
 use super::validation::results;
 
-/// Units that a table may have in place of those of the results: %, mm, us, kPa and so on.
-const FACTORS: [f64; 8] = [1.0, 1e2, 1e3, 1e6, 1e-2, 1e-3, 1e-6, 1e-9];
+/// Units that a page may have in place of those of the results: %, mm or ms, um or us, kPa, MPa.
+const FACTORS: [f64; 6] = [1.0, 1e2, 1e3, 1e6, 1e-3, 1e-6];
 
 /// The numbers of `text`, each as it is written: digits, and perhaps a point and an exponent.
 fn tokens(text: &str) -> impl Iterator<Item = &str> {
@@ -52,17 +52,17 @@ fn whole(text: &str) -> Vec<String> {
     numbers.filter(|number| number.parse::<u64>().is_ok_and(|number| number >= 20)).collect()
 }
 
-/// All numbers that a case has results of, or files.
-fn known(case: &CaseResults, folder: &str) -> (Vec<f64>, Vec<f64>) {
+/// All numbers that a case has results of, or files. Those of a table are results, or what is expected of them.
+fn known(case: &CaseResults, folder: &str, is_table: bool) -> (Vec<f64>, Vec<f64>) {
     let cells = |text: &str| {
         let words = text.split([' ', ',', ';', '(', ')', '=']).map(str::to_owned);
         words.filter_map(|word| word.trim_end_matches('%').parse().ok()).collect::<Vec<f64>>()
     };
     let numbers = case.rows.iter().flat_map(|row| {
-        let own =
-            [&row.quantity, &row.got, &row.expected, &row.tolerance, &row.off_by, &row.source];
-        let texts = own.into_iter().chain(&row.members).chain(&row.run).chain(&row.bound);
-        texts.flat_map(|text| cells(text)).collect::<Vec<_>>()
+        let results = [&row.got, &row.expected, &row.off_by].into_iter().chain(&row.members);
+        let rest = [&row.quantity, &row.tolerance, &row.source].into_iter();
+        let rest = rest.chain(&row.run).chain(&row.bound).filter(|_| !is_table);
+        results.chain(rest).flat_map(|text| cells(text)).collect::<Vec<_>>()
     });
     let files = below(folder, &["case.toml", ".csv", ".py"]);
     let texts = files
@@ -85,16 +85,27 @@ fn is_rounded(written: &str, value: f64) -> bool {
 }
 
 fn unheld(text: &str, case: &CaseResults, folder: &str) -> Vec<String> {
-    let (values, files) = known(case, folder);
-    let held = |number: &String| {
-        let rounded = |value: &f64| FACTORS.iter().any(|factor| is_rounded(number, value * factor));
-        let own: f64 = number.parse().expect("a number");
-        let is_same =
-            |value: &f64| FACTORS.iter().any(|factor| (value * factor / own - 1.0).abs() < 1e-9);
-        files.iter().any(is_same) || values.iter().any(rounded)
+    let unheld_of = |numbers: Vec<String>, is_table: bool| {
+        let (values, files) = known(case, folder, is_table);
+        let held = |number: &String| {
+            let rounded =
+                |value: &f64| FACTORS.iter().any(|factor| is_rounded(number, value * factor));
+            let own: f64 = number.parse().expect("a number");
+            let is_same = |value: &f64| {
+                FACTORS.iter().any(|factor| (value * factor / own - 1.0).abs() < 1e-9)
+            };
+            files.iter().any(is_same) || values.iter().any(rounded)
+        };
+        numbers.into_iter().filter(|number| !held(number)).collect::<Vec<_>>()
     };
-    let numbers = written(&claims(text)).into_iter().chain(whole(text));
-    numbers.filter(|number| !held(number)).collect()
+    let is_row = |line: &&str| line.starts_with('|');
+    let rows: Vec<&str> = text.lines().filter(is_row).collect();
+    let rest: Vec<&str> = text.lines().filter(|line| !is_row(line)).collect();
+    let mut of_tables = written(&claims(&rows.join("\n")));
+    of_tables.extend(whole(text));
+    let mut unheld = unheld_of(of_tables, true);
+    unheld.extend(unheld_of(written(&claims(&rest.join("\n"))), false));
+    unheld
 }
 
 /// Text that says by which command the numbers of a sentence came about.

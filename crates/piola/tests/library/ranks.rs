@@ -429,7 +429,7 @@ fn cases_are_shared_but_for_factors_and_what_is_refused() {
 }
 
 /// The cases of which several ranks have a part each.
-const SHARED: [&str; 62] = [
+const SHARED: [&str; 63] = [
     "dam-break-box",
     "dam-break-plate",
     "dam-break-plate-3d",
@@ -450,6 +450,7 @@ const SHARED: [&str; 62] = [
     "dam-break-3d",
     "drop",
     "free-surface",
+    "free-surface-3d",
     "impact",
     "impact-3d",
     "jet",

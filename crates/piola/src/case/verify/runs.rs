@@ -105,12 +105,9 @@ impl<'a, Run: RunResults> Runs<'a, Run> {
         }
         let mut row = self.blank(index, check, run, names);
         let verdict = found.and_then(|run| {
+            let unit = unit_of(run, check);
+            (row.expected, row.tolerance) = format::expectation(&check.expectation, &unit);
             let got = measure(run, check)?;
-            let unit = match &got {
-                Got::Number(_, unit) => unit,
-                Got::Text(_) => "",
-            };
-            (row.expected, row.tolerance) = format::expectation(&check.expectation, unit);
             row.got = Some(got.clone());
             self.compare(&mut row, run, check, &got)
         });
@@ -297,6 +294,16 @@ impl Line<'_> {
             true => format!("sweep {}", self.sweep.name.value),
             false => format!("sweep {} ({})", self.sweep.name.value, others.join(", ")),
         }
+    }
+}
+
+/// The unit of what the run gives for `check`, also where it gives nothing, such as the time of a zero that is not
+/// reached.
+fn unit_of<Run: RunResults>(run: &VariantRun<Run>, check: &Check) -> String {
+    match run.run.quantity(&check.quantity.name()) {
+        Some(Series::Number { unit, .. }) => unit.to_owned(),
+        Some(Series::Curve { unit, .. }) => check.reduce.unit(&unit),
+        Some(Series::Text(_)) | None => String::new(),
     }
 }
 

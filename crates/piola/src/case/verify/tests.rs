@@ -335,6 +335,15 @@ fn what_cannot_be_evaluated_fails_with_a_reason() {
 }
 
 #[test]
+fn what_is_expected_has_its_unit_where_the_run_gives_nothing() {
+    let row = row(&format!(
+        "{X}reduce = \"zero_time\"\nnumber = 9\nexpected = 4.5\ntolerance = 0.1\nabsolute = true"
+    ));
+    assert!(!row.pass && row.got.is_none() && row.reason.is_some(), "{row:?}");
+    assert_eq!((row.expected.as_str(), row.tolerance.as_str()), ("4.5 s", "0.1 s"));
+}
+
+#[test]
 fn reference_curves_are_read_from_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.csv");
