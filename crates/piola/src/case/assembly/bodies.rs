@@ -338,11 +338,24 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
         tell(format!("{pairs}{}", first.unwrap_or_default()));
     }
     for body in &case.bodies {
-        // What is cut out of a body is no part of it.
-        let model::Shape::Surface(surface) = &body.shape.value else { continue };
-        let Some(facets) = surface.facets.get() else { continue };
         let spacing = body.spacing.iter().copied().fold(0.0, f64::max);
-        if let Some((thickness, spot)) = facets.thinner_than(THIN * spacing) {
+        let thinnest = match &body.shape.value {
+            // What is cut out of a body is no part of it.
+            model::Shape::Surface(surface) => {
+                let thinnest = surface.facets.get().and_then(|it| it.thinner_than(THIN * spacing));
+                thinnest.map(|(thickness, spot)| {
+                    (thickness, format!(" where it is thinnest, behind {spot}"))
+                })
+            }
+            // That of a wall that does not hold has a warning of its own.
+            model::Shape::Layer { thickness, .. }
+                if body.wall.is_none() && *thickness < THIN * spacing =>
+            {
+                Some((*thickness, String::new()))
+            }
+            _ => None,
+        };
+        if let Some((thickness, place)) = thinnest {
             let layers = thickness / spacing;
             let thin = match layers < 0.05 {
                 true => "has no thickness".to_owned(),
@@ -353,7 +366,7 @@ pub(super) fn surfaces(case: &Case) -> Vec<String> {
                 false => "",
             };
             told.push(format!(
-                "the body `{}` {thin} where it is thinnest, behind {spot}, less than {THIN}: make the spacing \
+                "the body `{}` {thin}{place}, less than {THIN}: make the spacing \
                  smaller{other}",
                 *body.name
             ));
@@ -401,6 +414,9 @@ pub(super) fn shape<const D: usize>(
                 located.place,
                 "points cannot be combined with other shapes",
                 "inside another shape",
+        model::Shape::Layer { of, thickness, side } => {
+            shape(case, body, of)?.layer(*thickness, *side)
+        }
                 Some(help),
             ));
         }

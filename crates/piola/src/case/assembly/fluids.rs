@@ -135,6 +135,7 @@ pub(super) fn prepare<const D: usize>(
         let counts = |place: &Vector<D>| counts.counts(place);
         warnings.extend(tanks::warnings(case, shape, &particles, (&faces, counts), support));
     }
+        warnings.extend(walls::behind_layers(case, &particles, support)?);
     let initial = initial(case, &particles);
     if materials(case).is_none() {
         warnings.extend(compression(&fluid(case)?, &initial));

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use super::{Material, Opening, Wall};
 use crate::case::expression::Expression;
 use crate::case::source::Located;
-use crate::geometry::{Arrangement, CloudSpec, Facets, PointCloud};
+use crate::geometry::{Arrangement, CloudSpec, Facets, LayerSide, PointCloud};
 
 /// The space that the particles live in.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +115,15 @@ pub enum Shape {
         /// The axis, of length 1: z in 2D.
         axis: [f64; 3],
     },
+    /// The layer along the boundary of a shape that is no combination.
+    Layer {
+        /// The shape.
+        of: Box<Located<Shape>>,
+        /// Its thickness in m.
+        thickness: f64,
+        /// Where it is.
+        side: LayerSide,
+    },
     /// What lies in any of the shapes. Not empty.
     Union(Vec<Located<Shape>>),
     /// What lies in all of the shapes. Not empty.
@@ -167,6 +176,15 @@ impl Shape {
         }
     }
 
+    /// Whether it is made of several shapes, or is a layer of one, as it is or turned.
+    pub fn is_composed(&self) -> bool {
+        match self {
+            Self::Turned { of, .. } => of.is_composed(),
+            Self::Layer { .. } => true,
+            _ => !self.parts().is_empty(),
+        }
+    }
+
     /// The surfaces from files in it.
     pub fn surfaces(&self) -> Vec<&Surface> {
         match self {
@@ -184,7 +202,7 @@ impl Shape {
             Self::Difference { from, remove } => {
                 std::iter::once(&from.value).chain(remove.iter().map(|cut| &cut.value)).collect()
             }
-            Self::Turned { of, .. } => vec![&of.value],
+            Self::Turned { of, .. } | Self::Layer { of, .. } => vec![&of.value],
             _ => Vec::new(),
         }
     }
