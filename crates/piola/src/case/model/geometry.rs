@@ -212,6 +212,7 @@ impl Shape {
         match self {
             Self::Points { file }
             | Self::Mesh { file, .. }
+            | Self::Outline { file, .. }
             | Self::Surface(Surface { file, .. }) => vec![file],
             _ => self.parts().into_iter().flat_map(Self::files).collect(),
         }
