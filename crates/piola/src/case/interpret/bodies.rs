@@ -331,6 +331,7 @@ impl Reader<'_, '_> {
             false => Some(vec![Expression::constant(0.0); self.dimension]),
         };
         Some(Initial {
+            place: record.place,
             velocity: components("velocity")?,
             displacement: components("displacement")?,
             pressure: record.expression("pressure")?,

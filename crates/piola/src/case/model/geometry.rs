@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::{Material, Opening, Wall};
 use crate::case::expression::Expression;
-use crate::case::source::Located;
+use crate::case::source::{Located, Place};
 use crate::geometry::{Arrangement, CloudSpec, Facets, LayerSide, PointCloud};
 
 /// The space that the particles live in.
@@ -256,15 +256,24 @@ pub enum LatticeOrigin {
     Cells,
 }
 
-/// State of a body at the start, as expressions of the reference position.
+/// State of a body at the start, as expressions of the reference position or arrays of its particles.
 #[derive(Clone, Debug)]
 pub struct Initial {
+    /// Where it is in the case.
+    pub place: Place,
     /// Velocity in m/s.
     pub velocity: Vec<Expression>,
     /// Displacement in m.
     pub displacement: Vec<Expression>,
     /// Pressure in Pa, positive in compression.
     pub pressure: Expression,
+}
+
+impl Initial {
+    /// All expressions.
+    pub fn expressions(&self) -> impl Iterator<Item = &Expression> {
+        self.velocity.iter().chain(&self.displacement).chain(std::iter::once(&self.pressure))
+    }
 }
 
 /// A region that selects particles by their reference position.
