@@ -9,6 +9,8 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::array;
+use crate::bodies::no_body;
 use crate::display::{preformatted, seconds, table};
 use crate::errors::{Fault, case_error, faults, file_error, guard};
 use crate::functions::{Registry, Shared, make_threads, refuse_inside};
@@ -31,8 +33,9 @@ enum Source {
 /// Case(table, *, folder=".", variant=None, level="case")
 ///
 /// table: a dict with the keys of a case file (docs/case-file.md). NumPy arrays and numbers, tuples and paths
-/// are accepted, functions of any of x, y, z and t in place of expressions, and a `Cloud` in place of the shape of a
-/// body. It is turned into the text of a case file, which `case.toml` shows and messages refer to.
+/// are accepted, functions of any of x, y, z and t in place of expressions, a `Cloud` in place of the shape of a body,
+/// and arrays in place of its initial `velocity` and `displacement`, of shape (particles, D), and `pressure`, of shape
+/// (particles,), with rows in the order of `positions`. It is turned into the text of a case file, which `case.toml` shows and messages refer to.
 /// folder: where files named in the case are searched for.
 /// variant: name of a variant, or of a member of a sweep (`NAME.3`).
 /// level: "case", or the settings "coarse" or "paper" of the case.
@@ -72,9 +75,10 @@ impl Case {
     /// Reads the case as it is now, without the GIL, and what the functions of its run share.
     fn read(&self, py: Python<'_>) -> PyResult<(Result<case::Case, Problems>, Arc<Shared>)> {
         let (functions, shared) = self.registry.for_a_run();
-        let clouds = self.registry.clouds.clone();
+        let Registry { clouds, arrays, .. } = &self.registry;
+        let (clouds, arrays) = (clouds.clone(), arrays.clone());
         let overrides = self.changes.iter().map(Change::text).collect();
-        let options = LoadOptions { overrides, functions, clouds, ..self.options.clone() };
+        let options = LoadOptions { overrides, functions, clouds, arrays, ..self.options.clone() };
         let read = guard(py, || match &self.source {
             Source::File(path) => load(path, &options),
             Source::Text { text, folder } => parse_in(folder, text, DICT, &options),
@@ -192,8 +196,8 @@ impl Case {
     }
 
     /// Sets the key that `path` leads to, as `--set` does: `body.water.spacing`, `load.0.acceleration`. A path with `+`
-    /// at its end appends to a list; the value None removes the key. A value may contain functions and clouds, as in
-    /// `Case`. Returns the case itself.
+    /// at its end appends to a list; the value None removes the key. A value may contain functions, clouds and
+    /// arrays, as in `Case`. Returns the case itself.
     fn set<'py>(
         mut slf: PyRefMut<'py, Self>,
         path: &str,
@@ -222,6 +226,25 @@ impl Case {
             (Err(problems), _) => Err(problems),
         };
         Ok(built.err().map(|problems| faults(&problems)).unwrap_or_default())
+    }
+
+    /// Positions at the start of the particles of the body `name`, in m: an array of shape (particles, D), in the order of
+    /// creation. Arrays of initial fields have their rows in this order; of a `Cloud` it is its own.
+    ///
+    /// Raises CaseError, and KeyError if the case has no such body.
+    fn positions<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        refuse_inside()?;
+        let (case, _) = self.model(py)?;
+        let names = || case.bodies.iter().map(|body| body.name.value.as_str());
+        let number =
+            names().position(|known| known == name).ok_or_else(|| no_body(name, names()))?;
+        let positions = guard(py, || {
+            make_threads();
+            case.positions(number)
+        })?;
+        let positions = positions.map_err(|problems| case_error(py, &problems))?;
+        let count = positions.len() / case.dimension;
+        array(py, positions, &[count, case.dimension])
     }
 
     /// What a run will do, without running it: creates the particles and times two steps.
